@@ -1,0 +1,40 @@
+# Every target makes what it needs: python3 (3.11 or newer, with venv) and make are enough.
+PYTHON ?= python3
+BIN := .venv/bin
+READY := .venv/ready
+
+.PHONY: help demo test check bench clean
+help:
+	@echo "make demo    run a channel flow and draw it with the theory"
+	@echo "make test    run the tests"
+	@echo "make check   lint, types, import rules"
+	@echo "make bench   measure the speed, side by side with LAMMPS"
+	@echo "make clean   remove what these made"
+
+$(READY): pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	  { echo "mesokit needs python 3.11 or newer: make PYTHON=/path/to/python3"; exit 1; }
+	@echo "installing into .venv (once; a minute or two)"
+	@$(PYTHON) -m venv --clear .venv
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev]'
+	@touch $(READY)
+
+demo: $(READY)
+	@$(BIN)/python -c 'import shutil; shutil.rmtree("demo", ignore_errors=True)'
+	@$(BIN)/mesokit run src/mesokit/templates/poiseuille.toml --output demo
+	@echo "look at demo/velocity-profile.png"
+
+test: $(READY)
+	@$(BIN)/python -m pytest
+
+check: $(READY)
+	@$(BIN)/ruff check .
+	@$(BIN)/ruff format --check .
+	@$(BIN)/mypy
+	@$(BIN)/python -m pytest tests/architecture
+
+bench: $(READY)
+	@$(BIN)/python -m benchmarks
+
+clean:
+	@rm -rf .venv demo

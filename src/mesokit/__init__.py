@@ -1,0 +1,143 @@
+"""Mesoscale particle simulation: fluids by multi-particle collision dynamics.
+
+The public names are imported when they are first used, so that `import mesokit` is instant.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.1.0"
+
+if TYPE_CHECKING:
+    from mesokit import theory
+    from mesokit.box import Box
+    from mesokit.case import Case
+    from mesokit.derived import Derived, derive
+    from mesokit.errors import CaseError, CheckpointError, MesokitError, RunError
+    from mesokit.geometry import Plates, Surface
+    from mesokit.io.open import RunFiles
+    from mesokit.io.open import open_run as open
+    from mesokit.io.trajectory import Trajectory
+    from mesokit.mpcd.collision import AT, SRD, ATPlusA, SRDPlusA
+    from mesokit.mpcd.field import NoForce, Sinusoidal, Uniform
+    from mesokit.mpcd.fluid import Fluid
+    from mesokit.mpcd.initial import Start
+    from mesokit.mpcd.species import Species
+    from mesokit.mpcd.thermostat import MaxwellBoltzmann, NoThermostat, Rescale
+    from mesokit.observe import (
+        Comparison,
+        Conservation,
+        DensityField,
+        DensityProfile,
+        LongitudinalModes,
+        MeanSquareDisplacement,
+        Result,
+        Stress,
+        TemperatureProfile,
+        TransverseModes,
+        VelocityAutocorrelation,
+        VelocityField,
+        VelocityProfile,
+        WallStress,
+    )
+    from mesokit.run import Run
+    from mesokit.simulation import Simulation
+
+_PLACES = {  # module: the public names in it
+    "mesokit.box": ("Box",),
+    "mesokit.case": ("Case",),
+    "mesokit.derived": ("Derived", "derive"),
+    "mesokit.errors": ("CaseError", "CheckpointError", "MesokitError", "RunError"),
+    "mesokit.geometry": ("Plates", "Surface"),
+    "mesokit.io.open": ("RunFiles",),
+    "mesokit.io.trajectory": ("Trajectory",),
+    "mesokit.mpcd.collision": ("AT", "ATPlusA", "SRD", "SRDPlusA"),
+    "mesokit.mpcd.field": ("NoForce", "Sinusoidal", "Uniform"),
+    "mesokit.mpcd.fluid": ("Fluid",),
+    "mesokit.mpcd.initial": ("Start",),
+    "mesokit.mpcd.species": ("Species",),
+    "mesokit.mpcd.thermostat": ("MaxwellBoltzmann", "NoThermostat", "Rescale"),
+    "mesokit.observe": (
+        "Comparison",
+        "Conservation",
+        "DensityField",
+        "DensityProfile",
+        "LongitudinalModes",
+        "MeanSquareDisplacement",
+        "Result",
+        "Stress",
+        "TemperatureProfile",
+        "TransverseModes",
+        "VelocityAutocorrelation",
+        "VelocityField",
+        "VelocityProfile",
+        "WallStress",
+    ),
+    "mesokit.run": ("Run",),
+    "mesokit.simulation": ("Simulation",),
+}
+_HOME = {name: (module, name) for module, names in _PLACES.items() for name in names}
+_HOME["open"] = ("mesokit.io.open", "open_run")
+
+__all__ = [
+    "AT",
+    "SRD",
+    "ATPlusA",
+    "Box",
+    "Case",
+    "CaseError",
+    "CheckpointError",
+    "Comparison",
+    "Conservation",
+    "DensityField",
+    "DensityProfile",
+    "Derived",
+    "Fluid",
+    "LongitudinalModes",
+    "MaxwellBoltzmann",
+    "MeanSquareDisplacement",
+    "MesokitError",
+    "NoForce",
+    "NoThermostat",
+    "Plates",
+    "Rescale",
+    "Result",
+    "Run",
+    "RunError",
+    "RunFiles",
+    "SRDPlusA",
+    "Simulation",
+    "Sinusoidal",
+    "Species",
+    "Start",
+    "Stress",
+    "Surface",
+    "TemperatureProfile",
+    "Trajectory",
+    "TransverseModes",
+    "Uniform",
+    "VelocityAutocorrelation",
+    "VelocityField",
+    "VelocityProfile",
+    "WallStress",
+    "derive",
+    "open",
+    "theory",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "theory":
+        return importlib.import_module("mesokit.theory")
+    if name in _HOME:
+        module, inside = _HOME[name]
+        value = getattr(importlib.import_module(module), inside)
+        globals()[name] = value
+        return value
+    raise AttributeError(f"module 'mesokit' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*__all__, "__version__"])

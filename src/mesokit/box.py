@@ -1,0 +1,152 @@
+"""The box that holds the fluid."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal, NamedTuple
+
+from numba.cpython.unsafe.tuple import tuple_setitem
+from pydantic import field_validator
+
+from mesokit.component import component, param
+from mesokit.scalar import generic, scalar
+
+Axis = Literal["x", "y", "z"]
+AXES: tuple[Axis, ...] = ("x", "y", "z")
+
+
+@component
+class Box:
+    """A rectangular box of whole cells; two sizes make it 2D. Periodic where no wall closes it."""
+
+    size: tuple[int, ...] = param(doc="length along each axis: two numbers (2D) or three", unit="a")
+    shear_rate: float = param(
+        0.0, doc="Lees-Edwards shear: flow along x, gradient along y", unit="1/time"
+    )
+
+    @field_validator("size")
+    @classmethod
+    def _two_or_three_lengths(cls, size: tuple[int, ...]) -> tuple[int, ...]:
+        if len(size) not in (2, 3):
+            raise ValueError("expected two lengths (2D) or three (3D)")
+        if min(size) < 2:
+            raise ValueError("expected at least 2 cells along each axis")
+        return size
+
+    @property
+    def dimension(self) -> int:
+        """2 or 3."""
+        return len(self.size)
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """The names of the axes: x, y and, in 3D, z."""
+        return AXES[: self.dimension]
+
+    @property
+    def volume(self) -> int:
+        """Number of cells."""
+        cells = 1
+        for length in self.size:
+            cells *= length
+        return cells
+
+    def kernel(self, closed: tuple[bool, ...], time: float) -> Periodic | Sheared:
+        """Parameters for `fold`; `closed` says which axes walls close."""
+        size = tuple(float(length) for length in self.size)
+        inverse = tuple(0.0 if shut else 1.0 / length for shut, length in zip(closed, size))
+        if self.shear_rate == 0.0:
+            return Periodic(size, inverse)
+        speed = self.shear_rate * size[1]
+        return Sheared(size, inverse, speed, math.fmod(speed * time, size[0]))
+
+
+class Periodic(NamedTuple):
+    """Lengths, and their inverses (0 along an axis that walls close)."""
+
+    size: tuple[float, ...]
+    inverse: tuple[float, ...]
+
+
+class Sheared(NamedTuple):
+    """A box whose images along y slide along x (Lees and Edwards 1972).
+
+    The image above moves at `speed` and is displaced by `offset` at this time.
+    """
+
+    size: tuple[float, ...]
+    inverse: tuple[float, ...]
+    speed: float
+    offset: float
+
+
+@scalar
+def images(box, r, shift):
+    """How many boxes r + shift is away from the primary one, along each axis, as floats."""
+    for k in range(len(r)):
+        r = tuple_setitem(r, k, math.floor((r[k] + shift[k]) * box.inverse[k]))
+    return r
+
+
+@generic
+def fold(box, r, v, shift):
+    """The image whose r + shift lies in the primary box: position, velocity, boxes crossed.
+
+    Under shear the image below or above moves: crossing upwards takes the shear velocity off.
+    """
+    raise NotImplementedError
+
+
+@generic
+def slide(box, r, v, shift):
+    """`fold`, where it must be done at every step; the crossings are () where it can wait.
+
+    A periodic image is as good as any other. Under shear it is not: velocities of one cell must be
+    those of one image.
+    """
+    raise NotImplementedError
+
+
+@fold.register(Periodic)
+def _(box, r, v, shift):
+    n = images(box, r, shift)
+    for k in range(len(r)):
+        r = tuple_setitem(r, k, r[k] - n[k] * box.size[k])
+    return r, v, n
+
+
+@fold.register(Sheared)
+def _(box, r, v, shift):
+    up = math.floor((r[1] + shift[1]) * box.inverse[1])  # first, because it moves x
+    r = tuple_setitem(r, 0, r[0] - up * box.offset)
+    v = tuple_setitem(v, 0, v[0] - up * box.speed)
+    n = images(box, r, shift)
+    for k in range(len(r)):
+        r = tuple_setitem(r, k, r[k] - n[k] * box.size[k])
+    return r, v, n
+
+
+@slide.register(Periodic)
+def _(box, r, v, shift):
+    return r, v, ()
+
+
+@slide.register(Sheared)
+def _(box, r, v, shift):
+    return fold(box, r, v, shift)
+
+
+@generic
+def peculiar(box, r, v):
+    """Velocity relative to the imposed flow."""
+    raise NotImplementedError
+
+
+@peculiar.register(Periodic)
+def _(box, r, v):
+    return v
+
+
+@peculiar.register(Sheared)
+def _(box, r, v):
+    return tuple_setitem(v, 0, v[0] - box.speed * (r[1] / box.size[1] - 0.5))

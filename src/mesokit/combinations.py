@@ -1,0 +1,181 @@
+"""Values that are fine alone and wrong together. Each rule yields what is wrong, key path first."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from mesokit.box import AXES
+from mesokit.component import show
+from mesokit.errors import CaseError
+from mesokit.geometry import Surface
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+MOST_CELLS = 2**31 - 1  # cell numbers are 32-bit
+
+
+def check(case: Case) -> None:
+    """Raise CaseError for the first combination that has no physics."""
+    for rule in RULES:
+        for problem in rule(case):
+            raise CaseError(problem)
+    for i, observable in enumerate(case.observe):
+        try:
+            observable.check(case)
+        except CaseError as error:
+            reason = str(error).removeprefix(f"{observable.label}: ")
+            joint = "." if re.match(r"\w+ = ", reason) else f" ({observable.label}): "
+            raise CaseError(f"observe[#{i + 1}]{joint}{reason}") from None
+
+
+def size(case: Case) -> Iterator[str]:
+    """Neither empty nor beyond what can be numbered."""
+    if case.box.volume > MOST_CELLS:
+        yield f"box.size = {show(case.box.size)}: expected at most {MOST_CELLS} cells"
+    if case.particles < 2:
+        yield f"fluid.density = {show(case.fluid.density)}: fewer than 2 particles in this box"
+
+
+def vectors(case: Case) -> Iterator[str]:
+    """One number for each axis."""
+    for key, vector in _vectors(case):
+        if len(vector) != case.box.dimension:
+            yield (
+                f"{key} = {show(vector)}: expected {case.box.dimension} numbers, "
+                f"one for each axis of the {case.box.dimension}D box"
+            )
+
+
+def axes(case: Case) -> Iterator[str]:
+    """No z in 2D."""
+    named = [(f"wall[#{i + 1}].axis", wall.axis) for i, wall in enumerate(case.walls)]
+    force = case.fluid.force
+    if force.rule == "sinusoidal":
+        named += [("fluid.force.flow", force.flow), ("fluid.force.gradient", force.gradient)]
+    for key, axis in named:
+        if axis not in case.box.axes:
+            yield f"{key} = {show(axis)}: a 2D box has only 'x' and 'y'"
+
+
+def walls(case: Case) -> Iterator[str]:
+    """One slit, whose plates move along themselves."""
+    if len(case.walls) > 1:
+        yield f"wall[#2]: expected one [[wall]], not {len(case.walls)}"
+    for key, surface, axis in _surfaces(case):
+        velocity = surface.velocity
+        if velocity is None:
+            continue
+        if velocity[AXES.index(axis)] != 0:
+            yield (
+                f"{key}.velocity = {show(velocity)}: a plate across {axis} moves only along "
+                f"itself; expected 0 for {axis}"
+            )
+        if surface.rule == "slip" and any(velocity):
+            yield f"{key}.velocity = {show(velocity)}: a slip plate drags nothing; leave it out"
+
+
+def collision(case: Case) -> Iterator[str]:
+    """Angles that the dimension allows, and no second thermostat."""
+    rule, thermostat = case.fluid.collision, case.fluid.thermostat
+    if rule.rule == "srd" and rule.angle_distribution == "uniform":
+        if case.box.dimension == 3:
+            yield "fluid.collision.angle_distribution = 'uniform': only in 2D; in 3D use rule 'at'"
+        if rule.angle != type(rule)().angle:
+            yield (
+                f"fluid.collision.angle = {show(rule.angle)}: no effect with "
+                "angle_distribution = 'uniform'; leave it out"
+            )
+    elif rule.rule in ("srd", "srd+a") and rule.angle == 180 and case.box.dimension == 2:
+        yield (
+            "fluid.collision.angle = 180: in 2D a half turn keeps the shear stress for ever; "
+            "expected less than 180"
+        )
+    if rule.rule in ("at", "at+a") and thermostat.rule != "none":
+        yield (
+            f"fluid.thermostat.rule = {show(thermostat.rule)}: collision rule {show(rule.rule)} is "
+            "its own thermostat; leave the thermostat out"
+        )
+
+
+def force(case: Case) -> Iterator[str]:
+    """A sine across its own direction, and along the plates."""
+    rule = case.fluid.force
+    if rule.rule != "sinusoidal":
+        return
+    if rule.flow == rule.gradient:
+        yield f"fluid.force.gradient = {show(rule.gradient)}: expected another axis than flow"
+    if any(wall.axis == rule.flow for wall in case.walls):
+        yield f"fluid.force.flow = {show(rule.flow)}: expected an axis that no wall closes"
+
+
+def shear(case: Case) -> Iterator[str]:
+    """Lees-Edwards images along y, flow along x."""
+    rate, rule = case.box.shear_rate, case.fluid.force
+    if rate == 0:
+        return
+    key = f"box.shear_rate = {show(rate)}"
+    for wall in case.walls:
+        if wall.axis in ("x", "y"):
+            yield f"{key}: not with walls across {wall.axis}; move a plate to shear a slit"
+    if rule.rule == "sinusoidal":
+        yield f"{key}: not with a sinusoidal force"
+    if rule.rule == "uniform" and rule.acceleration[1] != 0:
+        yield f"{key}: not with fluid.force.acceleration along y, the gradient of the shear"
+
+
+def start(case: Case) -> Iterator[str]:
+    """Arrays or an earlier run."""
+    given = case.fluid.start
+    if given.run is not None and (given.positions or given.velocities):
+        yield f"fluid.start.run = {show(given.run)}: not with positions or velocities"
+
+
+def names(case: Case) -> Iterator[str]:
+    """Results are kept by name."""
+    seen: dict[str, int] = {}
+    for i, observable in enumerate(case.observe):
+        label = observable.label
+        if label in seen:
+            yield (
+                f"observe[#{i + 1}].name: {show(label)} is also the name of "
+                f"observe[#{seen[label]}]; give one of them a name"
+            )
+        seen[label] = i + 1
+        if not label.replace("-", "").replace("_", "").isalnum():
+            yield (
+                f"observe[#{i + 1}].name = {show(label)}: expected letters, digits, '-' and '_' "
+                "(it names a file)"
+            )
+
+
+def trajectory(case: Case) -> Iterator[str]:
+    """Particles that exist, each field once."""
+    given = case.trajectory
+    if given is None:
+        return
+    if given.subset is not None and given.subset > case.particles:
+        yield f"trajectory.subset = {given.subset}: there are only {case.particles} particles"
+    if len(set(given.fields)) < len(given.fields):
+        yield f"trajectory.fields = {show(given.fields)}: expected each field once"
+
+
+RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
+    size, axes, vectors, walls, collision, force, shear, start, names, trajectory,
+)  # fmt: skip
+
+
+def _surfaces(case: Case) -> Iterator[tuple[str, Surface, Any]]:
+    for i, wall in enumerate(case.walls):
+        yield f"wall[#{i + 1}].lower", wall.lower, wall.axis
+        yield f"wall[#{i + 1}].upper", wall.upper, wall.axis
+
+
+def _vectors(case: Case) -> Iterator[tuple[str, tuple[float, ...]]]:
+    if case.fluid.force.rule == "uniform":
+        yield "fluid.force.acceleration", case.fluid.force.acceleration
+    for key, surface, _ in _surfaces(case):
+        if surface.velocity is not None:
+            yield f"{key}.velocity", surface.velocity

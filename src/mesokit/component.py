@@ -1,0 +1,286 @@
+"""What every part of a case is made of: a frozen dataclass that checks its values.
+
+A component is at once the Python object, the section of the case file, the stored metadata and
+the row of the documentation. Write plain type hints: numbers are taken strictly (no strings, no
+booleans; a whole float passes as an int), lists and arrays become tuples, unions of components
+are told apart by their tag (`rule`, `shape` or `quantity`), unknown keys are refused.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import functools
+import math
+import numbers
+import operator
+import types
+import typing
+from collections.abc import Iterable, Sequence
+from typing import Annotated, Any, TypeVar, dataclass_transform
+
+import pydantic
+from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic_core import PydanticCustomError
+
+from mesokit.errors import CaseError
+
+T = TypeVar("T")
+TAGS = ("rule", "shape", "quantity")
+
+
+def param(default: Any = ..., *, doc: str, unit: str = "", **limits: Any) -> Any:
+    """A field of a component: default (none: required), one-line meaning, unit, gt/ge/lt/le."""
+    return Field(default, description=doc, json_schema_extra={"unit": unit}, **limits)
+
+
+def tag(value: str) -> Any:
+    """The field `rule`, `shape` or `quantity` whose value names the component in a case file."""
+    return Field(value, description="name of the component", kw_only=True)
+
+
+@dataclass_transform(frozen_default=True)
+def component(cls: type[T]) -> type[T]:
+    """Make a class a frozen, validated dataclass that raises CaseError for bad values.
+
+    Examples:
+        >>> @component
+        ... class Spring:
+        ...     stiffness: float = param(1.0, doc="spring constant", unit="kT/a^2", gt=0)
+        >>> Spring(stiffness=-1)
+        Traceback (most recent call last):
+        mesokit.errors.CaseError: Spring.stiffness = -1: expected a number above 0
+    """
+    hints = typing.get_type_hints(cls, include_extras=True)
+    cls.__annotations__ = {name: strict(hints[name]) for name in cls.__annotations__}
+    config = ConfigDict(extra="forbid", allow_inf_nan=False, validate_default=True)
+    made = pydantic.dataclasses.dataclass(cls, frozen=True, config=config)
+    validated_init = made.__init__
+
+    @functools.wraps(validated_init)
+    def __init__(self: Any, *args: Any, **kwargs: Any) -> None:
+        try:
+            validated_init(self, *args, **kwargs)
+        except ValidationError as error:
+            raise CaseError(first_line(made, error, start=made.__name__)) from None
+
+    setattr(made, "__init__", __init__)  # noqa: B010 (mypy forbids assigning to a method)
+    return typing.cast(type[T], made)
+
+
+def is_component(hint: Any) -> bool:
+    """Whether a type is a component."""
+    return isinstance(hint, type) and hasattr(hint, "__pydantic_fields__")
+
+
+def tag_of(cls: Any) -> tuple[str, str] | None:
+    """The tag field of a component and its value, such as ("rule", "srd")."""
+    for field in dataclasses.fields(cls):
+        if field.name in TAGS:
+            return field.name, cls.__pydantic_fields__[field.name].default
+    return None
+
+
+def build(cls: type[T], values: dict[str, Any], rename: dict[str, str] | None = None) -> T:
+    """A component from nested dictionaries, as read from a case file.
+
+    `rename` maps field names of the outermost component to the keys to show in messages.
+    Raises CaseError with the full key path, the given value and what was expected.
+    """
+    try:
+        return pydantic.TypeAdapter(cls).validate_python(values)
+    except ValidationError as error:
+        raise CaseError(first_line(cls, error, rename or {})) from None
+
+
+# --- type hints ---------------------------------------------------------------------------------
+
+
+def strict(hint: Any) -> Any:
+    """The type hint with our rules for numbers, lists and tagged unions written into it."""
+    if hint is float:
+        return Annotated[float, BeforeValidator(_real)]
+    if hint is int:
+        return Annotated[int, BeforeValidator(_whole)]
+    origin, args = typing.get_origin(hint), typing.get_args(hint)
+    if origin is tuple:
+        inner = tuple(arg if arg is Ellipsis else strict(arg) for arg in args)
+        return Annotated[tuple[inner], BeforeValidator(_list)]  # type: ignore[valid-type]
+    if origin in (typing.Union, types.UnionType):
+        members = [arg for arg in args if is_component(arg)]
+        if len(members) > 1:
+            field = tag_of(members[0])
+            assert field is not None, f"{members[0].__name__} has no tag"
+            others = [arg for arg in args if arg not in members]
+            union = _union(members)
+            tagged = Annotated[union, Field(discriminator=field[0])]  # type: ignore[valid-type]
+            return _union([tagged, *others])
+        return _union([strict(arg) for arg in args])
+    return hint
+
+
+def _union(hints: Sequence[Any]) -> Any:
+    return functools.reduce(operator.or_, hints)
+
+
+def _real(value: Any) -> float:
+    if isinstance(value, numbers.Real) and not isinstance(value, bool):
+        if math.isfinite(value):
+            return float(value)
+        raise PydanticCustomError("number", "expected a finite number")
+    raise PydanticCustomError("number", "expected a number")
+
+
+def _whole(value: Any) -> int:
+    if isinstance(value, numbers.Real) and not isinstance(value, bool):
+        if isinstance(value, numbers.Integral):
+            return int(value)
+        if (whole := float(value)).is_integer():
+            return int(whole)
+    raise PydanticCustomError("whole", "expected a whole number")
+
+
+def _list(value: Any) -> Any:
+    if isinstance(value, str) or not isinstance(value, Iterable) or isinstance(value, dict):
+        raise PydanticCustomError("list", "expected a list")
+    return tuple(value)
+
+
+# --- messages -----------------------------------------------------------------------------------
+
+
+def first_line(
+    cls: Any, error: ValidationError, rename: dict[str, str] | None = None, start: str = ""
+) -> str:
+    """The most telling of the errors as one line: key path, value, what was expected."""
+    entries = sorted(error.errors(), key=lambda e: not _is_unknown(e))  # a typo explains the rest
+    first = entries[0]
+    path, holder = _walk(cls, first["loc"], rename or {}, start)
+    kind, context = first["type"], first.get("ctx", {})
+    if _is_unknown(first):
+        known = known_keys(holder, rename if holder is cls else None)
+        hint = nearest(str(first["loc"][-1]), known) or f"; valid here: {', '.join(known)}"
+        return f"{path}: unknown key{hint}"
+    if kind in ("missing", "missing_argument"):
+        return f"{path}: missing; it has no default"
+    if kind in ("union_tag_not_found", "union_tag_invalid"):
+        path += "." + str(context["discriminator"]).strip("'")
+        known = _known_tags(cls, first["loc"])
+        if kind == "union_tag_not_found":
+            return f"{path}: missing; expected {one_of(known)}"
+        return f"{path} = {show(context['tag'])}: {_choice(context['tag'], known)}"
+    if not first["loc"]:  # a check of the whole component says it all
+        return f"{path}: {_expected(first)}" if path else _expected(first)
+    return f"{path} = {show(first['input'])}: {_expected(first)}"
+
+
+def known_keys(cls: Any, rename: dict[str, str] | None = None) -> list[str]:
+    """The keys that a component takes in a case file."""
+    return [(rename or {}).get(f.name, f.name) for f in dataclasses.fields(cls)]
+
+
+def nearest(given: str, known: Iterable[str]) -> str:
+    """'; did you mean X?' for the closest valid name, or nothing."""
+    plain = {name.lower().replace("_", "-"): name for name in known}
+    close = difflib.get_close_matches(given.lower().replace("_", "-"), plain, 1, 0.5)
+    return f"; did you mean {show(plain[close[0]])}?" if close else ""
+
+
+def one_of(names: Sequence[str]) -> str:
+    """'a', 'b' or 'c'."""
+    quoted = [show(name) for name in names]
+    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} or {quoted[-1]}"
+
+
+def show(value: Any, longest: int = 60) -> str:
+    """A value as the user would write it, cut to a readable length."""
+    if isinstance(value, bool):
+        text = str(value).lower()
+    elif isinstance(value, dict):
+        text = "{" + ", ".join(f"{k} = {show(v)}" for k, v in value.items()) + "}"
+    elif isinstance(value, list | tuple):
+        text = "[" + ", ".join(show(v) for v in value) + "]"
+    elif isinstance(value, float):
+        text = f"{value:.12g}"
+    else:
+        text = " ".join(repr(value).split())
+    return text if len(text) <= longest else text[: longest - 3] + "..."
+
+
+def _is_unknown(entry: Any) -> bool:
+    return entry["type"] in ("extra_forbidden", "unexpected_keyword_argument")
+
+
+def _choice(given: Any, known: Sequence[str]) -> str:
+    return f"expected {one_of(known)}{nearest(str(given), known)}"
+
+
+def _known_tags(cls: Any, loc: Sequence[int | str]) -> list[str]:
+    here = cls
+    for item in loc:
+        if isinstance(item, str):
+            owner = next((c for c in _members(here) if item in c.__pydantic_fields__), here)
+            here = owner.__pydantic_fields__[item].annotation
+    return [name[1] for name in map(tag_of, _members(here)) if name]
+
+
+def _walk(
+    cls: Any, loc: Sequence[int | str], rename: dict[str, str], start: str
+) -> tuple[str, Any]:
+    """Key path as the user wrote it, and the component that holds the last key."""
+    if loc and isinstance(loc[0], int):  # a positional argument in Python
+        names = list(cls.__pydantic_fields__)
+        names = [n for n in names if n not in TAGS]
+        loc = (names[loc[0]] if loc[0] < len(names) else "?", *loc[1:])
+    path, here, holder = start, cls, cls
+    for item in loc:
+        if isinstance(item, int):
+            path += f"[#{item + 1}]"
+            continue
+        options = _members(here)
+        tagged = [c for c in options if (tag_of(c) or ("", ""))[1] == item]
+        if tagged and not is_component(here):  # a step that only names the member of a union
+            here = tagged[0]
+            continue
+        if options:
+            holder = options[0]
+        shown = rename.get(item, item) if holder is cls else item
+        path += f".{shown}" if path else shown
+        fields = holder.__pydantic_fields__
+        here = fields[item].annotation if item in fields else None
+    return path, holder
+
+
+def _members(hint: Any) -> list[Any]:
+    """The components that a type hint names."""
+    if is_component(hint):
+        return [hint]
+    return [found for arg in typing.get_args(hint) for found in _members(arg)]
+
+
+_LIMITS = {
+    "greater_than": ("gt", "a number above"),
+    "greater_than_equal": ("ge", "a number of at least"),
+    "less_than": ("lt", "a number below"),
+    "less_than_equal": ("le", "a number of at most"),
+    "too_short": ("min_length", "a longer list, length at least"),
+    "too_long": ("max_length", "a shorter list, length at most"),
+}
+
+
+def _expected(entry: Any) -> str:
+    kind, context = entry["type"], entry.get("ctx", {})
+    if kind in _LIMITS:
+        key, words = _LIMITS[kind]
+        return f"expected {words} {context[key]:g}"
+    if kind == "literal_error":
+        names = [name.strip(" '") for name in context["expected"].replace(" or ", ",").split(",")]
+        return _choice(entry["input"], names)
+    if kind == "value_error":
+        return str(context["error"])
+    return {
+        "dataclass_type": "expected a table",
+        "string_type": "expected a text in quotes",
+        "bool_type": "expected true or false",
+        "model_attributes_type": "expected a table",
+    }.get(kind, str(entry["msg"]))

@@ -1,0 +1,326 @@
+"""What follows from a case before it runs: numbers, cost, and warnings."""
+
+from __future__ import annotations
+
+import math
+import os
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mesokit import theory
+from mesokit.box import AXES
+from mesokit.observe import setting
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+# What one thread does on the machine that the project measures on (2 cores, AMD EPYC), without
+# observables: million particle-steps per second, by dimension and collision rule.
+RATES = {
+    (2, "srd"): 60.0, (2, "at"): 30.0, (2, "srd+a"): 25.0, (2, "at+a"): 20.0,
+    (3, "srd"): 60.0, (3, "at"): 30.0, (3, "srd+a"): 20.0, (3, "at+a"): 15.0,
+}  # fmt: skip
+COSTS = {"thermostat": 1.15, "walls": 1.15, "shear": 1.2, "thread": 0.93}  # factors of time, rate
+BYTES = {"particle 2D": 80, "particle 3D": 110, "cell 2D": 60, "cell 3D": 80, "program": 200e6}
+WIDTHS = {"image": 4, "id": 8}  # bytes of a trajectory field; the others follow the precision
+COMPRESSED = 0.9  # thermal noise hardly compresses
+
+
+@dataclass(frozen=True)
+class Derived:
+    """What follows from a case. Lengths in cells; None where there is no formula.
+
+    `flow_speed` is the largest velocity that theory expects of the steady flow, `reynolds` that
+    times the size across the flow over the viscosity, `mach` that over the speed of sound;
+    `steady_time` is the time in which the flow comes within 1/e of its steady state. `seconds`
+    and `memory` (bytes) of the run are estimates, `assumed` says of what.
+    """
+
+    particles: int
+    particle_steps: int
+    transport: theory.Transport | None
+    flow: str
+    flow_speed: float | None
+    reynolds: float | None
+    mach: float | None
+    steady_time: float | None
+    heating: float | None
+    seconds: float
+    memory: int
+    trajectory: int
+    assumed: str
+    warnings: tuple[str, ...]
+
+
+def derive(case: Case, threads: int | None = None) -> Derived:
+    """Derived numbers of a case, run on so many threads (all cores unless said).
+
+    >>> from mesokit import Box, Case, Run
+    >>> numbers = derive(Case(run=Run(steps=1000), box=Box([30, 30, 30])), threads=1)
+    >>> numbers.particles, round(numbers.transport.viscosity, 2)
+    (270000, 0.87)
+    """
+    threads = threads or os.cpu_count() or 1
+    fluid, dimension = case.fluid, case.box.dimension
+    steps = case.run.warmup + case.run.steps
+    transport = setting.transport(case)
+    flow, across, speed = _flow(case)
+    nu = transport.viscosity if transport else None
+    length = _length(case, across)
+    rate = RATES[dimension, fluid.collision.rule] * 1e6 * (1 + (threads - 1) * COSTS["thread"])
+    for cost, applies in (
+        ("thermostat", fluid.thermostat.rule != "none"),
+        ("walls", bool(case.walls)),
+        ("shear", case.box.shear_rate != 0),
+    ):
+        rate /= COSTS[cost] if applies else 1
+    memory = case.particles * BYTES[f"particle {dimension}D"]
+    memory += case.box.volume * BYTES[f"cell {dimension}D"] * threads
+    numbers = Derived(
+        particles=case.particles,
+        particle_steps=case.particles * steps,
+        transport=transport,
+        flow=flow,
+        flow_speed=speed,
+        reynolds=speed * length / nu if speed is not None and nu else None,
+        mach=speed / transport.sound_speed if speed is not None and transport else None,
+        steady_time=_steady_time(case, across, nu) if nu and speed else None,
+        heating=_heating(case, across, nu) if nu else None,
+        seconds=case.particles * steps / rate,
+        memory=round(memory + BYTES["program"]),
+        trajectory=_trajectory_bytes(case),
+        assumed=f"{threads} thread{'s' * (threads > 1)}, {rate / 1e6:.0f} million "
+        "particle-steps/s, without observables",
+        warnings=(),
+    )
+    return Derived(**{**vars(numbers), "warnings": tuple(_warnings(case, numbers, across))})
+
+
+def _flow(case: Case) -> tuple[str, int, float | None]:
+    """Kind of the steady flow, axis number across it, and its largest speed."""
+    kinds, across, squares = [], 1, np.zeros(201)
+    for i in range(case.box.dimension):
+        flow = setting.flow(case, i)
+        if flow.profile is None:
+            return flow.kind, flow.across, None
+        speeds = flow.profile(np.linspace(0, case.box.size[flow.across], len(squares)))
+        if np.any(speeds):
+            kinds.append(flow.kind)
+            across = flow.across
+        squares = squares + speeds**2
+    return (kinds or ["rest"])[0], across, float(np.sqrt(squares.max()))
+
+
+def _length(case: Case, across: int) -> float:
+    """Size across the flow: of the box, or 1/k of a Kolmogorov flow."""
+    force, size = case.fluid.force, float(case.box.size[across])
+    return size / (2 * math.pi * force.waves) if force.rule == "sinusoidal" else size
+
+
+def _wavenumber(case: Case, across: int) -> float:
+    """Of the slowest shear mode."""
+    if case.walls:
+        return math.pi / case.box.size[across]
+    return 1 / _length(case, across) if case.fluid.force.rule == "sinusoidal" else (
+        2 * math.pi / case.box.size[across]
+    )  # fmt: skip
+
+
+def _steady_time(case: Case, across: int, viscosity: float) -> float:
+    return 1 / (viscosity * _wavenumber(case, across) ** 2)
+
+
+def _heating(case: Case, across: int, viscosity: float) -> float | None:
+    """Relative rise of the temperature by viscous heating over the run; None if held."""
+    if setting.isothermal(case):
+        return None
+    length = float(case.box.size[across])
+    y = np.linspace(0, length, 401)
+    profiles = [setting.flow(case, i).profile for i in range(case.box.dimension)]
+    dissipation = sum(
+        viscosity * float(np.mean(np.gradient(u(y), y) ** 2)) for u in profiles if u is not None
+    )
+    time = (case.run.warmup + case.run.steps) * case.fluid.timestep
+    return 2 / case.box.dimension * case.fluid.mass * dissipation * time / case.fluid.kT
+
+
+def _trajectory_bytes(case: Case) -> int:
+    given = case.trajectory
+    if given is None:
+        return 0
+    number = 4 if given.precision == "float32" else 8
+    per_particle = sum(
+        WIDTHS.get(name, number) * (1 if name == "id" else case.box.dimension)
+        for name in given.fields
+    )
+    frames = case.run.steps // given.every + 1
+    shrink = COMPRESSED if given.compression else 1.0
+    return round(frames * (given.subset or case.particles) * per_particle * shrink)
+
+
+# --- warnings -----------------------------------------------------------------------------------
+
+
+def _warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
+    yield from _method_warnings(case, numbers)
+    yield from _flow_warnings(case, numbers, across)
+    yield from _run_warnings(case, numbers)
+
+
+def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
+    fluid, transport = case.fluid, numbers.transport
+    path = fluid.timestep * math.sqrt(fluid.kT / fluid.mass)
+    angle = getattr(fluid.collision, "angle", 90.0)
+    if angle < 7:
+        yield (
+            f"fluid.collision.angle = {angle:g}: the angle is in degrees; "
+            f"{angle:g} rad is {math.degrees(angle):.2f}"
+        )
+    if fluid.grid_shift < 1 and path < 0.5:
+        yield (
+            f"fluid.grid_shift = {fluid.grid_shift:g}: with a mean free path of {path:.3g} cells "
+            "(below 0.5) only the full shift makes the fluid Galilean invariant"
+        )
+    if path > 1:
+        yield (
+            f"fluid.timestep = {fluid.timestep:g}: the mean free path is {path:.3g} cells; above 1 "
+            "the fluid is a dilute gas, with slip at walls"
+        )
+    if fluid.density < 3:
+        yield (
+            f"fluid.density = {fluid.density:g}: below 3 many cells hold no pair that could "
+            "collide, and the formulas for the viscosity fail"
+        )
+    if transport is None:
+        yield "no formula for the transport coefficients of this fluid: plots will lack theory"
+    elif case.box.dimension == 2 and fluid.density * fluid.mass * transport.viscosity < 7:
+        yield (
+            f"in 2D fluctuations raise a dynamic viscosity of {transport.dynamic_viscosity:.3g} "
+            "(below 7) by several percent over theory, more in a larger box"
+        )
+
+
+def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
+    fluid, force = case.fluid, case.fluid.force
+    sheared = numbers.flow == "lees-edwards"
+    if numbers.mach is not None and numbers.mach > 0.2 and not sheared:
+        yield (
+            f"Mach number {numbers.mach:.2g}: above 0.2 the fluid is compressible; "
+            "lower the force or the plate velocity"
+        )
+    if sheared and numbers.transport:
+        cell = abs(case.box.shear_rate) / numbers.transport.sound_speed
+        if cell > 0.2:
+            yield (
+                f"box.shear_rate = {case.box.shear_rate:g}: velocities differ by {cell:.2g} of the "
+                "speed of sound across a cell; keep it below 0.2"
+            )
+    if force.rule == "uniform":
+        for axis, push in zip(AXES, force.acceleration, strict=False):
+            if push and not case.walls:
+                yield (
+                    f"fluid.force.acceleration: nothing holds the fluid along {axis}: without "
+                    "walls it speeds up for ever (without a thermostat it also heats)"
+                    if not setting.isothermal(case)
+                    else f"fluid.force.acceleration: nothing holds the fluid along {axis}: without "
+                    "walls it speeds up for ever"
+                )
+            elif push and case.walls[0].axis == axis:
+                drop = fluid.mass * abs(push) * case.box.size[across] / fluid.kT
+                if drop > 0.1:
+                    yield (
+                        f"fluid.force.acceleration along {axis} presses the fluid on a plate: its "
+                        f"density falls by a factor {math.exp(min(drop, 99)):.3g} across the slit"
+                    )
+    if numbers.flow == "plug" and numbers.flow_speed is None:
+        yield "fluid.force.acceleration: slip plates hold nothing: the fluid speeds up for ever"
+    if numbers.heating is not None and numbers.heating > 0.01:
+        yield (
+            f"no thermostat: friction raises the temperature by {100 * numbers.heating:.2g} % "
+            "over the run"
+        )
+    if force.rule == "sinusoidal" and numbers.reynolds is not None:
+        flow_size = case.box.size[AXES.index(force.flow)]
+        if numbers.reynolds > 1.4 and flow_size > case.box.size[across] / force.waves:
+            yield (
+                f"Kolmogorov flow at Reynolds number {numbers.reynolds:.2g} (above 1.4) breaks up "
+                "in a box that is longer along the flow than one wave; make it square"
+            )
+    if numbers.steady_time is not None and numbers.flow_speed:
+        wait = math.ceil(3 * numbers.steady_time / fluid.timestep)
+        if case.run.warmup < wait and case.run.steps and fluid.start.run is None:
+            yield (
+                f"run.warmup = {case.run.warmup}: the flow needs about {wait} steps from rest to "
+                "its steady state; observables will average over the start"
+            )
+
+
+def _run_warnings(case: Case, numbers: Derived) -> Iterator[str]:
+    run = case.run
+    if not case.observe and case.trajectory is None:
+        yield "no [[observe]] and no [trajectory]: the run will leave nothing but its last state"
+    for i, observable in enumerate(case.observe):
+        if observable.every > run.steps:
+            yield (
+                f"observe[#{i + 1}].every = {observable.every}: more than run.steps = {run.steps}; "
+                f"{observable.label} takes no sample"
+            )
+    if case.trajectory is not None:
+        if case.trajectory.every > run.steps:
+            yield f"trajectory.every = {case.trajectory.every}: more than run.steps = {run.steps}"
+        free = shutil.disk_usage(Path.cwd()).free
+        if numbers.trajectory > min(20e9, 0.8 * free):
+            yield (
+                f"the trajectory takes about {size_text(numbers.trajectory)} "
+                f"({size_text(free)} are free here); raise trajectory.every or set "
+                "trajectory.subset"
+            )
+    memory = _machine_memory()
+    if memory and numbers.memory > 0.9 * memory:
+        yield (
+            f"the run needs {size_text(numbers.memory)} of memory, "
+            f"this machine has {size_text(memory)}"
+        )
+
+
+def _machine_memory() -> int | None:
+    try:
+        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, ValueError, OSError):
+        return None
+
+
+# --- words --------------------------------------------------------------------------------------
+
+
+def size_text(count: float) -> str:
+    """Bytes for people.
+
+    >>> size_text(270_000_000)
+    '270 MB'
+    """
+    for unit in ("bytes", "kB", "MB", "GB"):
+        if count < 1000:
+            return f"{count:.3g} {unit}"
+        count /= 1000
+    return f"{count:.3g} TB"
+
+
+def duration_text(seconds: float) -> str:
+    """Time for people, to two units.
+
+    >>> duration_text(0.2), duration_text(61), duration_text(7300)
+    ('0.2 s', '1 min 1 s', '2 h 1 min')
+    """
+    if seconds < 10:
+        return f"{seconds:.1f} s"
+    seconds = round(seconds)
+    for big, first, small, second in ((86400, "d", 3600, "h"), (3600, "h", 60, "min")):
+        if seconds >= big:
+            return f"{seconds // big} {first} {seconds % big // small} {second}"
+    return f"{seconds // 60} min {seconds % 60} s" if seconds >= 60 else f"{seconds} s"

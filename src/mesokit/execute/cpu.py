@@ -1,0 +1,420 @@
+"""Execution on the threads of one machine: owns the arrays, and knows the verbs of a step."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import RunError
+from mesokit.execute import measure, sort
+from mesokit.execute.cells import solve
+from mesokit.execute.layout import LANES, ROW, blocks_for
+from mesokit.execute.stages import Grid, Physics
+from mesokit.execute.sweep import COLLIDE, MEASURE_STRESS, MEASURE_WALLS, STREAM, sweep
+from mesokit.execute.team import Team
+from mesokit.execute.top_up import top_up
+from mesokit.geometry.none import Nothing
+from mesokit.random import Counter, grid_shift
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+# Whole numbers of this many per thermal unit: 2^-42 of a thermal momentum, 2^-36 of kT.
+MOMENTUM_BITS, MASS_BITS, ENERGY_BITS = 42, 44, 36
+SORT_DISTANCE_SQUARED = 0.25  # particles are sorted again after straying about half a cell
+
+Floats = NDArray[np.float64]
+
+
+class CPU:
+    """A fluid in memory and the loops over it.
+
+    Parameters
+    ----------
+    case : Case
+        What to simulate.
+    threads : int
+        Threads to use; the results do not depend on it.
+    measures : sequence of str
+        "stress" and "walls", where an observable needs the stress of single steps or the momentum
+        that the walls take.
+
+    Examples
+    --------
+    >>> import mesokit
+    >>> box, run = mesokit.Box([8, 8]), mesokit.Run(steps=1)
+    >>> cpu = CPU(mesokit.Case(run=run, box=box, fluid=mesokit.Fluid()), 1)
+    >>> cpu.n
+    640
+    """
+
+    def __init__(self, case: Case, threads: int = 1, measures: Sequence[str] = ()) -> None:
+        fluid, box = case.fluid, case.box
+        self.case, self.threads, self.team = case, threads, Team(threads)
+        self.dimension = d = box.dimension
+        self.box = np.array(box.size, float)
+        self.step, self.timestep = 0, fluid.timestep
+        self.measures = frozenset(measures)
+        wall = case.walls[0] if case.walls else None
+        self.closed = tuple(wall is not None and wall.axis == axis for axis in box.axes)
+        self.virtual = "none"
+        if wall is not None and "no-slip" in (wall.lower.rule, wall.upper.rule):
+            self.virtual = wall.virtual
+
+        kinds = [(kind.mass, kind.density) for kind in fluid.species]
+        kinds = kinds or [(fluid.mass, fluid.density)]
+        heaviest = max(mass for mass, _ in kinds)
+        self.counts = [round(density * box.volume) for _, density in kinds]
+        self.n = sum(self.counts)
+        if self.n == 0:
+            raise RunError(f"fluid.density = {fluid.density:g}: no particle in the box")
+        layer = math.prod(s for s, shut in zip(box.size, self.closed, strict=True) if not shut)
+        self.n_virtual = round(fluid.density * layer) if self.virtual == "fill" else 0
+
+        uniform = len({mass for mass, _ in kinds}) == 1
+        rule = fluid.collision.kernel(d, fluid.kT)
+        needs_energy = fluid.thermostat.needs_energy or fluid.collision.needs_energy
+        self.physics = Physics(
+            rule,
+            fluid.thermostat.kernel(fluid.kT),
+            fluid.force.kernel(box.size),
+            wall.kernel(box.size) if wall else Nothing(),
+            (heaviest,) if uniform else (),
+            (0.0,) if needs_energy else (),
+            fluid.timestep,
+            fluid.kT,
+        )
+
+        speed = max(
+            math.sqrt(fluid.kT / min(mass for mass, _ in kinds)),
+            abs(box.shear_rate) * box.size[1] / 16.0,
+            *(abs(u) / 16.0 for w in case.walls for s in (w.lower, w.upper) for u in s.velocity or ()),
+        )
+        units = {
+            "momentum": 2.0 ** (MOMENTUM_BITS - math.ceil(math.log2(heaviest * speed))),
+            "mass": 2.0 ** (MASS_BITS - math.ceil(math.log2(heaviest))),
+            "energy": 2.0 ** (ENERGY_BITS - math.ceil(math.log2(heaviest * speed * speed))),
+        }
+        self.units = units
+        self.fastest = 2.0**49 / units["momentum"] / heaviest
+        names = ["momentum"] * d + ([] if uniform else ["mass"]) + ["energy"] * needs_energy
+        names += fluid.collision.own_sums(d)
+        self.scales = tuple(units[name] for name in names)
+        self.masses_of_kinds = [_on_grid(mass, units["mass"]) for mass, _ in kinds]
+        self.like = (0.0,) * d
+        self.terms = (0,) * len(names)
+        self.coefficient_count = fluid.collision.coefficient_count(
+            d, fluid.thermostat.needs_energy
+        )
+        self.c = (0.0,) * self.coefficient_count
+
+        self.cells = tuple(size + shut for size, shut in zip(box.size, self.closed, strict=True))
+        self.number_of_cells = math.prod(self.cells)
+        self.sort_every = int(
+            min(max(2.0 * SORT_DISTANCE_SQUARED * fluid.mass / (fluid.kT * fluid.timestep**2), 10), 100)
+        )
+        self._allocate(uniform)
+        self.box_kernel = box.kernel(self.closed, 0.0)
+        self.grid = self.old_grid = self._grid((0.0,) * d)
+        self.pending = False
+        self.wall_steps = 0
+        self.stress: dict[str, Floats] = {}
+
+    def _allocate(self, uniform: bool) -> None:
+        d, threads = self.dimension, self.threads
+        self.rows = 2 * d + (not uniform)
+        self.real_blocks = blocks_for(self.n)
+        self.blocks = self.real_blocks + blocks_for(self.n_virtual)
+        lanes = self.blocks * LANES
+        self.data = np.zeros(self.blocks * self.rows * ROW)
+        self.cell = np.zeros(lanes, np.int32)
+        self.ident = np.arange(lanes, dtype=np.int32)  # beyond n: virtual particles
+        self.image = np.zeros((d, lanes), np.int32)
+        self.order, self.spare = np.zeros(self.n, np.int32), np.zeros(self.n)
+        self.ends = np.zeros((threads, self.number_of_cells), np.int32)
+        width = len(self.terms) + 1
+        self.stride = 4 * math.ceil(self.coefficient_count / 4)
+        spare_cell = self.number_of_cells  # where lanes that must not act leave their terms
+        self.coefficients = np.zeros((spare_cell + 1) * self.stride)
+        self.sums = np.zeros((threads, (spare_cell + 1) * width), np.int64)
+        most = max(self.coefficient_count, 2 * d)
+        parts = self.blocks if "stress" in self.measures else 1
+        self.impulse = np.zeros((threads, 2 * d), np.int64)
+        self.tensor = np.zeros((2, parts, 2 * d * d))
+        self.sweep_scratch = (
+            np.zeros((threads, most * ROW)),
+            np.zeros((threads, 2 * d * ROW)),
+            np.zeros((threads, LANES), np.int64),
+            np.zeros((threads, len(self.terms) * ROW), np.int64),
+            self.impulse,
+            self.tensor,
+        )
+        self.cell_scratch = (
+            np.zeros((threads, most * ROW)),
+            np.zeros((threads, LANES)),
+            np.zeros((threads, LANES), np.int64),
+            np.zeros((threads, width * ROW), np.int64),
+        )
+        self.particles = (
+            self.data,
+            self.cell,
+            self.ident,
+            self.image,
+            (self.n, self.n_virtual),
+            self.real_blocks,
+            self.blocks,
+            self.rows,
+            spare_cell,
+        )
+        self.cell_arrays = (self.coefficients, self.stride, self.sums)
+
+    # --- the step -------------------------------------------------------------------------------
+
+    @property
+    def time(self) -> float:
+        """Time since the start of the warm-up."""
+        return self.step * self.timestep
+
+    def shift_grid(self) -> None:
+        """Draw the cells of the next collision, at the end of the timestep that begins now."""
+        self.step += 1
+        self.counter = Counter(np.uint64(self.case.run.seed), np.uint64(self.step))
+        self.old_grid = self.grid
+        self.grid = self._grid(grid_shift(self.counter, self.like, self.case.fluid.grid_shift))
+        if self.case.box.shear_rate != 0.0:
+            self.box_kernel = self.case.box.kernel(self.closed, self.time)
+
+    def stream(self, measure_stress: bool = False) -> None:
+        """Collide the particles as the last `solve` said, stream them, and sum over new cells."""
+        what = STREAM + COLLIDE * self.pending + MEASURE_WALLS * ("walls" in self.measures)
+        if measure_stress:
+            self.tensor[:] = 0.0
+        self._sweep(what + MEASURE_STRESS * measure_stress)
+        if self.virtual == "top-up":
+            self._top_up()
+        self.pending = True
+        self.wall_steps += 1
+
+    def solve(self) -> None:
+        """From the sums of each cell to what its particles need to collide."""
+        self.team.run(
+            solve,
+            self.physics,
+            self.counter,
+            self.cell_arrays,
+            self.number_of_cells,
+            self.cell_scratch,
+            self.like,
+            self.c,
+            self.terms,
+            self.scales,
+        )
+
+    def collide(self, measure_stress: bool = False) -> None:
+        """Collide the particles now, so that they can be looked at; `stream` need not any more."""
+        if not self.pending:
+            return
+        self.old_grid = self.grid
+        what = COLLIDE + MEASURE_WALLS * ("walls" in self.measures)
+        self._sweep(what + MEASURE_STRESS * measure_stress)
+        self.pending = False
+        if measure_stress:
+            self._stress()
+
+    def _sweep(self, what: int) -> None:
+        self.team.run(
+            sweep,
+            what,
+            self.physics,
+            self.box_kernel,
+            self.counter,
+            self.old_grid,
+            self.grid,
+            self.particles,
+            self.cell_arrays,
+            self.sweep_scratch,
+            self.like,
+            self.c,
+            self.terms,
+            self.scales,
+        )
+
+    def _top_up(self) -> None:
+        top_up(
+            self.physics,
+            self.counter,
+            self.grid,
+            self.case.fluid.density,
+            self.cell_arrays,
+            self.number_of_cells,
+            self.like,
+            self.scales,
+        )
+
+    def _grid(self, shift: tuple[float, ...]) -> Grid:
+        first = tuple(float(shut and s < 0.0) for shut, s in zip(self.closed, shift, strict=True))
+        cells = tuple(float(n) for n in self.cells)
+        return Grid(shift, first, cells, tuple(1.0 / n for n in cells))
+
+    def sort(self) -> None:
+        """Bring particles back into the box and those of one cell together in memory."""
+        run, n, rows, spare = self.team.run, self.n, self.rows, self.spare
+        grid, blocks = self._grid((0.0,) * self.dimension), self.real_blocks
+        arrays = self.data, self.cell, self.image
+        run(sort.wrap, self.box_kernel, grid, *arrays, blocks, rows, self.like)
+        run(sort.count_cells, self.cell, n, self.ends)
+        sort.first_places(self.ends)
+        run(sort.order_by_cell, self.cell, n, self.ends, self.order)
+        for row in range(rows):
+            run(sort.pick_row, self.data, rows, row, self.order, n, spare)
+            run(sort.put_row, self.data, rows, row, n, spare)
+        spare = spare.view(np.int32)
+        for values in (self.ident, *self.image):
+            run(sort.pick, values, self.order, n, spare)
+            run(sort.put, values, n, spare)
+        self._check_speed()
+
+    def _check_speed(self) -> None:
+        fastest = self._totals()[:, -1].max()
+        if not fastest < self.fastest:
+            raise RunError(
+                f"step {self.step}: a particle moves at {fastest:g}, beyond the {self.fastest:g} that "
+                "cell sums can hold; the fluid heats up: add a thermostat, or lower the force"
+            )
+
+    # --- what observables ask for ---------------------------------------------------------------
+
+    def totals(self) -> tuple[int, Floats, float]:
+        """Number of particles, momentum (d,) and kinetic energy."""
+        total = self._totals().sum(axis=0)
+        return self.n, total[: self.dimension], 0.5 * float(total[self.dimension])
+
+    def _totals(self) -> Floats:
+        out = np.zeros((self.real_blocks, self.dimension + 2))
+        self.team.run(measure.totals, self.physics, self.data, self.n, self.rows, self.like, out)
+        return out
+
+    def moments(
+        self, axes: tuple[int, ...], bins: tuple[int, ...]
+    ) -> tuple[Floats, Floats, Floats, Floats]:
+        """Number, mass, momentum (d, ...) and sum of m v^2 in bins along one or two axes."""
+        two = (axes + axes)[:2], (bins + (1,))[:2]
+        scales = self.units["momentum"], self.units["mass"], self.units["energy"]
+        part = np.zeros((self.threads, math.prod(bins), self.dimension + 3), np.int64)
+        particles = self.physics, self.box_kernel, self.data, self.n, self.rows, self.like
+        self.team.run(measure.bin_sums, *particles, *two, scales, part)
+        total = part.sum(axis=0).astype(float).T.reshape(-1, *bins)
+        momentum, mass, energy = scales
+        return total[0], total[1] / mass, total[2:-1] / momentum, total[-1] / energy
+
+    def modes(self, wavevectors: Floats) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Sums of m exp(-i k r) (K,) and of m v exp(-i k r) (K, d) for wave vectors (K, d)."""
+        waves = np.ascontiguousarray(wavevectors, float) / (2.0 * math.pi)
+        part = np.zeros((self.real_blocks, len(waves), 1 + self.dimension, 2))
+        particles = self.physics, self.box_kernel, self.data, self.n, self.rows, self.like
+        self.team.run(measure.modes, *particles, waves, part)
+        total = part.sum(axis=0)
+        both = total[..., 0] + 1j * total[..., 1]
+        return both[:, 0], both[:, 1:]
+
+    def positions(self, ids: NDArray | None = None, unwrapped: bool = False) -> Floats:
+        """Positions (n, d) by particle id, in the box or as if it had no bounds."""
+        return self._gather(ids, unwrapped)[0]
+
+    def velocities(self, ids: NDArray | None = None) -> Floats:
+        """Velocities (n, d) by particle id."""
+        return self._gather(ids, False)[1]
+
+    def images(self, ids: NDArray | None = None) -> NDArray[np.int32]:
+        """How many times each particle left the box along each axis (n, d), by particle id."""
+        return self._gather(ids, False)[2]
+
+    def masses(self, ids: NDArray | None = None) -> Floats:
+        """Masses (n,) by particle id: kinds are numbered one after the other."""
+        mass = np.repeat(self.masses_of_kinds, self.counts)
+        return mass if ids is None else mass[ids]
+
+    def _gather(self, ids: NDArray | None, unwrapped: bool) -> tuple[Floats, Floats, NDArray]:
+        limit = self.n if ids is None else int(np.max(ids)) + 1
+        shape = limit, self.dimension
+        out = np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32)
+        particles = self.data, self.image, self.ident, self.n, self.rows, self.like
+        self.team.run(measure.gather_by_id, self.box_kernel, *particles, unwrapped, *out)
+        return out if ids is None else tuple(a[ids] for a in out)  # type: ignore[return-value]
+
+    def _stress(self) -> None:
+        """Stress of the step that ends now, positive where the fluid above drags the one below.
+
+        Kinetic: momentum carried in the flight, which is the mean of the values before and after
+        the collision. Collisional: momentum handed over within cells (Winkler and Huang 2009).
+        """
+        d = self.dimension
+        before, after = self.tensor.sum(axis=1).reshape(2, 2, d, d)
+        volume = math.prod(self.case.box.size)
+        self.stress = {
+            "kinetic": -0.5 * (before[0] + after[0]) / volume,
+            "collisional": -(after[1] - before[1]) / (volume * self.timestep),
+        }
+
+    @property
+    def wall_impulse(self) -> Floats:
+        """Momentum (2, d) that the lower and upper plate took since the last call."""
+        taken = self.impulse.sum(axis=0).astype(float).reshape(2, -1) / self.units["momentum"]
+        self.impulse[:] = 0
+        self.wall_steps = 0
+        return taken
+
+    # --- state ----------------------------------------------------------------------------------
+
+    def row(self, k: int) -> Floats:
+        """Row k of every block of fluid particles, as a view (blocks, lanes)."""
+        whole = self.data[: self.real_blocks * self.rows * ROW]
+        return whole.reshape(self.real_blocks, self.rows, ROW)[:, k, :LANES]
+
+    def virtual_row(self, k: int) -> Floats:
+        """Row k of every block of virtual particles, as a view (blocks, lanes)."""
+        whole = self.data[self.real_blocks * self.rows * ROW :]
+        return whole.reshape(-1, self.rows, ROW)[:, k, :LANES]
+
+    def state(self) -> dict[str, NDArray]:
+        """Everything that the next step depends on."""
+        if self.pending:
+            raise RuntimeError("collide before taking the state")
+        return {
+            "data": self.data[: self.real_blocks * self.rows * ROW].copy(),
+            "ident": self.ident[: self.n].copy(),
+            "image": self.image[:, : self.n].copy(),
+            "step": np.int64(self.step),
+            "impulse": self.impulse.sum(axis=0),
+            "wall_steps": np.int64(self.wall_steps),
+        }
+
+    def restore(self, state: dict[str, NDArray]) -> None:
+        """Go on from a state, with the same bits whatever the number of threads was."""
+        self.data[: state["data"].size] = state["data"]
+        self.ident[: self.n] = state["ident"]
+        self.image[:, : self.n] = state["image"]
+        self.step = int(state["step"])
+        self.impulse[:] = 0
+        self.impulse[0] = state["impulse"]
+        self.wall_steps = int(state["wall_steps"])
+        self.box_kernel = self.case.box.kernel(self.closed, self.time)
+        self.pending = False
+
+    @property
+    def bytes_held(self) -> int:
+        """Memory of all arrays."""
+        arrays = [
+            self.data, self.cell, self.ident, self.image, self.order, self.spare,
+            self.coefficients, self.sums, self.tensor, *self.sweep_scratch, *self.cell_scratch,
+        ]  # fmt: skip
+        return sum(array.nbytes for array in arrays)
+
+
+def _on_grid(mass: float, scale: float) -> float:
+    """The mass rounded so that sums of masses are exact in fixed point."""
+    return round(mass * scale) / scale

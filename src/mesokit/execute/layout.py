@@ -1,0 +1,157 @@
+"""How particles lie in memory: blocks of 256, each with one row per coordinate and velocity.
+
+A block (x x x ... y y y ... vx vx vx ...) is one stretch of memory with rows at constant offsets, so
+that LLVM can see that they do not overlap and vectorise the loop over a block; it stays in the
+first-level cache while all stages of a step pass over it. Eight numbers of padding keep rows off
+the same cache set. The loops run over all 256 lanes; a last, partly filled block computes nonsense
+in its spare lanes, which nothing ever adds up.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numba.cpython.unsafe.tuple import tuple_setitem
+from mesokit.scalar import by_type, dot, scalar
+
+LANES = 256
+ROW = LANES + 8
+
+# Cells add up fixed-point numbers, because integer sums do not depend on the order of the terms.
+# Adding 1.5 * 2^52 leaves the rounded number in the low bits of the mantissa; the constant's own
+# bits, once for each particle, are taken off when the sum is read.
+ROUNDER = 1.5 * 2.0**52
+ROUNDER_BITS = int(np.float64(ROUNDER).view(np.int64))
+
+# A loop over particles or cells: (thread, threads, ...), run by all threads of a team at once.
+kernel = njit(nogil=True, cache=True, error_model="numpy")
+
+
+def blocks_for(particles: int) -> int:
+    """Number of blocks that hold so many particles."""
+    return -(-particles // LANES)
+
+
+@scalar
+def share(number, thread, threads):
+    """First and last + 1 of the things, out of a number, that are a thread's to do."""
+    return number * thread // threads, number * (thread + 1) // threads
+
+
+@scalar
+def load(rows, i, row, like):
+    """Lane i of consecutive rows, as a tuple as long as `like`."""
+    for k in range(len(like)):
+        like = tuple_setitem(like, k, rows[(row + k) * ROW + i])
+    return like
+
+
+@scalar
+def store(rows, i, row, values):
+    """Write a tuple into lane i of consecutive rows."""
+    for k in range(len(values)):
+        rows[(row + k) * ROW + i] = values[k]
+
+
+@scalar
+def fixed(x, scale):
+    """x * scale rounded to a whole number, plus ROUNDER_BITS, as int64."""
+    return np.float64(x * scale + ROUNDER).view(np.int64)
+
+
+@scalar
+def from_fixed(total, terms, scale):
+    """A sum of `terms` fixed-point numbers as a float."""
+    return float(total - np.int64(terms) * ROUNDER_BITS) / scale
+
+
+def mass_of(masses: Any, block: Any, i: Any, row: Any) -> Any:
+    """Mass of the particle in lane i: `masses` is (mass,) for all, or () for a row of masses."""
+    raise NotImplementedError
+
+
+@by_type(mass_of)
+def _mass_of(masses: Any, block: Any, i: Any, row: Any) -> Callable:
+    if len(masses) == 1:
+        return lambda masses, block, i, row: masses[0]
+    return lambda masses, block, i, row: block[row * ROW + i]
+
+
+def mass_term(masses: Any, m: Any) -> Any:
+    """(m,) where particles differ in mass, so that cells must add it up; () where they do not."""
+    raise NotImplementedError
+
+
+@by_type(mass_term)
+def _mass_term(masses: Any, m: Any) -> Callable:
+    if len(masses) == 1:
+        return lambda masses, m: ()
+    return lambda masses, m: (m,)
+
+
+def energy_term(energy: Any, m: Any, v: Any) -> Any:
+    """(m v^2,) where cells must know their energy; () where they need not."""
+    raise NotImplementedError
+
+
+@by_type(energy_term)
+def _energy_term(energy: Any, m: Any, v: Any) -> Callable:
+    if len(energy) == 1:
+        return lambda energy, m, v: (m * dot(v, v),)
+    return lambda energy, m, v: ()
+
+
+def integers(values: Any) -> Any:
+    """A tuple of int64 zeros as long as `values`."""
+    raise NotImplementedError
+
+
+@by_type(integers)
+def _integers(values: Any) -> Callable:
+    zeros = (np.int64(0),) * len(values)
+    return lambda values: zeros
+
+
+def read_sums(
+    masses: Any, energy: Any, totals: Any, i: Any, like: Any, terms: Any, scales: Any
+) -> Any:
+    """Number, mass, momentum, sum of m v^2 (0 where not asked) and the rule's own sums of a cell."""
+    raise NotImplementedError
+
+
+@by_type(read_sums)
+def _read_sums(
+    masses: Any, energy: Any, totals: Any, i: Any, like: Any, terms: Any, scales: Any
+) -> Callable:
+    d, uniform, asked = len(like), len(masses) == 1, len(energy) == 1
+    at_energy = d if uniform else d + 1
+    own = at_energy + 1 if asked else at_energy
+
+    def read(masses, energy, totals, i, like, terms, scales):
+        n = totals[i]
+        values = scales
+        for k in range(len(scales)):
+            values = tuple_setitem(values, k, from_fixed(totals[(k + 1) * ROW + i], n, scales[k]))
+        mass = max(float(n), 1.0) * masses[0] if uniform else max(values[d], 1e-300)
+        m_v_squared = values[at_energy] if asked else 0.0
+        return float(n), mass, values[:d], m_v_squared, values[own:]
+
+    return read
+
+
+def count_images(image: Any, i: Any, crossed: Any) -> None:
+    """Count the boxes that particle i crossed: one number for each axis, or () for none."""
+    raise NotImplementedError
+
+
+@by_type(count_images)
+def _count_images(image: Any, i: Any, crossed: Any) -> Callable:
+    if len(crossed) == 0:
+        return lambda image, i, crossed: None
+
+    def count(image, i, crossed):
+        for k in range(len(crossed)):
+            image[k, i] += np.int32(crossed[k])
+
+    return count

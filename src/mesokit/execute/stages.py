@@ -1,0 +1,183 @@
+"""The stages of a step, each a loop over the lanes of one block of particles."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba.cpython.unsafe.tuple import tuple_setitem
+
+from mesokit.box import slide
+from mesokit.execute.layout import (
+    LANES,
+    count_images,
+    energy_term,
+    fixed,
+    integers,
+    load,
+    mass_of,
+    mass_term,
+    store,
+)
+from mesokit.geometry.protocol import closes, exposed, touches
+from mesokit.mpcd.collision.protocol import collide, contribute
+from mesokit.mpcd.streaming import bounce, fall, halfway, vector
+from mesokit.random import VIRTUAL_POSITION, VIRTUAL_VELOCITY, normals, unit_open, words
+from mesokit.scalar import added, first, scalar, scaled
+
+
+class Physics(NamedTuple):
+    """What the particles obey: parameters of each part, whose types pick the compiled physics."""
+
+    rule: tuple
+    thermostat: tuple
+    field: tuple
+    solid: tuple
+    masses: tuple  # (mass,) or () for a row of masses in each block
+    energy: tuple  # (0.0,) if the cells must know their kinetic energy, else ()
+    timestep: float
+    kT: float
+
+
+class Grid(NamedTuple):
+    """The collision cells of one step."""
+
+    shift: tuple  # added to positions, in cells
+    first: tuple  # cell number, along each axis, of the cell at 0 (1 where a wall's cell comes first)
+    cells: tuple  # number along each axis
+    inverse: tuple
+
+
+@scalar
+def in_cell(r, grid):
+    """Position relative to the centre of its cell."""
+    for k in range(len(r)):
+        x = r[k] + grid.shift[k]
+        r = tuple_setitem(r, k, x - math.floor(x) - 0.5)
+    return r
+
+
+@scalar
+def cell_index(r, grid):
+    """Number of the cell at r; x varies fastest."""
+    index = 0.0
+    for j in range(len(r)):
+        k = len(r) - 1 - j
+        i = math.floor(r[k] + grid.shift[k]) + grid.first[k]
+        i -= grid.cells[k] * math.floor((i + 0.5) * grid.inverse[k])
+        index = index * grid.cells[k] + i
+    return np.int32(index)
+
+
+@scalar
+def collide_block(physics, grid, block, cell, coefficients, stride, gathered, like, c):
+    """Velocities after the collision, from the coefficients of each particle's cell."""
+    for i in range(LANES):
+        start = np.int64(cell[i]) * stride
+        for k in range(len(c)):
+            c = tuple_setitem(c, k, coefficients[start + k])
+        store(gathered, i, 0, c)
+    d = len(like)
+    for i in range(LANES):
+        r, v = load(block, i, 0, like), load(block, i, d, like)
+        store(block, i, d, collide(physics.rule, load(gathered, i, 0, c), v, in_cell(r, grid)))
+
+
+@scalar
+def stream_block(physics, block, count, hits, saved, impulse, scales, like):
+    """Positions and velocities a timestep later; the momentum that surfaces take goes to impulse."""
+    d = len(like)
+    dt = physics.timestep
+    found = 0
+    if exposed(physics.solid):
+        any_hit = 0
+        for i in range(LANES):
+            r, v = load(block, i, 0, like), load(block, i, d, like)
+            a = vector(halfway(physics.field, r, v, dt), like)
+            hit = np.int64(touches(physics.solid, r, v, a, dt))
+            hits[i] = hit
+            any_hit |= hit
+        if any_hit != 0:
+            for i in range(count):
+                if hits[i] != 0:
+                    hits[found] = i
+                    store(saved, found, 0, load(block, i, 0, like) + load(block, i, d, like))
+                    found += 1
+    for i in range(LANES):
+        r, v = load(block, i, 0, like), load(block, i, d, like)
+        r, v = fall(r, v, halfway(physics.field, r, v, dt), dt)
+        store(block, i, 0, r + v)
+    for j in range(found):
+        i = hits[j]
+        r, v = load(saved, j, 0, like), load(saved, j, d, like)
+        a = vector(halfway(physics.field, r, v, dt), like)
+        r, v, lower, upper = bounce(physics.solid, r, v, a, dt)
+        store(block, i, 0, r + v)
+        m = mass_of(physics.masses, block, i, 2 * d)
+        for k in range(d):
+            impulse[k] += np.int64(np.rint(m * lower[k] * scales[0]))
+            impulse[d + k] += np.int64(np.rint(m * upper[k] * scales[0]))
+
+
+@scalar
+def slide_block(box, grid, block, image, like):
+    """Bring particles that left a sheared box back into it; nothing in other boxes."""
+    d = len(like)
+    for i in range(LANES):
+        r, v = load(block, i, 0, like), load(block, i, d, like)
+        r, v, crossed = slide(box, r, v, grid.shift)
+        store(block, i, 0, r + v)
+        count_images(image, i, crossed)
+
+
+@scalar
+def bin_block(physics, counter, grid, block, cell, ident, terms_rows, scales, like):
+    """Cell of each particle and, as rounded numbers, what it adds to the sums of that cell."""
+    d = len(like)
+    for i in range(LANES):
+        r, v = load(block, i, 0, like), load(block, i, d, like)
+        m = mass_of(physics.masses, block, i, 2 * d)
+        kept, own = contribute(physics.rule, counter, ident[i], m, v, in_cell(r, grid))
+        terms = scaled(m, v) + mass_term(physics.masses, m) + energy_term(physics.energy, m, v) + own
+        cell[i] = cell_index(r, grid)
+        store(block, i, d, kept)
+        store(terms_rows, i, 0, rounded(terms, scales))
+
+
+@scalar
+def rounded(terms, scales):
+    """Each term as a fixed-point number."""
+    out = integers(terms)
+    for k in range(len(terms)):
+        out = tuple_setitem(out, k, fixed(terms[k], scales[k]))
+    return out
+
+
+@scalar
+def add_block(cell, terms_rows, sums, count, terms):
+    """Add the terms of each particle to the sums of its cell, and count it."""
+    width = len(terms) + 1
+    for i in range(count):
+        start = np.int64(cell[i]) * width
+        terms = load(terms_rows, i, 0, terms)
+        sums[start] += 1
+        for k in range(len(terms)):
+            sums[start + 1 + k] += terms[k]
+
+
+@scalar
+def fill_block(physics, counter, grid, block, number, like):
+    """Virtual particles: a thermal gas of the fluid's density in the solid part of cut cells.
+
+    Together the two layers of cut cells of a slit hold one layer of cells of solid, whatever the
+    shift; each particle has a place in that layer, drawn anew at each step, and so belongs to the
+    lower or the upper plate.
+    """
+    d = len(like)
+    for i in range(LANES):
+        a, b, c, _ = words(counter, VIRTUAL_POSITION, number + i, 0)
+        place = first((unit_open(a), unit_open(b), unit_open(c)), like)
+        r, u = closes(physics.solid, place, grid.shift)
+        a, b, c, e = words(counter, VIRTUAL_VELOCITY, number + i, 0)
+        m = mass_of(physics.masses, block, i, 2 * d)
+        v = added(u, scaled(math.sqrt(physics.kT / m), normals(like, a, b, c, e)))
+        store(block, i, 0, r + v)

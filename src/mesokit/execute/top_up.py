@@ -1,0 +1,65 @@
+"""Virtual particles by the simpler rule: top up each cell that a plate cuts to the mean density."""
+
+import math
+
+import numpy as np
+from numba import njit
+from numba.cpython.unsafe.tuple import tuple_setitem
+
+from mesokit.execute.layout import energy_term, mass_term
+from mesokit.execute.stages import in_cell, rounded
+from mesokit.geometry.protocol import closes, side
+from mesokit.mpcd.collision.protocol import contribute
+from mesokit.random import CELL_VIRTUAL, normals, unit_open, words
+from mesokit.scalar import added, dot, first, scaled
+
+
+@njit(cache=True, error_model="numpy")
+def top_up(physics, counter, grid, density, cells, number, like, scales):
+    """Add virtual particles to the sums of cut cells that hold fewer than the mean density.
+
+    A fractional density is met on average. Places are uniform in the solid part of the cell.
+    """
+    sums = cells[2]
+    width = 1 + len(scales)
+    normal = physics.solid.normal
+    layers = dot(normal, grid.cells)
+    s = dot(normal, grid.shift)
+    below = s - math.floor(s)
+    m = physics.masses[0]
+    for cell in range(number):
+        index, rest = like, cell
+        for k in range(len(like)):
+            size = int(grid.cells[k])
+            index = tuple_setitem(index, k, float(rest % size))
+            rest //= size
+        layer = dot(normal, index)
+        lower = layer < 0.5
+        if (not lower and layer < layers - 1.5) or below == 0.0:
+            continue
+        present = 0
+        for t in range(sums.shape[0]):
+            present += sums[t, cell * width]
+        a, _, _, _ = words(counter, CELL_VIRTUAL, cell, 0)
+        missing = int(density + unit_open(a)) - present
+        for j in range(missing):
+            a, b, c, _ = words(counter, CELL_VIRTUAL, cell, 1 + 2 * j)
+            u = first((unit_open(a), unit_open(b), unit_open(c)), like)
+            depth = dot(normal, u)
+            place = u
+            for k in range(len(like)):
+                along = (index[k] - grid.shift[k] + u[k]) / physics.solid.size[k]
+                inside = below * depth if lower else below + (1.0 - below) * depth
+                place = tuple_setitem(place, k, inside if normal[k] > 0.5 else along)
+            r, drift = closes(physics.solid, place, grid.shift)
+            if side(physics.solid, r) == 2:
+                break
+            a, b, c, d = words(counter, CELL_VIRTUAL, cell, 2 + 2 * j)
+            v = added(drift, scaled(math.sqrt(physics.kT / m), normals(like, a, b, c, d)))
+            who = np.int64(2**31) + cell * 64 + j
+            _, own = contribute(physics.rule, counter, who, m, v, in_cell(r, grid))
+            terms = scaled(m, v) + mass_term(physics.masses, m)
+            terms = rounded(terms + energy_term(physics.energy, m, v) + own, scales)
+            sums[0, cell * width] += 1
+            for k in range(len(terms)):
+                sums[0, cell * width + 1 + k] += terms[k]

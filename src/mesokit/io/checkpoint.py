@@ -1,0 +1,93 @@
+"""Checkpoints: one file that is always whole, and refuses to continue another case."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import zipfile
+import zlib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import CheckpointError
+from mesokit.io.atomic import replacing
+
+FORMAT = 1  # raise it when the contents change their meaning
+_META = "meta"
+
+Arrays = dict[str, NDArray[Any]]
+
+
+def digest(text: str) -> str:
+    """Fingerprint of a resolved case (its TOML), to tell cases apart.
+
+    >>> digest("[run]")[:8]
+    'a31b3d5d'
+    """
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def write(
+    path: str | Path, arrays: Mapping[str, NDArray[Any]], meta: Mapping[str, Any], case: str = ""
+) -> None:
+    """Replace the checkpoint at `path` by a new one, or leave it as it is.
+
+    Parameters
+    ----------
+    path: the file.
+    arrays: what the run needs to go on, by name.
+    meta: plain numbers and texts that go with them.
+    case: `digest` of the resolved case.
+
+    Raises RunError if it cannot be written, with the old checkpoint untouched.
+
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "checkpoint.npz"
+    >>> write(path, {"x": np.arange(3)}, {"step": 7})
+    >>> arrays, meta = read(path)
+    >>> arrays["x"], meta["step"]
+    (array([0, 1, 2]), 7)
+    """
+    if _META in arrays:
+        raise ValueError(f"no array may be called {_META!r}")
+    header = json.dumps({"format": FORMAT, "case": case, "meta": dict(meta)})
+    with replacing(path) as temporary, temporary.open("wb") as file:
+        np.savez(file, **{_META: np.array(header)}, **arrays)  # type: ignore[arg-type]
+
+
+def read(path: str | Path, case: str | None = None) -> tuple[Arrays, dict[str, Any]]:
+    """Arrays and meta of the checkpoint at `path`; every byte is checked.
+
+    With `case`, the digest of the case to go on with. Raises CheckpointError for a file that is
+    missing, truncated, corrupted, of another format or of another case.
+    """
+    path = Path(path)
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+        header = json.loads(str(arrays.pop(_META)))
+        version, owner, meta = header["format"], header["case"], header["meta"]
+    except FileNotFoundError:
+        raise CheckpointError(f"{path}: no such checkpoint") from None
+    except OSError as error:
+        reason = error.strerror or "it is damaged"
+        raise CheckpointError(f"{path}: cannot be read: {reason.lower()}") from None
+    except (
+        ValueError, KeyError, TypeError, EOFError, NotImplementedError, RuntimeError, MemoryError,
+        zipfile.BadZipFile, zlib.error, OverflowError, AttributeError, SyntaxError, IndexError,
+    ):  # fmt: skip
+        raise CheckpointError(f"{path}: damaged: it is not a whole checkpoint") from None
+    if version != FORMAT:
+        raise CheckpointError(
+            f"{path}: format {version}; this version of mesokit reads format {FORMAT}"
+        )
+    if case is not None and owner != case:
+        raise CheckpointError(f"{path}: belongs to another case, or the case was changed since")
+    return arrays, meta
+
+
+__all__ = ["FORMAT", "digest", "read", "write"]

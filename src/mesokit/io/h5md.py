@@ -1,0 +1,266 @@
+"""The data file of a run: H5MD 1.1 (de Buyl, Colberg and Hofling, CPC 185, 1546 (2014)).
+
+/h5md        version, author, creator
+/parameters  case (TOML) and provenance (JSON)
+/particles   fluid: box, position, velocity, image with step, time and value; id, mass, species
+/observables time series, one row for each frame of the trajectory if there is one
+/results     what each observable measured: value, error, expected, fit, x, comparisons
+
+What readers want decides three things. Coordinates on disk always have three columns, in 2D with
+z = 0 in a box one cell high (`dimension` of the fluid says 2). Lengths and times are in units that
+have no SI name; their attribute is `reduced_unit`, as readers refuse a `unit` that they do not
+know (MDAnalysis: convert_units=False). Readers take row i of an observable to belong to frame i,
+so that profiles and correlations are kept under /results, and /observables leaves out what was
+not sampled at every frame.
+
+Under Lees-Edwards shear the box is written as a triclinic one, whose second edge leans by how far
+the images have slid: that of the nearest image, between -L/2 and L/2.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import RunError
+from mesokit.io.atomic import replacing
+from mesokit.observe.result import Comparison, Result
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+    from mesokit.io.trajectory import TrajectoryWriter
+
+UNITS = {"position": "a", "velocity": "a/tau", "time": "tau"}
+CHUNK = 65536  # particles
+_TABLE = ("what", "measured", "error", "expected", "unit", "note")
+
+
+def write(
+    path: str | Path,
+    case: Case,
+    provenance: Mapping[str, Any],
+    results: Iterable[Result],
+    trajectory: TrajectoryWriter | None = None,
+    masses: NDArray[np.float64] | None = None,
+    species: NDArray[np.int64] | None = None,
+) -> None:
+    """Write the data file whole, or leave the old one.
+
+    Parameters
+    ----------
+    path: the file.
+    case, provenance: of the run.
+    results: of all observables.
+    trajectory: whose frames are copied one by one.
+    masses, species: (n,) by particle id, for the particles of the trajectory.
+
+    Raises RunError if it cannot be written.
+    """
+    with replacing(path) as temporary:
+        try:
+            with h5py.File(temporary, "w") as file:
+                _header(file, case, provenance)
+                steps = None
+                if trajectory is not None:
+                    steps = trajectory.steps()
+                    _particles(file, case, trajectory, steps, masses, species)
+                for result in results:
+                    _result(file.require_group("results"), result)
+                    _time_series(file, result, steps)
+        except RuntimeError as error:  # what h5py makes of a full disk while closing
+            raise OSError(None, str(error).splitlines()[0]) from error
+
+
+def read_results(path: str | Path) -> dict[str, Result]:
+    """Results by name, equal to what was written. Raises RunError for a damaged file."""
+    with opened(path) as file:
+        return {name: _read_result(group) for name, group in file.get("results", {}).items()}
+
+
+def opened(path: str | Path) -> Any:
+    """The HDF5 file, for reading. Raises RunError if it is not one."""
+    try:
+        return h5py.File(path, "r")
+    except FileNotFoundError:
+        raise RunError(f"{path}: no such file") from None
+    except OSError:
+        raise RunError(f"{path}: damaged: it is not a whole HDF5 file") from None
+
+
+def _header(file: Any, case: Case, provenance: Mapping[str, Any]) -> None:
+    version = str(provenance.get("versions", {}).get("mesokit", "unknown"))
+    head = file.create_group("h5md")
+    head.attrs["version"] = np.array([1, 1], np.int32)
+    head.create_group("author").attrs["name"] = str(provenance.get("author", "unknown"))
+    creator = head.create_group("creator")
+    creator.attrs["name"], creator.attrs["version"] = "mesokit", version
+    parameters = file.create_group("parameters")
+    parameters["case"] = case.to_toml()
+    parameters["provenance"] = json.dumps(provenance)
+
+
+# --- particles ----------------------------------------------------------------------------------
+
+
+def _particles(
+    file: Any,
+    case: Case,
+    trajectory: TrajectoryWriter,
+    steps: NDArray[np.int64],
+    masses: NDArray[np.float64] | None,
+    species: NDArray[np.int64] | None,
+) -> None:
+    group, n, frames = file.create_group("particles/fluid"), len(trajectory.ids), len(steps)
+    group.attrs["dimension"] = case.box.dimension
+    group["id"] = trajectory.ids
+    group["mass"] = np.full(n, case.fluid.mass) if masses is None else masses[:n]
+    group["species"] = np.zeros(n, np.int32) if species is None else species[:n]
+    group["step"] = steps
+    group.create_dataset("time", (frames,), float).attrs["reduced_unit"] = UNITS["time"]
+    sets = {}
+    for name in trajectory.trajectory.fields:
+        if name != "id":
+            dtype = np.int32 if name == "image" else trajectory.trajectory.precision
+            sets[name] = _element(group, name, group).create_dataset(
+                "value",
+                (frames, n, 3),
+                dtype,
+                chunks=(1, min(max(n, 1), CHUNK), 3) if frames and n else None,
+                compression=trajectory.trajectory.compression or None if frames and n else None,
+                shuffle=bool(trajectory.trajectory.compression) if frames and n else None,
+            )
+            if name in UNITS:
+                sets[name].attrs["reduced_unit"] = UNITS[name]
+    edges = _box(group, case, frames)
+    for index, frame in enumerate(trajectory.frames()):
+        group["time"][index] = frame["time"]
+        edges[index] = _edges(case, float(frame["time"]), edges.shape[1:])
+        for name, data in sets.items():
+            row = np.zeros((n, 3), data.dtype)
+            row[:, : case.box.dimension] = frame[name]
+            data[index] = row
+    del group["step"], group["time"]  # the elements have linked them
+
+
+def _element(parent: Any, name: str, clock: Any) -> Any:
+    """A group whose step and time are links to those of all others."""
+    element = parent.create_group(name)
+    element["step"], element["time"] = clock["step"], clock["time"]
+    return element
+
+
+def _box(group: Any, case: Case, frames: int) -> Any:
+    box = group.create_group("box")
+    closed = {wall.axis for wall in case.walls}
+    boundary = ["none" if axis in closed else "periodic" for axis in ("x", "y", "z")]
+    box.attrs["dimension"] = 3
+    box.attrs["boundary"] = np.array(boundary, dtype=h5py.string_dtype("ascii"))
+    shape = (frames, 3, 3) if case.box.shear_rate else (frames, 3)
+    if case.box.shear_rate:
+        box.attrs["lees_edwards_shear_rate"] = case.box.shear_rate
+    edges = _element(box, "edges", group).create_dataset("value", shape, float)
+    edges.attrs["reduced_unit"] = "a"
+    return edges
+
+
+def _edges(case: Case, time: float, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    size = np.ones(3)
+    size[: case.box.dimension] = case.box.size
+    if len(shape) == 1:
+        return size
+    edges = np.diag(size)
+    slid = case.box.shear_rate * size[1] * time
+    edges[1, 0] = slid - size[0] * np.round(slid / size[0])
+    return edges
+
+
+# --- observables and results --------------------------------------------------------------------
+
+
+def _time_series(file: Any, result: Result, steps: NDArray[np.int64] | None) -> None:
+    """Rows of a time series under /observables, those of the frames if there are any."""
+    if list(result.x) != ["time", "component"] or "step" not in result.extra:
+        return
+    own = np.asarray(result.extra["step"]).astype(np.int64)
+    rows = np.arange(len(own))
+    if steps is not None:
+        if not np.isin(steps, own).all():
+            return
+        rows = np.searchsorted(own, steps)
+    for column, name in enumerate(result.x["component"]):
+        element = file.create_group(f"observables/{result.name}/{name}")
+        element["step"], element["time"] = own[rows], result.x["time"][rows]
+        element["value"] = result.value[rows, column]
+        element["value"].attrs["reduced_unit"] = result.units.get(str(name), "")
+
+
+def _result(parent: Any, result: Result) -> None:
+    group = parent.create_group(result.name)
+    group.attrs["quantity"], group.attrs["label"] = result.quantity, result.label
+    group.attrs["theory"], group.attrs["samples"] = result.theory, result.samples
+    group.attrs["units"] = json.dumps(dict(result.units))
+    group.attrs["axes"] = json.dumps(list(result.x))
+    group.create_group("x")
+    for name, axis in result.x.items():
+        _store(group["x"], name, axis)
+    for name in ("value", "error", "expected", "fit"):
+        if getattr(result, name) is not None:
+            group[name] = getattr(result, name)
+    table = group.create_group("comparisons")
+    for name in _TABLE:
+        _store(table, name, np.array([getattr(c, name) for c in result.comparisons]))
+    extra = group.create_group("extra", track_order=True)
+    for name, entry in result.extra.items():
+        if isinstance(entry, np.ndarray):
+            _store(extra, name, entry)
+        else:
+            extra.create_dataset(name, data=entry)
+
+
+def _store(group: Any, name: str, array: NDArray[Any]) -> None:
+    if array.dtype.kind == "U":
+        group.create_dataset(name, data=array.astype(object), dtype=h5py.string_dtype())
+    else:
+        group[name] = array
+
+
+def _load(data: Any) -> Any:
+    if h5py.check_string_dtype(data.dtype):
+        text = data.asstr()[()]
+        return text if isinstance(text, str) else np.array(list(text), dtype=str)
+    entry = data[()]
+    return entry if isinstance(entry, np.ndarray) else entry.item()
+
+
+def _read_result(group: Any) -> Result:
+    attrs = group.attrs
+    return Result(
+        quantity=str(attrs["quantity"]),
+        name=group.name.split("/")[-1],
+        x={name: _load(group["x"][name]) for name in json.loads(attrs["axes"])},
+        value=group["value"][()],
+        error=group["error"][()],
+        label=str(attrs["label"]),
+        units=json.loads(attrs["units"]),
+        expected=group["expected"][()] if "expected" in group else None,
+        fit=group["fit"][()] if "fit" in group else None,
+        theory=str(attrs["theory"]),
+        comparisons=tuple(_comparisons(group["comparisons"])),
+        samples=int(attrs["samples"]),
+        extra={name: _load(group["extra"][name]) for name in group["extra"]},
+    )
+
+
+def _comparisons(table: Any) -> Iterator[Comparison]:
+    columns = [_load(table[name]) for name in _TABLE]
+    for row in zip(*columns, strict=True):
+        what, measured, error, expected, unit, note = row
+        yield Comparison(
+            str(what), float(measured), float(error), float(expected), str(unit), str(note)
+        )

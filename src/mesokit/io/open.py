@@ -1,0 +1,136 @@
+"""Open what a run has written."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import RunError
+from mesokit.io import h5md
+from mesokit.io.run_directory import RunDirectory
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+    from mesokit.observe.result import Result
+
+
+class RunFiles:
+    """What a run has written, read when asked for.
+
+    `files["velocity-profile"]` is a result; `case`, `provenance`, `results` and `trajectory` are
+    the rest. Raises RunError where a file is missing or damaged.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.directory = RunDirectory.existing(path)
+        self.path = self.directory.path
+
+    @cached_property
+    def case(self) -> Case:
+        """The resolved case."""
+        from mesokit.case import Case
+
+        return Case.from_toml(self.directory.case_file)
+
+    @cached_property
+    def provenance(self) -> dict[str, Any]:
+        """Versions, seed, host, times."""
+        return self.directory.read_provenance()
+
+    @cached_property
+    def results(self) -> dict[str, Result]:
+        """Results by name. Raises RunError if the run has not ended."""
+        return h5md.read_results(self._data())
+
+    @cached_property
+    def trajectory(self) -> TrajectoryReader | None:
+        """Frames, None if the case asked for none. Raises RunError if the run has not ended."""
+        reader = TrajectoryReader(self._data())
+        return reader if reader.fields else None
+
+    def __getitem__(self, name: str) -> Result:
+        """The result of that name; KeyError says which there are."""
+        if name not in self.results:
+            raise KeyError(f"no result {name!r}; there are {', '.join(self.results) or 'none'}")
+        return self.results[name]
+
+    def plot(self, folder: str | Path | None = None) -> list[Path]:
+        """Draw every result into the folder (that of the run unless said)."""
+        from mesokit.report import save_all
+
+        return save_all(self.results.values(), self.path if folder is None else folder)
+
+    def _data(self) -> Path:
+        if not self.directory.data_file.exists():
+            raise RunError(f"{self.path}: the run has not ended yet; resume it first")
+        return self.directory.data_file
+
+    def __repr__(self) -> str:
+        lines = [f"mesokit run {self.path}", f"  {self.case.title or 'untitled'}"]
+        if not self.directory.data_file.exists():
+            return "\n".join([*lines, "  not ended yet"])
+        lines += ["  " + repr(result).replace("\n", "\n  ") for result in self.results.values()]
+        if self.trajectory is not None:
+            lines.append(f"  {self.trajectory!r}")
+        return "\n".join(lines)
+
+
+class TrajectoryReader:
+    """Frames of the fluid: `reader[i]` is a dictionary, `reader.read("position")` all frames.
+
+    Particles are in the order of `id`. In 2D the third column that the file carries is left out.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        with h5md.opened(path) as file:
+            group = file.get("particles/fluid")
+            self.fields: tuple[str, ...] = ()
+            self.dimension = 0
+            if group is None:
+                return
+            self.dimension = int(group.attrs["dimension"])
+            self.fields = tuple(n for n in ("position", "velocity", "image") if n in group)
+            self.step: NDArray[np.int64] = group["box/edges/step"][()]
+            self.time: NDArray[np.float64] = group["box/edges/time"][()]
+            self.edges: NDArray[np.float64] = group["box/edges/value"][()]
+            self.id: NDArray[np.int64] = group["id"][()]
+            self.mass: NDArray[np.float64] = group["mass"][()]
+            self.species: NDArray[np.int64] = group["species"][()]
+
+    def __len__(self) -> int:
+        return len(self.step)
+
+    def __getitem__(self, index: int) -> dict[str, NDArray[Any]]:
+        """The fields of one frame, with `step` and `time`."""
+        if not -len(self) <= index < len(self):
+            raise IndexError(f"frame {index} of {len(self)}")
+        index %= len(self)
+        frame = {name: self.read(name, slice(index, index + 1))[0] for name in self.fields}
+        return frame | {"step": self.step[index], "time": self.time[index]}
+
+    def read(self, field: str, frames: slice = slice(None)) -> NDArray[Any]:
+        """One field of some or all frames, (frames, n, d). Raises KeyError if it is not there."""
+        if field not in self.fields:
+            raise KeyError(f"no field {field!r}; there are {', '.join(self.fields)}")
+        with h5md.opened(self.path) as file:
+            data = file[f"particles/fluid/{field}/value"]
+            return np.asarray(data[frames, :, : self.dimension])
+
+    def __repr__(self) -> str:
+        return (
+            f"trajectory: {len(self)} frames of {len(self.id)} particles"
+            f" ({', '.join(self.fields) or 'ids only'})"
+        )
+
+
+def open_run(path: str | Path) -> RunFiles:
+    """What the run in the folder `path` has written. Raises RunError if there is no run.
+
+    Known to users as `mesokit.open`.
+    """
+    return RunFiles(path)

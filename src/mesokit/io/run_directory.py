@@ -1,0 +1,152 @@
+"""The folder of a run: what lies where, and where the numbers came from."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mesokit.errors import RunError
+from mesokit.io import checkpoint
+from mesokit.io.atomic import write_text
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+LIBRARIES = ("mesokit", "numpy", "scipy", "numba", "h5py", "matplotlib", "pydantic")
+
+
+@dataclass(frozen=True)
+class RunDirectory:
+    """The files of one run in the folder `path`."""
+
+    path: Path
+
+    @property
+    def case_file(self) -> Path:
+        """The resolved case."""
+        return self.path / "case.toml"
+
+    @property
+    def provenance_file(self) -> Path:
+        """Versions, seed, host, times."""
+        return self.path / "provenance.json"
+
+    @property
+    def data_file(self) -> Path:
+        """Results and trajectory, H5MD; there when the run has ended."""
+        return self.path / "run.h5"
+
+    @property
+    def checkpoint_file(self) -> Path:
+        """The last state from which the run can go on."""
+        return self.path / "checkpoint.npz"
+
+    @property
+    def log_file(self) -> Path:
+        """What the run said."""
+        return self.path / "log.txt"
+
+    @property
+    def trajectory_folder(self) -> Path:
+        """Frames that are not in the data file yet."""
+        return self.path / "trajectory"
+
+    def figure_file(self, name: str) -> Path:
+        """Figure of one result."""
+        return self.path / f"{name}.png"
+
+    @classmethod
+    def create(cls, path: str | Path, case: Case) -> RunDirectory:
+        """Make the folder and write the resolved case.
+
+        Raises RunError if something is there already, or the folder cannot be written.
+        """
+        run = cls(Path(path))
+        try:
+            if run.path.is_dir() and any(run.path.iterdir()):
+                hint = "resume that run or " if run.case_file.exists() else ""
+                raise RunError(f"{path}: folder is not empty; {hint}choose another output")
+            run.path.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            reason = (error.strerror or str(error)).lower()
+            raise RunError(f"{path}: cannot make the folder: {reason}") from None
+        write_text(run.case_file, case.to_toml())
+        return run
+
+    @classmethod
+    def existing(cls, path: str | Path) -> RunDirectory:
+        """An earlier run. Raises RunError if there is none in that folder."""
+        run = cls(Path(path))
+        if not run.path.is_dir():
+            raise RunError(f"{path}: no such folder")
+        if not run.case_file.exists():
+            raise RunError(f"{path}: holds no run; expected a file case.toml in it")
+        return run
+
+    def read_provenance(self) -> dict[str, Any]:
+        """What `write_provenance` wrote, {} if nothing. Raises RunError if it is damaged."""
+        try:
+            return dict(json.loads(self.provenance_file.read_text(encoding="utf-8")))
+        except FileNotFoundError:
+            return {}
+        except (OSError, ValueError, TypeError) as error:
+            raise RunError(f"{self.provenance_file}: cannot be read: {error}") from None
+
+    def write_provenance(self, provenance: Mapping[str, Any]) -> None:
+        """Replace the provenance. Raises RunError."""
+        write_text(self.provenance_file, json.dumps(provenance, indent=2) + "\n")
+
+
+def provenance(case: Case, threads: int) -> dict[str, Any]:
+    """Where the numbers of a run come from, as it starts: case, versions, host, time.
+
+    `ended` is None and `timings` empty until someone fills them in.
+    """
+    text = case.to_toml()
+    return {
+        "case": text,
+        "case_digest": checkpoint.digest(text),
+        "seed": case.run.seed,
+        "versions": {"python": platform.python_version()} | _versions(),
+        "host": platform.node(),
+        "system": platform.platform(),
+        "processor": _processor(),
+        "cores": os.cpu_count(),
+        "threads": threads,
+        "command": sys.argv,
+        "started": now(),
+        "resumed": [],
+        "ended": None,
+        "timings": {},
+    }
+
+
+def now() -> str:
+    """The time, as texts sort."""
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+def _versions() -> dict[str, str]:
+    found = {}
+    for name in LIBRARIES:
+        try:
+            found[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            found[name] = "not installed as a package"
+    return found
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        return next(line.split(":", 1)[1].strip() for line in lines if "model name" in line)
+    except (OSError, StopIteration, UnicodeDecodeError):
+        return platform.processor()

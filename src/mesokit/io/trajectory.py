@@ -1,0 +1,144 @@
+"""Which particles are written how often, and how their frames outlive a crash.
+
+While a run goes on, frames are kept in memory and written out in segments: when there are many,
+and before every checkpoint. A segment is one file, written whole. A run that goes on from a
+checkpoint drops the frames that came after it, so that nothing is missing and nothing is there
+twice. At the end all frames go to the data file of the run, one by one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.component import component, param
+from mesokit.errors import RunError
+from mesokit.io.atomic import replacing
+
+if TYPE_CHECKING:
+    from mesokit.observe.protocol import Fluid
+
+Quantity = Literal["position", "velocity", "image", "id"]
+Frame = dict[str, NDArray[Any]]
+LARGEST = 64 * 2**20  # bytes of frames kept in memory
+
+
+@component
+class Trajectory:
+    """Particles written to the H5MD file of the run."""
+
+    every: int = param(doc="steps between two frames", ge=1)
+    fields: tuple[Quantity, ...] = param(("position",), doc="what is written", min_length=1)
+    subset: int | None = param(None, doc="only the first particles, so many (all unless said)", ge=1)
+    precision: Literal["float32", "float64"] = param("float32", doc="of the stored numbers")
+    compression: int = param(4, doc="gzip level: 0 none, 9 smallest", ge=0, le=9)
+
+
+class TrajectoryWriter:
+    """Frames of a running fluid, kept in the folder `folder`.
+
+    Particles are stored in the order of their ids. Call `record` where a frame is due, `flush`
+    before every checkpoint, `resume` before going on from one.
+    """
+
+    def __init__(self, trajectory: Trajectory, folder: str | Path, particles: int) -> None:
+        self.trajectory, self.folder = trajectory, Path(folder)
+        self.ids = np.arange(min(trajectory.subset or particles, particles))
+        self._frames: list[Frame] = []
+        self._bytes = 0
+
+    def record(self, fluid: Fluid) -> None:
+        """Take one frame. Raises RunError if a full memory cannot be written out."""
+        frame: Frame = {"step": np.array(fluid.step), "time": np.array(fluid.time)}
+        real = np.dtype(self.trajectory.precision)
+        fields = self.trajectory.fields
+        if "position" in fields:
+            frame["position"] = _inside(fluid.positions(self.ids).astype(real), fluid.box)
+        if "velocity" in fields:
+            frame["velocity"] = fluid.velocities(self.ids).astype(real)
+        if "image" in fields:
+            frame["image"] = fluid.images(self.ids).astype(np.int32)
+        self._frames.append(frame)
+        self._bytes += sum(array.nbytes for array in frame.values())
+        if self._bytes >= LARGEST:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what is in memory to a new segment. Raises RunError."""
+        if not self._frames:
+            return
+        try:
+            self.folder.mkdir(exist_ok=True)
+        except OSError as error:
+            raise RunError(f"cannot make {self.folder}: {error.strerror}") from None
+        self._write(self._frames)
+        self._frames, self._bytes = [], 0
+
+    def resume(self, step: int) -> None:
+        """Forget all frames after `step`. Raises RunError for a damaged segment before it."""
+        self._frames, self._bytes = [], 0
+        for path in self.segments():
+            if int(path.stem.split("-")[1]) > step:
+                path.unlink()
+                continue
+            frames = list(_read(path))
+            kept = [frame for frame in frames if frame["step"] <= step]
+            if len(kept) < len(frames):
+                self._write(kept)
+
+    def steps(self) -> NDArray[np.int64]:
+        """Steps of all frames, those in memory included."""
+        found = [_load(path, "step") for path in self.segments()]
+        found.append(np.array([frame["step"] for frame in self._frames], np.int64))
+        return np.concatenate(found).astype(np.int64)
+
+    def frames(self) -> Iterator[Frame]:
+        """All frames in order. Raises RunError for a damaged segment."""
+        for path in self.segments():
+            yield from _read(path)
+        yield from self._frames
+
+    def segments(self) -> list[Path]:
+        """Files of the segments in order."""
+        return sorted(self.folder.glob("segment-*.npz"))
+
+    def remove(self) -> None:
+        """Delete the segments, after their frames have gone to the data file."""
+        for path in self.segments():
+            path.unlink()
+        if self.folder.is_dir() and not any(self.folder.iterdir()):
+            self.folder.rmdir()
+
+    def _write(self, frames: list[Frame]) -> None:
+        path = self.folder / f"segment-{int(frames[0]['step']):015d}.npz"
+        stacked = {name: np.stack([frame[name] for frame in frames]) for name in frames[0]}
+        with replacing(path) as temporary, temporary.open("wb") as file:
+            np.savez(file, **stacked)  # type: ignore[arg-type]
+
+
+def _inside(position: NDArray[Any], box: NDArray[np.float64]) -> NDArray[Any]:
+    """Rounding to float32 may lift a particle onto the upper face: keep it just below."""
+    edge = np.asarray(box, position.dtype)
+    return np.where(position >= edge, np.nextafter(edge, np.zeros_like(edge)), position)
+
+
+def _load(path: Path, name: str) -> NDArray[Any]:
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            return np.asarray(file[name])
+    except Exception:  # zip, zlib and numpy have many words for a damaged file
+        raise RunError(f"{path}: damaged: it is not a whole segment of a trajectory") from None
+
+
+def _read(path: Path) -> Iterator[Frame]:
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+    except Exception:
+        raise RunError(f"{path}: damaged: it is not a whole segment of a trajectory") from None
+    for index in range(len(arrays["step"])):
+        yield {name: array[index] for name, array in arrays.items()}

@@ -1,0 +1,1 @@
+"""Multi-particle collision dynamics: what makes an MPCD fluid."""

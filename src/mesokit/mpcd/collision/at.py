@@ -1,0 +1,104 @@
+"""Andersen thermostat collisions: draw the velocities of a cell anew about their mean."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar, Literal, NamedTuple
+
+from mesokit.component import component, tag
+from mesokit.mpcd.collision.protocol import coefficients, collide, contribute, freedom
+from mesokit.random import PARTICLE_VELOCITY, normals, words
+from mesokit.scalar import scalar, scaled
+
+
+@component
+class AT:
+    """Draw relative velocities from the Maxwell distribution; momentum is conserved (MPC-AT-a).
+
+    It is its own thermostat.
+    Source: Noguchi, Kikuchi and Gompper, EPL 78, 10005 (2007).
+    """
+
+    rule: Literal["at"] = tag("at")
+
+    conserves: ClassVar[tuple[str, ...]] = ("mass", "momentum")
+    needs_energy: ClassVar[bool] = False
+
+    def kernel(self, dimension: int, kT: float) -> AT2 | AT3:
+        """Parameters for the scalar functions below."""
+        return AT2(kT) if dimension == 2 else AT3(kT)
+
+    def own_sums(self, dimension: int) -> tuple[str, ...]:
+        """The momentum of the drawn velocities."""
+        return ("momentum",) * dimension
+
+    def coefficient_count(self, dimension: int, stretched: bool) -> int:
+        """How many numbers `coefficients` gives; `stretched` says that a thermostat acts."""
+        return dimension
+
+
+class AT2(NamedTuple):
+    """Thermal energy of the drawn velocities."""
+
+    kT: float
+
+
+class AT3(NamedTuple):
+    """Thermal energy of the drawn velocities."""
+
+    kT: float
+
+
+@scalar
+def thermal_velocity(counter, ident, kT, m, like):
+    """A velocity from the Maxwell distribution, with as many components as `like`."""
+    a, b, c, d = words(counter, PARTICLE_VELOCITY, ident, 0)
+    x = normals(like, a, b, c, d)
+    width = math.sqrt(kT / m)
+    return scaled(width, x)
+
+
+@contribute.register(AT2)
+def _(rule, counter, ident, m, v, r):
+    w = thermal_velocity(counter, ident, rule.kT, m, v)
+    return w, (m * w[0], m * w[1])
+
+
+@contribute.register(AT3)
+def _(rule, counter, ident, m, v, r):
+    w = thermal_velocity(counter, ident, rule.kT, m, v)
+    return w, (m * w[0], m * w[1], m * w[2])
+
+
+@freedom.register(AT2)
+def _(rule, n):
+    return 2.0 * (n - 1.0)
+
+
+@freedom.register(AT3)
+def _(rule, n):
+    return 3.0 * (n - 1.0)
+
+
+@coefficients.register(AT2)
+def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
+    return (momentum[0] - sums[0]) / mass, (momentum[1] - sums[1]) / mass
+
+
+@coefficients.register(AT3)
+def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
+    return (
+        (momentum[0] - sums[0]) / mass,
+        (momentum[1] - sums[1]) / mass,
+        (momentum[2] - sums[2]) / mass,
+    )
+
+
+@collide.register(AT2)
+def _(rule, c, v, r):
+    return v[0] + c[0], v[1] + c[1]
+
+
+@collide.register(AT3)
+def _(rule, c, v, r):
+    return v[0] + c[0], v[1] + c[1], v[2] + c[2]

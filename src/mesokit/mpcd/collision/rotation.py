@@ -1,0 +1,82 @@
+"""Rotations and rigid rotation of the particles of a cell, in 3D."""
+
+import math
+
+from mesokit.elementary import sincos_turn
+from mesokit.random import unit, words
+from mesokit.scalar import scalar
+
+
+@scalar
+def random_axis(counter, purpose, cell):
+    """A unit vector, uniform on the sphere."""
+    a, b, c, d = words(counter, purpose, cell, 0)
+    s, co = sincos_turn(unit(a, b))
+    z = 2.0 * unit(c, d) - 1.0
+    radius = math.sqrt(max(1.0 - z * z, 0.0))
+    return radius * co, radius * s, z
+
+
+@scalar
+def rotate(w, n, cos, sin):
+    """Rotate the vector w about the unit vector n (Rodrigues)."""
+    along = (1.0 - cos) * (n[0] * w[0] + n[1] * w[1] + n[2] * w[2])
+    return (
+        cos * w[0] + sin * (n[1] * w[2] - n[2] * w[1]) + along * n[0],
+        cos * w[1] + sin * (n[2] * w[0] - n[0] * w[2]) + along * n[1],
+        cos * w[2] + sin * (n[0] * w[1] - n[1] * w[0]) + along * n[2],
+    )
+
+
+@scalar
+def cross(a, b):
+    """Vector product."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@scalar
+def angular_velocity(q, angular_momentum):
+    """Solve I omega = L for the inertia tensor I = tr(q) 1 - q, with q = sum m r r as
+    (xx, yy, zz, xy, xz, yz).
+
+    Two particles (or a line of them) have no inertia about their own axis, and no angular momentum
+    either: the pseudo-inverse is then 2 / tr(I).
+    """
+    lx, ly, lz = angular_momentum
+    a, b, c = q[1] + q[2], q[0] + q[2], q[0] + q[1]
+    d, e, f = -q[3], -q[4], -q[5]
+    m00, m01, m02 = b * c - f * f, e * f - d * c, d * f - e * b
+    m11, m12, m22 = a * c - e * e, d * e - a * f, a * b - d * d
+    det = a * m00 + d * m01 + e * m02
+    trace = a + b + c
+    regular = det > 1e-10 * trace * trace * trace
+    inverse = 1.0 / (det if regular else 1.0)
+    line = 2.0 / max(trace, 1e-30)
+    x = inverse * (m00 * lx + m01 * ly + m02 * lz)
+    y = inverse * (m01 * lx + m11 * ly + m12 * lz)
+    z = inverse * (m02 * lx + m12 * ly + m22 * lz)
+    return (
+        x if regular else line * lx,
+        y if regular else line * ly,
+        z if regular else line * lz,
+    )
+
+
+@scalar
+def second_moment(r):
+    """The products (xx, yy, zz, xy, xz, yz) of a position."""
+    return r[0] * r[0], r[1] * r[1], r[2] * r[2], r[0] * r[1], r[0] * r[2], r[1] * r[2]
+
+
+@scalar
+def central(moment, mass, r):
+    """Second moments about the centre of mass r, from those about the origin."""
+    own = second_moment(r)
+    return (
+        moment[0] - mass * own[0],
+        moment[1] - mass * own[1],
+        moment[2] - mass * own[2],
+        moment[3] - mass * own[3],
+        moment[4] - mass * own[4],
+        moment[5] - mass * own[5],
+    )

@@ -1,0 +1,165 @@
+"""SRD that conserves angular momentum."""
+
+from __future__ import annotations
+
+import math
+from typing import ClassVar, Literal, NamedTuple
+
+import numpy as np
+
+from mesokit.component import component, param, tag
+from mesokit.mpcd.collision.protocol import coefficients, collide, contribute, freedom
+from mesokit.mpcd.collision.rotation import (
+    angular_velocity,
+    central,
+    cross,
+    random_axis,
+    rotate,
+    second_moment,
+)
+from mesokit.mpcd.thermostat.protocol import root_of_ratio, target
+from mesokit.random import CELL_COLLISION, words
+from mesokit.scalar import added, dot, scaled
+
+ONE = np.uint64(1)
+
+
+@component
+class SRDPlusA:
+    """Rotate relative velocities, then restore the angular momentum and energy of the cell.
+
+    Source: Noguchi and Gompper, Phys. Rev. E 78, 016706 (2008).
+    """
+
+    rule: Literal["srd+a"] = tag("srd+a")
+    angle: float = param(130.0, doc="rotation angle", unit="degrees", gt=0, le=180)
+
+    conserves: ClassVar[tuple[str, ...]] = ("mass", "momentum", "energy", "angular momentum")
+    needs_energy: ClassVar[bool] = True
+
+    def kernel(self, dimension: int, kT: float) -> SRDPlusA2 | SRDPlusA3:
+        """Parameters for the scalar functions below."""
+        c, s = math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle))
+        return SRDPlusA2(c, s) if dimension == 2 else SRDPlusA3(c, s)
+
+    def own_sums(self, dimension: int) -> tuple[str, ...]:
+        """m r, m r r, and m r v: as r x v and r . v in 2D, as the whole tensor in 3D."""
+        if dimension == 2:
+            return ("mass",) * 3 + ("momentum",) * 2
+        return ("mass",) * 9 + ("momentum",) * 9
+
+    def coefficient_count(self, dimension: int, stretched: bool) -> int:
+        """How many numbers `coefficients` gives; `stretched` says that a thermostat acts."""
+        return 5 if dimension == 2 else 10
+
+
+class SRDPlusA2(NamedTuple):
+    """Rotation by +angle or -angle in the plane."""
+
+    cos: float
+    sin: float
+
+
+class SRDPlusA3(NamedTuple):
+    """Rotation by the angle about a random axis."""
+
+    cos: float
+    sin: float
+
+
+@contribute.register(SRDPlusA2)
+def _(rule, counter, ident, m, v, r):
+    x, y = m * r[0], m * r[1]
+    turn, pull = x * v[1] - y * v[0], x * v[0] + y * v[1]
+    return v, (x, y, x * r[0] + y * r[1], turn, pull)
+
+
+@contribute.register(SRDPlusA3)
+def _(rule, counter, ident, m, v, r):
+    p = scaled(m, v)
+    tensor = scaled(r[0], p) + scaled(r[1], p) + scaled(r[2], p)
+    return v, scaled(m, r) + scaled(m, second_moment(r)) + tensor
+
+
+@freedom.register(SRDPlusA2)
+def _(rule, n):
+    return 2.0 * (n - 1.0) - 1.0
+
+
+@freedom.register(SRDPlusA3)
+def _(rule, n):
+    return 3.0 * (n - 1.0) - (3.0 if n > 2.5 else 2.0)
+
+
+# Below, w are the rotated velocities relative to the mean, Omega their rigid rotation and omega that
+# of the cell before the collision. Particles leave with u + omega x r' + s (w - Omega x r'), r'
+# relative to the centre of mass; s makes up for the energy of the two rotations.
+
+
+@coefficients.register(SRDPlusA2)
+def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
+    ux, uy = momentum[0] / mass, momentum[1] / mass
+    x, y = sums[0] / mass, sums[1] / mass
+    inertia = max(sums[2] - mass * (x * x + y * y), 1e-30)
+    turn = sums[3] - mass * (x * uy - y * ux)
+    pull = sums[4] - mass * (x * ux + y * uy)
+    a, _, _, _ = words(counter, CELL_COLLISION, cell, 0)
+    sin = rule.sin * (1.0 - 2.0 * float(np.int64(a & ONE)))
+    rotated_turn = rule.cos * turn + sin * pull
+    relative = 0.5 * (energy - mass * (ux * ux + uy * uy))
+    before = relative - 0.5 * turn * turn / inertia
+    after = relative - 0.5 * rotated_turn * rotated_turn / inertia
+    free = freedom(rule, n)
+    s = root_of_ratio(target(thermostat, variate, free, before), after, free)
+    several = n > 1.5
+    cos, sin = (s * rule.cos, s * sin) if several else (1.0, 0.0)
+    omega = (turn - s * rotated_turn) / inertia if several else 0.0
+    return (
+        cos,
+        sin,
+        omega,
+        ux - (cos * ux - sin * uy) + omega * y,
+        uy - (sin * ux + cos * uy) - omega * x,
+    )
+
+
+@coefficients.register(SRDPlusA3)
+def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
+    u = momentum[0] / mass, momentum[1] / mass, momentum[2] / mass
+    r = sums[0] / mass, sums[1] / mass, sums[2] / mass
+    moment = central(sums[3:9], mass, r)
+    # rows of sum m r' w before the rotation
+    tx = added(sums[9:12], scaled(-mass * r[0], u))
+    ty = added(sums[12:15], scaled(-mass * r[1], u))
+    tz = added(sums[15:18], scaled(-mass * r[2], u))
+    turn = ty[2] - tz[1], tz[0] - tx[2], tx[1] - ty[0]
+    axis = random_axis(counter, CELL_COLLISION, cell)
+    tx = rotate(tx, axis, rule.cos, rule.sin)
+    ty = rotate(ty, axis, rule.cos, rule.sin)
+    tz = rotate(tz, axis, rule.cos, rule.sin)
+    rotated_turn = ty[2] - tz[1], tz[0] - tx[2], tx[1] - ty[0]
+    some = 1.0 if n > 1.5 else 0.0
+    omega = scaled(some, angular_velocity(moment, turn))
+    omega_rotated = scaled(some, angular_velocity(moment, rotated_turn))
+    relative = 0.5 * (energy - mass * dot(u, u))
+    before = relative - 0.5 * dot(omega, turn)
+    after = relative - 0.5 * dot(omega_rotated, rotated_turn)
+    free = freedom(rule, n)
+    s = root_of_ratio(target(thermostat, variate, free, before), after, free)
+    spin = added(omega, scaled(-s, omega_rotated))
+    turned = scaled(-s, rotate(u, axis, rule.cos, rule.sin))
+    return axis + (s,) + spin + added(added(u, turned), cross(r, spin))
+
+
+@collide.register(SRDPlusA2)
+def _(rule, c, v, r):
+    return (
+        c[3] + (c[0] * v[0] - c[1] * v[1]) - c[2] * r[1],
+        c[4] + (c[1] * v[0] + c[0] * v[1]) + c[2] * r[0],
+    )
+
+
+@collide.register(SRDPlusA3)
+def _(rule, c, v, r):
+    w = scaled(c[3], rotate(v, (c[0], c[1], c[2]), rule.cos, rule.sin))
+    return added(added(w, cross((c[4], c[5], c[6]), r)), (c[7], c[8], c[9]))

@@ -1,0 +1,28 @@
+"""No body force."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+from mesokit.component import component, tag
+from mesokit.mpcd.field.protocol import acceleration
+
+
+@component
+class NoForce:
+    """Particles fly straight."""
+
+    rule: Literal["none"] = tag("none")
+
+    def kernel(self, size: tuple[int, ...]) -> Zero:
+        """Parameters for the scalar function below."""
+        return Zero()
+
+
+class Zero(NamedTuple):
+    """No acceleration."""
+
+
+@acceleration.register(Zero)
+def _(field, r):
+    return ()

@@ -1,0 +1,109 @@
+"""How a fluid starts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.component import component, param
+from mesokit.errors import CaseError
+from mesokit.random import INITIAL_POSITION, INITIAL_VELOCITY
+
+if TYPE_CHECKING:
+    from mesokit.execute.cpu import CPU
+
+Floats = NDArray[np.float64]
+
+
+@component
+class Start:
+    """Where positions and velocities come from; without files they are drawn from the seed.
+
+    Drawn positions are uniform; drawn velocities are Maxwellian with zero total momentum.
+    """
+
+    positions: str | None = param(None, doc="file .npy or .npz with an (n, d) array", unit="a")
+    velocities: str | None = param(
+        None, doc="file .npy or .npz with an (n, d) array", unit="a/time"
+    )
+    run: str | None = param(None, doc="folder of an earlier run: go on from its last state")
+
+
+def start(cpu: CPU, positions: Any = None, velocities: Any = None) -> None:
+    """Give the particles their first positions and velocities.
+
+    Parameters
+    ----------
+    cpu : CPU
+        The fluid in memory; its case says how to draw what is not given.
+    positions, velocities : array (n, d), optional
+        In cells, and in cells per unit of time, by particle id.
+
+    Raises
+    ------
+    CaseError
+        If an array has the wrong shape, is not finite, or has particles outside the walls.
+    """
+    case, d = cpu.case, cpu.dimension
+    random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_POSITION))))
+    mass = cpu.masses()
+    _put_masses(cpu, mass)
+    for k in range(d):
+        given = None if positions is None else _checked(cpu, "positions", positions)[:, k]
+        _put(cpu, k, random.random(cpu.n) * cpu.box[k] if given is None else given)
+    random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_VELOCITY))))
+    for k in range(d):
+        if velocities is None:
+            v = random.standard_normal(cpu.n)
+            v *= np.sqrt(case.fluid.kT / mass)
+            v -= np.dot(mass, v) / mass.sum()
+        else:
+            v = _checked(cpu, "velocities", velocities)[:, k]
+        _put(cpu, d + k, v)
+    if velocities is None and case.box.shear_rate != 0.0:
+        cpu.row(d)[...] += case.box.shear_rate * (cpu.row(1) - 0.5 * cpu.box[1])
+    cpu.sort()
+
+
+def _put(cpu: CPU, row: int, values: Floats) -> None:
+    """Write values, by place in memory, into a row of the blocks."""
+    rows = cpu.row(row)
+    whole = len(values) // rows.shape[1]
+    rows[:whole] = values[: whole * rows.shape[1]].reshape(whole, -1)
+    if whole < len(rows):
+        rows[whole, : len(values) - whole * rows.shape[1]] = values[whole * rows.shape[1] :]
+
+
+def _put_masses(cpu: CPU, mass: Floats) -> None:
+    """Write the row of masses, where there is one; virtual particles get them in proportion."""
+    if cpu.rows == 2 * cpu.dimension:
+        return
+    _put(cpu, 2 * cpu.dimension, mass)
+    sample = mass[(np.arange(cpu.n_virtual) * 7919) % cpu.n]
+    virtual = cpu.virtual_row(2 * cpu.dimension)
+    virtual[...] = mass[0]
+    for j, m in enumerate(sample):
+        virtual[j // virtual.shape[1], j % virtual.shape[1]] = m
+
+
+def _checked(cpu: CPU, name: str, values: Any) -> Floats:
+    array = np.asarray(values, float)
+    if array.shape != (cpu.n, cpu.dimension):
+        raise CaseError(
+            f"fluid.start.{name}: shape {array.shape}: expected {(cpu.n, cpu.dimension)}, "
+            "one row for each of the fluid's particles"
+        )
+    if not np.isfinite(array).all():
+        row = int(np.argwhere(~np.isfinite(array))[0][0])
+        raise CaseError(f"fluid.start.{name}: row {row} is not finite")
+    if name == "positions":
+        for k in range(cpu.dimension):
+            outside = (array[:, k] < 0) | (array[:, k] > cpu.box[k])
+            if cpu.closed[k] and outside.any():
+                row = int(np.argmax(outside))
+                raise CaseError(
+                    f"fluid.start.positions: row {row} = {array[row].tolist()} lies in a wall"
+                )
+    return array

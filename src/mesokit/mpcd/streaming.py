@@ -1,0 +1,66 @@
+"""Flight of a particle through a timestep: a parabola, broken where it meets a surface."""
+
+from collections.abc import Callable
+from typing import Any
+
+from mesokit.geometry.protocol import confine, first_hit, reflect
+from mesokit.mpcd.field.protocol import acceleration
+from mesokit.scalar import added, by_type, scalar, scaled
+
+MOST_HITS = 64  # within one timestep; a corner or a grazing flight may need a few
+
+
+def fall(r: Any, v: Any, a: Any, time: Any) -> Any:
+    """Position and velocity after a time of constant acceleration a, which may be ()."""
+    raise NotImplementedError
+
+
+@by_type(fall)
+def _fall(r: Any, v: Any, a: Any, time: Any) -> Callable:
+    if len(a) == 0:
+        return lambda r, v, a, time: (added(r, scaled(time, v)), v)
+
+    def parabola(r, v, a, time):
+        mean = added(v, scaled(0.5 * time, a))
+        return added(r, scaled(time, mean)), added(v, scaled(time, a))
+
+    return parabola
+
+
+def vector(a: Any, like: Any) -> Any:
+    """The acceleration as a vector, also where it is ()."""
+    raise NotImplementedError
+
+
+@by_type(vector)
+def _vector(a: Any, like: Any) -> Callable:
+    if len(a) == 0:
+        return lambda a, like: scaled(0.0, like)
+    return lambda a, like: a
+
+
+@scalar
+def halfway(field, r, v, time):
+    """Acceleration at the middle of the straight flight."""
+    return acceleration(field, added(r, scaled(0.5 * time, v)))
+
+
+@scalar
+def bounce(solid, r, v, a, time):
+    """Flight with reflections: position, velocity, and the velocity taken up by surfaces 0 and 1."""
+    lower, upper = scaled(0.0, v), scaled(0.0, v)
+    for _ in range(MOST_HITS):
+        hit, surface = first_hit(solid, r, v, a, time)
+        if hit > time:
+            break
+        r, v = fall(r, v, a, hit)
+        r = confine(solid, r)
+        left = reflect(solid, surface, v)
+        taken = added(v, scaled(-1.0, left))
+        if surface == 0:
+            lower = added(lower, taken)
+        else:
+            upper = added(upper, taken)
+        v, time = left, time - hit
+    r, v = fall(r, v, a, time)
+    return confine(solid, r), v, lower, upper

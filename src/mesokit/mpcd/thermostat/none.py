@@ -1,0 +1,42 @@
+"""No thermostat."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal, NamedTuple
+
+from mesokit.component import component, tag
+from mesokit.mpcd.thermostat.protocol import draw, stretch, target
+
+
+@component
+class NoThermostat:
+    """Leave the energy to the collision rule."""
+
+    rule: Literal["none"] = tag("none")
+
+    needs_energy: ClassVar[bool] = False
+
+    def kernel(self, kT: float) -> Free:
+        """Parameters for the scalar functions below."""
+        return Free(kT)
+
+
+class Free(NamedTuple):
+    """No thermostat; kT only sets the temperature of the start."""
+
+    kT: float
+
+
+@draw.register(Free)
+def _(thermostat, counter, cell, attempt, freedom):
+    return 0.0, True
+
+
+@target.register(Free)
+def _(thermostat, variate, freedom, energy):
+    return energy
+
+
+@stretch.register(Free)
+def _(thermostat, variate, freedom, energy):
+    return ()

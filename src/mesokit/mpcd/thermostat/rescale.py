@@ -1,0 +1,46 @@
+"""Thermostat that sets every cell to the same temperature."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal, NamedTuple
+
+from mesokit.component import component, tag
+from mesokit.mpcd.thermostat.protocol import draw, root_of_ratio, stretch, target
+
+
+@component
+class Rescale:
+    """Scale the relative velocities of a cell to exactly the mean thermal energy.
+
+    Keeps the temperature but not its fluctuations; the mean velocity of the cell is left alone.
+    """
+
+    rule: Literal["rescale"] = tag("rescale")
+
+    needs_energy: ClassVar[bool] = True
+
+    def kernel(self, kT: float) -> Isokinetic:
+        """Parameters for the scalar functions below."""
+        return Isokinetic(kT)
+
+
+class Isokinetic(NamedTuple):
+    """Thermal energy to set."""
+
+    kT: float
+
+
+@draw.register(Isokinetic)
+def _(thermostat, counter, cell, attempt, freedom):
+    return 0.0, True
+
+
+@target.register(Isokinetic)
+def _(thermostat, variate, freedom, energy):
+    return 0.5 * freedom * thermostat.kT
+
+
+@stretch.register(Isokinetic)
+def _(thermostat, variate, freedom, energy):
+    wanted = target(thermostat, variate, freedom, energy)
+    return (root_of_ratio(wanted, energy, freedom),)

@@ -1,0 +1,58 @@
+"""Observables. A new one is a file here and a name in `AnyObservable`: one file, one line."""
+
+from __future__ import annotations
+
+from typing import get_args
+
+from mesokit.observe.conservation import Conservation
+from mesokit.observe.density_field import DensityField
+from mesokit.observe.density_profile import DensityProfile
+from mesokit.observe.longitudinal_modes import LongitudinalModes
+from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
+from mesokit.observe.protocol import Accumulator, Fluid, Observable
+from mesokit.observe.result import Comparison, Result
+from mesokit.observe.stress import Stress
+from mesokit.observe.temperature_profile import TemperatureProfile
+from mesokit.observe.transverse_modes import TransverseModes
+from mesokit.observe.velocity_autocorrelation import VelocityAutocorrelation
+from mesokit.observe.velocity_field import VelocityField
+from mesokit.observe.velocity_profile import VelocityProfile
+from mesokit.observe.wall_stress import WallStress
+
+AnyObservable = (
+    Conservation
+    | VelocityProfile
+    | DensityProfile
+    | TemperatureProfile
+    | VelocityField
+    | DensityField
+    | MeanSquareDisplacement
+    | VelocityAutocorrelation
+    | TransverseModes
+    | LongitudinalModes
+    | WallStress
+    | Stress
+)
+OBSERVABLES: tuple[type, ...] = get_args(AnyObservable)
+
+__all__ = [
+    "OBSERVABLES",
+    "Accumulator",
+    "AnyObservable",
+    "Comparison",
+    "Conservation",
+    "DensityField",
+    "DensityProfile",
+    "Fluid",
+    "LongitudinalModes",
+    "MeanSquareDisplacement",
+    "Observable",
+    "Result",
+    "Stress",
+    "TemperatureProfile",
+    "TransverseModes",
+    "VelocityAutocorrelation",
+    "VelocityField",
+    "VelocityProfile",
+    "WallStress",
+]

@@ -1,0 +1,180 @@
+"""Number, momentum, kinetic energy and temperature of the whole fluid in time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.box import AXES
+from mesokit.component import component, tag
+from mesokit.observe import setting
+from mesokit.observe.protocol import Fluid, Observable, State, pack, unpack
+from mesokit.observe.result import Comparison, Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+ENERGY = "m a^2/tau^2"
+ROWS = 4096  # kept of the time series; every other one is dropped when they are full
+
+
+@component
+class Conservation(Observable):
+    """Number, momentum, kinetic energy and temperature of the whole fluid in time.
+
+    The temperature is that of the motion about the mean velocity, flow included.
+    """
+
+    quantity: Literal["conservation"] = tag("conservation")
+
+    def accumulator(self, case: Case) -> ConservationAccumulator:
+        """An empty memory for it."""
+        return ConservationAccumulator(self, case)
+
+
+class ConservationAccumulator:
+    """The first sample, a thinned time series, block averages and the largest drift."""
+
+    def __init__(self, observable: Conservation, case: Case) -> None:
+        self.name, self.case = observable.label, case
+        self.dimension = case.box.dimension
+        width = 3 + self.dimension  # number, momentum, kinetic energy, temperature
+        self.blocks = Blocks((width,))
+        self.rows = np.zeros((ROWS, 2 + width))  # step and time first
+        self.first = np.zeros(width)
+        self.drift = np.zeros(2)  # largest change of momentum and of kinetic energy so far
+        self.counts = np.array([0, 1, 0])  # rows kept, samples per row, samples
+
+    def observe(self, fluid: Fluid) -> None:
+        """Take one sample."""
+        number, momentum, energy = fluid.totals()
+        sample = np.array([number, *momentum, energy, self._temperature(number, momentum, energy)])
+        kept, stride, samples = self.counts
+        if samples == 0:
+            self.first = sample
+        change = sample - self.first
+        largest = [np.linalg.norm(change[1:-2]), abs(change[-2])]
+        self.drift = np.maximum(self.drift, largest)
+        self.blocks.add(sample)
+        if samples % stride == 0:
+            if kept == ROWS:
+                self.rows[: ROWS // 2] = self.rows[::2]
+                kept, stride = ROWS // 2, 2 * stride
+            if samples % stride == 0:
+                self.rows[kept] = [fluid.step, fluid.time, *sample]
+                kept += 1
+        self.counts = np.array([kept, stride, samples + 1])
+
+    def _temperature(self, number: int, momentum: NDArray[np.float64], energy: float) -> float:
+        """Twice the energy per degree of freedom; a free fluid cannot move as a whole."""
+        if number == 0:
+            return np.nan
+        if self.case.walls:
+            return 2 * energy / (self.dimension * number)
+        total_mass = number * self.case.fluid.mass
+        return (2 * energy - momentum @ momentum / total_mass) / (
+            self.dimension * max(number - 1, 1)
+        )
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(
+            blocks=self.blocks,
+            rows=self.rows[: self.counts[0]],
+            first=self.first,
+            drift=self.drift,
+            counts=self.counts,
+        )
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        self.rows[: len(state["rows"])] = state["rows"]
+        self.first, self.drift = np.array(state["first"]), np.array(state["drift"])
+        self.counts = np.array(state["counts"])
+
+    def result(self) -> Result:
+        """The time series; its error is that of one sample, which is not a mean: nan."""
+        rows = self.rows[: self.counts[0]]
+        names = ["number", *(f"momentum_{a}" for a in AXES[: self.dimension])]
+        names += ["kinetic_energy", "temperature"]
+        value = rows[:, 2:].copy()
+        units = {"time": "tau", "number": "", "kinetic_energy": ENERGY, "temperature": ENERGY}
+        units |= {name: "m a/tau" for name in names if name.startswith("momentum")}
+        return Result(
+            quantity="conservation",
+            name=self.name,
+            x={"time": rows[:, 1].copy(), "component": np.array(names)},
+            value=value,
+            error=np.full(value.shape, np.nan),
+            label="conserved quantities",
+            units={"value": ""} | units,
+            expected=self._expected(value),
+            theory="kT of the case, conservation",
+            comparisons=tuple(self._comparisons()),
+            samples=int(self.counts[2]),
+            extra={
+                "step": rows[:, 0].copy(),
+                "mean": self.blocks.mean(),
+                "mean_error": self.blocks.error(),
+            },
+        )
+
+    def conserves_momentum(self) -> bool:
+        """Nothing outside acts on the fluid."""
+        return not (self.case.walls or setting.driven(self.case))
+
+    def conserves_energy(self) -> bool:
+        """No thermostat, and no work is done."""
+        return self.conserves_momentum() and not setting.isothermal(self.case)
+
+    def _expected(self, value: NDArray[np.float64]) -> NDArray[np.float64]:
+        expected = np.full(value.shape, np.nan)
+        expected[:, 0] = self.first[0]
+        if self.conserves_momentum():
+            expected[:, 1:-2] = self.first[1:-2]
+        if self.conserves_energy():
+            expected[:, -2:] = self.first[-2:]
+        elif self._at_rest():
+            expected[:, -1] = self.case.fluid.kT
+        return expected
+
+    def _at_rest(self) -> bool:
+        return setting.isothermal(self.case) and not setting.driven(self.case)
+
+    def _comparisons(self) -> list[Comparison]:
+        fluid, found = self.case.fluid, []
+        if self.counts[2] == 0:
+            return []
+        if self.conserves_momentum():
+            # the total is zero, so relative to what the momenta would add up to without signs
+            scale = self.first[0] * fluid.mass * (fluid.kT / fluid.mass) ** 0.5
+            found.append(
+                Comparison(
+                    "largest drift of momentum",
+                    float(self.drift[0] / scale),
+                    0.0,
+                    0.0,
+                    "N sqrt(m kT)",
+                    "exact: only rounding may show",
+                )
+            )
+        if self.conserves_energy():
+            found.append(
+                Comparison(
+                    "largest relative drift of kinetic energy",
+                    float(self.drift[1] / self.first[-2]),
+                    0.0,
+                    0.0,
+                    "",
+                    "exact: only rounding may show",
+                )
+            )
+        mean, error = self.blocks.mean()[-1], self.blocks.error()[-1]
+        if self._at_rest():
+            found.append(Comparison("temperature", float(mean), float(error), fluid.kT, ""))
+        return found

@@ -1,0 +1,57 @@
+"""Map of the density over two axes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from mesokit.box import AXES
+from mesokit.component import component, tag
+from mesokit.observe import setting
+from mesokit.observe.field import Array, Field, FieldAccumulator
+from mesokit.observe.result import Result
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+
+@component
+class DensityField(Field):
+    """Particles per cell on a grid over two axes."""
+
+    quantity: Literal["density-field"] = tag("density-field")
+
+    def accumulator(self, case: Case) -> DensityFieldAccumulator:
+        """An empty memory for it."""
+        return DensityFieldAccumulator(self, case)
+
+
+class DensityFieldAccumulator(FieldAccumulator):
+    """Density of each bin."""
+
+    def __init__(self, observable: DensityField, case: Case) -> None:
+        super().__init__(observable, case, width=1)
+        self.bin_volume = np.prod(case.box.size) / np.prod(self.bins)
+
+    def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
+        """Particles per volume."""
+        return number[None] / self.bin_volume
+
+    def result(self) -> Result:
+        """The map; uniform unless a force presses the fluid to a plate."""
+        towards = {AXES.index(wall.axis) for wall in self.case.walls}
+        pressed = any(setting.acceleration(self.case)[axis] for axis in towards)
+        return Result(
+            quantity="density-field",
+            name=self.name,
+            x=self.coordinates,
+            value=self.blocks.mean()[0],
+            error=self.blocks.error()[0],
+            label="density",
+            units={"value": "1/cell"} | dict.fromkeys(self.coordinates, "a"),
+            expected=None if pressed else np.full(self.bins, self.case.fluid.density),
+            theory="uniform",
+            samples=self.blocks.count,
+            extra={"bins_per_cell": self.observable.bins_per_cell},
+        )

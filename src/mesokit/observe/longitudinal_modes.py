@@ -1,0 +1,115 @@
+"""Sound: velocity modes along their wave vector, their frequency and damping."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from mesokit import theory
+from mesokit.component import component, tag
+from mesokit.observe import setting
+from mesokit.observe.decay import fit_curve, normalised
+from mesokit.observe.modes import SHOWN, Array, Modes, ModesAccumulator
+from mesokit.observe.result import Comparison, Result
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+FIRST = 3  # steps left out of the fit, as for transverse modes
+LONGEST = 2.5  # periods that the fit looks at
+
+
+@component
+class LongitudinalModes(Modes):
+    """Correlation in time of velocity modes along their wave vector, averaged over equal length.
+
+    It oscillates at the frequency of sound and is damped as exp(-Gamma k^2 t/2).
+    """
+
+    quantity: Literal["longitudinal-modes"] = tag("longitudinal-modes")
+
+    def accumulator(self, case: Case) -> LongitudinalModesAccumulator:
+        """An empty memory for it."""
+        return LongitudinalModesAccumulator(self, case)
+
+
+def ringing(time: Array, damping: float, frequency: float, amplitude: float, sine: float) -> Array:
+    """A damped oscillation."""
+    wave = amplitude * np.cos(frequency * time) + sine * np.sin(frequency * time)
+    return np.asarray(np.exp(-damping * time) * wave)
+
+
+class LongitudinalModesAccumulator(ModesAccumulator):
+    """Correlators of the momentum along each wave vector."""
+
+    def polarise(self, wavevector: Array) -> Array:
+        """Along it."""
+        return (wavevector / np.linalg.norm(wavevector))[None]
+
+    def result(self) -> Result:
+        """The oscillation for each wave number, sound speed and attenuation from each."""
+        time, value, error = self.curves()
+        coefficients = setting.transport(self.case) if self.undisturbed() else None
+        expected = None
+        if coefficients is not None and coefficients.sound_attenuation is not None:
+            expected = np.stack(
+                [
+                    self.sound(time, k, coefficients.sound_speed, coefficients.sound_attenuation)
+                    for k in self.wavenumbers
+                ],
+                axis=1,
+            )
+        first = self.equipartition() if self.undisturbed() else None
+        return Result(
+            quantity="longitudinal-modes",
+            name=self.name,
+            x={"time": time, "wavenumber": self.wavenumbers},
+            value=value,
+            error=error,
+            label="longitudinal mode correlation",
+            units={"value": "", "time": "tau", "wavenumber": "1/a"},
+            expected=expected,
+            theory="damped sound",
+            comparisons=tuple([c for c in [*self.fits(coefficients), first] if c]),
+            samples=self.shells[0].correlator.count,
+        )
+
+    @staticmethod
+    def sound(time: Array, k: float, speed: float, attenuation: float) -> Array:
+        """exp(-at) (cos wt - (a/w) sin wt), a = Gamma k^2/2, w^2 = c^2 k^2 - a^2.
+
+        Exact in linear isothermal hydrodynamics; with heat conduction the phase is another, of
+        the same small order. Overdamped beyond k = 2 c/Gamma.
+        """
+        damping = attenuation * k * k / 2
+        frequency = np.emath.sqrt((speed * k) ** 2 - damping**2)
+        wave = np.cos(frequency * time) - damping / frequency * np.sin(frequency * time)
+        return np.asarray(np.real(np.exp(-damping * time) * wave))
+
+    def fits(self, coefficients: theory.Transport | None) -> list[Comparison]:
+        """Sound speed and attenuation for each of the smallest wave numbers."""
+        guess = coefficients.sound_speed if coefficients else self.case.fluid.kT**0.5
+        damped = coefficients.sound_attenuation if coefficients else None
+        known = damped if damped is not None else np.nan
+        found = []
+        for k, _, correlator in self.shells[:SHOWN]:
+            lags, curve = normalised(correlator)
+            time = lags * self.interval()
+            start_damping = (damped or 0.5) * k * k / 2
+            reach = min(LONGEST * 2 * np.pi / (guess * k), 2 / start_damping)
+            use = (time <= reach) & (lags * self.observable.every >= FIRST)
+            fitted = fit_curve(time, curve, ringing, [start_damping, guess * k, 1.0, 0.0], use)
+            if fitted is None:
+                continue
+            damping, frequency = fitted.value[:2]
+            total = np.hypot(damping, frequency)
+            slope = np.array([damping, frequency, 0, 0]) / (total * k)
+            value, error = fitted.scalar(total / k, slope)
+            expected = coefficients.sound_speed if coefficients else np.nan
+            at = f"at k = {k:.4g}/a"
+            found.append(Comparison(f"sound speed {at}", value, error, expected, "a/tau"))
+            slope = np.array([2 / k**2, 0, 0, 0])
+            value, error = fitted.scalar(2 * damping / k**2, slope)
+            found.append(Comparison(f"sound attenuation {at}", value, error, known, "a^2/tau"))
+        return found

@@ -1,0 +1,80 @@
+"""What all profiles along an axis share: bins finer than a cell, and sums in blocks of time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.box import Axis
+from mesokit.component import component, param
+from mesokit.observe import setting
+from mesokit.observe.estimate import Estimate, mode_chi_square
+from mesokit.observe.protocol import Fluid, Observable, State, pack, unpack
+from mesokit.observe.result import Comparison
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+Array = NDArray[np.float64]
+
+
+@component
+class Profile(Observable):
+    """A quantity in slices across an axis."""
+
+    axis: Axis = param("y", doc="axis across which the slices lie")
+    bins_per_cell: int = param(4, doc="slices per cell", ge=1)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for an axis that the box has not."""
+        setting.axis_index(case, self.axis)
+
+
+class ProfileAccumulator:
+    """Block sums of `width` numbers for each slice."""
+
+    def __init__(self, observable: Profile, case: Case, width: int) -> None:
+        observable.check(case)
+        self.observable, self.case, self.name = observable, case, observable.label
+        self.axis = setting.axis_index(case, observable.axis)
+        self.bins = int(case.box.size[self.axis]) * observable.bins_per_cell
+        self.edges = np.linspace(0.0, case.box.size[self.axis], self.bins + 1)
+        self.centres = (self.edges[1:] + self.edges[:-1]) / 2
+        self.periodic = not any(wall.axis == observable.axis for wall in case.walls)
+        self.blocks = Blocks((width, self.bins))
+
+    def observe(self, fluid: Fluid) -> None:
+        """Take one sample."""
+        self.blocks.add(self.sample(*fluid.moments((self.axis,), (self.bins,))))
+
+    def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
+        """The (width, bins) numbers to add up."""
+        raise NotImplementedError
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+
+    def chi_square(self, estimate: Estimate, expected: Array, note: str) -> list[Comparison]:
+        """Chi-square of the whole profile per degree of freedom, as a comparison with 1."""
+        found = mode_chi_square(estimate, expected, self.periodic)
+        if found is None:
+            return []
+        return [
+            Comparison(
+                "chi-square per degree of freedom",
+                found.chi2 / found.dof,
+                (2 / found.dof) ** 0.5,
+                1.0,
+                "",
+                f"{note}; p = {found.p:.2g}, {found.dof} degrees of freedom",
+            )
+        ]

@@ -1,0 +1,120 @@
+"""What an observable is, what it may ask of the running fluid, and how it keeps its numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.component import component, param
+from mesokit.observe.result import Result
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+Array = NDArray[np.float64]
+State = dict[str, NDArray[Any]]
+
+
+class Fluid(Protocol):
+    """What an observer may ask of the running fluid; d is the dimension, order is by particle id.
+
+    `totals` gives number, momentum (d,) and kinetic energy of all particles. `moments` gives
+    number, mass (*bins), momentum (d, *bins) and sum of m v^2 (*bins) in equal bins over the
+    whole box along `axes`. `modes` gives sum m e^(-i k r) (K,) and sum m v e^(-i k r) (K, d).
+    `stress` holds "kinetic" and "collisional" (d, d) of the last step if an observer due at it
+    declares `measures = ("stress",)`. `wall_impulse` (2, d) is the momentum given to the lower
+    and the upper plate during the last `wall_steps` steps, for `measures = ("walls",)`.
+    """
+
+    n: int
+    dimension: int
+    box: Array
+    step: int
+    time: float
+
+    def totals(self) -> tuple[int, Array, float]: ...
+    def moments(
+        self, axes: tuple[int, ...], bins: tuple[int, ...]
+    ) -> tuple[Array, Array, Array, Array]: ...
+    def modes(
+        self, wavevectors: Array
+    ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]: ...
+    def positions(
+        self, ids: NDArray[np.int64] | None = None, unwrapped: bool = False
+    ) -> Array: ...
+    def velocities(self, ids: NDArray[np.int64] | None = None) -> Array: ...
+    def images(self, ids: NDArray[np.int64] | None = None) -> NDArray[np.int64]: ...
+    def masses(self, ids: NDArray[np.int64] | None = None) -> Array: ...
+    @property
+    def stress(self) -> Mapping[str, Array]: ...
+    @property
+    def wall_impulse(self) -> Array: ...
+    @property
+    def wall_steps(self) -> int: ...
+
+
+class Accumulator(Protocol):
+    """The memory of an observable during a run: bounded, and the same bits after any resume."""
+
+    def observe(self, fluid: Fluid) -> None:
+        """Take one sample."""
+
+    def state(self) -> State:
+        """All it has to remember, as arrays."""
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+
+    def result(self) -> Result:
+        """What the samples so far say."""
+
+
+@component
+class Observable:
+    """Something measured while the fluid runs."""
+
+    measures: ClassVar[tuple[str, ...]] = ()  # "stress" or "walls": what the step has to sum for it
+    every: int = param(10, doc="steps between two samples", ge=1, kw_only=True)
+    name: str | None = param(
+        None, doc="name of the results (the quantity unless said)", kw_only=True, min_length=1
+    )
+
+    @property
+    def label(self) -> str:
+        """The name under which its results are kept."""
+        return self.name or str(self.quantity)  # type: ignore[attr-defined]
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError if it cannot be measured in this case."""
+
+    def accumulator(self, case: Case) -> Accumulator:
+        """An empty memory for it."""
+        raise NotImplementedError
+
+
+def pack(**parts: Any) -> State:
+    """The states of several parts (Blocks, MultipleTau, arrays) as one.
+
+    >>> pack(rows=np.zeros(2))
+    {'rows': array([0., 0.])}
+    """
+    state: State = {}
+    for name, part in parts.items():
+        if hasattr(part, "state"):
+            state |= {f"{name}/{key}": array for key, array in part.state().items()}
+        else:
+            state[name] = np.array(part)
+    return state
+
+
+def unpack(state: Mapping[str, NDArray[Any]], name: str) -> State:
+    """The state of one part.
+
+    >>> unpack({"a/sums": np.ones(1), "b": np.zeros(1)}, "a")
+    {'sums': array([1.])}
+    """
+    start = name + "/"
+    return {key[len(start) :]: value for key, value in state.items() if key.startswith(start)}

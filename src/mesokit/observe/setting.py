@@ -1,0 +1,190 @@
+"""What theory needs to know of a case: coefficients, the state at rest, and the steady flow."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.box import AXES
+from mesokit.errors import CaseError
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+Array = NDArray[np.float64]
+# third-order Gauss points: exact bin averages of the parabolas that flows are made of
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
+
+
+def transport(case: Case) -> theory.Transport | None:
+    """Transport coefficients of the fluid; None for a mixture, which has no formula."""
+    fluid, rule = case.fluid, case.fluid.collision
+    distribution = getattr(rule, "angle_distribution", "fixed")
+    angle = None if distribution == "uniform" else getattr(rule, "angle", None)
+    if len({kind.mass for kind in fluid.species}) > 1:
+        return None
+    try:
+        return theory.transport(
+            rule=rule.rule,
+            dimension=case.box.dimension,
+            density=fluid.density,
+            timestep=fluid.timestep,
+            angle=angle,
+            kT=fluid.kT,
+            mass=fluid.mass,
+            angle_distribution=distribution,
+            thermostat=fluid.thermostat.rule,
+        )
+    except ValueError:  # such as a half turn in 2D
+        return None
+
+
+def mass_density(case: Case) -> float:
+    """Mass per cell."""
+    return case.fluid.density * case.fluid.mass
+
+
+def isothermal(case: Case) -> bool:
+    """Whether something holds the fluid at kT everywhere."""
+    return case.fluid.thermostat.rule != "none" or case.fluid.collision.rule.startswith("at")
+
+
+def acceleration(case: Case) -> Array:
+    """The uniform acceleration (d,), zero without one."""
+    force = case.fluid.force
+    if force.rule == "uniform":
+        return np.array(force.acceleration, float)
+    return np.zeros(case.box.dimension)
+
+
+def driven(case: Case) -> bool:
+    """Whether anything makes the fluid flow."""
+    moving = [s for wall in case.walls for s in (wall.lower, wall.upper) if any(s.velocity or ())]
+    return bool(case.box.shear_rate or case.fluid.force.rule != "none" or moving)
+
+
+def axis_index(case: Case, axis: str, key: str = "axis") -> int:
+    """0, 1 or 2 for x, y or z; raises CaseError for z in 2D."""
+    index = AXES.index(axis)  # type: ignore[arg-type]
+    if index >= case.box.dimension:
+        raise CaseError(f"{key} = {axis!r}: a 2D box has only 'x' and 'y'")
+    return index
+
+
+def quiet_axes(case: Case) -> tuple[int, ...]:
+    """Axes that no wall closes and along which nothing flows."""
+    closed = {AXES.index(wall.axis) for wall in case.walls}
+    return tuple(
+        axis
+        for axis in range(case.box.dimension)
+        if axis not in closed and flow(case, axis).kind == "rest"
+    )
+
+
+class Flow(NamedTuple):
+    """The steady velocity along one axis as a function of the coordinate along another.
+
+    `profile` maps coordinates to velocities, None where there is no theory; `kind` names it.
+    """
+
+    kind: str
+    across: int
+    profile: Callable[[Array], Array] | None
+
+    def bins(self, axis: int, edges: Array) -> Array | None:
+        """Mean velocity in each bin along `axis`, (bins,); None without theory."""
+        if self.profile is None:
+            return None
+        if axis != self.across:
+            return np.full(len(edges) - 1, np.nan)
+        return bin_average(self.profile, edges)
+
+
+def bin_average(function: Callable[[Array], Array], edges: Array) -> Array:
+    """Average of a smooth function over each bin, (bins,); exact for polynomials up to x^5."""
+    middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
+    points = middle[:, None] + half[:, None] * _NODES
+    return np.asarray(function(points.ravel()).reshape(points.shape) @ _WEIGHTS / 2)
+
+
+def flow(case: Case, component: int) -> Flow:
+    """The steady flow along axis number `component`."""
+    box = case.box
+    smooth = all(s.rule == "slip" for wall in case.walls for s in (wall.lower, wall.upper))
+    if case.walls and not (box.shear_rate and smooth):
+        return _slit(case, component)
+    if box.shear_rate:
+        if case.fluid.force.rule != "none":
+            return Flow("driven shear", 1, None)
+        if component != 0:
+            return Flow("rest", 1, np.zeros_like)
+        rate, length = box.shear_rate, float(box.size[1])
+        return Flow("lees-edwards", 1, lambda y: theory.lees_edwards_velocity(y, length, rate))
+    force = case.fluid.force
+    if force.rule == "sinusoidal":
+        across = AXES.index(force.gradient)
+        coefficients = transport(case)
+        if AXES.index(force.flow) != component:
+            return Flow("rest", across, np.zeros_like)
+        if coefficients is None or across == component:
+            return Flow("kolmogorov", across, None)
+        return Flow(
+            "kolmogorov",
+            across,
+            lambda y: theory.kolmogorov_velocity(
+                y, box.size[across], force.amplitude, coefficients.viscosity, waves=force.waves
+            ),
+        )
+    if acceleration(case)[component]:
+        return Flow("accelerating", 1, None)
+    return Flow("rest", 1, np.zeros_like)
+
+
+def surface_velocity(surface: object, component: int) -> float:
+    """Velocity of a plate along one axis."""
+    velocity = getattr(surface, "velocity", None)
+    return float(velocity[component]) if velocity else 0.0
+
+
+def _slit(case: Case, component: int) -> Flow:
+    wall = case.walls[0]
+    across = AXES.index(wall.axis)
+    if case.box.shear_rate:  # no-slip plates across the vorticity hold it back
+        return Flow("sheared slit", across, None)
+    if component == across:
+        return Flow("rest", across, np.zeros_like)
+    height, push = float(case.box.size[across]), float(acceleration(case)[component])
+    lower, upper = (surface_velocity(s, component) for s in (wall.lower, wall.upper))
+    sticky = [s.rule == "no-slip" for s in (wall.lower, wall.upper)]
+    force = case.fluid.force
+    if force.rule == "sinusoidal" and AXES.index(force.flow) == component:
+        return Flow("sinusoidal slit", across, None)
+    if not any(sticky):
+        return Flow("plug", across, None if push else np.zeros_like)
+    kind = "poiseuille" if push else "couette" if lower != upper and all(sticky) else "rest"
+    if not push:
+        lower, upper = (lower if sticky[0] else upper), (upper if sticky[1] else lower)
+        return Flow(kind, across, lambda y: theory.couette_velocity(y, height, upper, lower))
+    coefficients = transport(case)
+    if coefficients is None:
+        return Flow(kind, across, None)
+    nu = coefficients.viscosity
+    if all(sticky):
+        return Flow(
+            kind,
+            across,
+            lambda y: theory.couette_velocity(y, height, upper, lower)
+            + theory.poiseuille_velocity(y, height, push, nu),
+        )
+
+    # a slip plate is the middle of a slit twice as high
+    def half(y: Array) -> Array:
+        distance = y if sticky[0] else height - y
+        wall_speed = lower if sticky[0] else upper
+        return wall_speed + theory.poiseuille_velocity(distance, 2 * height, push, nu)
+
+    return Flow("half poiseuille", across, half)

@@ -1,0 +1,150 @@
+"""The stress of the fluid, kinetic and collisional: pressure, and viscosity under shear."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.box import AXES
+from mesokit.component import component, param, tag
+from mesokit.errors import CaseError
+from mesokit.observe import setting
+from mesokit.observe.protocol import Fluid, Observable, State, pack, unpack
+from mesokit.observe.result import Array, Comparison, Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+PARTS = ("kinetic", "collisional", "total")
+UNIT = "m a^(2-d)/tau^2"
+
+
+@component
+class Stress(Observable):
+    """Stress tensor: momentum carried by flying particles and moved within cells by collisions.
+
+    Positive under shear, sigma_xy = eta dv_x/dy, so that the pressure is minus its diagonal.
+    """
+
+    quantity: Literal["stress"] = tag("stress")
+    measures: ClassVar[tuple[str, ...]] = ("stress",)
+    every: int = param(1, doc="steps between two samples", ge=1, kw_only=True)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError between walls."""
+        if case.walls:
+            raise CaseError("stress is measured without walls; use wall-stress")
+
+    def accumulator(self, case: Case) -> StressAccumulator:
+        """An empty memory for it."""
+        return StressAccumulator(self, case)
+
+
+class StressAccumulator:
+    """Block averages of both parts and their sum."""
+
+    def __init__(self, observable: Stress, case: Case) -> None:
+        observable.check(case)
+        self.case, self.name = case, observable.label
+        d = case.box.dimension
+        self.blocks = Blocks((3, d, d))
+
+    def observe(self, fluid: Fluid) -> None:
+        """Take one sample."""
+        kinetic, collisional = fluid.stress["kinetic"], fluid.stress["collisional"]
+        self.blocks.add(np.stack([kinetic, collisional, kinetic + collisional]))
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+
+    def result(self) -> Result:
+        """Tensors, pressure and viscosities."""
+        axes = np.array(AXES[: self.case.box.dimension])
+        return Result(
+            quantity="stress",
+            name=self.name,
+            x={"part": np.array(PARTS), "row": axes, "column": axes},
+            value=self.blocks.mean(),
+            error=self.blocks.error(),
+            label="stress",
+            units={"value": UNIT},
+            expected=self.expected(),
+            theory="molecular chaos, ideal gas",
+            comparisons=tuple(self.comparisons()) if self.blocks.count else (),
+            samples=self.blocks.count,
+        )
+
+    def expected(self) -> Array:
+        """Pressure on the diagonal, eta gdot off it; nan where there is no theory."""
+        case, d = self.case, self.case.box.dimension
+        expected = np.zeros((3, d, d))
+        known = setting.isothermal(case) or not setting.driven(case)
+        pressure = case.fluid.density * case.fluid.kT if known else np.nan
+        for axis in range(d):
+            expected[0, axis, axis] = expected[2, axis, axis] = -pressure
+        rate, coefficients = case.box.shear_rate, setting.transport(case)
+        if case.fluid.force.rule != "none":
+            expected[:] = np.nan
+        elif rate:
+            # the parts and the normal stresses are of higher order in the shear rate
+            expected[:, range(d), range(d)] = np.nan
+            for part, nu in enumerate(self.viscosities()):
+                shear = nu * setting.mass_density(case) * rate if coefficients else np.nan
+                expected[part, 0, 1] = expected[part, 1, 0] = shear
+        return expected
+
+    def viscosities(self) -> tuple[float, float, float]:
+        """Kinetic, collisional and total viscosity of the theory."""
+        c = setting.transport(self.case)
+        if c is None:
+            return np.nan, np.nan, np.nan
+        return c.viscosity_kinetic, c.viscosity_collisional, c.viscosity
+
+    def comparisons(self) -> list[Comparison]:
+        """Pressure, and under shear the viscosity with its parts."""
+        case, found = self.case, []
+        mean, error = self.blocks.mean(), self.blocks.error()
+        rate = case.box.shear_rate
+        if rate:
+            scale = setting.mass_density(case) * rate
+            for part, name, nu in zip(
+                (2, 0, 1), ("viscosity", "kinetic part", "collisional part"),
+                (self.viscosities()[i] for i in (2, 0, 1)), strict=True,
+            ):  # fmt: skip
+                found.append(
+                    Comparison(
+                        f"{name} from the stress",
+                        float(mean[part, 0, 1] / scale),
+                        float(error[part, 0, 1] / abs(scale)),
+                        nu,
+                        "a^2/tau",
+                    )
+                )
+        known = setting.isothermal(case) or not setting.driven(case)
+        found.append(
+            Comparison(
+                "pressure",
+                float(-np.trace(mean[2]) / case.box.dimension),
+                float(self.trace_error()),
+                case.fluid.density * case.fluid.kT if known else np.nan,
+                UNIT,
+            )
+        )
+        return found
+
+    def trace_error(self) -> float:
+        """Standard error of the pressure, whose parts are correlated."""
+        from mesokit.observe.estimate import Estimate, of_mean
+
+        every, d = of_mean(self.blocks), self.case.box.dimension
+        trace = np.trace(every.residuals[:, 2], axis1=1, axis2=2) / d
+        return float(Estimate(np.zeros(()), trace, every.weights).error)

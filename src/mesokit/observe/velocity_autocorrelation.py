@@ -1,0 +1,160 @@
+"""Velocity autocorrelation of fluid particles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.component import component, param, tag
+from mesokit.errors import CaseError
+from mesokit.observe import setting
+from mesokit.observe.estimate import Estimate
+from mesokit.observe.mean_square_displacement import spread_ids
+from mesokit.observe.origins import Origins
+from mesokit.observe.protocol import Fluid, Observable, State, pack, unpack
+from mesokit.observe.result import Array, Comparison, Result
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+
+@component
+class VelocityAutocorrelation(Observable):
+    """Mean product of a particle's velocity at two times, one component: kT/m at lag 0.
+
+    Axes along which the fluid flows or that a wall closes are left out.
+    """
+
+    quantity: Literal["velocity-autocorrelation"] = tag("velocity-autocorrelation")
+    every: int = param(1, doc="steps between two samples", ge=1, kw_only=True)
+    particles: int = param(10_000, doc="particles followed", ge=1)
+    max_lag: int = param(200, doc="longest lag", unit="steps", ge=1)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError without an axis to follow."""
+        if not setting.quiet_axes(case):
+            raise CaseError("velocity-autocorrelation: every axis has a flow or a wall")
+
+    def accumulator(self, case: Case) -> VelocityAutocorrelationAccumulator:
+        """An empty memory for it."""
+        return VelocityAutocorrelationAccumulator(self, case)
+
+
+class VelocityAutocorrelationAccumulator:
+    """Velocities at many origins."""
+
+    def __init__(self, observable: VelocityAutocorrelation, case: Case) -> None:
+        observable.check(case)
+        self.observable, self.case, self.name = observable, case, observable.label
+        self.axes = list(setting.quiet_axes(case))
+        self.ids = spread_ids(observable.particles, case.particles)
+        max_lag = max(1, observable.max_lag // observable.every)
+        self.origins = Origins(len(self.ids), len(self.axes), max_lag)
+
+    def observe(self, fluid: Fluid) -> None:
+        """Take one sample."""
+        velocity = fluid.velocities(self.ids)[:, self.axes]
+        self.origins.add(velocity, lambda old, new: np.einsum("ij,ij->i", old, new))
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(origins=self.origins)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.origins.restore(unpack(state, "origins"))
+
+    def result(self) -> Result:
+        """The curve with molecular chaos and the hydrodynamic tail."""
+        total, axes = self.origins.estimate(), len(self.axes)
+        kept = Estimate(total.value / axes, total.residuals / axes, total.weights)
+        steps = self.origins.sampled() * self.observable.every
+        time = steps * self.case.fluid.timestep
+        fluid, coefficients = self.case.fluid, setting.transport(self.case)
+        expected, extra = None, {}
+        if coefficients is not None:
+            g = theory.decorrelation_from_diffusion(
+                coefficients.diffusion, fluid.timestep, fluid.kT, fluid.mass
+            )
+            expected = theory.vacf_molecular_chaos(steps, g, fluid.kT, fluid.mass)
+            extra["tail"] = self.tail(time, coefficients)
+        return Result(
+            quantity="velocity-autocorrelation",
+            name=self.name,
+            x={"time": time},
+            value=kept.value,
+            error=kept.error,
+            label="velocity autocorrelation",
+            units={"value": "a^2/tau^2", "time": "tau"},
+            expected=expected,
+            theory="molecular chaos",
+            comparisons=tuple(self.comparisons(time, kept, expected, coefficients, extra)),
+            samples=self.origins.count,
+            extra=extra,
+        )
+
+    def tail(self, time: Array, coefficients: theory.Transport) -> Array:
+        """The hydrodynamic tail in this box once sound has left the cell, nan before."""
+        tail, fluid = np.full(len(time), np.nan), self.case.fluid
+        late = time >= 5 / coefficients.sound_speed
+        nu, diffusion = coefficients.viscosity, coefficients.diffusion
+        if late.any() and not self.case.walls:
+            size = np.array(self.case.box.size, float)
+            tail[late] = theory.vacf_modes(
+                time[late], nu, diffusion, fluid.density, size, fluid.kT, fluid.mass
+            )
+        return tail
+
+    def comparisons(
+        self,
+        time: Array,
+        kept: Estimate,
+        expected: Array | None,
+        coefficients: theory.Transport | None,
+        extra: Mapping[str, Array],
+    ) -> list[Comparison]:
+        """Equipartition, what the first collisions leave, the diffusion coefficient, the tail."""
+        if not len(time):
+            return []
+        fluid, n = self.case.fluid, len(time)
+        first = np.eye(n)[0]
+        value, error = kept.scalar(kept.value[0], first)
+        found = []
+        if len({kind.mass for kind in fluid.species}) < 2:
+            equipartition = fluid.kT / fluid.mass
+            found.append(Comparison("value at lag 0", value, error, equipartition, "a^2/tau^2"))
+        if coefficients is None or expected is None or n < 3:
+            return found
+        share = kept.value[1] / kept.value[0]
+        gradient = (np.eye(n)[1] - share * first) / kept.value[0]
+        value, error = kept.scalar(share, gradient)
+        what = f"share left after {time[1]:g} tau"
+        found.append(Comparison(what, value, error, float(expected[1] / expected[0])))
+        if self.observable.every == 1:  # else the sum over steps is not known
+            widths = np.diff(time)
+            trapezoid = np.zeros(n)
+            trapezoid[1:] += widths / 2
+            trapezoid[:-1] += widths / 2
+            value, error = kept.scalar(trapezoid @ kept.value, trapezoid)
+            found.append(
+                Comparison(
+                    f"diffusion coefficient up to {time[-1]:g} tau",
+                    value,
+                    error,
+                    coefficients.diffusion,
+                    "a^2/tau",
+                    "molecular chaos: without the tail",
+                )
+            )
+        crossing = max(self.case.box.size) ** 2 / (4 * np.pi**2 * coefficients.viscosity)
+        window = np.isfinite(extra["tail"]) & (time <= crossing)
+        if window.sum() >= 3:
+            weight = np.where(window, extra["tail"], 0.0)  # as the noise is the same everywhere
+            weight /= (weight**2).sum()
+            value, error = kept.scalar(weight @ kept.value, weight)
+            found.append(Comparison("ratio to the hydrodynamic tail", value, error, 1.0))
+        return found

@@ -1,0 +1,71 @@
+"""Map of the mean velocity over two axes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from mesokit.box import AXES
+from mesokit.component import component, tag
+from mesokit.observe import setting
+from mesokit.observe.estimate import of_ratio
+from mesokit.observe.field import Array, Field, FieldAccumulator
+from mesokit.observe.result import Result
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+
+@component
+class VelocityField(Field):
+    """Mean velocity on a grid over two axes: momentum over mass, every component."""
+
+    quantity: Literal["velocity-field"] = tag("velocity-field")
+
+    def accumulator(self, case: Case) -> VelocityFieldAccumulator:
+        """An empty memory for it."""
+        return VelocityFieldAccumulator(self, case)
+
+
+class VelocityFieldAccumulator(FieldAccumulator):
+    """Mass and momentum of each bin."""
+
+    def __init__(self, observable: VelocityField, case: Case) -> None:
+        super().__init__(observable, case, width=1 + case.box.dimension)
+
+    def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
+        """Mass, then momentum."""
+        return np.concatenate([mass[None], momentum])
+
+    def result(self) -> Result:
+        """The map, and the steady flow expected."""
+        sums, _ = self.blocks.sums()
+        mass = np.broadcast_to(sums[:, :1], sums[:, 1:].shape)
+        velocity = of_ratio(sums[:, 1:], mass)
+        components = np.array(AXES[: self.case.box.dimension])
+        return Result(
+            quantity="velocity-field",
+            name=self.name,
+            x=self.coordinates | {"component": components},
+            value=np.moveaxis(velocity.value, 0, -1),
+            error=np.moveaxis(velocity.error, 0, -1),
+            label="velocity",
+            units={"value": "a/tau"} | dict.fromkeys(self.coordinates, "a"),
+            expected=self.expected(),
+            theory="steady flow",
+            samples=self.blocks.count,
+            extra={"bins_per_cell": self.observable.bins_per_cell},
+        )
+
+    def expected(self) -> Array | None:
+        """The flow where it varies along an axis of the map, else nan."""
+        expected = np.full((*self.bins, self.case.box.dimension), np.nan)
+        for component in range(self.case.box.dimension):
+            flow = setting.flow(self.case, component)
+            if flow.across in self.axes:
+                place = self.axes.index(flow.across)
+                profile = flow.bins(flow.across, self.edges[place])
+                if profile is not None:
+                    expected[..., component] = profile[:, None] if place == 0 else profile
+        return None if np.isnan(expected).all() else expected

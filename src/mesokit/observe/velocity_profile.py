@@ -1,0 +1,201 @@
+"""Mean velocity in slices across an axis, and the viscosity that its shape gives."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from mesokit.box import Axis
+from mesokit.component import component, param, tag
+from mesokit.observe import setting
+from mesokit.observe.estimate import Estimate, fit, of_ratio
+from mesokit.observe.profile import Array, Profile, ProfileAccumulator
+from mesokit.observe.result import Comparison, Result
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+VISCOSITY = "a^2/tau"
+
+
+@component
+class VelocityProfile(Profile):
+    """Mean velocity in slices across an axis: momentum over mass.
+
+    Fits leave out the cell next to each plate, where the no-slip rule is only approximate.
+    """
+
+    quantity: Literal["velocity-profile"] = tag("velocity-profile")
+    component: Axis = param("x", doc="axis of the velocity")
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for an axis that the box has not."""
+        super(VelocityProfile, self).check(case)  # noqa: UP008  # the decorator makes a new class
+        setting.axis_index(case, self.component, "component")
+
+    def accumulator(self, case: Case) -> VelocityProfileAccumulator:
+        """An empty memory for it."""
+        return VelocityProfileAccumulator(self, case)
+
+
+class VelocityProfileAccumulator(ProfileAccumulator):
+    """Momentum and mass of each slice."""
+
+    def __init__(self, observable: VelocityProfile, case: Case) -> None:
+        super().__init__(observable, case, width=2)
+        self.component = setting.axis_index(case, observable.component, "component")
+        self.letter = observable.component
+
+    def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
+        """Momentum along the component, and mass."""
+        return np.stack([momentum[self.component], mass])
+
+    def result(self) -> Result:
+        """The profile, the steady flow expected, and the fit that suits it."""
+        sums, _ = self.blocks.sums()
+        velocity = of_ratio(sums[:, 0], sums[:, 1])
+        flow = setting.flow(self.case, self.component)
+        expected = flow.bins(self.axis, self.edges)
+        comparisons: list[Comparison] = []
+        curve = None
+        if flow.across == self.axis and np.isfinite(velocity.value).all() and self.blocks.count:
+            mass = sums[:, 1].sum(axis=0)
+            if flow.kind in FITS:
+                curve, comparisons = FITS[flow.kind](self, velocity, mass)
+            if flow.kind in ("lees-edwards", "rest") and expected is not None:
+                comparisons += self.chi_square(velocity, expected, "against the line")
+        return Result(
+            quantity="velocity-profile",
+            name=self.name,
+            x={self.observable.axis: self.centres},
+            value=velocity.value,
+            error=velocity.error,
+            label=f"velocity v_{self.letter}",
+            units={"value": "a/tau", self.observable.axis: "a"},
+            expected=expected,
+            fit=curve,
+            theory=flow.kind,
+            comparisons=tuple(comparisons),
+            samples=self.blocks.count,
+            extra={"bins_per_cell": self.observable.bins_per_cell},
+        )
+
+    def powers(self, degree: int) -> Array:
+        """Bin averages of 1, t, t^2 about the middle of the box, (bins, degree + 1)."""
+        middle = self.edges[-1] / 2
+        return np.stack(
+            [
+                setting.bin_average(lambda y, n=n: (y - middle) ** n, self.edges)
+                for n in range(degree + 1)
+            ],
+            axis=1,
+        )
+
+    def inside(self) -> Array:
+        """1 for slices at least a cell away from the ends, 0 for the others."""
+        height = self.edges[-1]
+        cut = 1.0 if height >= 6 and not self.periodic else 0.0
+        return ((self.edges[:-1] >= cut - 1e-9) & (self.edges[1:] <= height - cut + 1e-9)) * 1.0
+
+    def expected_viscosity(self) -> float:
+        """That of the theory, nan for a mixture."""
+        coefficients = setting.transport(self.case)
+        return coefficients.viscosity if coefficients else np.nan
+
+    def plates(self) -> tuple[float, float]:
+        """Velocities of the lower and the upper plate."""
+        wall = self.case.walls[0]
+        lower, upper = (
+            setting.surface_velocity(s, self.component) for s in (wall.lower, wall.upper)
+        )
+        return lower, upper
+
+
+Fitted = tuple[Array, list[Comparison]]
+
+
+def _poiseuille(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array) -> Fitted:
+    """Parabola c0 + c1 t + c2 t^2: viscosity from the curvature, slip from where it meets walls."""
+    basis = acc.powers(2)
+    parabola = fit(velocity, basis, mass * acc.inside())
+    c0, _, c2 = parabola.value
+    push = setting.acceleration(acc.case)[acc.component]
+    nu, error = parabola.scalar(-push / (2 * c2), np.array([0, 0, push / (2 * c2**2)]))
+    found = [
+        Comparison(
+            "viscosity from curvature", nu, error, acc.expected_viscosity(), VISCOSITY, "free slip"
+        )
+    ]
+    quarter = acc.edges[-1] ** 2 / 4
+    wall = sum(acc.plates()) / 2
+    centre, slip = c0 - wall, c0 + quarter * c2 - wall
+    share = slip / centre
+    gradient = np.array([1 - share, 0, quarter]) / centre
+    value, error = parabola.scalar(100 * share, 100 * gradient)
+    found.append(
+        Comparison("slip at the walls", value, error, 0.0, "% of the centre velocity", "no slip")
+    )
+    return basis @ parabola.value, found
+
+
+def _half_poiseuille(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array) -> Fitted:
+    """The same with one slip plate: only the curvature."""
+    curve, found = _poiseuille(acc, velocity, mass)
+    return curve, found[:1]
+
+
+def _couette(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array) -> Fitted:
+    """Straight line: its slope, and the velocity that it lacks at the walls."""
+    basis, (lower, upper) = acc.powers(1), acc.plates()
+    line = fit(velocity, basis, mass * acc.inside())
+    height = acc.edges[-1]
+    slope, error = line.scalar(line.value[1], np.array([0.0, 1.0]))
+    difference = upper - lower
+    return basis @ line.value, [
+        Comparison("shear rate", slope, error, difference / height, "1/tau"),
+        Comparison(
+            "slip at the walls",
+            50 * (1 - slope * height / difference),
+            50 * error * height / abs(difference),
+            0.0,
+            "% of the velocity difference",
+            "mean of both plates",
+        ),
+    ]
+
+
+def _lees_edwards(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array) -> Fitted:
+    """Straight line: its slope."""
+    basis = acc.powers(1)
+    line = fit(velocity, basis, mass)
+    slope, error = line.scalar(line.value[1], np.array([0.0, 1.0]))
+    found = Comparison("shear rate", slope, error, acc.case.box.shear_rate, "1/tau")
+    return basis @ line.value, [found]
+
+
+def _kolmogorov(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array) -> Fitted:
+    """Amplitude of the sine, which is inverse to the viscosity."""
+    force = acc.case.fluid.force
+    k = 2 * np.pi * force.waves / acc.edges[-1]
+    basis = np.stack(
+        [np.ones(acc.bins), setting.bin_average(lambda y: np.sin(k * y), acc.edges)], axis=1
+    )
+    wave = fit(velocity, basis, mass)
+    amplitude = wave.value[1]
+    nu = force.amplitude / (amplitude * k**2)
+    value, error = wave.scalar(nu, np.array([0, -nu / amplitude]))
+    return basis @ wave.value, [
+        Comparison(
+            "viscosity from amplitude", value, error, acc.expected_viscosity(), VISCOSITY, "steady"
+        )
+    ]
+
+
+FITS = {
+    "poiseuille": _poiseuille,
+    "half poiseuille": _half_poiseuille,
+    "couette": _couette,
+    "lees-edwards": _lees_edwards,
+    "kolmogorov": _kolmogorov,
+}

@@ -1,0 +1,157 @@
+"""Force per area on the plates of a slit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.box import AXES
+from mesokit.component import component, tag
+from mesokit.errors import CaseError
+from mesokit.observe import setting
+from mesokit.observe.estimate import of_mean
+from mesokit.observe.protocol import Fluid, Observable, State, pack, unpack
+from mesokit.observe.result import Array, Comparison, Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+PLATES = ("lower", "upper")
+UNIT = "m a^(2-d)/tau^2"
+
+
+@component
+class WallStress(Observable):
+    """Force per area of the fluid on each plate: drag along it, pressure across it."""
+
+    quantity: Literal["wall-stress"] = tag("wall-stress")
+    measures: ClassVar[tuple[str, ...]] = ("walls",)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError without walls."""
+        if not case.walls:
+            raise CaseError("wall-stress needs a [[wall]]")
+
+    def accumulator(self, case: Case) -> WallStressAccumulator:
+        """An empty memory for it."""
+        return WallStressAccumulator(self, case)
+
+
+class WallStressAccumulator:
+    """Mean force per area since the sample before."""
+
+    def __init__(self, observable: WallStress, case: Case) -> None:
+        observable.check(case)
+        self.case, self.name = case, observable.label
+        self.axis = AXES.index(case.walls[0].axis)
+        self.area = np.prod(case.box.size) / case.box.size[self.axis]
+        self.blocks = Blocks((2, case.box.dimension))
+
+    def observe(self, fluid: Fluid) -> None:
+        """Take one sample."""
+        impulse, steps = fluid.wall_impulse, fluid.wall_steps
+        if steps:
+            self.blocks.add(impulse / (steps * self.case.fluid.timestep * self.area))
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+
+    def result(self) -> Result:
+        """Every component at both plates."""
+        expected = self.expected()
+        return Result(
+            quantity="wall-stress",
+            name=self.name,
+            x={"plate": np.array(PLATES), "component": np.array(AXES[: self.case.box.dimension])},
+            value=self.blocks.mean(),
+            error=self.blocks.error(),
+            label="force per area on the plates",
+            units={"value": UNIT},
+            expected=expected,
+            theory="momentum balance",
+            comparisons=tuple(self.comparisons(expected)) if self.blocks.count else (),
+            samples=self.blocks.count,
+            extra={"axis": AXES[self.axis]},
+        )
+
+    def expected(self) -> Array:
+        """(2, d): the force on the fluid, shared by the sticky plates, Couette drag, pressure."""
+        case, d = self.case, self.case.box.dimension
+        wall, push = case.walls[0], setting.acceleration(case)
+        height, rho = float(case.box.size[self.axis]), setting.mass_density(case)
+        sticky = np.array([s.rule == "no-slip" for s in (wall.lower, wall.upper)], float)
+        coefficients = setting.transport(case)
+        expected = np.zeros((2, d))
+        for axis in range(d):
+            if axis == self.axis:
+                expected[:, axis] = self.pressure(push[axis], height)
+                continue
+            if sticky.any():
+                expected[:, axis] = rho * push[axis] * height * sticky / sticky.sum()
+            lower, upper = (setting.surface_velocity(s, axis) for s in (wall.lower, wall.upper))
+            if sticky.all() and upper != lower:
+                eta = coefficients.dynamic_viscosity if coefficients else np.nan
+                drag = eta * (upper - lower) / height
+                expected[:, axis] += np.array([drag, -drag])
+        if case.fluid.force.rule == "sinusoidal" or case.box.shear_rate:
+            expected[:, [axis for axis in range(d) if axis != self.axis]] = np.nan
+        return expected
+
+    def pressure(self, weight: float, height: float) -> tuple[float, float]:
+        """Ideal gas, heavier at the bottom under a force towards a plate; nan where it heats."""
+        case = self.case
+        density, kT = case.fluid.density, case.fluid.kT
+        if not setting.isothermal(case) and setting.driven(case):
+            return np.nan, np.nan
+        if weight == 0:
+            return -density * kT, density * kT
+        if len({kind.mass for kind in case.fluid.species}) > 1:
+            return np.nan, np.nan
+        lost = setting.mass_density(case) * weight * height  # between the plates
+        upper = lost / -np.expm1(-case.fluid.mass * weight * height / kT)
+        return lost - upper, upper
+
+    def comparisons(self, expected: Array) -> list[Comparison]:
+        """Each plate where the fluid pushes it, and the balance of both."""
+        force = of_mean(self.blocks)
+        found = []
+        for axis, letter in enumerate(AXES[: self.case.box.dimension]):
+            what = "pressure on" if axis == self.axis else f"drag along {letter} on"
+            for plate, name in enumerate(PLATES):
+                if expected[plate, axis] != 0:
+                    mask = np.zeros(force.value.shape)
+                    # a pressure is positive when it pushes outwards
+                    mask[plate, axis] = -1 if axis == self.axis and plate == 0 else 1
+                    error = force.error[plate, axis]
+                    found.append(
+                        Comparison(
+                            f"{what} the {name} plate",
+                            float((mask * force.value).sum()),
+                            float(error),
+                            float(mask[plate, axis] * expected[plate, axis]),
+                            UNIT,
+                        )
+                    )
+            if axis != self.axis and setting.acceleration(self.case)[axis]:
+                both = force.residuals[:, :, axis].sum(axis=1)
+                total = type(force)(force.value[:, axis].sum(), both, force.weights)
+                found.append(
+                    Comparison(
+                        f"drag along {letter} on both plates",
+                        float(total.value),
+                        float(total.error),
+                        float(expected[:, axis].sum()),
+                        UNIT,
+                        "the force on the fluid",
+                    )
+                )
+        return found

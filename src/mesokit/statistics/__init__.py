@@ -1,0 +1,29 @@
+"""Running averages, correlations and fits, each with an honest error bar, in bounded memory."""
+
+from mesokit.statistics.blocking import blocking_error, plateau_error
+from mesokit.statistics.blocks import Blocks
+from mesokit.statistics.fit import (
+    ChiSquare,
+    Fit,
+    chi_square,
+    deviation,
+    weighted_line,
+    weighted_polynomial,
+)
+from mesokit.statistics.multiple_tau import Correlation, MultipleTau
+from mesokit.statistics.ratio import ratio
+
+__all__ = [
+    "Blocks",
+    "ChiSquare",
+    "Correlation",
+    "Fit",
+    "MultipleTau",
+    "blocking_error",
+    "chi_square",
+    "deviation",
+    "plateau_error",
+    "ratio",
+    "weighted_line",
+    "weighted_polynomial",
+]

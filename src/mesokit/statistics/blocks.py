@@ -1,0 +1,114 @@
+"""Running block averages of an array-valued time series, in memory that never grows."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mesokit.statistics.blocking import merge_pairs, plateau_error
+
+
+class Blocks:
+    """Mean and standard error of a correlated, array-valued time series, sample by sample.
+
+    Samples fill blocks of `block_length` samples. When all `capacity` blocks are full,
+    neighbours are merged and `block_length` doubles, so between capacity/2 and capacity blocks
+    describe a run of any length.
+
+    Parameters
+    ----------
+    shape: shape of one sample, () for a number.
+    capacity: largest number of blocks kept, even and at least 16.
+
+    Raises ValueError for an odd or small capacity.
+    Source: H. Flyvbjerg and H. G. Petersen, J. Chem. Phys. 91, 461 (1989), with merging online.
+
+    >>> blocks = Blocks(shape=(2,))
+    >>> for sample in np.random.default_rng(1).normal([0, 5], 1, size=(10_000, 2)):
+    ...     blocks.add(sample)
+    >>> blocks.count, blocks.block_length, len(blocks.blocks())
+    (10000, 256, 39)
+    >>> bool(np.all(abs(blocks.mean() - [0, 5]) < 3 * blocks.error()))
+    True
+    """
+
+    def __init__(self, shape: int | tuple[int, ...] = (), capacity: int = 64) -> None:
+        if capacity < 16 or capacity % 2:
+            raise ValueError(f"capacity must be even and at least 16, got {capacity}")
+        self.shape: tuple[int, ...] = (shape,) if isinstance(shape, int) else tuple(shape)
+        self.capacity = capacity
+        self.count = 0
+        self.block_length = 1
+        self._sums = np.zeros((capacity, *self.shape))
+        self._complete = 0  # blocks that are full
+        self._partial = 0  # samples in the block being filled
+
+    def add(self, value: ArrayLike) -> None:
+        """Add one sample of shape `shape`; raises ValueError for any other shape."""
+        if np.shape(value) != self.shape:
+            raise ValueError(f"a sample must have shape {self.shape}, got {np.shape(value)}")
+        self._sums[self._complete] += value
+        self.count += 1
+        self._partial += 1
+        if self._partial == self.block_length:
+            self._partial = 0
+            self._complete += 1
+            if self._complete == self.capacity:
+                self._merge()
+
+    def _merge(self) -> None:
+        half = self.capacity // 2
+        self._sums[:half] = merge_pairs(self._sums)
+        self._sums[half:] = 0
+        self._complete = half
+        self.block_length *= 2
+
+    def sums(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Block sums (n, *shape) and samples (n,), the block being filled included."""
+        n = self._complete + (self._partial > 0)
+        samples = np.full(n, self.block_length)
+        samples[self._complete :] = self._partial
+        return self._sums[:n].copy(), samples
+
+    def blocks(self) -> NDArray[np.float64]:
+        """Means of the complete blocks, oldest first, (n, *shape)."""
+        return self._sums[: self._complete] / self.block_length
+
+    def mean(self) -> NDArray[np.float64]:
+        """Mean over every sample, (*shape); nan before the first."""
+        if not self.count:
+            return np.full(self.shape, np.nan)
+        return np.asarray(self.sums()[0].sum(axis=0) / self.count)
+
+    def error(self) -> NDArray[np.float64]:
+        """Standard error of `mean()`, (*shape), from a plateau over the merged blocks.
+
+        Nan for fewer than 4 samples. The unfinished block counts by its number of samples. See
+        `plateau_error`. Short runs make it too small: for an AR(1) process by 26, 14, 8 and 1 %
+        on average when the run lasts 10, 30, 80 and 200 integrated correlation times.
+        """
+        sums, samples = self.sums()
+        expected = np.multiply.outer(samples, self.mean())
+        return plateau_error((sums - expected) / self.count, samples)
+
+    def state(self) -> dict[str, NDArray[Any]]:
+        """Everything that `from_state` needs to go on with the same bits, as arrays."""
+        counts = [self.count, self.block_length, self._complete, self._partial]
+        return {"sums": self._sums.copy(), "counts": np.array(counts, np.int64)}
+
+    @classmethod
+    def from_state(cls, state: Mapping[str, NDArray[Any]]) -> "Blocks":
+        """Rebuild from `state()`; raises KeyError for a missing entry.
+
+        >>> blocks = Blocks()
+        >>> blocks.add(3.0)
+        >>> Blocks.from_state(blocks.state()).mean()
+        array(3.)
+        """
+        sums = np.array(state["sums"], np.float64, order="C")
+        blocks = cls(sums.shape[1:], capacity=len(sums))
+        blocks._sums = sums
+        counts = (int(number) for number in state["counts"])
+        blocks.count, blocks.block_length, blocks._complete, blocks._partial = counts
+        return blocks

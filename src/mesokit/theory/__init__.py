@@ -1,0 +1,66 @@
+"""What the simulated fluids should obey: one law a file, pure NumPy and SciPy.
+
+Nothing here uses the rest of mesokit, so that it can judge it. Lengths are in cell sides a = 1.
+"""
+
+from mesokit.theory.couette import couette_velocity
+from mesokit.theory.finite_size import viscosity_renormalised
+from mesokit.theory.gamma import cell_energy_cdf, cell_energy_pdf, cell_energy_variance
+from mesokit.theory.kolmogorov import (
+    kolmogorov_onset_time,
+    kolmogorov_velocity,
+    kolmogorov_viscosity,
+)
+from mesokit.theory.lees_edwards import lees_edwards_relaxation_time, lees_edwards_velocity
+from mesokit.theory.maxwell import (
+    maxwell_component_cdf,
+    maxwell_component_pdf,
+    maxwell_speed_cdf,
+    maxwell_speed_pdf,
+)
+from mesokit.theory.mean_square_displacement import (
+    decorrelation_from_diffusion,
+    msd_molecular_chaos,
+)
+from mesokit.theory.poiseuille import PoiseuilleFit, poiseuille_fit, poiseuille_velocity
+from mesokit.theory.transport import Transport, transport
+from mesokit.theory.transverse_modes import (
+    ViscosityFit,
+    transverse_correlation,
+    transverse_viscosity_fit,
+)
+from mesokit.theory.velocity_autocorrelation import (
+    vacf_modes,
+    vacf_molecular_chaos,
+    vacf_tail,
+)
+
+__all__ = [
+    "PoiseuilleFit",
+    "Transport",
+    "ViscosityFit",
+    "cell_energy_cdf",
+    "cell_energy_pdf",
+    "cell_energy_variance",
+    "couette_velocity",
+    "decorrelation_from_diffusion",
+    "kolmogorov_onset_time",
+    "kolmogorov_velocity",
+    "kolmogorov_viscosity",
+    "lees_edwards_relaxation_time",
+    "lees_edwards_velocity",
+    "maxwell_component_cdf",
+    "maxwell_component_pdf",
+    "maxwell_speed_cdf",
+    "maxwell_speed_pdf",
+    "msd_molecular_chaos",
+    "poiseuille_fit",
+    "poiseuille_velocity",
+    "transport",
+    "transverse_correlation",
+    "transverse_viscosity_fit",
+    "vacf_modes",
+    "vacf_molecular_chaos",
+    "vacf_tail",
+    "viscosity_renormalised",
+]

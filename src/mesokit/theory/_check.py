@@ -1,0 +1,25 @@
+"""Refusal of bad input, with the argument, its value and what was expected."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+
+def positive(**values: float) -> None:
+    """Raise ValueError unless every named value is a finite number above zero."""
+    for name, value in values.items():
+        if not (math.isfinite(value) and value > 0):
+            raise ValueError(f"{name} = {value!r}: expected a finite number above 0")
+
+
+def one_of(allowed: Sequence[object], **values: object) -> None:
+    """Raise ValueError unless every named value is among those allowed."""
+    for name, value in values.items():
+        if value not in allowed:
+            raise ValueError(f"{name} = {value!r}: expected one of {', '.join(map(repr, allowed))}")
+
+
+def dimension_two_or_three(dimension: int) -> None:
+    """Raise ValueError unless the dimension is 2 or 3."""
+    one_of((2, 3), dimension=dimension)

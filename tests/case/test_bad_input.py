@@ -1,0 +1,175 @@
+"""Wrong cases: each is refused with one line that names the key, before anything is written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mesokit.cli import main
+
+GOOD = """
+title = "slit"
+[run]
+steps = 10
+[box]
+size = [20, 10]
+[fluid]
+density = 5
+timestep = 0.1
+collision = { rule = "srd", angle = 90 }
+thermostat = { rule = "maxwell-boltzmann" }
+force = { rule = "uniform", acceleration = [0.001, 0] }
+[[wall]]
+shape = "plates"
+axis = "y"
+lower = { rule = "no-slip", velocity = [0, 0] }
+[[observe]]
+quantity = "velocity-profile"
+axis = "y"
+"""
+ANGLE = 'collision = { rule = "srd", angle = 90 }'
+FORCE = 'force = { rule = "uniform", acceleration = [0.001, 0] }'
+WALL = GOOD[GOOD.index("[[wall]]") : GOOD.index("[[observe]]")]
+CUBE = {"[20, 10]": "[10, 10, 10]", "[0.001, 0]": "[0.001, 0, 0]", "[0, 0]": "[0, 0, 0]"}
+
+# name: (what is replaced by what in the good case, what the message must say)
+BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
+    # syntax and structure
+    "syntax": ({"steps = 10": "steps = = 10"}, ("line 4", "TOML")),
+    "key twice": ({"steps = 10": "steps = 10\nsteps = 11"}, ("line 5", "TOML")),
+    "end of file": ({'axis = "y"\n': 'axis = "y'}, ("TOML",)),
+    "unknown table": ({"[box]": "[bocks]"}, ("bocks: unknown key", "'box'")),
+    "unknown top key": ({'title = "slit"': 'titel = "slit"'}, ("titel: unknown key", "'title'")),
+    "plural": ({"[[wall]]": "[[walls]]"}, ("walls: unknown key", "[[wall]]")),
+    "single brackets": ({"[[wall]]": "[wall]"}, ("wall:", "[[wall]]")),
+    "no run": ({"[run]\nsteps = 10\n": ""}, ("run: missing",)),
+    "no steps": ({"steps = 10": "warmup = 5"}, ("run.steps: missing",)),
+    "no size": ({"size = [20, 10]": ""}, ("box.size: missing",)),
+    "number for a table": ({"[box]\nsize = [20, 10]\n": "", '"slit"': '"slit"\nbox = 3'},
+                           ("box = 3", "table")),
+    # typos
+    "unknown key": ({"density = 5": "densty = 5"}, ("fluid.densty: unknown key", "'density'")),
+    "unknown nested key": ({"angle = 90": "angel = 90"}, ("fluid.collision.angel", "'angle'")),
+    "dashes for underscores": ({"density = 5": "grid-shift = 1"}, ("grid-shift", "'grid_shift'")),
+    "unknown rule": ({'"srd"': '"sdr"'}, ("fluid.collision.rule = 'sdr'", "'srd'", "'at+a'")),
+    "no rule": ({'{ rule = "srd", angle = 90 }': "{ angle = 90 }"}, ("collision.rule: missing",)),
+    "key of another rule": ({'"srd"': '"at"'}, ("fluid.collision.angle: unknown key", "rule")),
+    "unknown thermostat": ({'"maxwell-boltzmann"': '"nose-hoover"'}, ("fluid.thermostat.rule",)),
+    "unknown quantity": ({'"velocity-profile"': '"velocity-profil"'},
+                         ("observe[#1].quantity", "'velocity-profile'")),
+    "unknown key of an observable": ({'quantity = "velocity-profile"\naxis':
+                                      'quantity = "velocity-profile"\naxes'},
+                                     ("observe[#1].axes", "'axis'")),
+    "unknown surface": ({'"no-slip"': '"noslip"'}, ("wall[#1].lower.rule", "'no-slip'")),
+    "unknown shape": ({'"plates"': '"plate"'}, ("wall[#1].shape = 'plate'", "'plates'")),
+    "unknown method": ({"steps = 10": 'steps = 10\nmethod = "lbm"'}, ("run.method", "'mpcd'")),
+    # types
+    "text for a number": ({"density = 5": 'density = "five"'}, ("fluid.density = 'five'",)),
+    "boolean for a number": ({"density = 5": "density = true"}, ("fluid.density = true",)),
+    "half a step": ({"steps = 10": "steps = 10.5"}, ("run.steps = 10.5", "whole number")),
+    "half a cell": ({"[20, 10]": "[20, 10.5]"}, ("box.size[#2] = 10.5", "whole number")),
+    "number for a list": ({"[20, 10]": "20"}, ("box.size = 20", "list")),
+    "number for a text": ({'"slit"': "3"}, ("title = 3", "text")),
+    "infinity": ({"density = 5": "density = inf"}, ("fluid.density = inf", "finite")),
+    "not a number": ({"timestep = 0.1": "timestep = nan"}, ("fluid.timestep = nan", "finite")),
+    # ranges
+    "negative density": ({"density = 5": "density = -5"}, ("fluid.density = -5", "above 0")),
+    "no timestep": ({"timestep = 0.1": "timestep = 0"}, ("fluid.timestep = 0", "above 0")),
+    "negative steps": ({"steps = 10": "steps = -1"}, ("run.steps = -1", "at least 0")),
+    "large seed": ({"steps = 10": "steps = 10\nseed = 72057594037927936"}, ("run.seed",)),
+    "angle too large": ({"angle = 90": "angle = 200"}, ("fluid.collision.angle = 200", "180")),
+    "angle zero": ({"angle = 90": "angle = 0"}, ("fluid.collision.angle = 0", "above 0")),
+    "strong shift": ({"density = 5": "grid_shift = 1.5"}, ("fluid.grid_shift = 1.5", "most 1")),
+    "one cell": ({"[20, 10]": "[20, 1]"}, ("box.size", "at least 2")),
+    "one dimension": ({"[20, 10]": "[20]"}, ("box.size", "2D", "3D")),
+    "four dimensions": ({"[20, 10]": "[4, 4, 4, 4]"}, ("box.size", "2D", "3D")),
+    "huge box": ({"[20, 10]": "[1000000, 1000000]"}, ("box.size", "cells")),
+    "empty box": ({"density = 5": "density = 0.001"}, ("fluid.density", "particles")),
+    "every 0": ({"[[observe]]": "[[observe]]\nevery = 0"},
+                ("observe[#1].every = 0", "at least 1")),
+    "negative species": ({"density = 5": "species = [{ mass = -1, density = 5 }]"},
+                         ("fluid.species[#1].mass = -1",)),
+    "compression": ({"[[wall]]": "[trajectory]\nevery = 5\ncompression = 12\n[[wall]]"},
+                    ("trajectory.compression = 12", "at most 9")),
+    # combinations
+    "axis z in 2D": ({'axis = "y"\nlower': 'axis = "z"\nlower'}, ("wall[#1].axis = 'z'", "2D")),
+    "observed axis z in 2D": ({'profile"\naxis = "y"': 'profile"\naxis = "z"'},
+                              ("observe[#1].axis = 'z'", "2D")),
+    "long vector": ({"[0.001, 0]": "[0.001, 0, 0]"}, ("fluid.force.acceleration", "2 numbers")),
+    "long plate velocity": ({"[0, 0]": "[0, 0, 0]"}, ("wall[#1].lower.velocity", "2 numbers")),
+    "plate through the fluid": ({"[0, 0]": "[0, 0.1]"}, ("wall[#1].lower.velocity", "itself")),
+    "slip plate that drags": ({'"no-slip", velocity = [0, 0]': '"slip", velocity = [0.1, 0]'},
+                              ("wall[#1].lower.velocity", "slip")),
+    "two slits": ({"[[wall]]": '[[wall]]\naxis = "x"\n[[wall]]'}, ("wall[#2]", "one [[wall]]")),
+    "shear in a slit": ({"[20, 10]": "[20, 10]\nshear_rate = 0.1"}, ("box.shear_rate", "walls")),
+    "shear and a sine": ({"[20, 10]": "[20, 10]\nshear_rate = 0.1", WALL: "",
+                          FORCE: 'force = { rule = "sinusoidal", amplitude = 0.1 }'},
+                         ("box.shear_rate", "sinusoidal")),
+    "shear and a force across": ({"[20, 10]": "[20, 10]\nshear_rate = 0.1", WALL: "",
+                                  "[0.001, 0]": "[0, 0.001]"}, ("box.shear_rate", "along y")),
+    "two thermostats": ({ANGLE: 'collision = { rule = "at" }'},
+                        ("fluid.thermostat.rule", "'at'", "own thermostat")),
+    "uniform angle in 3D": (CUBE | {"angle = 90": 'angle_distribution = "uniform"'},
+                            ("fluid.collision.angle_distribution", "2D")),
+    "angle without effect": ({"angle = 90": 'angle = 90, angle_distribution = "uniform"'},
+                             ("fluid.collision.angle = 90", "no effect")),
+    "half turn in 2D": ({"angle = 90": "angle = 180"}, ("fluid.collision.angle = 180", "2D")),
+    "wave along itself": ({FORCE: 'force = { rule = "sinusoidal", amplitude = 0.1, flow = "y" }'},
+                          ("fluid.force.gradient", "flow")),
+    "density and species": ({"density = 5": "density = 5\nspecies = [{ mass = 1, density = 3 }]"},
+                            ("fluid", "density = 5", "species")),
+    "same name twice": ({"[[observe]]": '[[observe]]\nquantity = "velocity-profile"\n[[observe]]'},
+                        ("observe[#2].name", "'velocity-profile'")),
+    "name of no file": ({"[[observe]]": '[[observe]]\nname = "a/b"'},
+                        ("observe[#1].name = 'a/b'", "letters")),
+    "missing start file": ({"density = 5": 'start = { positions = "none.npy" }'},
+                           ("fluid.start.positions", "none.npy", "no such file")),
+    "two starts": ({"density = 5": 'start = { run = "a", positions = "b.npy" }'},
+                   ("fluid.start.run", "positions")),
+    "large subset": ({"[[wall]]": "[trajectory]\nevery = 5\nsubset = 2000\n[[wall]]"},
+                     ("trajectory.subset = 2000", "1000")),
+    "field twice": ({"[[wall]]": '[trajectory]\nevery = 5\nfields = ["id", "id"]\n[[wall]]'},
+                    ("trajectory.fields",)),
+}  # fmt: skip
+
+
+def refused(capsys: pytest.CaptureFixture[str], *arguments: str, status: int = 2) -> str:
+    """The one line that the command ends with."""
+    with pytest.raises(SystemExit) as end:
+        main(list(map(str, arguments)))
+    captured = capsys.readouterr()
+    assert end.value.code == status
+    assert captured.out == ""
+    assert captured.err.startswith("mesokit: error: ")
+    assert captured.err.count("\n") == 1
+    assert "Traceback" not in captured.err
+    return captured.err
+
+
+def test_the_good_case_is_good(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "good.toml").write_text(GOOD)
+    with pytest.raises(SystemExit) as end:
+        main(["check", str(tmp_path / "good.toml")])
+    assert end.value.code == 0
+    assert "Reynolds" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("command", ["check", "run"])
+@pytest.mark.parametrize("name", BAD)
+def test_bad_case_is_refused(
+    name: str, command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch
+) -> None:
+    changes, expected = BAD[name]
+    text = GOOD
+    for old, new in changes.items():
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    (tmp_path / "bad.toml").write_text(text)
+    monkeypatch.chdir(tmp_path)
+    message = refused(capsys, command, "bad.toml")
+    assert "bad.toml: " in message
+    for words in expected:
+        assert words in message
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["bad.toml"]
+    assert (tmp_path / "bad.toml").read_text() == text

@@ -1,0 +1,298 @@
+"""The command line: what it writes, what it says, and how it ends."""
+
+from __future__ import annotations
+
+import errno
+import io
+from pathlib import Path
+
+import pytest
+
+from mesokit.case import Case
+from mesokit.cli import TEMPLATES, main
+
+Captured = pytest.CaptureFixture[str]
+SMALL = """
+[run]
+steps = 20
+[box]
+size = [8, 8]
+[fluid]
+density = 4
+[[observe]]
+quantity = "conservation"
+every = 2
+"""
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Work in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def ends(*arguments: str) -> int:
+    """Exit status of a command."""
+    with pytest.raises(SystemExit) as end:
+        main([str(argument) for argument in arguments])
+    return int(end.value.code or 0)
+
+
+def refusal(capsys: Captured, *arguments: str, status: int = 2) -> str:
+    """The one line that a wrong command ends with."""
+    capsys.readouterr()
+    assert ends(*arguments) == status
+    captured = capsys.readouterr()
+    assert captured.err.startswith("mesokit: error: ")
+    assert captured.err.count("\n") == 1
+    return captured.err
+
+
+class TestNew:
+    """`mesokit new`."""
+
+    @pytest.mark.parametrize("name", TEMPLATES)
+    def test_writes_a_case_that_passes_the_check(self, name: str, capsys: Captured) -> None:
+        assert ends("new", name) == 0
+        assert f"mesokit run {name}.toml" in capsys.readouterr().out
+        assert ends("check", f"{name}.toml") == 0
+        assert "warning" not in capsys.readouterr().out
+
+    def test_writes_a_template_under_another_name(self) -> None:
+        assert ends("new", "mine", "--template", "couette") == 0
+        text = Path("mine.toml").read_text()
+        assert "mesokit run mine.toml" in text
+        assert Case.from_toml("mine.toml").title == "Couette flow"
+
+    def test_never_overwrites(self, capsys: Captured) -> None:
+        Path("bulk.toml").write_text("mine")
+        assert "bulk.toml: exists already" in refusal(capsys, "new", "bulk")
+        assert Path("bulk.toml").read_text() == "mine"
+
+    def test_suggests_a_template(self, capsys: Captured) -> None:
+        assert "did you mean 'poiseuille'?" in refusal(capsys, "new", "poiseuile")
+        assert not list(Path().iterdir())
+
+    def test_says_where_it_cannot_write(self, capsys: Captured) -> None:
+        assert "nowhere/bulk.toml: no such file" in refusal(capsys, "new", "nowhere/bulk")
+
+
+class TestCheck:
+    """`mesokit check`."""
+
+    def test_shows_the_resolved_case_and_what_follows(self, capsys: Captured) -> None:
+        ends("new", "poiseuille")
+        capsys.readouterr()
+        assert ends("check", "poiseuille.toml", "--threads", "1") == 0
+        out = capsys.readouterr().out
+        for words in ("grid_shift = 1.0", "0.7584 a^2/time", "Reynolds", "Mach", "1 thread,"):
+            assert words in out
+
+    def test_what_it_shows_is_a_case(self, capsys: Captured) -> None:
+        ends("new", "couette")
+        capsys.readouterr()
+        ends("check", "couette.toml")
+        Path("shown.toml").write_text(capsys.readouterr().out.split("\nparticles")[0])
+        assert Case.from_toml("shown.toml") == Case.from_toml("couette.toml")
+
+    @pytest.mark.parametrize(
+        ("settings", "words"),
+        [
+            ({"fluid.force.acceleration": "[0.01, 0]"}, "Mach number"),
+            ({"fluid.collision.angle": "2.27"}, "2.27 rad is 130.06"),
+            ({"fluid.grid_shift": "0"}, "Galilean"),
+            ({"fluid.timestep": "2"}, "mean free path is 2 cells"),
+            ({"fluid.density": "2"}, "below 3"),
+            ({"fluid.density": "5", "fluid.timestep": "0.5"}, "fluctuations"),
+            ({"fluid.thermostat.rule": "none"}, "friction raises the temperature"),
+            ({"wall": "[]"}, "speeds up for ever"),
+            ({"fluid.force.acceleration": "[0, 0.1]"}, "presses the fluid"),
+            ({"run.warmup": "10"}, "run.warmup = 10"),
+            ({"run.steps": "5"}, "takes no sample"),
+            ({"observe": "[]"}, "no [[observe]]"),
+            ({"trajectory": "{ every = 1 }", "run.steps": "10_000_000"}, "trajectory takes about"),
+            ({"box.size": "[1_000_000, 1_000]"}, "memory"),
+        ],
+    )
+    def test_warns(self, settings: dict[str, str], words: str, capsys: Captured) -> None:
+        ends("new", "poiseuille")
+        capsys.readouterr()
+        options = [part for key, value in settings.items() for part in ("--set", f"{key}={value}")]
+        assert ends("check", "poiseuille.toml", *options) == 0
+        warnings = [s for s in capsys.readouterr().out.splitlines() if s.startswith("warning: ")]
+        assert any(words in warning for warning in warnings), warnings
+
+    def test_missing_file(self, capsys: Captured) -> None:
+        ends("new", "poiseuille")
+        message = refusal(capsys, "check", "poisseuille.toml")
+        assert "poisseuille.toml: no such file; did you mean 'poiseuille.toml'?" in message
+
+    def test_folder_for_a_file(self, capsys: Captured) -> None:
+        Path("case").mkdir()
+        assert "case" in refusal(capsys, "check", "case")
+
+    def test_not_text(self, capsys: Captured) -> None:
+        Path("case.toml").write_bytes(b"title = '\xff'")
+        assert "byte 9: not UTF-8" in refusal(capsys, "check", "case.toml")
+
+
+class TestRun:
+    """`mesokit run`, up to the point where the run starts."""
+
+    @pytest.fixture(autouse=True)
+    def case(self) -> None:
+        Path("case.toml").write_text(SMALL)
+
+    @pytest.mark.parametrize(
+        ("options", "words"),
+        [
+            (["--set", "fluid.density"], "--set fluid.density: expected key=value"),
+            (["--set", "fluid.densty=3"], "fluid.densty: unknown key; did you mean 'density'?"),
+            (["--threads", "0"], "--threads"),
+            (["--threads", "many"], "--threads"),
+            (["--seed", "-1"], "--seed"),
+            (["--outptu", "x"], "--output"),
+        ],
+    )
+    def test_wrong_options(self, options: list[str], words: str, capsys: Captured) -> None:
+        assert words in refusal(capsys, "run", "case.toml", *options)
+        assert [p.name for p in Path().iterdir()] == ["case.toml"]
+
+    def test_refuses_a_folder_with_other_files(self, capsys: Captured) -> None:
+        Path("case").mkdir()
+        Path("case/thesis.tex").write_text("precious")
+        for options in ([], ["--overwrite"]):
+            assert "no run" in refusal(capsys, "run", "case.toml", *options)
+        assert Path("case/thesis.tex").read_text() == "precious"
+
+    def test_refuses_a_file_for_a_folder(self, capsys: Captured) -> None:
+        Path("out").write_text("precious")
+        assert "out" in refusal(capsys, "run", "case.toml", "--output", "out")
+        assert Path("out").read_text() == "precious"
+
+    def test_refuses_an_earlier_run_unless_told(self, capsys: Captured) -> None:
+        Path("case").mkdir()
+        Path("case/case.toml").write_text(SMALL)
+        message = refusal(capsys, "run", "case.toml")
+        assert "resume" in message
+        assert "--overwrite" in message
+        assert Path("case/case.toml").read_text() == SMALL
+
+
+@pytest.mark.parametrize("command", ["resume", "plot", "info"])
+def test_commands_on_a_run_need_one(command: str, capsys: Captured) -> None:
+    assert "nowhere: no such folder" in refusal(capsys, command, "nowhere")
+    Path("empty").mkdir()
+    assert "empty: " in refusal(capsys, command, "empty")
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--density", "-1"], "--density"),
+        (["--angle", "400"], "--angle"),
+        (["--rule", "at", "--angle", "90"], "--angle"),
+        (["--rule", "sdr"], "--rule"),
+        (["--dimension", "4"], "--dimension"),
+    ],
+)
+def test_theory_refuses(options: list[str], words: str, capsys: Captured) -> None:
+    assert words in refusal(capsys, "theory", *options)
+
+
+def test_theory_prints_coefficients_and_sources(capsys: Captured) -> None:
+    assert ends("theory", "--angle", "130.06") == 0
+    out = capsys.readouterr().out
+    assert "0.8705" in out
+    assert "Gompper" in out
+
+
+def test_help_and_mistyped_commands(capsys: Captured) -> None:
+    assert ends("--help") == 0
+    assert "_MESOKIT_COMPLETE" in capsys.readouterr().out
+    assert ends() == 2
+    assert "Usage" in capsys.readouterr().out
+    assert "chekc" in refusal(capsys, "chekc")
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "words"),
+    [
+        (KeyboardInterrupt(), 130, "interrupted"),
+        (OSError(errno.ENOSPC, "No space left on device", "run.h5"), 2, "no space left"),
+        (PermissionError(errno.EACCES, "Permission denied", "x"), 2, "x: permission denied"),
+        (MemoryError(), 1, "memory"),
+    ],
+)
+def test_failures_end_in_one_line(
+    error: BaseException, status: int, words: str, capsys: Captured,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    def fail(*_: object, **__: object) -> None:
+        raise error
+
+    monkeypatch.setattr(Case, "from_toml", fail)
+    assert ends("check", "case.toml") == status
+    message = capsys.readouterr().err.strip()
+    assert "\n" not in message
+    assert words in message
+
+
+class Terminal(io.StringIO):
+    """A stream that says that it is a terminal."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+class TestProgress:
+    """What a run says while it goes."""
+
+    def test_plain_lines_start_at_once_and_are_few(self, monkeypatch) -> None:
+        from mesokit import progress
+
+        clock = iter(range(10_000))
+        monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock) * 0.1)
+        stream = io.StringIO()
+        reporter = progress.Reporter(stream=stream)
+        reporter.start(1000, particles=500)
+        reporter.compiling()
+        for step in range(10, 1001, 10):  # 100 steps a second
+            reporter.update(step)
+        reporter.finish()
+        lines = stream.getvalue().splitlines()
+        assert lines[0] == "running: 1000 steps of 500 particles"
+        assert "compiling" in lines[1]
+        assert "step 10 of 1000, 100 steps/s, 0.05 million particle-steps/s, 9.9 s left" in lines[2]
+        assert len(lines) == 5
+
+    def test_the_time_left_comes_from_the_recent_past(self, monkeypatch) -> None:
+        from mesokit import progress
+
+        rate = progress.Rate()
+        for second in range(101):
+            rate.add(second, second if second < 50 else 50 + 10 * (second - 50))
+        assert rate.steps_per_second == pytest.approx(10)
+
+    def test_a_terminal_gets_a_bar(self) -> None:
+        from mesokit.progress import Reporter
+
+        stream = Terminal()
+        reporter = Reporter(stream=stream)
+        reporter.start(10, particles=5)
+        reporter.compiling()
+        reporter.update(10)
+        reporter.finish()
+        assert "%" in stream.getvalue()
+
+    def test_quiet_is_quiet(self, capsys: Captured) -> None:
+        from mesokit.progress import Reporter
+
+        reporter = Reporter(quiet=True)
+        reporter.start(10, particles=5)
+        reporter.compiling()
+        reporter.update(10)
+        reporter.finish()
+        captured = capsys.readouterr()
+        assert captured.out + captured.err == ""

@@ -1,0 +1,122 @@
+"""A NumPy fluid with known physics that answers what observers may ask."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+
+class FakeFluid:
+    """Independent particles, thermal about a given flow; velocities keep a share each step."""
+
+    def __init__(self, case, seed=1, flow: Callable | None = None, kept=0.0, density=None):
+        self.case, self.rng, self.flow, self.kept = case, np.random.default_rng(seed), flow, kept
+        self.box = np.array(case.box.size, float)
+        self.dimension, self.n = len(self.box), case.particles
+        self.step, self.timestep = 0, case.fluid.timestep
+        self.m = np.full(self.n, case.fluid.mass)
+        self.thermal = self._noise()
+        self.unwrapped = self.rng.random((self.n, self.dimension)) * self.box
+        self.density = density  # along y, drawn by rejection at every step
+        self.stress = {}
+        self.wall_impulse, self.wall_steps = np.zeros((2, self.dimension)), 0
+
+    @property
+    def time(self):
+        return self.step * self.timestep
+
+    def _noise(self):
+        scale = np.sqrt(self.case.fluid.kT / self.m)[:, None]
+        return scale * self.rng.normal(size=(self.n, self.dimension))
+
+    def advance(self, steps=1):
+        """Fly, then keep a share of the velocity: molecular chaos with 1 - g = kept."""
+        for _ in range(steps):
+            self.unwrapped = self.unwrapped + self.timestep * self.thermal
+            self.thermal = self.kept * self.thermal + np.sqrt(1 - self.kept**2) * self._noise()
+            self.step += 1
+
+    def jump(self, steps=1):
+        """Forget everything: a new equilibrium state."""
+        self.thermal = self._noise()
+        self.unwrapped = self.rng.random((self.n, self.dimension)) * self.box
+        self.step += steps
+
+    def positions(self, ids=None, unwrapped=False):
+        x = self.unwrapped if ids is None else self.unwrapped[ids]
+        return x.copy() if unwrapped else x % self.box
+
+    def images(self, ids=None):
+        x = self.unwrapped if ids is None else self.unwrapped[ids]
+        return np.floor(x / self.box).astype(np.int64)
+
+    def velocities(self, ids=None):
+        v = self.thermal.copy()
+        if self.flow is not None:
+            v[:, 0] += self.flow(self.positions()[:, 1])
+        return v if ids is None else v[ids]
+
+    def masses(self, ids=None):
+        return self.m if ids is None else self.m[ids]
+
+    def totals(self):
+        v = self.velocities()
+        return self.n, (self.m[:, None] * v).sum(axis=0), 0.5 * float((self.m[:, None] * v**2).sum())
+
+    def moments(self, axes, bins):
+        x, v = self.positions(), self.velocities()
+        where = [np.minimum((x[:, a] / self.box[a] * n).astype(int), n - 1) for a, n in zip(axes, bins)]
+        flat = np.ravel_multi_index(where, bins)
+
+        def total(weights):
+            return np.bincount(flat, weights, np.prod(bins)).reshape(bins)
+
+        momentum = np.stack([total(self.m * v[:, a]) for a in range(self.dimension)])
+        energy = total(self.m * (v**2).sum(axis=1))
+        return total(np.ones(self.n)), total(self.m), momentum, energy
+
+    def modes(self, wavevectors):
+        phase = np.exp(-1j * self.positions() @ np.asarray(wavevectors).T)
+        return self.m @ phase, phase.T @ (self.m[:, None] * self.velocities())
+
+
+class FakeWaves:
+    """Modes that obey linear fluctuating hydrodynamics exactly, and nothing else."""
+
+    def __init__(self, case, wavevectors, viscosity, speed, attenuation, interval, seed=1):
+        self.rng, self.k = np.random.default_rng(seed), np.asarray(wavevectors)
+        length = np.linalg.norm(self.k, axis=1)
+        self.unit = self.k / length[:, None]
+        self.total = case.fluid.density * case.fluid.mass * np.prod(case.box.size) * case.fluid.kT
+        self.kept = np.exp(-viscosity * length**2 * interval)
+        # longitudinal: (density, momentum) as a damped oscillator, propagated exactly
+        self.flow, self.noise = [], []
+        for q in length:
+            matrix = np.array([[0, -1j * speed * q], [-1j * speed * q, -attenuation * q * q]])
+            values, vectors = np.linalg.eig(matrix)
+            step = vectors @ np.diag(np.exp(values * interval)) @ np.linalg.inv(vectors)
+            self.flow.append(step)
+            covariance = np.eye(2) - step @ step.conj().T
+            self.noise.append(np.linalg.cholesky(covariance + 1e-14 * np.eye(2)))
+        self.across = self._complex(self.k.shape)
+        self.along = self._complex((len(self.k), 2))
+
+    def _complex(self, shape):
+        return (self.rng.normal(size=shape) + 1j * self.rng.normal(size=shape)) / np.sqrt(2)
+
+    def advance(self):
+        noise = self._complex(self.k.shape)
+        self.across = (
+            self.kept[:, None] * self.across + np.sqrt(1 - self.kept[:, None] ** 2) * noise
+        )
+        fresh = self._complex((len(self.k), 2))
+        self.along = np.array(
+            [a @ s + n @ f for a, s, n, f in zip(self.flow, self.along, self.noise, fresh)]
+        )
+
+    def modes(self, wavevectors):
+        assert np.allclose(wavevectors, self.k)
+        across = self.across - (self.across * self.unit).sum(axis=1, keepdims=True) * self.unit
+        momentum = across + self.along[:, 1:] * self.unit
+        return self.along[:, 0], momentum * np.sqrt(self.total)

@@ -1,0 +1,91 @@
+"""What must hold for each observable, new ones included."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fake_fluid import FakeFluid
+
+from mesokit.errors import CaseError
+from mesokit.geometry import Plates
+from mesokit.mpcd.collision import AT
+from mesokit.mpcd.species import Species
+from mesokit.observe import OBSERVABLES
+from mesokit.observe.result import with_error
+
+
+def setting_for(observable, make_case, size, **fluid):
+    """A case in which it can be measured."""
+    try:
+        return make_case(size, [observable], **fluid)
+    except CaseError:
+        return make_case(size, [observable], walls=[Plates(axis="y")], **fluid)
+
+
+def sampled(accumulator, fluid, samples, rng):
+    for _ in range(samples):
+        fluid.advance(10)
+        d = fluid.dimension
+        fluid.stress = {n: rng.normal(size=(d, d)) for n in ("kinetic", "collisional")}
+        fluid.wall_impulse, fluid.wall_steps = rng.normal(size=(2, d)), 10
+        accumulator.observe(fluid)
+
+
+@pytest.mark.parametrize("size", [(6, 6), (4, 6, 4)])
+@pytest.mark.parametrize("kind", OBSERVABLES)
+def test_same_bits_after_a_stop(kind, size, make_case):
+    observable = kind()
+    case = setting_for(observable, make_case, size)
+    whole, first, second = (observable.accumulator(case) for _ in range(3))
+    fluid, rng = FakeFluid(case), np.random.default_rng(1)
+    twin, twin_rng = FakeFluid(case), np.random.default_rng(1)
+    sampled(whole, fluid, 77, rng)
+    sampled(first, twin, 33, twin_rng)
+    state = {name: array.copy() for name, array in first.state().items()}
+    assert all(isinstance(array, np.ndarray) and array.dtype != object for array in state.values())
+    second.restore(state)
+    sampled(first, twin, 1, np.random.default_rng(9))  # what goes on after must not leak back
+    twin, twin_rng = FakeFluid(case), np.random.default_rng(1)
+    sampled(observable.accumulator(case), twin, 33, twin_rng)
+    sampled(second, twin, 44, twin_rng)
+    assert second.result() == whole.result()
+    assert whole.result().samples == 77
+
+
+@pytest.mark.parametrize("kind", OBSERVABLES)
+@pytest.mark.parametrize("samples", [0, 1, 2, 5])
+def test_short_runs_have_results(kind, samples, make_case):
+    observable = kind(name="mine")
+    case = setting_for(observable, make_case, (6, 6))
+    accumulator = observable.accumulator(case)
+    sampled(accumulator, FakeFluid(case), samples, np.random.default_rng(1))
+    result = accumulator.result()
+    assert result.name == "mine" and result.quantity == observable.quantity
+    assert repr(result)
+
+
+@pytest.mark.parametrize("kind", OBSERVABLES)
+@pytest.mark.parametrize(
+    "fluid", [{"collision": AT()}, {"species": (Species(1.0, 3.0), Species(4.0, 2.0))}]
+)
+def test_other_fluids(kind, fluid, make_case):
+    observable = kind()
+    case = setting_for(observable, make_case, (6, 6, 6), **fluid)
+    accumulator = observable.accumulator(case)
+    sampled(accumulator, FakeFluid(case), 8, np.random.default_rng(1))
+    assert accumulator.result().label
+
+
+@pytest.mark.parametrize("kind", OBSERVABLES)
+def test_it_says_what_it_is(kind):
+    assert kind.__doc__ and kind().label == kind().quantity
+    assert kind(name="a").label == "a"
+
+
+def test_values_are_printed_like_in_a_journal():
+    assert with_error(0.87012, 0.0123) == "0.870(12)"
+    assert with_error(0.87, 0.0996) == "0.87(10)"
+    assert with_error(12345.6, 123.0) == "12350(120)"
+    assert with_error(3.2e-7, 1.5e-8) == "3.20(15)e-07"
+    assert with_error(5.0, 1.2) == "5.0(12)"
+    assert with_error(-0.5, float("nan")) == "-0.5000"

@@ -1,0 +1,214 @@
+"""Profiles and maps of fluids whose flow, density and temperature are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fake_fluid import FakeFluid
+
+from mesokit.errors import CaseError
+from mesokit.geometry import Plates, Surface
+from mesokit.mpcd.collision import AT
+from mesokit.mpcd.field import Sinusoidal, Uniform
+from mesokit.mpcd.thermostat import MaxwellBoltzmann
+from mesokit.observe import (
+    DensityField,
+    DensityProfile,
+    TemperatureProfile,
+    VelocityField,
+    VelocityProfile,
+)
+from mesokit.observe import setting
+
+
+def watched(case, observable, flow=None, samples=300, seed=1):
+    accumulator, fluid = observable.accumulator(case), FakeFluid(case, seed, flow)
+    for _ in range(samples):
+        fluid.jump(10)
+        accumulator.observe(fluid)
+    return accumulator.result()
+
+
+def by_name(result):
+    return {c.what: c for c in result.comparisons}
+
+
+def poiseuille_case(make_case, **kwargs):
+    return make_case(
+        (8, 12),
+        walls=[Plates(axis="y", **kwargs)],
+        force=Uniform((0.02, 0)),
+        thermostat=MaxwellBoltzmann(),
+    )
+
+
+def parabola(viscosity, slip=0.0, push=0.02, height=12):
+    return lambda y: slip + push * y * (height - y) / (2 * viscosity)
+
+
+def test_poiseuille_gives_the_viscosity_that_drove_the_flow(make_case):
+    case = poiseuille_case(make_case)
+    nu = setting.transport(case).viscosity
+    for actual in (nu, 2 * nu):
+        result = watched(case, VelocityProfile(), parabola(actual))
+        found = by_name(result)
+        viscosity = found["viscosity from curvature"]
+        assert viscosity.expected == nu
+        assert abs(viscosity.measured - actual) < 4 * viscosity.error
+        assert viscosity.error < 0.03 * actual
+        assert abs(found["slip at the walls"].deviation) < 4
+    assert np.abs(result.deviation).max() > 10  # twice the viscosity is not the line
+    fitted = (result.value - result.fit) / result.error
+    assert 0.6 < (fitted**2).mean() < 1.5
+
+
+def test_wall_slip_is_read_off(make_case):
+    case = poiseuille_case(make_case)
+    nu = setting.transport(case).viscosity
+    centre = 0.02 * 36 / (2 * nu)
+    slip = by_name(watched(case, VelocityProfile(), parabola(nu, slip=0.2 * centre)))[
+        "slip at the walls"
+    ]
+    assert abs(slip.measured - 100 * 0.2 / 1.2) < 4 * slip.error
+    assert slip.error < 2
+
+
+def test_error_of_the_fit_knows_that_bins_rise_and_fall_together(make_case):
+    """Noise in the curvature that all bins share must show in the error bar of the viscosity."""
+    case = poiseuille_case(make_case)
+    rng = np.random.default_rng(5)
+    viscosities, errors = [], []
+    for seed in range(12):
+        accumulator, fluid = VelocityProfile().accumulator(case), FakeFluid(case, seed)
+        noise = 0.0
+        for _ in range(100):
+            fluid.jump(10)
+            noise = 0.7 * noise + rng.normal()
+            push = 0.02 * (1 + 0.5 * noise)
+            fluid.flow = parabola(0.85, push=push)
+            accumulator.observe(fluid)
+        found = by_name(accumulator.result())["viscosity from curvature"]
+        viscosities.append(found.measured)
+        errors.append(found.error)
+    spread = np.std(viscosities, ddof=1)
+    assert 0.5 < np.sqrt(np.mean(np.square(errors))) / spread < 1.7
+
+
+def test_couette(make_case):
+    walls = [
+        Plates(axis="y", lower=Surface(velocity=(-0.5, 0)), upper=Surface(velocity=(0.5, 0)))
+    ]
+    case = make_case((8, 12), walls=walls, thermostat=MaxwellBoltzmann())
+    found = by_name(watched(case, VelocityProfile(), lambda y: (y - 6) / 12))
+    assert found["shear rate"].expected == pytest.approx(1 / 12)
+    assert abs(found["shear rate"].deviation) < 4
+    slipping = by_name(watched(case, VelocityProfile(), lambda y: 0.8 * (y - 6) / 12))
+    slip = slipping["slip at the walls"]
+    assert abs(slip.measured - 10) < 4 * slip.error
+    assert slip.measured > 5 * slip.error
+
+
+def test_lees_edwards_line_and_staircase(make_case):
+    case = make_case((8, 8), shear_rate=0.2, thermostat=MaxwellBoltzmann())
+    observable = VelocityProfile(bins_per_cell=8)
+    line = by_name(watched(case, observable, lambda y: 0.2 * (y - 4), samples=600))
+    assert abs(line["shear rate"].deviation) < 4
+    assert abs(line["chi-square per degree of freedom"].deviation) < 4
+    stairs = by_name(
+        watched(case, observable, lambda y: 0.2 * (np.floor(y) + 0.5 - 4), samples=600)
+    )
+    assert stairs["chi-square per degree of freedom"].deviation > 5
+
+
+def test_kolmogorov(make_case):
+    force = Sinusoidal(amplitude=0.05)
+    case = make_case((12, 12), force=force, thermostat=MaxwellBoltzmann())
+    k = 2 * np.pi / 12
+    nu = 1.3 * setting.transport(case).viscosity
+    result = watched(case, VelocityProfile(), lambda y: 0.05 / (nu * k**2) * np.sin(k * y))
+    found = result.comparisons[0]
+    assert abs(found.measured - nu) < 4 * found.error and found.error < 0.05 * nu
+
+
+@pytest.mark.parametrize(
+    ("walls", "fluid", "expected"),
+    [
+        ([Plates(axis="y", upper=Surface(rule="slip"))], {}, lambda y, nu: 0.02 * y * (24 - y) / 2 / nu),
+        ([Plates(axis="y", lower=Surface(rule="slip"))], {}, lambda y, nu: 0.02 * (144 - y * y) / 2 / nu),
+        ([Plates(axis="y", lower=Surface(velocity=(1, 0)))], {},
+         lambda y, nu: 1 - y / 12 + 0.02 * y * (12 - y) / 2 / nu),
+    ],
+)  # fmt: skip
+def test_expected_flow_between_mixed_plates(make_case, walls, fluid, expected):
+    case = make_case(
+        (8, 12), walls=walls, force=Uniform((0.02, 0)), thermostat=MaxwellBoltzmann()
+    )
+    y = np.linspace(0, 12, 30)
+    flow = setting.flow(case, 0)
+    assert flow.profile(y) == pytest.approx(expected(y, setting.transport(case).viscosity))
+
+
+def test_bin_average_is_exact_for_parabolas():
+    edges = np.linspace(0, 3, 4)
+    assert setting.bin_average(lambda y: y**2, edges) == pytest.approx([1 / 3, 7 / 3, 19 / 3])
+
+
+def test_temperature_is_unbiased_in_slices_with_few_particles(make_case):
+    """About 1 particle in a slice: taking off the slice's own mean would halve the result."""
+    case = make_case((2, 8), density=4, kT=2.0, mass=3.0, thermostat=MaxwellBoltzmann())
+    result = watched(case, TemperatureProfile(bins_per_cell=8), samples=3000)
+    mean = by_name(result)["mean temperature"]
+    assert abs(mean.deviation) < 4 and mean.error < 0.01 * 2
+    assert abs(by_name(result)["chi-square per degree of freedom"].deviation) < 4
+
+
+def test_temperature_about_a_flow(make_case):
+    case = make_case((4, 8), collision=AT(), shear_rate=0.5)
+    result = watched(case, TemperatureProfile(), lambda y: 0.5 * (y - 4), samples=500)
+    assert abs(by_name(result)["mean temperature"].deviation) < 4
+    assert result.expected == pytest.approx(np.full(32, 1 + 0.25 / 16 / 24))
+
+
+def test_density_uniform_and_depleted(make_case):
+    case = make_case((8, 8), walls=[Plates(axis="y")])
+    result = watched(case, DensityProfile())
+    assert np.abs(result.deviation).max() < 5
+    assert all(abs(c.deviation) < 4 for c in result.comparisons)
+    assert len(result.comparisons) == 3
+    accumulator, fluid = DensityProfile().accumulator(case), FakeFluid(case)
+    for _ in range(300):
+        fluid.jump(10)
+        close = fluid.unwrapped[:, 1] < 1
+        fluid.unwrapped[close & (fluid.rng.random(fluid.n) < 0.1), 1] += 3
+        accumulator.observe(fluid)
+    assert by_name(accumulator.result())["density in the cell at the lower plate"].deviation < -5
+
+
+def test_barometric_density_keeps_the_number(make_case):
+    case = make_case((8, 8), walls=[Plates(axis="y")], force=Uniform((0, -0.3)))
+    expected = DensityProfile().accumulator(case).expected()
+    assert expected.mean() == pytest.approx(10)
+    assert np.log(expected[0] / expected[-1]) == pytest.approx(0.3 * (8 - 0.25))
+
+
+def test_fields(make_case):
+    case = poiseuille_case(make_case)
+    nu = setting.transport(case).viscosity
+    velocity = watched(case, VelocityField(), parabola(nu))
+    assert velocity.value.shape == (8, 12, 2)
+    assert np.abs(velocity.deviation[..., 0]).max() < 6
+    assert 0.7 < np.nanmean(velocity.deviation**2) < 1.4
+    swapped = watched(case, VelocityField(axes=("y", "x")), parabola(nu))
+    assert swapped.value.shape == (12, 8, 2)
+    assert np.abs(swapped.deviation[..., 0]).max() < 6
+    density = watched(case, DensityField(bins_per_cell=2))
+    assert density.value.shape == (16, 24)
+    assert density.value.mean() == pytest.approx(10)
+
+
+def test_axes_that_are_not_there(make_case):
+    for wrong in (VelocityProfile(axis="z"), VelocityProfile(component="z"), DensityField(axes=("x", "z"))):
+        with pytest.raises(CaseError, match="2D box has only"):
+            make_case(observe=[wrong])
+    with pytest.raises(CaseError, match="two different axes"):
+        make_case(observe=[VelocityField(axes=("x", "x"))])

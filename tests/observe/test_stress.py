@@ -1,0 +1,147 @@
+"""Conserved quantities, stress and forces on plates."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fake_fluid import FakeFluid
+
+from mesokit.errors import CaseError
+from mesokit.geometry import Plates, Surface
+from mesokit.mpcd.field import Uniform
+from mesokit.mpcd.thermostat import MaxwellBoltzmann
+from mesokit.observe import Conservation, Stress, WallStress, setting
+from mesokit.observe.conservation import ROWS
+
+
+def by_name(result):
+    return {c.what: c for c in result.comparisons}
+
+
+def test_conservation_of_what_is_conserved(make_case):
+    case = make_case((4, 4))
+    accumulator, fluid = Conservation(every=1).accumulator(case), FakeFluid(case, kept=1.0)
+    for _ in range(50):
+        fluid.advance()
+        accumulator.observe(fluid)
+    found = by_name(accumulator.result())
+    assert found["largest drift of momentum"].measured == 0
+    assert found["largest relative drift of kinetic energy"].measured == 0
+    fluid.thermal[0] += 1e-6
+    accumulator.observe(fluid)
+    drifted = by_name(accumulator.result())
+    assert drifted["largest drift of momentum"].measured == pytest.approx(2**0.5 * 1e-6 / 160)
+    assert drifted["largest relative drift of kinetic energy"].measured > 1e-12
+
+
+def test_temperature_with_a_thermostat(make_case):
+    case = make_case((4, 4), thermostat=MaxwellBoltzmann(), kT=1.7, mass=2.0)
+    accumulator, fluid = Conservation().accumulator(case), FakeFluid(case)
+    for _ in range(500):
+        fluid.jump(10)
+        accumulator.observe(fluid)
+    found = by_name(accumulator.result())["temperature"]
+    assert found.expected == 1.7 and abs(found.deviation) < 4 and found.error < 0.02
+
+
+def test_drifts_are_not_claimed_where_something_acts(make_case):
+    case = make_case((4, 4), walls=[Plates(axis="y")], force=Uniform((0.1, 0)))
+    accumulator, fluid = Conservation().accumulator(case), FakeFluid(case)
+    accumulator.observe(fluid)
+    result = accumulator.result()
+    assert result.comparisons == ()
+    assert np.isnan(result.expected[:, 1:]).all()
+
+
+def test_time_series_stays_bounded(make_case):
+    case = make_case((2, 2), density=1)
+    accumulator = Conservation(every=1).accumulator(case)
+
+    class Still:
+        step = 0
+        time = property(lambda self: 0.1 * self.step)
+
+        def totals(self):
+            return 4, np.zeros(2), 1.0
+
+    fluid = Still()
+    for step in range(3 * ROWS):
+        fluid.step = step
+        accumulator.observe(fluid)
+    result = accumulator.result()
+    steps = result.extra["step"]
+    assert ROWS / 2 < len(steps) <= ROWS and steps[0] == 0
+    assert set(np.diff(steps)) == {4.0}
+    assert result.samples == 3 * ROWS
+
+
+def noisy(rng, mean, scale=0.3):
+    return mean + scale * rng.normal(size=np.shape(mean))
+
+
+def test_stress_under_shear_gives_the_viscosity(make_case):
+    case = make_case((4, 4, 4), shear_rate=0.1, thermostat=MaxwellBoltzmann())
+    theory, rng = setting.transport(case), np.random.default_rng(1)
+    accumulator, fluid = Stress().accumulator(case), FakeFluid(case)
+    scale = 10 * 0.1
+    kinetic, collisional = -10 * np.eye(3), np.zeros((3, 3))
+    kinetic[0, 1] = kinetic[1, 0] = theory.viscosity_kinetic * scale
+    collisional[0, 1] = collisional[1, 0] = theory.viscosity_collisional * scale
+    for _ in range(500):
+        fluid.stress = {"kinetic": noisy(rng, kinetic), "collisional": noisy(rng, collisional)}
+        accumulator.observe(fluid)
+    result = accumulator.result()
+    found = by_name(result)
+    assert found["viscosity from the stress"].expected == theory.viscosity
+    assert found["pressure"].expected == 10
+    assert all(abs(c.deviation) < 4 and c.error < 0.05 for c in result.comparisons)
+    error = found["viscosity from the stress"].error
+    assert error == pytest.approx(0.3 * 2**0.5 / 500**0.5 / scale, rel=0.5)
+    value, _ = result.select(part="total", row="x", column="y")
+    assert value == pytest.approx(found["viscosity from the stress"].measured * scale)
+
+
+def test_stress_is_not_for_walls(make_case):
+    with pytest.raises(CaseError, match="use wall-stress"):
+        make_case((4, 4), [Stress()], walls=[Plates(axis="y")])
+
+
+def test_wall_stress_balances_the_force(make_case):
+    case = make_case(
+        (4, 8),
+        walls=[Plates(axis="y")],
+        force=Uniform((0.02, 0)),
+        thermostat=MaxwellBoltzmann(),
+    )
+    accumulator, fluid, rng = WallStress().accumulator(case), FakeFluid(case), np.random.default_rng(1)
+    drag, pressure = 10 * 0.02 * 8 / 2, 10.0
+    force = np.array([[drag, -pressure], [drag, pressure]]) * 4  # on 4 cells
+    for _ in range(400):
+        fluid.wall_steps = 10
+        fluid.wall_impulse = noisy(rng, force, 0.5) * 10 * 0.1
+        accumulator.observe(fluid)
+    result = accumulator.result()
+    assert len(result.comparisons) == 5
+    assert all(abs(c.deviation) < 4 and c.error < 0.02 for c in result.comparisons)
+    both = by_name(result)["drag along x on both plates"]
+    assert both.expected == pytest.approx(1.6)
+
+
+def test_couette_drag_pulls_the_plates_against_their_motion(make_case):
+    walls = [Plates(axis="y", upper=Surface(velocity=(0.8, 0)))]
+    case = make_case((4, 8), walls=walls, thermostat=MaxwellBoltzmann())
+    expected = WallStress().accumulator(case).expected()
+    eta = setting.transport(case).dynamic_viscosity
+    assert expected == pytest.approx(np.array([[eta * 0.1, -10], [-eta * 0.1, 10]]))
+
+
+def test_weight_rests_on_the_lower_plate(make_case):
+    case = make_case((4, 8), walls=[Plates(axis="y")], force=Uniform((0, -0.05)), thermostat=MaxwellBoltzmann())
+    lower, upper = WallStress().accumulator(case).expected()[:, 1]
+    assert lower + upper == pytest.approx(-10 * 0.05 * 8)
+    assert -lower / upper == pytest.approx(np.exp(0.05 * 8))
+
+
+def test_wall_stress_needs_walls(make_case):
+    with pytest.raises(CaseError, match="needs a"):
+        make_case((4, 4), [WallStress()])

@@ -1,0 +1,36 @@
+"""The package as a whole: examples run, import is quick and needs nothing else of mesokit."""
+
+import doctest
+import importlib
+import pkgutil
+import subprocess
+import sys
+
+import pytest
+
+import mesokit.theory
+
+MODULES = [m.name for m in pkgutil.iter_modules(mesokit.theory.__path__)]
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_examples(name):
+    result = doctest.testmod(importlib.import_module(f"mesokit.theory.{name}"))
+    assert result.failed == 0
+
+
+def test_public_functions_have_examples():
+    for name in mesokit.theory.__all__:
+        thing = getattr(mesokit.theory, name)
+        assert thing.__doc__
+        assert isinstance(thing, type) or ">>>" in thing.__doc__, name
+
+
+def test_import_is_quick_and_independent():
+    code = (
+        "import sys, numpy, time; t = time.perf_counter(); import mesokit.theory;"
+        "assert time.perf_counter() - t < 0.5;"
+        "bad = [m for m in sys.modules if m.startswith(('scipy', 'numba', 'h5py'))];"
+        "assert not bad, bad"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
