@@ -51,8 +51,8 @@ class Box:
             cells *= length
         return cells
 
-    def kernel(self, closed: tuple[bool, ...], time: float) -> Periodic | Sheared:
-        """Parameters for `fold`; `closed` says which axes walls close."""
+    def kernel(self, closed: tuple[bool, ...], time: float = 0.0) -> Periodic | Sheared:
+        """Parameters for `fold` at a time; `closed` says which axes walls close."""
         size = tuple(float(length) for length in self.size)
         inverse = tuple(0.0 if shut else 1.0 / length for shut, length in zip(closed, size))
         if self.shear_rate == 0.0:
@@ -78,6 +78,22 @@ class Sheared(NamedTuple):
     inverse: tuple[float, ...]
     speed: float
     offset: float
+
+
+@generic
+def at_time(box, time):
+    """The box at a time: under shear its images have moved."""
+    raise NotImplementedError
+
+
+@at_time.register(Periodic)
+def _(box, time):
+    return box
+
+
+@at_time.register(Sheared)
+def _(box, time):
+    return Sheared(box.size, box.inverse, box.speed, math.fmod(box.speed * time, box.size[0]))
 
 
 @scalar

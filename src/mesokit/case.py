@@ -196,7 +196,8 @@ def _lines(part: Any) -> str:
 
 def _entries(part: Any) -> list[tuple[str, str]]:
     values = [(f.name, getattr(part, f.name)) for f in _fields(part)]
-    return [(key, _value(value)) for key, value in values if value is not None and value != ()]
+    texts = [(key, _value(value)) for key, value in values if value is not None and value != ()]
+    return [(key, text) for key, text in texts if text != "{}"]
 
 
 def _value(value: Any) -> str:

@@ -9,7 +9,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.elementary import log, sincos_turn
@@ -104,7 +103,7 @@ def normals(like, a, b, c, d):
     return first((x, y, z), like)
 
 
-@njit(cache=True)
+@scalar
 def grid_shift(counter, like, strength):
     """Shift of the cells of one step, uniform in [-1/2, 1/2) times the strength along each axis."""
     for k in range(len(like)):

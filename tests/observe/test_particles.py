@@ -65,9 +65,14 @@ def test_autocorrelation(make_case):
     assert found["value at lag 0"].expected == 4.0
     names = ["value at lag 0", "share left after 1 tau", "diffusion coefficient up to 20 tau"]
     assert all(abs(found[name].deviation) < 4 for name in names)
-    # nothing in these particles knows of hydrodynamics
-    assert result.extra["tail"][-1] > 0
-    assert found["ratio to the hydrodynamic tail"].measured < 1
+
+
+def test_particles_that_know_nothing_of_hydrodynamics_have_no_tail(make_case):
+    case = make_case((32, 32), density=5)
+    result = watched(case, VelocityAutocorrelation(max_lag=80), kept_by(case), 200)
+    ratio = result.comparisons[-1]
+    assert ratio.what == "ratio to the hydrodynamic tail"
+    assert abs(ratio.measured) < 4 * ratio.error and ratio.error < 0.2
 
 
 def test_lags_are_exact():

@@ -3,7 +3,7 @@
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
-from mesokit.execute.layout import LANES, kernel, load, read_sums, share, store
+from mesokit.execute.layout import LANES, inner, load, read_sums, share, store
 from mesokit.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.mpcd.collision.protocol import freedom
 from mesokit.mpcd.thermostat.protocol import draw
@@ -51,10 +51,8 @@ def draw_block(physics, counter, start, count, totals, variates, accepted):
                 attempt += 1
 
 
-@kernel
-def solve(
-    thread, threads, physics, counter, cells, number, scratch, like, c, terms, scales
-):
+@inner
+def solve(thread, threads, physics, counter, cells, number, scratch, like, c, terms, scales):
     """Coefficients of every cell from its sums, which are cleared for the next step."""
     coefficients, stride, sums = cells
     rows, variates, accepted, totals = scratch

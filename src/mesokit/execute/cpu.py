@@ -4,21 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
-from mesokit.execute import measure, sort
-from mesokit.execute.cells import solve
+from mesokit.execute import measure
+from mesokit.execute.clock import STAGES
 from mesokit.execute.layout import LANES, ROW, blocks_for
 from mesokit.execute.stages import Grid, Physics
-from mesokit.execute.sweep import COLLIDE, MEASURE_STRESS, MEASURE_WALLS, STREAM, sweep
+from mesokit.execute.sort import sort
+from mesokit.execute.step import FINISH, SOLVE, SWEEP, advance
+from mesokit.execute.sweep import MEASURE_STRESS, MEASURE_WALLS
 from mesokit.execute.team import Team
-from mesokit.execute.top_up import top_up
 from mesokit.geometry.none import Nothing
-from mesokit.random import Counter, grid_shift
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -119,8 +120,9 @@ class CPU:
         )
         self._allocate(uniform)
         self.box_kernel = box.kernel(self.closed, 0.0)
-        self.grid = self.old_grid = self._grid((0.0,) * d)
-        self.pending = False
+        zero, cells = (0.0,) * d, tuple(float(n) for n in self.cells)
+        self.grid = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
+        self.clock, self.sort_seconds = np.zeros(STAGES + 3, np.int64), 0.0
         self.wall_steps = 0
         self.stress: dict[str, Floats] = {}
 
@@ -179,103 +181,43 @@ class CPU:
         """Time since the start of the warm-up."""
         return self.step * self.timestep
 
-    def shift_grid(self) -> None:
-        """Draw the cells of the next collision, at the end of the timestep that begins now."""
-        self.step += 1
-        self.counter = Counter(np.uint64(self.case.run.seed), np.uint64(self.step))
-        self.old_grid = self.grid
-        self.grid = self._grid(grid_shift(self.counter, self.like, self.case.fluid.grid_shift))
-        if self.case.box.shear_rate != 0.0:
-            self.box_kernel = self.case.box.kernel(self.closed, self.time)
+    def advance(self, steps: int, measure_stress: bool = False) -> None:
+        """Run some steps; velocities are then those after the collision of the last."""
+        while steps > 0:
+            due = self.sort_every - self.step % self.sort_every
+            now = min(steps, due)
+            self._advance(now, measure_stress and now == steps)
+            steps -= now
+            if now == due:
+                self.sort()
 
-    def stream(self, measure_stress: bool = False) -> None:
-        """Collide the particles as the last `solve` said, stream them, and sum over new cells."""
-        what = STREAM + COLLIDE * self.pending + MEASURE_WALLS * ("walls" in self.measures)
+    def _advance(self, steps: int, measure_stress: bool) -> None:
+        what = MEASURE_WALLS * ("walls" in self.measures) + MEASURE_STRESS * measure_stress
         if measure_stress:
             self.tensor[:] = 0.0
-        self._sweep(what + MEASURE_STRESS * measure_stress)
-        if self.virtual == "top-up":
-            self._top_up()
-        self.pending = True
-        self.wall_steps += 1
-
-    def solve(self) -> None:
-        """From the sums of each cell to what its particles need to collide."""
         self.team.run(
-            solve,
-            self.physics,
-            self.counter,
-            self.cell_arrays,
-            self.number_of_cells,
-            self.cell_scratch,
-            self.like,
-            self.c,
-            self.terms,
-            self.scales,
-        )
-
-    def collide(self, measure_stress: bool = False) -> None:
-        """Collide the particles now, so that they can be looked at; `stream` need not any more."""
-        if not self.pending:
-            return
-        self.old_grid = self.grid
-        what = COLLIDE + MEASURE_WALLS * ("walls" in self.measures)
-        self._sweep(what + MEASURE_STRESS * measure_stress)
-        self.pending = False
+            advance, self.clock, steps, self.step, self.case.run.seed, self.case.fluid.grid_shift,
+            tuple(float(shut) for shut in self.closed), what,
+            (self.case.fluid.density,) if self.virtual == "top-up" else (),
+            self.physics, self.box_kernel, self.grid, self.particles, self.cell_arrays,
+            self.number_of_cells, self.sweep_scratch, self.cell_scratch, self.like, self.c,
+            self.terms, self.scales,
+        )  # fmt: skip
+        self.step += steps
+        self.wall_steps += steps
+        self.box_kernel = self.case.box.kernel(self.closed, self.time)
         if measure_stress:
             self._stress()
 
-    def _sweep(self, what: int) -> None:
-        self.team.run(
-            sweep,
-            what,
-            self.physics,
-            self.box_kernel,
-            self.counter,
-            self.old_grid,
-            self.grid,
-            self.particles,
-            self.cell_arrays,
-            self.sweep_scratch,
-            self.like,
-            self.c,
-            self.terms,
-            self.scales,
-        )
-
-    def _top_up(self) -> None:
-        top_up(
-            self.physics,
-            self.counter,
-            self.grid,
-            self.case.fluid.density,
-            self.cell_arrays,
-            self.number_of_cells,
-            self.like,
-            self.scales,
-        )
-
-    def _grid(self, shift: tuple[float, ...]) -> Grid:
-        first = tuple(float(shut and s < 0.0) for shut, s in zip(self.closed, shift, strict=True))
-        cells = tuple(float(n) for n in self.cells)
-        return Grid(shift, first, cells, tuple(1.0 / n for n in cells))
-
     def sort(self) -> None:
         """Bring particles back into the box and those of one cell together in memory."""
-        run, n, rows, spare = self.team.run, self.n, self.rows, self.spare
-        grid, blocks = self._grid((0.0,) * self.dimension), self.real_blocks
-        arrays = self.data, self.cell, self.image
-        run(sort.wrap, self.box_kernel, grid, *arrays, blocks, rows, self.like)
-        run(sort.count_cells, self.cell, n, self.ends)
-        sort.first_places(self.ends)
-        run(sort.order_by_cell, self.cell, n, self.ends, self.order)
-        for row in range(rows):
-            run(sort.pick_row, self.data, rows, row, self.order, n, spare)
-            run(sort.put_row, self.data, rows, row, n, spare)
-        spare = spare.view(np.int32)
-        for values in (self.ident, *self.image):
-            run(sort.pick, values, self.order, n, spare)
-            run(sort.put, values, n, spare)
+        start = perf_counter()
+        self.team.run(
+            sort, self.box_kernel, self.grid, self.data, self.cell, self.ident, self.image, self.n,
+            self.real_blocks, self.rows, self.order, self.ends, self.spare,
+            self.spare.view(np.int32), self.like,
+        )  # fmt: skip
+        self.sort_seconds += perf_counter() - start
         self._check_speed()
 
     def _check_speed(self) -> None:
@@ -382,8 +324,6 @@ class CPU:
 
     def state(self) -> dict[str, NDArray]:
         """Everything that the next step depends on."""
-        if self.pending:
-            raise RuntimeError("collide before taking the state")
         return {
             "data": self.data[: self.real_blocks * self.rows * ROW].copy(),
             "ident": self.ident[: self.n].copy(),
@@ -403,7 +343,13 @@ class CPU:
         self.impulse[0] = state["impulse"]
         self.wall_steps = int(state["wall_steps"])
         self.box_kernel = self.case.box.kernel(self.closed, self.time)
-        self.pending = False
+
+    @property
+    def seconds(self) -> dict[str, float]:
+        """Time spent so far in each stage."""
+        names = {"sweep": SWEEP, "cells": SOLVE, "finish": FINISH}
+        seconds = {name: 1e-9 * float(self.clock[STAGES + k]) for name, k in names.items()}
+        return seconds | {"sort": self.sort_seconds}
 
     @property
     def bytes_held(self) -> int:

@@ -26,6 +26,7 @@ ROUNDER_BITS = int(np.float64(ROUNDER).view(np.int64))
 
 # A loop over particles or cells: (thread, threads, ...), run by all threads of a team at once.
 kernel = njit(nogil=True, cache=True, error_model="numpy")
+inner = njit(nogil=True, error_model="numpy")  # a part of a kernel, compiled with it
 
 
 def blocks_for(particles: int) -> int:

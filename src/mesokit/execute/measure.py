@@ -13,7 +13,7 @@ from mesokit.scalar import dot, scaled
 
 
 @kernel
-def totals(thread, threads, physics, data, count, rows, like, out):
+def totals(thread, threads, gate, physics, data, count, rows, like, out):
     """Momentum, sum of m v^2 and largest component of |v| in each block: out (blocks, d + 2)."""
     d = len(like)
     first, last = share((count + LANES - 1) // LANES, thread, threads)
@@ -29,7 +29,7 @@ def totals(thread, threads, physics, data, count, rows, like, out):
 
 
 @kernel
-def bin_sums(thread, threads, physics, box, data, count, rows, like, axes, bins, scales, out):
+def bin_sums(thread, threads, gate, physics, box, data, count, rows, like, axes, bins, scales, out):
     """Number, mass, momentum and m v^2 in bins along one or two axes, as fixed-point sums.
 
     `axes` and `bins` hold two entries each; for a profile the second has one bin. `out` is
@@ -56,7 +56,7 @@ def bin_sums(thread, threads, physics, box, data, count, rows, like, axes, bins,
 
 
 @kernel
-def modes(thread, threads, physics, box, data, count, rows, like, waves, out):
+def modes(thread, threads, gate, physics, box, data, count, rows, like, waves, out):
     """Fourier sums of mass and momentum of each block: out (blocks, waves, 1 + d, 2).
 
     `waves` are wave vectors over 2 pi, in turns per length.
@@ -83,7 +83,7 @@ def modes(thread, threads, physics, box, data, count, rows, like, waves, out):
 
 @kernel
 def gather_by_id(
-    thread, threads, box, data, image, ident, count, rows, like, unwrapped, position, velocity,
+    thread, threads, gate, box, data, image, ident, count, rows, like, unwrapped, position, velocity,
     number,
 ):  # fmt: skip
     """Positions, velocities and images of particles with ident < len(position), by ident."""

@@ -7,12 +7,13 @@ rarely. The order is that of a stable counting sort, whatever the number of thre
 import numpy as np
 
 from mesokit.box import fold
-from mesokit.execute.layout import LANES, ROW, kernel, load, share, store
+from mesokit.execute.layout import LANES, ROW, inner, kernel, load, share, store
 from mesokit.execute.stages import cell_index
+from mesokit.execute.team import wait
 from mesokit.scalar import scaled
 
 
-@kernel
+@inner
 def wrap(thread, threads, box, grid, data, cell, image, blocks, rows, like):
     """Move every particle to its image in the primary box, count the boxes crossed, find cells."""
     d = len(like)
@@ -28,63 +29,64 @@ def wrap(thread, threads, box, grid, data, cell, image, blocks, rows, like):
                 image[k, b * LANES + i] += np.int32(crossed[k])
 
 
-@kernel
-def count_cells(thread, threads, cell, count, ends):
-    """How many of a thread's particles lie in each cell."""
-    ends[thread] = 0
-    first, last = share(count, thread, threads)
-    for i in range(first, last):
-        ends[thread, cell[i]] += 1
-
-
-@kernel
-def first_places(ends):
-    """From counts (threads, cells) to the place of each thread's first particle of each cell."""
-    total = 0
-    for c in range(ends.shape[1]):
-        for t in range(ends.shape[0]):
-            here = ends[t, c]
-            ends[t, c] = total
-            total += here
-
-
-@kernel
-def order_by_cell(thread, threads, cell, count, ends, order):
+@inner
+def order_by_cell(thread, threads, gate, cell, count, ends, order):
     """`order[j]` becomes the present place of the particle that belongs at place j."""
     first, last = share(count, thread, threads)
+    ends[thread] = 0
+    for i in range(first, last):
+        ends[thread, cell[i]] += 1
+    wait(gate, threads)
+    if thread == 0:  # from counts to the place of each thread's first particle of each cell
+        total = 0
+        for c in range(ends.shape[1]):
+            for t in range(threads):
+                here = ends[t, c]
+                ends[t, c] = total
+                total += here
+    wait(gate, threads)
     for i in range(first, last):
         c = cell[i]
         order[ends[thread, c]] = i
         ends[thread, c] += 1
+    wait(gate, threads)
 
 
-@kernel
-def pick_row(thread, threads, data, rows, row, order, count, spare):
-    """Copy one row of the blocks, in the new order, to a spare array."""
+@inner
+def reorder_row(thread, threads, gate, data, rows, row, order, count, spare):
+    """Put one row of the blocks in the new order, through a spare array."""
     first, last = share(count, thread, threads)
     for j in range(first, last):
         i = order[j]
         spare[j] = data[(i // LANES * rows + row) * ROW + i % LANES]
-
-
-@kernel
-def put_row(thread, threads, data, rows, row, count, spare):
-    """Copy the spare array back to one row of the blocks."""
-    first, last = share(count, thread, threads)
+    wait(gate, threads)
     for j in range(first, last):
         data[(j // LANES * rows + row) * ROW + j % LANES] = spare[j]
+    wait(gate, threads)
 
 
-@kernel
-def pick(thread, threads, values, order, count, spare):
-    """Copy a plain array, in the new order, to a spare one."""
+@inner
+def reorder(thread, threads, gate, values, order, count, spare):
+    """Put a plain array in the new order, through a spare one."""
     first, last = share(count, thread, threads)
     for j in range(first, last):
         spare[j] = values[order[j]]
+    wait(gate, threads)
+    values[first:last] = spare[first:last]
+    wait(gate, threads)
 
 
 @kernel
-def put(thread, threads, values, count, spare):
-    """Copy the spare array back."""
-    first, last = share(count, thread, threads)
-    values[first:last] = spare[first:last]
+def sort(
+    thread, threads, gate, box, grid, data, cell, ident, image, count, blocks, rows, order, ends,
+    spare, whole, like,
+):  # fmt: skip
+    """Wrap and sort; `spare` and `whole` are float64 and int32 scratch of a place per particle."""
+    wrap(thread, threads, box, grid, data, cell, image, blocks, rows, like)
+    wait(gate, threads)
+    order_by_cell(thread, threads, gate, cell, count, ends, order)
+    for row in range(rows):
+        reorder_row(thread, threads, gate, data, rows, row, order, count, spare)
+    reorder(thread, threads, gate, ident, order, count, whole)
+    for k in range(len(like)):
+        reorder(thread, threads, gate, image[k], order, count, whole)

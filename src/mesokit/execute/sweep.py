@@ -6,7 +6,7 @@ Blocks are shared out among the threads in order; each thread adds to cell sums 
 import numpy as np
 
 from mesokit.box import peculiar
-from mesokit.execute.layout import LANES, ROW, kernel, load, mass_of, share
+from mesokit.execute.layout import LANES, ROW, inner, load, mass_of, share
 from mesokit.execute.stages import (
     add_block,
     bin_block,
@@ -48,7 +48,7 @@ def momentum_flux(physics, box, grid, block, count, tensor, like):
                 tensor[d * d + j * d + k] += m * v[j] * (x[k] - np.floor(x[k]))
 
 
-@kernel
+@inner
 def sweep(
     thread, threads, what, physics, box, counter, old, grid, particles, cells, scratch, like, c,
     terms, scales,

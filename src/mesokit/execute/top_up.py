@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from numba import njit
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.execute.layout import energy_term, mass_term
@@ -11,11 +10,22 @@ from mesokit.execute.stages import in_cell, rounded
 from mesokit.geometry.protocol import closes, side
 from mesokit.mpcd.collision.protocol import contribute
 from mesokit.random import CELL_VIRTUAL, normals, unit_open, words
-from mesokit.scalar import added, dot, first, scaled
+from mesokit.scalar import added, by_type, dot, first, scaled
 
 
-@njit(cache=True, error_model="numpy")
-def top_up(physics, counter, grid, density, cells, number, like, scales):
+def top_up(density, physics, counter, grid, cells, number, like, scales):
+    """Do so if `density` is (density,); nothing if it is ()."""
+    raise NotImplementedError
+
+
+@by_type(top_up)
+def _top_up(density, physics, counter, grid, cells, number, like, scales):
+    if len(density) == 0:
+        return lambda density, physics, counter, grid, cells, number, like, scales: None
+    return _add_missing
+
+
+def _add_missing(density, physics, counter, grid, cells, number, like, scales):
     """Add virtual particles to the sums of cut cells that hold fewer than the mean density.
 
     A fractional density is met on average. Places are uniform in the solid part of the cell.
@@ -41,7 +51,7 @@ def top_up(physics, counter, grid, density, cells, number, like, scales):
         for t in range(sums.shape[0]):
             present += sums[t, cell * width]
         a, _, _, _ = words(counter, CELL_VIRTUAL, cell, 0)
-        missing = int(density + unit_open(a)) - present
+        missing = int(density[0] + unit_open(a)) - present
         for j in range(missing):
             a, b, c, _ = words(counter, CELL_VIRTUAL, cell, 1 + 2 * j)
             u = first((unit_open(a), unit_open(b), unit_open(c)), like)

@@ -26,7 +26,7 @@ def digest(text: str) -> str:
     """Fingerprint of a resolved case (its TOML), to tell cases apart.
 
     >>> digest("[run]")[:8]
-    'a31b3d5d'
+    '8cb0a9c1'
     """
     return hashlib.sha256(text.encode()).hexdigest()
 

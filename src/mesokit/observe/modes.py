@@ -149,7 +149,7 @@ def transverse_units(wavevector: Array) -> Array:
     """The d - 1 unit vectors (d - 1, d) across a wave vector.
 
     >>> transverse_units(np.array([2.0, 0.0]))
-    array([[0., 1.]])
+    array([[-0.,  1.]])
     """
     unit = wavevector / np.linalg.norm(wavevector)
     if len(unit) == 2:

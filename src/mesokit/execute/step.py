@@ -1,0 +1,73 @@
+"""The step: its stages in order, run by all threads of a team together."""
+
+
+from numba.cpython.unsafe.tuple import tuple_setitem
+
+from mesokit.box import at_time
+from mesokit.execute.cells import solve
+from mesokit.execute.clock import lap
+from mesokit.execute.layout import kernel
+from mesokit.execute.stages import Grid
+from mesokit.execute.sweep import COLLIDE, MEASURE_STRESS, MEASURE_WALLS, STREAM, sweep
+from mesokit.execute.team import wait
+from mesokit.execute.top_up import top_up
+from mesokit.random import Counter, grid_shift
+from mesokit.scalar import scalar
+
+SWEEP, SOLVE, FINISH = 0, 1, 2  # stages whose time is kept
+
+
+@scalar
+def cells_at(shift, old, closed):
+    """The cells for this shift; a wall's first cell lies below 0 where the shift is negative."""
+    first = shift
+    for k in range(len(shift)):
+        below = closed[k] > 0.5 and shift[k] < 0.0
+        first = tuple_setitem(first, k, 1.0 if below else 0.0)
+    return Grid(shift, first, old.cells, old.inverse)
+
+
+@kernel
+def advance(
+    thread, threads, gate, clock, steps, done, seed, strength, closed, what, density,
+    physics, box, grid, particles, cells, number, scratch, cell_scratch, like, c, terms, scales,
+):  # fmt: skip
+    """Run some steps; velocities are those after the collision of the last when it returns.
+
+    The collision of step n is done in the sweep that streams to n + 1, while the particles are in
+    the cache. With MEASURE_STRESS in `what` the last step is measured.
+    """
+    lap(clock, thread, -1)
+    walls = what & MEASURE_WALLS
+    for n in range(steps):
+        counter = Counter(seed, done + n + 1)
+        box = at_time(box, (done + n + 1) * physics.timestep)
+        new = cells_at(grid_shift(counter, like, strength), grid, closed)
+        flags = walls | STREAM | (COLLIDE if n > 0 else 0)
+        flags |= what & MEASURE_STRESS if n == steps - 1 else 0
+        # v: collision at t; r, v: t -> t + dt; virtual particles; cells and their sums at t + dt
+        sweep(
+            thread, threads, flags, physics, box, counter, grid, new, particles, cells, scratch,
+            like, c, terms, scales,
+        )  # fmt: skip
+        wait(gate, threads)
+        if thread == 0:
+            top_up(density, physics, counter, new, cells, number, like, scales)
+        if len(density) > 0:
+            wait(gate, threads)
+        lap(clock, thread, SWEEP)
+        # thermostat and collision rule: what the particles of each cell need, at t + dt
+        solve(
+            thread, threads, physics, counter, cells, number, cell_scratch, like, c, terms, scales
+        )
+        wait(gate, threads)
+        lap(clock, thread, SOLVE)
+        grid = new
+    counter = Counter(seed, done + steps)
+    flags = COLLIDE | walls | (what & MEASURE_STRESS)
+    sweep(
+        thread, threads, flags, physics, box, counter, grid, grid, particles, cells, scratch,
+        like, c, terms, scales,
+    )  # fmt: skip
+    wait(gate, threads)
+    lap(clock, thread, FINISH)

@@ -1,0 +1,189 @@
+"""Runs whose files are damaged, lost or swapped: one line, no traceback, nothing made worse."""
+
+from __future__ import annotations
+
+import os
+import resource
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from mesokit.cli import main
+
+CASE = """
+[run]
+steps = 20
+[box]
+size = [8, 8]
+[fluid]
+density = 4
+[[observe]]
+quantity = "conservation"
+every = 2
+[trajectory]
+every = 5
+"""
+SOURCE = str(Path(__file__).parents[2] / "src")
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a case, a run of it, and a run with another seed."""
+    folder = tmp_path_factory.mktemp("finished")
+    (folder / "case.toml").write_text(CASE)
+    for name, seed in (("run", 1), ("other", 2)):
+        with pytest.raises(SystemExit) as end:
+            main(["run", str(folder / "case.toml"), "--seed", str(seed), "--quiet",
+                  "--output", str(folder / name)])  # fmt: skip
+        assert not end.value.code
+    return folder
+
+
+@pytest.fixture
+def folder(finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A copy of it to damage."""
+    shutil.copytree(finished, tmp_path / "copy")
+    monkeypatch.chdir(tmp_path / "copy")
+    return tmp_path / "copy"
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(p): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
+
+
+def refusal(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    capsys.readouterr()
+    with pytest.raises(SystemExit) as end:
+        main(list(arguments))
+    assert end.value.code in (1, 2)
+    captured = capsys.readouterr()
+    assert captured.err.startswith("mesokit: error: ")
+    assert captured.err.count("\n") == 1
+    return captured.err
+
+
+def truncated(data: bytes) -> bytes:
+    return data[: len(data) // 2]
+
+
+def flipped(data: bytes) -> bytes:
+    middle = len(data) // 2
+    return data[:middle] + bytes(255 - b for b in data[middle : middle + 64]) + data[middle + 64 :]
+
+
+def empty(data: bytes) -> bytes:
+    return b""
+
+
+@pytest.mark.parametrize("damage", [truncated, flipped, empty])
+def test_damaged_checkpoint(damage, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    checkpoint = folder / "run" / "checkpoint.npz"
+    checkpoint.write_bytes(damage(checkpoint.read_bytes()))
+    before = contents(folder)
+    assert "checkpoint.npz" in refusal(capsys, "resume", "run")
+    assert contents(folder) == before
+
+
+def test_lost_checkpoint(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "run" / "checkpoint.npz").unlink()
+    before = contents(folder)
+    assert "checkpoint" in refusal(capsys, "resume", "run")
+    assert contents(folder) == before
+
+
+def test_checkpoint_of_another_case(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shutil.copy(folder / "other" / "checkpoint.npz", folder / "run" / "checkpoint.npz")
+    before = contents(folder)
+    assert "another case" in refusal(capsys, "resume", "run")
+    assert contents(folder) == before
+
+
+def test_case_changed_after_the_run(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    case = folder / "run" / "case.toml"
+    case.write_text(case.read_text().replace("density = 4", "density = 5"))
+    before = contents(folder)
+    assert "case" in refusal(capsys, "resume", "run")
+    assert contents(folder) == before
+
+
+def test_broken_case_in_a_run(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "run" / "case.toml").write_text("[run")
+    for command in ("resume", "info"):
+        assert "case.toml" in refusal(capsys, command, "run")
+
+
+@pytest.mark.parametrize("command", ["info", "plot"])
+@pytest.mark.parametrize("damage", [truncated, empty])
+def test_damaged_results(
+    damage, command: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    results = folder / "run" / "run.h5"
+    results.write_bytes(damage(results.read_bytes()))
+    assert "run.h5" in refusal(capsys, command, "run")
+
+
+@pytest.mark.parametrize("name", ["positions", "velocities"])
+@pytest.mark.parametrize("content", ["no array", "wrong shape", "not finite"])
+def test_wrong_start_arrays(
+    name: str, content: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import numpy as np
+
+    if content == "no array":
+        (folder / "start.npy").write_text("1 2 3")
+    else:
+        np.save("start.npy", np.full((256, 3 if content == "wrong shape" else 2), np.nan))
+    message = refusal(
+        capsys, "run", "case.toml", "--output", "new", "--set", f"fluid.start.{name}=start.npy"
+    )
+    assert name in message
+    assert "start.npy" in message
+
+
+def test_start_from_a_run_of_another_size(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    message = refusal(
+        capsys, "run", "case.toml", "--output", "new",
+        "--set", "fluid.start.run=run", "--set", "fluid.density=5",
+    )  # fmt: skip
+    assert "start" in message
+
+
+def test_folder_that_cannot_be_made(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = contents(folder)
+    assert "case.toml" in refusal(capsys, "run", "case.toml", "--output", "case.toml/inside")
+    assert contents(folder) == before
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_folder_without_permission(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "locked").mkdir(mode=0o500)
+    assert "locked" in refusal(capsys, "run", "case.toml", "--output", "locked/run")
+
+
+def test_full_disk(folder: Path) -> None:
+    """A limit on the size of files stands for a disk without space."""
+    before = contents(folder)
+    done = subprocess.run(
+        [sys.executable, "-m", "mesokit", "run", "case.toml", "--output", "new", "--quiet",
+         "--set", "trajectory.precision=float64", "--set", "fluid.density=50"],
+        env=os.environ | {"PYTHONPATH": SOURCE},
+        capture_output=True,
+        text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000)),
+    )  # fmt: skip
+    assert done.returncode == 1
+    assert done.stderr.startswith("mesokit: error: ")
+    assert done.stderr.count("\n") == 1
+    assert {k: v for k, v in contents(folder).items() if "/new/" not in k} == before
+
+
+def test_overwrite_replaces_only_the_run(folder: Path) -> None:
+    (folder / "run" / "notes.txt").write_text("precious")
+    with pytest.raises(SystemExit) as end:
+        main(["run", "case.toml", "--output", "run", "--overwrite", "--quiet", "--seed", "3"])
+    assert not end.value.code
+    assert (folder / "run" / "notes.txt").read_text() == "precious"
+    assert "seed = 3" in (folder / "run" / "case.toml").read_text()
