@@ -110,6 +110,8 @@ def parse(text: str) -> dict[str, Any]:
             f"line {place[1]}, column {place[2]}"
         )  # fmt: skip
         raise CaseError(f"{where}: not valid TOML: {reason}") from None
+    except RecursionError:
+        raise CaseError("not valid TOML: nested too deeply") from None
 
 
 def _read(path: Path) -> str:

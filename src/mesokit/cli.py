@@ -120,7 +120,7 @@ def run(
 
     _clear(output)
     simulation = Simulation(full, output=output, threads=threads)
-    with _run_errors():
+    with _run_errors(output):
         simulation.run(progress=Reporter(quiet))
     if not quiet:
         _show_results(output)
@@ -137,7 +137,7 @@ def resume(run: Path, threads: int | None, quiet: bool) -> None:
     _require_run(run)
     from mesokit.simulation import Simulation
 
-    with _run_errors():
+    with _run_errors(run):
         Simulation.resume(run, threads=threads).run(progress=Reporter(quiet))
     if not quiet:
         _show_results(run)
@@ -226,10 +226,15 @@ def _clear(output: Path) -> None:
 
 
 @contextlib.contextmanager
-def _run_errors() -> Iterator[None]:
+def _run_errors(output: Path) -> Iterator[None]:
     """A full disk while running is a failure of the run, not of the command."""
     try:
         yield
+    except KeyboardInterrupt as stop:
+        if not str(stop):  # stopped so hard that nothing is known
+            raise
+        click.echo(f"mesokit: {stop}; go on with: mesokit resume {output}", err=True)
+        _leave(130)
     except OSError as error:
         raise RunError(_reason(error)) from None
 

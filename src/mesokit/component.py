@@ -11,9 +11,9 @@ from __future__ import annotations
 import dataclasses
 import difflib
 import functools
-import math
 import numbers
 import operator
+import sys
 import types
 import typing
 from collections.abc import Iterable, Sequence
@@ -124,18 +124,19 @@ def _union(hints: Sequence[Any]) -> Any:
 
 
 def _real(value: Any) -> float:
-    if isinstance(value, numbers.Real) and not isinstance(value, bool):
-        if math.isfinite(value):
-            return float(value)
-        raise PydanticCustomError("number", "expected a finite number")
-    raise PydanticCustomError("number", "expected a number")
+    if not isinstance(value, numbers.Real) or isinstance(value, bool):
+        raise PydanticCustomError("number", "expected a number")
+    if abs(value) <= sys.float_info.max:
+        return float(value)
+    raise PydanticCustomError("number", "expected a finite number")
 
 
 def _whole(value: Any) -> int:
     if isinstance(value, numbers.Real) and not isinstance(value, bool):
-        if isinstance(value, numbers.Integral):
-            return int(value)
-        if (whole := float(value)).is_integer():
+        whole = value if isinstance(value, numbers.Integral) else float(value)
+        if abs(whole) >= 2**63:
+            raise PydanticCustomError("whole", "expected a whole number of at most 63 bits")
+        if whole == int(whole):
             return int(whole)
     raise PydanticCustomError("whole", "expected a whole number")
 
@@ -197,7 +198,7 @@ def show(value: Any, longest: int = 60) -> str:
     if isinstance(value, bool):
         text = str(value).lower()
     elif isinstance(value, dict):
-        text = "{" + ", ".join(f"{k} = {show(v)}" for k, v in value.items()) + "}"
+        text = "{" + ", ".join(f"{_printable(k)} = {show(v)}" for k, v in value.items()) + "}"
     elif isinstance(value, list | tuple):
         text = "[" + ", ".join(show(v) for v in value) + "]"
     elif isinstance(value, float):
@@ -205,6 +206,10 @@ def show(value: Any, longest: int = 60) -> str:
     else:
         text = " ".join(repr(value).split())
     return text if len(text) <= longest else text[: longest - 3] + "..."
+
+
+def _printable(key: str) -> str:
+    return key if key.isprintable() else repr(key)
 
 
 def _is_unknown(entry: Any) -> bool:
@@ -245,7 +250,7 @@ def _walk(
         if options:
             holder = options[0]
         shown = rename.get(item, item) if holder is cls else item
-        path += f".{shown}" if path else shown
+        path += ("." if path else "") + _printable(shown)
         fields = holder.__pydantic_fields__
         here = fields[item].annotation if item in fields else None
     return path, holder

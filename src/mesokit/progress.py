@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 WINDOW = 10.0  # seconds of the recent past that the rate and the ETA come from
 REDRAW = 0.2  # seconds between two states of the bar
+FIRST = 0.5  # seconds to measure before the first word about speed
 
 
 class Rate:
@@ -42,7 +43,7 @@ class Reporter:
     ----------
     quiet: say nothing.
     stream: where to (standard error unless said); a terminal gets a bar that is redrawn, anything
-        else a line at once and then every `seconds`.
+        else a line as soon as the speed is known, and then one every `seconds`.
 
     >>> reporter = Reporter(quiet=True)
     >>> reporter.start(total_steps=10, particles=100)
@@ -55,10 +56,11 @@ class Reporter:
     ) -> None:
         self.stream = sys.stderr if stream is None else stream
         self.quiet, self.seconds = quiet, seconds
-        self.total = self.particles = self.first = 0
+        self.total = self.particles = self.first = self.last = 0
         self.phase = ""
+        self.fresh = False  # nothing measured yet, or only the compiler
+        self.next = 0.0  # time of the next line
         self.rate = Rate()
-        self.spoken = -seconds
         self.bar: Progress | None = None
         self.task: TaskID | None = None
 
@@ -66,81 +68,90 @@ class Reporter:
         self, total_steps: int, particles: int, phase: str = "running", step: int = 0
     ) -> None:
         """A phase of the run begins at `step` of `total_steps`."""
-        self.total, self.particles, self.phase, self.first = total_steps, particles, phase, step
+        self.total, self.particles, self.phase = total_steps, particles, phase
+        self.first = self.last = step
         self.began = time.monotonic()
-        self.rate = Rate()
-        self.rate.add(self.began, step)
-        self.spoken = self.began - self.seconds
+        self._measure_anew(step)
         if self.quiet:
             return
         if self.stream.isatty():
-            self._draw(step)
+            self._open_bar()
         else:
             self._say(f"{phase}: {total_steps - step} steps of {particles} particles")
 
     def compiling(self) -> None:
-        """The first step of a new version takes long: say why."""
+        """The first step of a new version takes long: say why, and leave it out of the rates."""
         if self.quiet:
             return
+        self.fresh = True
+        words = "compiling (once; kept for the next runs)"
         if self.bar is not None and self.task is not None:
-            self.bar.update(self.task, words="compiling (once; kept for the next runs)")
+            self.bar.update(self.task, words=words)
         else:
-            self._say("compiling (once; kept for the next runs)")
+            self._say(words)
 
     def update(self, step: int) -> None:
         """`step` steps are done. Cheap: call it as often as you like."""
+        self.last = step
         if self.quiet:
             return
+        if self.fresh:
+            self._measure_anew(step)
+            return
         now = time.monotonic()
-        if self.bar is not None:
-            if now - self.spoken >= REDRAW:
-                self.rate.add(now, step)
-                self.spoken = now
-                self._draw(step)
-        elif now - self.spoken >= self.seconds or self.rate.steps_per_second is None:
-            self.rate.add(now, step)
-            self.spoken = now
-            self._say(f"{self._share(step)} {self.words(step)}")
+        if now < self.next:
+            return
+        self.rate.add(now, step)
+        if self.bar is not None and self.task is not None:
+            self.next = now + REDRAW
+            self.bar.update(self.task, completed=step, words=self.words(step))
+        else:
+            self.next = now + self.seconds
+            done = (step - self.first) / max(self.total - self.first, 1)
+            self._say(f"{self.phase}: {100 * done:3.0f} %, {self.words(step)}")
 
     def finish(self) -> None:
         """The phase is over, or the run was stopped."""
-        if self.quiet:
+        if self.quiet or not self.phase:
             return
-        if self.bar is not None:
+        took = duration_text(time.monotonic() - self.began)
+        if self.bar is not None and self.task is not None:
+            self.bar.update(self.task, completed=self.last, words=took)
             self.bar.stop()
             self.bar = self.task = None
-        elif self.rate.marks:
-            self._say(f"{self.phase}: {duration_text(time.monotonic() - self.began)}")
+        else:
+            self._say(f"{self.phase}: step {self.last} of {self.total} after {took}")
+        self.phase = ""
 
     def words(self, step: int) -> str:
         """Rates and the time left."""
         rate = self.rate.steps_per_second
         if not rate:
-            return f"step {step} of {self.total}"
+            return f"step {step}"
         left = duration_text((self.total - step) / rate)
         return (
-            f"step {step} of {self.total}, {rate:.4g} steps/s, "
-            f"{rate * self.particles / 1e6:.3g} million particle-steps/s, {left} left"
+            f"{rate:.4g} steps/s, {rate * self.particles / 1e6:.3g} M particle-steps/s, {left} left"
         )
 
-    def _share(self, step: int) -> str:
-        done = (step - self.first) / max(self.total - self.first, 1)
-        return f"{self.phase}: {100 * done:3.0f} %"
+    def _measure_anew(self, step: int) -> None:
+        self.fresh, self.rate = False, Rate()
+        now = time.monotonic()
+        self.rate.add(now, step)
+        self.next = now + FIRST
 
     def _say(self, text: str) -> None:
         print(text, file=self.stream, flush=True)
 
-    def _draw(self, step: int) -> None:
-        if self.bar is None:
-            from rich.console import Console
-            from rich.progress import BarColumn, Progress, TextColumn
+    def _open_bar(self) -> None:
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TextColumn
 
-            self.bar = Progress(
-                TextColumn("{task.description}"), BarColumn(bar_width=24),
-                TextColumn("{task.percentage:3.0f} % {task.fields[words]}"),
-                console=Console(file=self.stream), refresh_per_second=4,
-            )  # fmt: skip
-            self.task = self.bar.add_task(self.phase, total=self.total, words="")
-            self.bar.start()
-        assert self.task is not None
-        self.bar.update(self.task, completed=step, words=self.words(step))
+        self.bar = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(bar_width=16),
+            TextColumn("{task.percentage:3.0f} % {task.fields[words]}"),
+            console=Console(file=self.stream, highlight=False),
+            refresh_per_second=4,
+        )
+        self.task = self.bar.add_task(self.phase, total=self.total, completed=self.first, words="")
+        self.bar.start()

@@ -264,7 +264,8 @@ class TestProgress:
         lines = stream.getvalue().splitlines()
         assert lines[0] == "running: 1000 steps of 500 particles"
         assert "compiling" in lines[1]
-        assert "step 10 of 1000, 100 steps/s, 0.05 million particle-steps/s, 9.9 s left" in lines[2]
+        assert "%, 100 steps/s, 0.05 M particle-steps/s, 9.4 s left" in lines[2]
+        assert lines[-1].startswith("running: step 1000 of 1000 after")
         assert len(lines) == 5
 
     def test_the_time_left_comes_from_the_recent_past(self, monkeypatch) -> None:

@@ -72,7 +72,7 @@ def test_particles_that_know_nothing_of_hydrodynamics_have_no_tail(make_case):
     result = watched(case, VelocityAutocorrelation(max_lag=80), kept_by(case), 200)
     ratio = result.comparisons[-1]
     assert ratio.what == "ratio to the hydrodynamic tail"
-    assert abs(ratio.measured) < 4 * ratio.error and ratio.error < 0.2
+    assert abs(ratio.measured) < 4 * ratio.error and ratio.error < 0.5
 
 
 def test_lags_are_exact():

@@ -183,6 +183,8 @@ class CPU:
 
     def advance(self, steps: int, measure_stress: bool = False) -> None:
         """Run some steps; velocities are then those after the collision of the last."""
+        if steps == 0:
+            self._advance(0, False)
         while steps > 0:
             due = self.sort_every - self.step % self.sort_every
             now = min(steps, due)
@@ -279,6 +281,11 @@ class CPU:
         """Masses (n,) by particle id: kinds are numbered one after the other."""
         mass = np.repeat(self.masses_of_kinds, self.counts)
         return mass if ids is None else mass[ids]
+
+    def species(self, ids: NDArray | None = None) -> NDArray[np.int64]:
+        """Kind of each particle (n,), by particle id: its place in fluid.species."""
+        kind = np.repeat(np.arange(len(self.counts)), self.counts)
+        return kind if ids is None else kind[ids]
 
     def _gather(self, ids: NDArray | None, unwrapped: bool) -> tuple[Floats, Floats, NDArray]:
         limit = self.n if ids is None else int(np.max(ids)) + 1

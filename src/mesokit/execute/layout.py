@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 from numba.cpython.unsafe.tuple import tuple_setitem
+from mesokit.execute.cache import cached_kernel
 from mesokit.scalar import by_type, dot, scalar
 
 LANES = 256
@@ -25,7 +26,7 @@ ROUNDER = 1.5 * 2.0**52
 ROUNDER_BITS = int(np.float64(ROUNDER).view(np.int64))
 
 # A loop over particles or cells: (thread, threads, ...), run by all threads of a team at once.
-kernel = njit(nogil=True, cache=True, error_model="numpy")
+kernel = cached_kernel
 inner = njit(nogil=True, error_model="numpy")  # a part of a kernel, compiled with it
 
 

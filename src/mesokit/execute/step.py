@@ -63,6 +63,8 @@ def advance(
         wait(gate, threads)
         lap(clock, thread, SOLVE)
         grid = new
+    if steps == 0:
+        return
     counter = Counter(seed, done + steps)
     flags = COLLIDE | walls | (what & MEASURE_STRESS)
     sweep(

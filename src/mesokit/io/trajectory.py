@@ -20,7 +20,7 @@ from mesokit.errors import RunError
 from mesokit.io.atomic import replacing
 
 if TYPE_CHECKING:
-    from mesokit.observe.protocol import Fluid
+    from mesokit.observe.protocol import RunningFluid
 
 Quantity = Literal["position", "velocity", "image", "id"]
 Frame = dict[str, NDArray[Any]]
@@ -51,7 +51,7 @@ class TrajectoryWriter:
         self._frames: list[Frame] = []
         self._bytes = 0
 
-    def record(self, fluid: Fluid) -> None:
+    def record(self, fluid: RunningFluid) -> None:
         """Take one frame. Raises RunError if a full memory cannot be written out."""
         frame: Frame = {"step": np.array(fluid.step), "time": np.array(fluid.time)}
         real = np.dtype(self.trajectory.precision)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import zipfile
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +14,7 @@ from mesokit.errors import CaseError
 from mesokit.random import INITIAL_POSITION, INITIAL_VELOCITY
 
 if TYPE_CHECKING:
+    from mesokit.case import Case
     from mesokit.execute.cpu import CPU
 
 Floats = NDArray[np.float64]
@@ -29,6 +32,37 @@ class Start:
         None, doc="file .npy or .npz with an (n, d) array", unit="a/time"
     )
     run: str | None = param(None, doc="folder of an earlier run: go on from its last state")
+
+
+def read_arrays(
+    case: Case, positions: Any, velocities: Any, last_state: Callable[[str], tuple[Any, Any]]
+) -> tuple[Any, Any]:
+    """The arrays to start from: those given, or those that the case names; None where none.
+
+    `last_state` gives positions and velocities of an earlier run.
+    """
+    given = case.fluid.start
+    if given.run is not None:
+        return last_state(given.run)
+    if positions is None and given.positions is not None:
+        positions = _load("positions", given.positions)
+    if velocities is None and given.velocities is not None:
+        velocities = _load("velocities", given.velocities)
+    return positions, velocities
+
+
+def _load(name: str, path: str) -> Any:
+    """An array from a .npy file, or the only one (or the one of that name) from a .npz file."""
+    key = f"fluid.start.{name} = {path!r}"
+    try:
+        found = np.load(path, allow_pickle=False)
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+        raise CaseError(f"{key}: expected a .npy or .npz file: {error}") from None
+    if isinstance(found, np.ndarray):
+        return found
+    if name not in found.files and len(found.files) != 1:
+        raise CaseError(f"{key}: expected one array, or one named {name!r}")
+    return found[name if name in found.files else found.files[0]]
 
 
 def start(cpu: CPU, positions: Any = None, velocities: Any = None) -> None:

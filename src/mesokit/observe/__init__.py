@@ -9,7 +9,7 @@ from mesokit.observe.density_field import DensityField
 from mesokit.observe.density_profile import DensityProfile
 from mesokit.observe.longitudinal_modes import LongitudinalModes
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
-from mesokit.observe.protocol import Accumulator, Fluid, Observable
+from mesokit.observe.protocol import Accumulator, RunningFluid, Observable
 from mesokit.observe.result import Comparison, Result
 from mesokit.observe.stress import Stress
 from mesokit.observe.temperature_profile import TemperatureProfile
@@ -43,7 +43,7 @@ __all__ = [
     "Conservation",
     "DensityField",
     "DensityProfile",
-    "Fluid",
+    "RunningFluid",
     "LongitudinalModes",
     "MeanSquareDisplacement",
     "Observable",

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mesokit.box import AXES
 from mesokit.component import component, tag
 from mesokit.observe import setting
-from mesokit.observe.protocol import Fluid, Observable, State, pack, unpack
+from mesokit.observe.protocol import RunningFluid, Observable, State, pack, unpack
 from mesokit.observe.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -49,7 +49,7 @@ class ConservationAccumulator:
         self.drift = np.zeros(2)  # largest change of momentum and of kinetic energy so far
         self.counts = np.array([0, 1, 0])  # rows kept, samples per row, samples
 
-    def observe(self, fluid: Fluid) -> None:
+    def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         number, momentum, energy = fluid.totals()
         sample = np.array([number, *momentum, energy, self._temperature(number, momentum, energy)])

@@ -12,7 +12,7 @@ from mesokit.box import Axis
 from mesokit.component import component, param
 from mesokit.errors import CaseError
 from mesokit.observe import setting
-from mesokit.observe.protocol import Fluid, Observable, State, pack, unpack
+from mesokit.observe.protocol import RunningFluid, Observable, State, pack, unpack
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ class FieldAccumulator:
         }
         self.blocks = Blocks((width, *self.bins), capacity=CAPACITY)
 
-    def observe(self, fluid: Fluid) -> None:
+    def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         self.blocks.add(self.sample(*fluid.moments(self.axes, self.bins)))
 

@@ -15,7 +15,7 @@ from mesokit.errors import CaseError
 from mesokit.observe import setting
 from mesokit.observe.estimate import Estimate, fit
 from mesokit.observe.origins import Origins
-from mesokit.observe.protocol import Fluid, Observable, State, pack, unpack
+from mesokit.observe.protocol import RunningFluid, Observable, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ class MeanSquareDisplacementAccumulator:
         max_lag = max(1, observable.max_lag // observable.every)
         self.origins = Origins(len(self.ids), len(self.axes), max_lag)
 
-    def observe(self, fluid: Fluid) -> None:
+    def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         position = fluid.positions(self.ids, unwrapped=True)[:, list(self.axes)]
         self.origins.add(position, _square_distance)

@@ -12,7 +12,7 @@ from mesokit.box import AXES
 from mesokit.component import component, param
 from mesokit.errors import CaseError
 from mesokit.observe import setting
-from mesokit.observe.protocol import Fluid, Observable, State, pack, unpack
+from mesokit.observe.protocol import RunningFluid, Observable, State, pack, unpack
 from mesokit.observe.result import Comparison
 from mesokit.statistics import MultipleTau
 
@@ -89,7 +89,7 @@ class ModesAccumulator:
         """Unit vectors (p, d)."""
         raise NotImplementedError
 
-    def observe(self, fluid: Fluid) -> None:
+    def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         _, momentum = fluid.modes(self.wavevectors)
         amplitude = np.einsum("kpd,kd->kp", self.polarisations, momentum)

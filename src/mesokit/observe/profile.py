@@ -12,7 +12,7 @@ from mesokit.box import Axis
 from mesokit.component import component, param
 from mesokit.observe import setting
 from mesokit.observe.estimate import Estimate, mode_chi_square
-from mesokit.observe.protocol import Fluid, Observable, State, pack, unpack
+from mesokit.observe.protocol import RunningFluid, Observable, State, pack, unpack
 from mesokit.observe.result import Comparison
 from mesokit.statistics import Blocks
 
@@ -47,7 +47,7 @@ class ProfileAccumulator:
         self.periodic = not any(wall.axis == observable.axis for wall in case.walls)
         self.blocks = Blocks((width, self.bins))
 
-    def observe(self, fluid: Fluid) -> None:
+    def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         self.blocks.add(self.sample(*fluid.moments((self.axis,), (self.bins,))))
 

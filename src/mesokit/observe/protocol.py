@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 State = dict[str, NDArray[Any]]
 
 
-class Fluid(Protocol):
+class RunningFluid(Protocol):
     """What an observer may ask of the running fluid; d is the dimension, order is by particle id.
 
     `totals` gives number, momentum (d,) and kinetic energy of all particles. `moments` gives
@@ -59,7 +59,7 @@ class Fluid(Protocol):
 class Accumulator(Protocol):
     """The memory of an observable during a run: bounded, and the same bits after any resume."""
 
-    def observe(self, fluid: Fluid) -> None:
+    def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
 
     def state(self) -> State:

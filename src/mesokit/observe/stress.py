@@ -12,7 +12,7 @@ from mesokit.box import AXES
 from mesokit.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.observe import setting
-from mesokit.observe.protocol import Fluid, Observable, State, pack, unpack
+from mesokit.observe.protocol import RunningFluid, Observable, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from mesokit.case import Case
 
 PARTS = ("kinetic", "collisional", "total")
-UNIT = "m a^(2-d)/tau^2"
+UNIT = {2: "m/tau^2", 3: "m/(a tau^2)"}  # force per area, by dimension
 
 
 @component
@@ -53,7 +53,7 @@ class StressAccumulator:
         d = case.box.dimension
         self.blocks = Blocks((3, d, d))
 
-    def observe(self, fluid: Fluid) -> None:
+    def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         kinetic, collisional = fluid.stress["kinetic"], fluid.stress["collisional"]
         self.blocks.add(np.stack([kinetic, collisional, kinetic + collisional]))
@@ -76,7 +76,7 @@ class StressAccumulator:
             value=self.blocks.mean(),
             error=self.blocks.error(),
             label="stress",
-            units={"value": UNIT},
+            units={"value": UNIT[self.case.box.dimension]},
             expected=self.expected(),
             theory="molecular chaos, ideal gas",
             comparisons=tuple(self.comparisons()) if self.blocks.count else (),
@@ -136,7 +136,7 @@ class StressAccumulator:
                 float(-np.trace(mean[2]) / case.box.dimension),
                 float(self.trace_error()),
                 case.fluid.density * case.fluid.kT if known else np.nan,
-                UNIT,
+                UNIT[self.case.box.dimension],
             )
         )
         return found

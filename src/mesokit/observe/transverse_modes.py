@@ -16,7 +16,8 @@ from mesokit.observe.result import Comparison, Result
 if TYPE_CHECKING:
     from mesokit.case import Case
 
-LOWEST = 0.25  # of the correlation, that the fit looks at: later, noise decides
+LOWEST = (0.5, 0.2)  # of the correlation, that the fit looks at: later lags add little but noise
+FEWEST = 4  # lags; the lower limit serves where the sampling is too coarse for the upper one
 FIRST = 3  # steps left out of the fit: the first collisions do not obey hydrodynamics yet
 
 
@@ -77,9 +78,12 @@ class TransverseModesAccumulator(ModesAccumulator):
         for k, _, correlator in self.shells[:SHOWN]:
             lags, curve = normalised(correlator)
             time = lags * self.interval()
-            below = np.flatnonzero(~(curve.value > LOWEST))
-            use = np.arange(len(time)) < (below[0] if len(below) else len(time))
-            use &= lags * self.observable.every >= FIRST
+            for lowest in LOWEST:
+                below = np.flatnonzero(~(curve.value > lowest))
+                use = np.arange(len(time)) < (below[0] if len(below) else len(time))
+                use &= lags * self.observable.every >= FIRST
+                if use.sum() >= FEWEST:
+                    break
             if use.sum() < 3:
                 continue
             start = [-np.log(curve.value[use][-1]) / time[use][-1], 1.0]

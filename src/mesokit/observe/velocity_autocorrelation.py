@@ -15,7 +15,7 @@ from mesokit.observe import setting
 from mesokit.observe.estimate import Estimate
 from mesokit.observe.mean_square_displacement import spread_ids
 from mesokit.observe.origins import Origins
-from mesokit.observe.protocol import Fluid, Observable, State, pack, unpack
+from mesokit.observe.protocol import RunningFluid, Observable, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class VelocityAutocorrelationAccumulator:
         max_lag = max(1, observable.max_lag // observable.every)
         self.origins = Origins(len(self.ids), len(self.axes), max_lag)
 
-    def observe(self, fluid: Fluid) -> None:
+    def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         velocity = fluid.velocities(self.ids)[:, self.axes]
         self.origins.add(velocity, lambda old, new: np.einsum("ij,ij->i", old, new))

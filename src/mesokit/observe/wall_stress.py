@@ -13,7 +13,7 @@ from mesokit.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.observe import setting
 from mesokit.observe.estimate import of_mean
-from mesokit.observe.protocol import Fluid, Observable, State, pack, unpack
+from mesokit.observe.protocol import RunningFluid, Observable, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from mesokit.case import Case
 
 PLATES = ("lower", "upper")
-UNIT = "m a^(2-d)/tau^2"
+UNIT = {2: "m/tau^2", 3: "m/(a tau^2)"}  # force per area, by dimension
 
 
 @component
@@ -51,7 +51,7 @@ class WallStressAccumulator:
         self.area = np.prod(case.box.size) / case.box.size[self.axis]
         self.blocks = Blocks((2, case.box.dimension))
 
-    def observe(self, fluid: Fluid) -> None:
+    def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         impulse, steps = fluid.wall_impulse, fluid.wall_steps
         if steps:
@@ -75,7 +75,7 @@ class WallStressAccumulator:
             value=self.blocks.mean(),
             error=self.blocks.error(),
             label="force per area on the plates",
-            units={"value": UNIT},
+            units={"value": UNIT[self.case.box.dimension]},
             expected=expected,
             theory="momentum balance",
             comparisons=tuple(self.comparisons(expected)) if self.blocks.count else (),
@@ -138,7 +138,7 @@ class WallStressAccumulator:
                             float((mask * force.value).sum()),
                             float(error),
                             float(mask[plate, axis] * expected[plate, axis]),
-                            UNIT,
+                            UNIT[self.case.box.dimension],
                         )
                     )
             if axis != self.axis and setting.acceleration(self.case)[axis]:
@@ -150,7 +150,7 @@ class WallStressAccumulator:
                         float(total.value),
                         float(total.error),
                         float(expected[:, axis].sum()),
-                        UNIT,
+                        UNIT[self.case.box.dimension],
                         "the force on the fluid",
                     )
                 )

@@ -1,0 +1,112 @@
+"""Functions of a time lag: displacement, memory of a velocity, decay of modes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.observe.result import Result
+from mesokit.report.style import COLOURS, LINES, MARKERS, labelled
+
+SHOWN = 6  # curves in one figure
+
+
+def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
+    """Both axes logarithmic; the ratio to theory below."""
+    time, below = result.x["time"], None
+    use = time > 0
+    if ax is None and result.expected is not None and use.any():
+        ax, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
+    elif ax is None:
+        ax = figure.subplots()
+    t = time[use]
+    ax.errorbar(
+        t, result.value[use], result.error[use], fmt="o", mfc="white", color=COLOURS[0],
+        label=r"measured, $\pm$ one standard error", zorder=2,
+    )  # fmt: skip
+    if result.expected is not None:
+        label = f"theory: {result.theory}"
+        ax.plot(t, result.expected[use], "-", color="black", label=label, zorder=3)
+    if result.fit is not None:
+        late = "fit of the diffusion coefficient"
+        ax.plot(t, result.fit[use], "--", color=COLOURS[1], lw=1.5, label=late, zorder=4)
+    if len(t):
+        ax.set_xscale("log")
+        ax.set_yscale("log")
+    components = result.extra.get("components", "")
+    label = f"{result.label}" + (f" along {', '.join(components)}" if components else "")
+    ax.set_ylabel(labelled(label, result.units["value"]))
+    ax.legend(loc="upper left")
+    if below is not None:
+        ratio, error = (a[use] / result.expected[use] for a in (result.value, result.error))
+        below.axhline(1, color="black", lw=1)
+        below.errorbar(t, ratio, error, fmt="o", mfc="white", ms=3, color=COLOURS[0])
+        below.set_ylabel("measured\n/ theory")
+    (below or ax).set_xlabel(labelled("time lag $t$", result.units["time"]))
+
+
+def draw_memory(result: Result, figure: Any, ax: Any) -> None:
+    """Logarithmic in value and time, as a power law follows an exponential."""
+    ax = figure.subplots() if ax is None else ax
+    time = result.x["time"]
+    use = (time > 0) & (result.value > 0)
+    error = result.error[use]
+    ax.errorbar(
+        time[use], result.value[use], np.minimum(error, 0.999 * result.value[use]), fmt="o",
+        mfc="white", color=COLOURS[0], label=r"measured, $\pm$ one standard error", zorder=2,
+    )  # fmt: skip
+    if result.expected is not None and (result.expected > 0).all():
+        line = result.expected
+        label = f"theory: {result.theory}"
+        ax.plot(time[time > 0], line[time > 0], "-", color="black", label=label, zorder=3)
+    tail = result.extra.get("tail")
+    if tail is not None and np.isfinite(tail).any():
+        ax.plot(time, tail, "--", color=COLOURS[1], lw=1.5, label="theory: hydrodynamic tail")
+    if use.any():
+        ax.set_xscale("log")
+        ax.set_yscale("log")
+        ax.set_ylim(bottom=0.3 * max(result.value[use].min(), 1e-6 * result.value[use].max()))
+    ax.set_xlabel(labelled("time lag $t$", result.units["time"]))
+    label = r"velocity autocorrelation $\langle v_x(0)\, v_x(t)\rangle$"
+    ax.set_ylabel(labelled(label, result.units["value"]))
+    ax.legend(loc="best")
+
+
+def draw_modes(result: Result, figure: Any, ax: Any) -> None:
+    """One curve for each of the longest waves, up to where all have died."""
+    ax = figure.subplots() if ax is None else ax
+    time, shown = result.x["time"], min(SHOWN, len(result.x["wavenumber"]))
+    if not len(time):
+        return
+    end = _end(time, result)
+    fine = np.linspace(0, end, 400)
+    for i, k in enumerate(result.x["wavenumber"][:shown]):
+        colour, use = COLOURS[i % len(COLOURS)], time <= end
+        ax.errorbar(
+            time[use], result.value[use, i], result.error[use, i], fmt=MARKERS[i % len(MARKERS)],
+            mfc="white", color=colour, lw=0.8, label=f"$k = {k:.4g}/a$", zorder=2,
+        )  # fmt: skip
+        if result.expected is not None:
+            line = np.interp(fine, time[use], result.expected[use, i])
+            label = f"theory: {_pretty(result.theory)}" if i == 0 else None
+            ax.plot(fine, line, ls=LINES[i % len(LINES)], color="black", lw=1, label=label, zorder=3)
+    ax.axhline(0, color="0.6", lw=0.8, zorder=1)
+    ax.set_xlim(0, end)
+    ax.set_xlabel(labelled("time lag $t$", result.units["time"]))
+    kind = "T" if result.quantity.startswith("t") else "L"
+    ax.set_ylabel(rf"$C_v^{kind}(k, t)\,/\,C_v^{kind}(k, 0)$")
+    ax.legend(loc="upper right", ncols=1 + shown // 4)
+
+
+def _end(time: NDArray[np.float64], result: Result) -> float:
+    """The lag after which the longest wave stays small."""
+    curve = result.value if result.expected is None else result.expected
+    alive = np.flatnonzero(abs(curve[:, 0]) > 0.03)
+    last = min(alive[-1] + 1 if len(alive) else 1, len(time) - 1)
+    return float(time[max(last, min(4, len(time) - 1))]) or 1.0
+
+
+def _pretty(theory: str) -> str:
+    return r"$e^{-\nu k^2 t}$" if theory == "exp(-nu k^2 t)" else theory

@@ -1,0 +1,72 @@
+"""One figure for each result: data with error bars, theory, and what the comparison says.
+
+Matplotlib is imported when a figure is made, and drawn without a display.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+from mesokit.errors import RunError
+from mesokit.io.atomic import replacing
+from mesokit.observe.result import Result
+from mesokit.report import correlation, field, profile, series, tensor
+from mesokit.report.style import HEIGHT, STYLE, WIDTH, below
+
+DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
+    "conservation": series.draw,
+    "velocity-profile": profile.draw,
+    "density-profile": profile.draw,
+    "temperature-profile": profile.draw,
+    "velocity-field": field.draw_velocity,
+    "density-field": field.draw_density,
+    "mean-square-displacement": correlation.draw_displacement,
+    "velocity-autocorrelation": correlation.draw_memory,
+    "transverse-modes": correlation.draw_modes,
+    "longitudinal-modes": correlation.draw_modes,
+    "wall-stress": tensor.draw,
+    "stress": tensor.draw,
+}
+
+
+def plot(result: Result, ax: Any = None) -> Any:
+    """Draw a result into a new figure, or into the axes `ax`; returns the figure.
+
+    In given axes the main panel alone is drawn, without the comparisons.
+    """
+    import matplotlib as mpl
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    with mpl.rc_context(STYLE):
+        if ax is not None:
+            DRAW[result.quantity](result, ax.figure, ax)
+            return ax.figure
+        lines = 0.17 * len(result.comparisons)
+        figure = Figure(figsize=(WIDTH, HEIGHT + lines), layout="constrained")
+        FigureCanvasAgg(figure)
+        DRAW[result.quantity](result, figure, None)
+        below(figure, result.comparisons)
+        return figure
+
+
+def save(result: Result, path: str | Path) -> Path:
+    """Draw a result into a file (PNG, PDF, SVG by its ending). Raises RunError."""
+    import matplotlib as mpl
+
+    path = Path(path)
+    figure = plot(result)
+    kind = path.suffix[1:].lower() or "png"
+    if kind not in figure.canvas.get_supported_filetypes():
+        known = ", ".join(sorted(figure.canvas.get_supported_filetypes()))
+        raise RunError(f"{path}: no figure of that kind; choose one of {known}")
+    with mpl.rc_context(STYLE), replacing(path) as temporary:
+        figure.savefig(temporary, format=kind)
+    return path
+
+
+def save_all(results: Iterable[Result], folder: str | Path) -> list[Path]:
+    """Draw each result that has samples into `folder`/name.png; returns the files."""
+    return [save(r, Path(folder) / f"{r.name}.png") for r in results if r.samples]

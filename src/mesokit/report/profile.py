@@ -1,0 +1,69 @@
+"""Profiles: data, theory and fit above, deviation from theory in standard errors below."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from mesokit.observe.result import Result
+from mesokit.report.style import COLOURS, labelled
+
+NAMES = {
+    "poiseuille": "Poiseuille, no slip",
+    "half poiseuille": "Poiseuille, one slip plate",
+    "couette": "Couette, no slip",
+    "lees-edwards": "uniform shear",
+    "kolmogorov": "Kolmogorov",
+}
+
+
+def draw(result: Result, figure: Any, ax: Any) -> None:
+    """Draw a profile; the panel of deviations only in a figure of its own."""
+    (axis, x), residuals = next(iter(result.x.items())), None
+    if ax is None and result.expected is not None and np.isfinite(result.expected).any():
+        ax, residuals = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
+    elif ax is None:
+        ax = figure.subplots()
+    many = len(x) > 150
+    ax.errorbar(
+        x, result.value, result.error, fmt="o", mfc="white", color=COLOURS[0], ms=2 if many else 4,
+        lw=0.8, capsize=0 if many else 2, label=r"measured, $\pm$ one standard error", zorder=2,
+    )  # fmt: skip
+    if result.expected is not None and np.isfinite(result.expected).any():
+        name = NAMES.get(result.theory, result.theory)
+        ax.plot(x, result.expected, "-", color="black", lw=1.5, label=f"theory: {name}", zorder=3)
+    if result.fit is not None:
+        ax.plot(x, result.fit, "--", color=COLOURS[1], lw=1.3, label="fit", zorder=4)
+    ax.set_ylabel(labelled(_with_index(result.label), result.units["value"]))
+    _frame(ax, result)
+    ax.legend(loc="best")
+    bottom = ax
+    if residuals is not None:
+        bottom = residuals
+        deviation = result.deviation
+        residuals.axhline(0, color="black", lw=1)
+        residuals.axhspan(-1, 1, color="0.88", lw=0)
+        residuals.plot(x, deviation, "o", mfc="white", color=COLOURS[0], ms=2 if many else 3)
+        residuals.set_ylabel("deviation\n[std. errors]")
+        finite = abs(deviation[np.isfinite(deviation)]) if deviation is not None else np.zeros(0)
+        reach = max(3.5, 1.15 * finite.max()) if len(finite) else 3.5
+        residuals.set_ylim(-reach, reach)
+    bottom.set_xlabel(labelled(f"${axis}$", result.units[axis]))
+    bottom.set_xlim(0, x[-1] + x[0])
+
+
+def _frame(ax: Any, result: Result) -> None:
+    """Do not blow noise about a constant up to the height of the figure."""
+    expected = result.expected
+    if expected is None or not np.isfinite(expected).any() or np.ptp(expected) > 0:
+        return
+    low, high = ax.get_ylim()
+    level = float(np.nanmean(expected))
+    half = max(high - level, level - low, 0.01 * abs(level)) * 1.25
+    ax.set_ylim(level - half, level + half)
+
+
+def _with_index(label: str) -> str:
+    words = label.split()
+    return " ".join(f"${w.replace('k_B', 'k_B')}$" if "_" in w else w for w in words)

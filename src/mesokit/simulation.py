@@ -1,0 +1,313 @@
+"""A simulation: build it, run it, resume it, look at what it measured."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+from mesokit.case import Case
+from mesokit.errors import CaseError, CheckpointError, RunError
+from mesokit.execute.cpu import CPU
+from mesokit.io import checkpoint, h5md
+from mesokit.io.run_directory import RunDirectory, now, provenance
+from mesokit.io.trajectory import TrajectoryWriter
+from mesokit.mpcd.initial import read_arrays, start
+from mesokit.progress import Reporter
+
+if TYPE_CHECKING:
+    from mesokit.observe.protocol import Accumulator, Observable
+    from mesokit.observe.result import Result
+
+CALL_SECONDS = 0.2  # of compiled code at a time, so that Ctrl-C and the progress bar are prompt
+COMPILE_SECONDS = 0.7  # a first call that takes longer is compiling, not loading
+
+
+class Simulation:
+    """A case in memory, ready to run.
+
+    Parameters
+    ----------
+    case : Case, optional
+        What to simulate; or give its parts (`run`, `box`, `fluid`, `walls`, `observe`, ...) by name.
+    output : path, optional
+        Folder to write to; nothing is written without it.
+    threads : int, optional
+        Threads to use (all cores unless said). Results do not depend on it.
+    positions, velocities : array (n, d), optional
+        Start from these, by particle id, in cells and cells per unit of time.
+
+    Raises
+    ------
+    CaseError
+        For a case that cannot be run.
+    RunError
+        If the folder cannot be written, or holds something already.
+
+    Examples
+    --------
+    >>> from mesokit import Box, Conservation, Run, Simulation
+    >>> simulation = Simulation(run=Run(steps=20), box=Box([8, 8]), observe=[Conservation(every=1)])
+    >>> simulation.run()
+    >>> simulation.step
+    20
+    """
+
+    def __init__(
+        self,
+        case: Case | None = None,
+        *,
+        output: str | Path | None = None,
+        threads: int | None = None,
+        positions: Any = None,
+        velocities: Any = None,
+        **parts: Any,
+    ) -> None:
+        if (case is None) == (not parts):
+            raise CaseError("Simulation: expected a case, or its parts by name")
+        self.case = Case(**parts) if case is None else case
+        self.threads = threads or len(os.sched_getaffinity(0))
+        self._build()
+        given = positions is not None or velocities is not None
+        positions, velocities = read_arrays(self.case, positions, velocities, _last_state)
+        start(self.fluid, positions, velocities)
+        self.directory: RunDirectory | None = None
+        if output is not None:
+            self._attach(RunDirectory.create(output, self.case))
+            self._save_provenance(provenance(self.case, self.threads))
+            if given:
+                self.checkpoint()
+
+    @classmethod
+    def resume(cls, output: str | Path, threads: int | None = None) -> Simulation:
+        """Go on with the run in a folder, from its last checkpoint (or the start, if none).
+
+        Raises RunError, CheckpointError if there is none or it is damaged.
+        """
+        directory = RunDirectory.existing(output)
+        self = cls.__new__(cls)
+        self.case = Case.from_toml(directory.case_file)
+        self.threads = threads or len(os.sched_getaffinity(0))
+        self._build()
+        self._attach(directory)
+        if directory.checkpoint_file.exists():
+            self._restore()
+        else:
+            start(self.fluid, *read_arrays(self.case, None, None, _last_state))
+        if self.writer is not None:
+            self.writer.resume(self.step)
+        record = directory.read_provenance() or provenance(self.case, self.threads)
+        self._save_provenance(record | {"resumed": [*record.get("resumed", []), now()]})
+        return self
+
+    def _build(self) -> None:
+        measures = {name for observable in self.case.observe for name in observable.measures}
+        self.fluid = CPU(self.case, self.threads, sorted(measures))
+        self.accumulators: dict[str, Accumulator] = {
+            observable.label: observable.accumulator(self.case) for observable in self.case.observe
+        }
+        self.writer: TrajectoryWriter | None = None
+        self.last_step = self.case.run.warmup + self.case.run.steps
+        self._observe_seconds = dict.fromkeys(self.accumulators, 0.0)
+        self._stopped_by: signal.Signals | None = None
+
+    def _attach(self, directory: RunDirectory) -> None:
+        self.directory = directory
+        if self.case.trajectory is not None:
+            folder = directory.trajectory_folder
+            self.writer = TrajectoryWriter(self.case.trajectory, folder, self.fluid.n)
+
+    @property
+    def step(self) -> int:
+        """Steps done, the warm-up included."""
+        return self.fluid.step
+
+    def __getitem__(self, name: str) -> Result:
+        """What an observable says so far."""
+        if name not in self.accumulators:
+            known = ", ".join(self.accumulators) or "none"
+            raise KeyError(f"no observable {name!r}; there are {known}")
+        return self.accumulators[name].result()
+
+    @property
+    def results(self) -> dict[str, Result]:
+        """What all observables say so far, by name."""
+        return {name: accumulator.result() for name, accumulator in self.accumulators.items()}
+
+    # --- running --------------------------------------------------------------------------------
+
+    def run(self, progress: Reporter | None = None) -> None:
+        """Run to the end, then write results and figures.
+
+        Ctrl-C or SIGTERM writes a checkpoint and raises KeyboardInterrupt; `resume` goes on.
+        """
+        progress = progress or Reporter(quiet=True)
+        phase = "warming up" if self.step < self.case.run.warmup else "running"
+        progress.start(self.last_step, self.fluid.n, phase, self.step)
+        try:
+            with self._catching_signals():
+                self._compile(progress)
+                self._loop(progress)
+                if self._stopped_by is None:
+                    self._end()
+        finally:
+            progress.finish()
+        if self._stopped_by is not None:
+            raise KeyboardInterrupt(f"stopped at step {self.step} by {self._stopped_by.name}")
+
+    def _compile(self, progress: Reporter) -> None:
+        """Load or compile the kernels; say so if it takes long."""
+        timer = threading.Timer(COMPILE_SECONDS, progress.compiling)
+        timer.start()
+        try:
+            self.fluid.advance(0)
+        finally:
+            timer.cancel()
+
+    def _loop(self, progress: Reporter) -> None:
+        chunk, saved = 1, perf_counter()
+        while self.step < self.last_step and self._stopped_by is None:
+            began, target = perf_counter(), min(self._next_stop(), self.step + chunk)
+            steps = target - self.step
+            due = self._due(target)
+            stress = any("stress" in observable.measures for observable in due)
+            self.fluid.advance(steps, measure_stress=stress)
+            chunk = _next_chunk(steps, perf_counter() - began)
+            self._observe(due)
+            if self._checkpoint_due(perf_counter() - saved):
+                self.checkpoint()
+                saved = perf_counter()
+            progress.update(self.step)
+        if self._stopped_by is not None:
+            self.checkpoint()
+
+    def _next_stop(self) -> int:
+        """The next step at which something is due."""
+        warmup, run = self.case.run.warmup, self.case.run
+        if self.step < warmup:
+            stops = [warmup]
+        else:
+            passed = self.step - warmup
+            intervals = [observable.every for observable in self.case.observe]
+            if self.case.trajectory is not None:
+                intervals.append(self.case.trajectory.every)
+            stops = [self.step + every - passed % every for every in intervals]
+        if run.checkpoint_every is not None:
+            stops.append(self.step + run.checkpoint_every - self.step % run.checkpoint_every)
+        return min([self.last_step, *stops])
+
+    def _due(self, step: int) -> list[Observable]:
+        passed = step - self.case.run.warmup
+        return [o for o in self.case.observe if passed > 0 and passed % o.every == 0]
+
+    def _observe(self, due: list[Observable]) -> None:
+        if self.step == self.case.run.warmup:
+            self.fluid.wall_impulse  # noqa: B018  what the walls took so far is not to be seen
+        for observable in due:
+            began = perf_counter()
+            self.accumulators[observable.label].observe(self.fluid)
+            self._observe_seconds[observable.label] += perf_counter() - began
+        passed, trajectory = self.step - self.case.run.warmup, self.case.trajectory
+        if self.writer and trajectory and passed > 0 and passed % trajectory.every == 0:
+            self.writer.record(self.fluid)
+
+    def _end(self) -> None:
+        if self.directory is None:
+            return
+        self.checkpoint()
+        record = self.directory.read_provenance()
+        record |= {"ended": now(), "timings": self.timings}
+        results, path = self.results, self.directory.data_file
+        masses, species = self.fluid.masses(), self.fluid.species()
+        h5md.write(path, self.case, record, results.values(), self.writer, masses, species)
+        self._save_provenance(record)
+        from mesokit.report import save_all
+
+        save_all(results.values(), self.directory.path)
+        if self.writer is not None:
+            self.writer.remove()
+
+    @property
+    def timings(self) -> dict[str, float]:
+        """Seconds spent in each stage and observable since this process began the run."""
+        observing = {f"observe {name}": s for name, s in self._observe_seconds.items()}
+        return self.fluid.seconds | observing
+
+    # --- safety ---------------------------------------------------------------------------------
+
+    def checkpoint(self) -> None:
+        """Write a checkpoint now. Raises RunError if there is no folder or it cannot be written."""
+        if self.directory is None:
+            raise RunError("no checkpoint without an output folder")
+        if self.writer is not None:
+            self.writer.flush()
+        arrays = {f"fluid/{key}": value for key, value in self.fluid.state().items()}
+        for name, accumulator in self.accumulators.items():
+            arrays |= {f"observe/{name}/{key}": v for key, v in accumulator.state().items()}
+        case = checkpoint.digest(self.case.to_toml())
+        checkpoint.write(self.directory.checkpoint_file, arrays, {"step": self.step}, case)
+
+    def _restore(self) -> None:
+        assert self.directory is not None
+        path = self.directory.checkpoint_file
+        arrays, _ = checkpoint.read(path, checkpoint.digest(self.case.to_toml()))
+        try:
+            self.fluid.restore(_part(arrays, "fluid/"))
+            for name, accumulator in self.accumulators.items():
+                accumulator.restore(_part(arrays, f"observe/{name}/"))
+        except (KeyError, ValueError, IndexError) as error:
+            raise CheckpointError(f"{path}: does not fit this case: {error}") from None
+
+    def _checkpoint_due(self, seconds: float) -> bool:
+        if self.directory is None or self._stopped_by is not None:
+            return False
+        every = self.case.run.checkpoint_every
+        by_steps = every is not None and self.step % every == 0
+        return by_steps or seconds > 60.0 * self.case.run.checkpoint_minutes
+
+    def _save_provenance(self, record: dict[str, Any]) -> None:
+        assert self.directory is not None
+        self.directory.write_provenance(record)
+
+    @contextlib.contextmanager
+    def _catching_signals(self) -> Iterator[None]:
+        """Ctrl-C and SIGTERM end the loop after the steps in hand; a second Ctrl-C stops at once."""
+        self._stopped_by = None
+        if threading.current_thread() is not threading.main_thread():
+            yield
+            return
+
+        def stop(number: int, frame: Any) -> None:
+            if self._stopped_by is not None:
+                raise KeyboardInterrupt
+            self._stopped_by = signal.Signals(number)
+
+        before = {s: signal.signal(s, stop) for s in (signal.SIGINT, signal.SIGTERM)}
+        try:
+            yield
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+
+def _next_chunk(steps: int, seconds: float) -> int:
+    """So many steps that the next call takes CALL_SECONDS, growing at most fourfold at a time."""
+    return max(1, min(4 * steps, int(steps * CALL_SECONDS / max(seconds, 1e-9))))
+
+
+def _part(arrays: dict[str, Any], start: str) -> dict[str, Any]:
+    return {key[len(start) :]: v for key, v in arrays.items() if key.startswith(start)}
+
+
+def _last_state(path: str) -> tuple[Any, Any]:
+    """Positions and velocities, by particle id, of the last checkpoint of an earlier run."""
+    directory = RunDirectory.existing(path)
+    fluid = CPU(Case.from_toml(directory.case_file))
+    arrays, _ = checkpoint.read(directory.checkpoint_file)
+    fluid.restore(_part(arrays, "fluid/"))
+    return fluid.positions(), fluid.velocities()
