@@ -58,7 +58,7 @@ class Box:
         if self.shear_rate == 0.0:
             return Periodic(size, inverse)
         speed = self.shear_rate * size[1]
-        return Sheared(size, inverse, speed, math.fmod(speed * time, size[0]))
+        return Sheared(size, inverse, speed, speed * time % size[0])
 
 
 class Periodic(NamedTuple):
@@ -93,7 +93,7 @@ def _(box, time):
 
 @at_time.register(Sheared)
 def _(box, time):
-    return Sheared(box.size, box.inverse, box.speed, math.fmod(box.speed * time, box.size[0]))
+    return Sheared(box.size, box.inverse, box.speed, box.speed * time % box.size[0])
 
 
 @scalar

@@ -194,35 +194,45 @@ def _read(path: Path, settings: dict[str, str]) -> Case:
 
 def _claim(output: Path, overwrite: bool) -> None:
     """Refuse a folder that holds something, unless it is an earlier run to be replaced."""
-    if output.is_dir() and any(output.iterdir()):
-        earlier = (output / "case.toml").is_file()
-        if not (overwrite and earlier):
-            what = (
-                "an earlier run; mesokit resume goes on with it, --overwrite replaces it"
-                if earlier
-                else "files that are no run; choose another folder"
-            )
-            raise CaseError(f"--output {output}: holds {what}")
-    elif output.exists() and not output.is_dir():
+    if output.exists() and not output.is_dir():
         raise CaseError(f"--output {output}: is a file; choose another folder")
+    there = sorted(output.iterdir()) if output.is_dir() else []
+    own = _files_of_run(output)
+    if not there or (overwrite and set(there) <= set(own)):
+        return
+    others = [path.name for path in there if path not in own]
+    if others:
+        raise CaseError(
+            f"--output {output}: holds other files ({others[0]}); choose another folder"
+        )
+    raise CaseError(
+        f"--output {output}: holds an earlier run; mesokit resume goes on with it, "
+        "--overwrite replaces it"
+    )
 
 
-def _clear(output: Path) -> None:
-    """Remove the files of an earlier run, and nothing else."""
+def _files_of_run(output: Path) -> list[Path]:
+    """What an earlier run has written into a folder; the case, which makes it a run, is last."""
     from mesokit.case import Case
     from mesokit.io.run_directory import RunDirectory
 
     run = RunDirectory(output)
-    if not run.case_file.exists():
-        return
+    if not run.case_file.is_file():
+        return []
+    figures: list[Path] = []
     with contextlib.suppress(CaseError):
-        for observable in Case.from_toml(run.case_file).observe:
-            run.figure_file(observable.label).unlink(missing_ok=True)
-    if run.trajectory_folder.is_dir():
-        shutil.rmtree(run.trajectory_folder)
-    for file in (run.data_file, run.checkpoint_file, run.log_file, run.provenance_file):
-        file.unlink(missing_ok=True)
-    run.case_file.unlink()  # last: without it the rest would be no run any more
+        figures = [run.figure_file(o.label) for o in Case.from_toml(run.case_file).observe]
+    files = [run.data_file, run.checkpoint_file, run.log_file, run.provenance_file]
+    return [*figures, *output.glob(".*.tmp"), run.trajectory_folder, *files, run.case_file]
+
+
+def _clear(output: Path) -> None:
+    """Remove the files of an earlier run."""
+    for path in _files_of_run(output):
+        if path.is_dir():
+            shutil.rmtree(path)
+        else:
+            path.unlink(missing_ok=True)
 
 
 @contextlib.contextmanager

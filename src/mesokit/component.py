@@ -126,15 +126,16 @@ def _union(hints: Sequence[Any]) -> Any:
 def _real(value: Any) -> float:
     if not isinstance(value, numbers.Real) or isinstance(value, bool):
         raise PydanticCustomError("number", "expected a number")
-    if abs(value) <= sys.float_info.max:
-        return float(value)
+    number: Any = value
+    if abs(number) <= sys.float_info.max:
+        return float(number)
     raise PydanticCustomError("number", "expected a finite number")
 
 
 def _whole(value: Any) -> int:
     if isinstance(value, numbers.Real) and not isinstance(value, bool):
-        whole = value if isinstance(value, numbers.Integral) else float(value)
-        if abs(whole) >= 2**63:
+        whole: Any = value if isinstance(value, numbers.Integral) else float(value)
+        if not abs(whole) < 2**63:
             raise PydanticCustomError("whole", "expected a whole number of at most 63 bits")
         if whole == int(whole):
             return int(whole)

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 
 WINDOW = 10.0  # seconds of the recent past that the rate and the ETA come from
 REDRAW = 0.2  # seconds between two states of the bar
-FIRST = 0.5  # seconds to measure before the first word about speed
+FIRST = 1.0  # seconds to measure before the first word about speed
+WARM = 0.5  # of them, the last that count: kernels are loaded in the others
 
 
 class Rate:
@@ -23,10 +24,10 @@ class Rate:
     def __init__(self) -> None:
         self.marks: deque[tuple[float, int]] = deque()
 
-    def add(self, now: float, step: int) -> None:
-        """Note that `step` was reached at the time `now` (seconds)."""
+    def add(self, now: float, step: int, window: float = WINDOW) -> None:
+        """Note that `step` was reached at the time `now` (seconds); forget what is older."""
         self.marks.append((now, step))
-        while len(self.marks) > 2 and self.marks[1][0] <= now - WINDOW:
+        while len(self.marks) > 2 and self.marks[1][0] <= now - window:
             self.marks.popleft()
 
     @property
@@ -59,6 +60,7 @@ class Reporter:
         self.total = self.particles = self.first = self.last = 0
         self.phase = ""
         self.fresh = False  # nothing measured yet, or only the compiler
+        self.started = self.began = 0.0  # time of the start, and of the first measured step
         self.next = 0.0  # time of the next line
         self.rate = Rate()
         self.bar: Progress | None = None
@@ -70,7 +72,7 @@ class Reporter:
         """A phase of the run begins at `step` of `total_steps`."""
         self.total, self.particles, self.phase = total_steps, particles, phase
         self.first = self.last = step
-        self.began = time.monotonic()
+        self.started = time.monotonic()
         self._measure_anew(step)
         if self.quiet:
             return
@@ -100,6 +102,8 @@ class Reporter:
             return
         now = time.monotonic()
         if now < self.next:
+            if now < self.began + FIRST:
+                self.rate.add(now, step, WARM)
             return
         self.rate.add(now, step)
         if self.bar is not None and self.task is not None:
@@ -114,7 +118,7 @@ class Reporter:
         """The phase is over, or the run was stopped."""
         if self.quiet or not self.phase:
             return
-        took = duration_text(time.monotonic() - self.began)
+        took = duration_text(time.monotonic() - self.started)
         if self.bar is not None and self.task is not None:
             self.bar.update(self.task, completed=self.last, words=took)
             self.bar.stop()
@@ -135,9 +139,9 @@ class Reporter:
 
     def _measure_anew(self, step: int) -> None:
         self.fresh, self.rate = False, Rate()
-        now = time.monotonic()
-        self.rate.add(now, step)
-        self.next = now + FIRST
+        self.began = time.monotonic()
+        self.rate.add(self.began, step)
+        self.next = self.began + FIRST
 
     def _say(self, text: str) -> None:
         print(text, file=self.stream, flush=True)

@@ -68,6 +68,7 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "text for a number": ({"density = 5": 'density = "five"'}, ("fluid.density = 'five'",)),
     "boolean for a number": ({"density = 5": "density = true"}, ("fluid.density = true",)),
     "half a step": ({"steps = 10": "steps = 10.5"}, ("run.steps = 10.5", "whole number")),
+    "no number of steps": ({"steps = 10": "steps = nan"}, ("run.steps = nan", "whole number")),
     "half a cell": ({"[20, 10]": "[20, 10.5]"}, ("box.size[#2] = 10.5", "whole number")),
     "number for a list": ({"[20, 10]": "20"}, ("box.size = 20", "list")),
     "number for a text": ({'"slit"': "3"}, ("title = 3", "text")),

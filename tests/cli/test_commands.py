@@ -163,7 +163,7 @@ class TestRun:
         Path("case").mkdir()
         Path("case/thesis.tex").write_text("precious")
         for options in ([], ["--overwrite"]):
-            assert "no run" in refusal(capsys, "run", "case.toml", *options)
+            assert "thesis.tex" in refusal(capsys, "run", "case.toml", *options)
         assert Path("case/thesis.tex").read_text() == "precious"
 
     def test_refuses_a_file_for_a_folder(self, capsys: Captured) -> None:

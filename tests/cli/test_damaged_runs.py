@@ -19,7 +19,7 @@ steps = 20
 [box]
 size = [8, 8]
 [fluid]
-density = 4
+density = 10
 [[observe]]
 quantity = "conservation"
 every = 2
@@ -87,13 +87,6 @@ def test_damaged_checkpoint(damage, folder: Path, capsys: pytest.CaptureFixture[
     assert contents(folder) == before
 
 
-def test_lost_checkpoint(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (folder / "run" / "checkpoint.npz").unlink()
-    before = contents(folder)
-    assert "checkpoint" in refusal(capsys, "resume", "run")
-    assert contents(folder) == before
-
-
 def test_checkpoint_of_another_case(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     shutil.copy(folder / "other" / "checkpoint.npz", folder / "run" / "checkpoint.npz")
     before = contents(folder)
@@ -103,7 +96,7 @@ def test_checkpoint_of_another_case(folder: Path, capsys: pytest.CaptureFixture[
 
 def test_case_changed_after_the_run(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     case = folder / "run" / "case.toml"
-    case.write_text(case.read_text().replace("density = 4", "density = 5"))
+    case.write_text(case.read_text().replace("density = 10", "density = 11"))
     before = contents(folder)
     assert "case" in refusal(capsys, "resume", "run")
     assert contents(folder) == before
@@ -135,18 +128,17 @@ def test_wrong_start_arrays(
     if content == "no array":
         (folder / "start.npy").write_text("1 2 3")
     else:
-        np.save("start.npy", np.full((256, 3 if content == "wrong shape" else 2), np.nan))
+        np.save("start.npy", np.full((640, 3 if content == "wrong shape" else 2), np.nan))
     message = refusal(
         capsys, "run", "case.toml", "--output", "new", "--set", f"fluid.start.{name}=start.npy"
     )
-    assert name in message
-    assert "start.npy" in message
+    assert f"fluid.start.{name}" in message
 
 
 def test_start_from_a_run_of_another_size(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     message = refusal(
         capsys, "run", "case.toml", "--output", "new",
-        "--set", "fluid.start.run=run", "--set", "fluid.density=5",
+        "--set", "fluid.start.run=run", "--set", "fluid.density=11",
     )  # fmt: skip
     assert "start" in message
 
@@ -180,10 +172,16 @@ def test_full_disk(folder: Path) -> None:
     assert {k: v for k, v in contents(folder).items() if "/new/" not in k} == before
 
 
-def test_overwrite_replaces_only_the_run(folder: Path) -> None:
-    (folder / "run" / "notes.txt").write_text("precious")
+def test_overwrite_replaces_a_run(folder: Path) -> None:
     with pytest.raises(SystemExit) as end:
         main(["run", "case.toml", "--output", "run", "--overwrite", "--quiet", "--seed", "3"])
     assert not end.value.code
-    assert (folder / "run" / "notes.txt").read_text() == "precious"
     assert "seed = 3" in (folder / "run" / "case.toml").read_text()
+
+
+def test_overwrite_spares_other_files(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "run" / "notes.txt").write_text("precious")
+    before = contents(folder)
+    message = refusal(capsys, "run", "case.toml", "--output", "run", "--overwrite")
+    assert "notes.txt" in message
+    assert contents(folder) == before

@@ -20,7 +20,17 @@ class FakeFluid:
         self.unwrapped = self.rng.random((self.n, self.dimension)) * self.box
         self.density = density  # along y, drawn by rejection at every step
         self.stress = {}
-        self.wall_impulse, self.wall_steps = np.zeros((2, self.dimension)), 0
+        self.on_walls, self.wall_steps = np.zeros((2, self.dimension)), 0
+
+    @property
+    def wall_impulse(self):
+        """Since the last call: reading it starts the count anew."""
+        self.wall_steps = 0
+        return self.on_walls
+
+    @wall_impulse.setter
+    def wall_impulse(self, value):
+        self.on_walls = value
 
     @property
     def time(self):
@@ -62,11 +72,18 @@ class FakeFluid:
 
     def totals(self):
         v = self.velocities()
-        return self.n, (self.m[:, None] * v).sum(axis=0), 0.5 * float((self.m[:, None] * v**2).sum())
+        return (
+            self.n,
+            (self.m[:, None] * v).sum(axis=0),
+            0.5 * float((self.m[:, None] * v**2).sum()),
+        )
 
     def moments(self, axes, bins):
         x, v = self.positions(), self.velocities()
-        where = [np.minimum((x[:, a] / self.box[a] * n).astype(int), n - 1) for a, n in zip(axes, bins)]
+        where = [
+            np.minimum((x[:, a] / self.box[a] * n).astype(int), n - 1)
+            for a, n in zip(axes, bins, strict=True)
+        ]
         flat = np.ravel_multi_index(where, bins)
 
         def total(weights):
@@ -111,9 +128,8 @@ class FakeWaves:
             self.kept[:, None] * self.across + np.sqrt(1 - self.kept[:, None] ** 2) * noise
         )
         fresh = self._complex((len(self.k), 2))
-        self.along = np.array(
-            [a @ s + n @ f for a, s, n, f in zip(self.flow, self.along, self.noise, fresh)]
-        )
+        every = zip(self.flow, self.along, self.noise, fresh, strict=True)
+        self.along = np.array([a @ s + n @ f for a, s, n, f in every])
 
     def modes(self, wavevectors):
         assert np.allclose(wavevectors, self.k)

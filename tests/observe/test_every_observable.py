@@ -31,7 +31,7 @@ def sampled(accumulator, fluid, samples, rng):
         accumulator.observe(fluid)
 
 
-@pytest.mark.parametrize("size", [(6, 6), (4, 6, 4)])
+@pytest.mark.parametrize("size", [(6, 6), (4, 4, 4)])
 @pytest.mark.parametrize("kind", OBSERVABLES)
 def test_same_bits_after_a_stop(kind, size, make_case):
     observable = kind()

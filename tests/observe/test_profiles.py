@@ -17,8 +17,8 @@ from mesokit.observe import (
     TemperatureProfile,
     VelocityField,
     VelocityProfile,
+    setting,
 )
-from mesokit.observe import setting
 
 
 def watched(case, observable, flow=None, samples=300, seed=1):
@@ -95,9 +95,7 @@ def test_error_of_the_fit_knows_that_bins_rise_and_fall_together(make_case):
 
 
 def test_couette(make_case):
-    walls = [
-        Plates(axis="y", lower=Surface(velocity=(-0.5, 0)), upper=Surface(velocity=(0.5, 0)))
-    ]
+    walls = [Plates(axis="y", lower=Surface(velocity=(-0.5, 0)), upper=Surface(velocity=(0.5, 0)))]
     case = make_case((8, 12), walls=walls, thermostat=MaxwellBoltzmann())
     found = by_name(watched(case, VelocityProfile(), lambda y: (y - 6) / 12))
     assert found["shear rate"].expected == pytest.approx(1 / 12)
@@ -131,21 +129,26 @@ def test_kolmogorov(make_case):
 
 
 @pytest.mark.parametrize(
-    ("walls", "fluid", "expected"),
+    ("plates", "expected"),
     [
-        ([Plates(axis="y", upper=Surface(rule="slip"))], {}, lambda y, nu: 0.02 * y * (24 - y) / 2 / nu),
-        ([Plates(axis="y", lower=Surface(rule="slip"))], {}, lambda y, nu: 0.02 * (144 - y * y) / 2 / nu),
-        ([Plates(axis="y", lower=Surface(velocity=(1, 0)))], {},
-         lambda y, nu: 1 - y / 12 + 0.02 * y * (12 - y) / 2 / nu),
+        ({"upper": Surface(rule="slip")}, lambda y: y * (24 - y)),
+        ({"lower": Surface(rule="slip")}, lambda y: 144 - y * y),
     ],
-)  # fmt: skip
-def test_expected_flow_between_mixed_plates(make_case, walls, fluid, expected):
-    case = make_case(
-        (8, 12), walls=walls, force=Uniform((0.02, 0)), thermostat=MaxwellBoltzmann()
-    )
+)
+def test_expected_flow_with_one_slip_plate(make_case, plates, expected):
+    walls = [Plates(axis="y", **plates)]
+    case = make_case((8, 12), walls=walls, force=Uniform((0.02, 0)), thermostat=MaxwellBoltzmann())
     y = np.linspace(0, 12, 30)
-    flow = setting.flow(case, 0)
-    assert flow.profile(y) == pytest.approx(expected(y, setting.transport(case).viscosity))
+    nu = setting.transport(case).viscosity
+    assert setting.flow(case, 0).profile(y) == pytest.approx(0.02 * expected(y) / (2 * nu))
+
+
+def test_expected_flow_of_drive_and_moving_plate_add_up(make_case):
+    walls = [Plates(axis="y", lower=Surface(velocity=(1, 0)))]
+    case = make_case((8, 12), walls=walls, force=Uniform((0.02, 0)))
+    y = np.linspace(0, 12, 30)
+    expected = 1 - y / 12 + 0.02 * y * (12 - y) / (2 * setting.transport(case).viscosity)
+    assert setting.flow(case, 0).profile(y) == pytest.approx(expected)
 
 
 def test_bin_average_is_exact_for_parabolas():
@@ -207,7 +210,11 @@ def test_fields(make_case):
 
 
 def test_axes_that_are_not_there(make_case):
-    for wrong in (VelocityProfile(axis="z"), VelocityProfile(component="z"), DensityField(axes=("x", "z"))):
+    for wrong in (
+        VelocityProfile(axis="z"),
+        VelocityProfile(component="z"),
+        DensityField(axes=("x", "z")),
+    ):
         with pytest.raises(CaseError, match="2D box has only"):
             make_case(observe=[wrong])
     with pytest.raises(CaseError, match="two different axes"):

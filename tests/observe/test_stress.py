@@ -113,7 +113,11 @@ def test_wall_stress_balances_the_force(make_case):
         force=Uniform((0.02, 0)),
         thermostat=MaxwellBoltzmann(),
     )
-    accumulator, fluid, rng = WallStress().accumulator(case), FakeFluid(case), np.random.default_rng(1)
+    accumulator, fluid, rng = (
+        WallStress().accumulator(case),
+        FakeFluid(case),
+        np.random.default_rng(1),
+    )
     drag, pressure = 10 * 0.02 * 8 / 2, 10.0
     force = np.array([[drag, -pressure], [drag, pressure]]) * 4  # on 4 cells
     for _ in range(400):
@@ -136,10 +140,18 @@ def test_couette_drag_pulls_the_plates_against_their_motion(make_case):
 
 
 def test_weight_rests_on_the_lower_plate(make_case):
-    case = make_case((4, 8), walls=[Plates(axis="y")], force=Uniform((0, -0.05)), thermostat=MaxwellBoltzmann())
+    case = make_case(
+        (4, 8), walls=[Plates(axis="y")], force=Uniform((0, -0.05)), thermostat=MaxwellBoltzmann()
+    )
     lower, upper = WallStress().accumulator(case).expected()[:, 1]
     assert lower + upper == pytest.approx(-10 * 0.05 * 8)
     assert -lower / upper == pytest.approx(np.exp(0.05 * 8))
+
+
+def test_one_wall_stress_is_enough(make_case):
+    observe = [WallStress(), WallStress(name="again")]
+    with pytest.raises(CaseError, match="expected one wall-stress"):
+        make_case((4, 4), observe, walls=[Plates(axis="y")])
 
 
 def test_wall_stress_needs_walls(make_case):

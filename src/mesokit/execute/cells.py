@@ -3,7 +3,7 @@
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
-from mesokit.execute.layout import LANES, inner, load, read_sums, share, store
+from mesokit.execute.layout import LANES, inner, note, read_sums, recall, share
 from mesokit.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.mpcd.collision.protocol import freedom
 from mesokit.mpcd.thermostat.protocol import draw
@@ -27,7 +27,7 @@ def total_block(sums, start, count, totals, terms):
             for k in range(len(terms)):
                 terms = tuple_setitem(terms, k, terms[k] + sums[t, cell + 1 + k])
                 sums[t, cell + 1 + k] = 0
-        store(totals, i, 0, (n,) + terms)
+        note(totals, i, (n,) + terms)
 
 
 @scalar
@@ -72,8 +72,8 @@ def solve(thread, threads, physics, counter, cells, number, scratch, like, c, te
             answer = coefficients_of(
                 physics.rule, physics.thermostat, x, counter, cell, n, mass, momentum, energy, own
             )
-            store(rows, i, 0, answer)
+            note(rows, i, answer)
         for i in range(count):
-            answer = load(rows, i, 0, c)
+            answer = recall(rows, i, c)
             for k in range(len(c)):
                 coefficients[(start + i) * stride + k] = answer[k]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from mesokit.errors import RunError
 from mesokit.execute import measure
 from mesokit.execute.clock import STAGES
-from mesokit.execute.layout import LANES, ROW, blocks_for
+from mesokit.execute.layout import BLOCK, LANES, ROW, SCRATCH_ROW, STRIPS, blocks_for, strips_for
 from mesokit.execute.stages import Grid, Physics
 from mesokit.execute.sort import sort
 from mesokit.execute.step import FINISH, SOLVE, SWEEP, advance
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 # Whole numbers of this many per thermal unit: 2^-42 of a thermal momentum, 2^-36 of kT.
 MOMENTUM_BITS, MASS_BITS, ENERGY_BITS = 42, 44, 36
-SORT_DISTANCE_SQUARED = 0.25  # particles are sorted again after straying about half a cell
+SORT_DISTANCE_SQUARED = 0.5  # particles are sorted again after straying less than a cell
 
 Floats = NDArray[np.float64]
 
@@ -130,9 +130,10 @@ class CPU:
         d, threads = self.dimension, self.threads
         self.rows = 2 * d + (not uniform)
         self.real_blocks = blocks_for(self.n)
-        self.blocks = self.real_blocks + blocks_for(self.n_virtual)
-        lanes = self.blocks * LANES
-        self.data = np.zeros(self.blocks * self.rows * ROW)
+        self.strips = strips_for(self.n), strips_for(self.n_virtual)
+        blocks = self.real_blocks + blocks_for(self.n_virtual)
+        lanes = blocks * BLOCK
+        self.data = np.zeros(blocks * self.rows * ROW)
         self.cell = np.zeros(lanes, np.int32)
         self.ident = np.arange(lanes, dtype=np.int32)  # beyond n: virtual particles
         self.image = np.zeros((d, lanes), np.int32)
@@ -144,22 +145,22 @@ class CPU:
         self.coefficients = np.zeros((spare_cell + 1) * self.stride)
         self.sums = np.zeros((threads, (spare_cell + 1) * width), np.int64)
         most = max(self.coefficient_count, 2 * d)
-        parts = self.blocks if "stress" in self.measures else 1
+        parts = self.strips[0] if "stress" in self.measures else 1
         self.impulse = np.zeros((threads, 2 * d), np.int64)
         self.tensor = np.zeros((2, parts, 2 * d * d))
         self.sweep_scratch = (
-            np.zeros((threads, most * ROW)),
-            np.zeros((threads, 2 * d * ROW)),
+            np.zeros((threads, most * SCRATCH_ROW)),
+            np.zeros((threads, 2 * d * SCRATCH_ROW)),
             np.zeros((threads, LANES), np.int64),
-            np.zeros((threads, len(self.terms) * ROW), np.int64),
+            np.zeros((threads, len(self.terms) * SCRATCH_ROW), np.int64),
             self.impulse,
             self.tensor,
         )
         self.cell_scratch = (
-            np.zeros((threads, most * ROW)),
+            np.zeros((threads, most * SCRATCH_ROW)),
             np.zeros((threads, LANES)),
             np.zeros((threads, LANES), np.int64),
-            np.zeros((threads, width * ROW), np.int64),
+            np.zeros((threads, width * SCRATCH_ROW), np.int64),
         )
         self.particles = (
             self.data,
@@ -167,8 +168,8 @@ class CPU:
             self.ident,
             self.image,
             (self.n, self.n_virtual),
-            self.real_blocks,
-            self.blocks,
+            self.strips,
+            self.real_blocks * STRIPS,
             self.rows,
             spare_cell,
         )
@@ -216,7 +217,7 @@ class CPU:
         start = perf_counter()
         self.team.run(
             sort, self.box_kernel, self.grid, self.data, self.cell, self.ident, self.image, self.n,
-            self.real_blocks, self.rows, self.order, self.ends, self.spare,
+            self.strips[0], self.rows, self.order, self.ends, self.spare,
             self.spare.view(np.int32), self.like,
         )  # fmt: skip
         self.sort_seconds += perf_counter() - start
@@ -238,7 +239,7 @@ class CPU:
         return self.n, total[: self.dimension], 0.5 * float(total[self.dimension])
 
     def _totals(self) -> Floats:
-        out = np.zeros((self.real_blocks, self.dimension + 2))
+        out = np.zeros((self.strips[0], self.dimension + 2))
         self.team.run(measure.totals, self.physics, self.data, self.n, self.rows, self.like, out)
         return out
 
@@ -258,7 +259,7 @@ class CPU:
     def modes(self, wavevectors: Floats) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Sums of m exp(-i k r) (K,) and of m v exp(-i k r) (K, d) for wave vectors (K, d)."""
         waves = np.ascontiguousarray(wavevectors, float) / (2.0 * math.pi)
-        part = np.zeros((self.real_blocks, len(waves), 1 + self.dimension, 2))
+        part = np.zeros((self.strips[0], len(waves), 1 + self.dimension, 2))
         particles = self.physics, self.box_kernel, self.data, self.n, self.rows, self.like
         self.team.run(measure.modes, *particles, waves, part)
         total = part.sum(axis=0)
@@ -322,12 +323,12 @@ class CPU:
     def row(self, k: int) -> Floats:
         """Row k of every block of fluid particles, as a view (blocks, lanes)."""
         whole = self.data[: self.real_blocks * self.rows * ROW]
-        return whole.reshape(self.real_blocks, self.rows, ROW)[:, k, :LANES]
+        return whole.reshape(self.real_blocks, self.rows, ROW)[:, k, :BLOCK]
 
     def virtual_row(self, k: int) -> Floats:
         """Row k of every block of virtual particles, as a view (blocks, lanes)."""
         whole = self.data[self.real_blocks * self.rows * ROW :]
-        return whole.reshape(-1, self.rows, ROW)[:, k, :LANES]
+        return whole.reshape(-1, self.rows, ROW)[:, k, :BLOCK]
 
     def state(self) -> dict[str, NDArray]:
         """Everything that the next step depends on."""

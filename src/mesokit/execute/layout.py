@@ -1,10 +1,11 @@
-"""How particles lie in memory: blocks of 256, each with one row per coordinate and velocity.
+"""How particles lie in memory: blocks of 4096, each with one row per coordinate and velocity.
 
 A block (x x x ... y y y ... vx vx vx ...) is one stretch of memory with rows at constant offsets, so
-that LLVM can see that they do not overlap and vectorise the loop over a block; it stays in the
-first-level cache while all stages of a step pass over it. Eight numbers of padding keep rows off
-the same cache set. The loops run over all 256 lanes; a last, partly filled block computes nonsense
-in its spare lanes, which nothing ever adds up.
+that LLVM can see that they do not overlap and vectorise the loop over a strip of 256 particles. A
+strip stays in the first-level cache while all stages of a step pass over it, and the next strip
+continues the same rows, which the hardware prefetches. Eight numbers of padding keep rows off the
+same cache set. Loops run over all 256 lanes of a strip; the last, partly filled strip computes
+nonsense in its spare lanes, which nothing ever adds up.
 """
 
 from collections.abc import Callable
@@ -16,8 +17,12 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from mesokit.execute.cache import cached_kernel
 from mesokit.scalar import by_type, dot, scalar
 
-LANES = 256
-ROW = LANES + 8
+LANES = 256  # particles of a strip, cells of a batch
+BLOCK = 4096
+ROW = BLOCK + 8
+STRIPS = BLOCK // LANES
+BLOCK_BITS = np.uint64(12)  # BLOCK = 2^12
+SCRATCH_ROW = LANES + 8
 
 # Cells add up fixed-point numbers, because integer sums do not depend on the order of the terms.
 # Adding 1.5 * 2^52 leaves the rounded number in the low bits of the mantissa; the constant's own
@@ -32,6 +37,11 @@ inner = njit(nogil=True, error_model="numpy")  # a part of a kernel, compiled wi
 
 def blocks_for(particles: int) -> int:
     """Number of blocks that hold so many particles."""
+    return -(-particles // BLOCK)
+
+
+def strips_for(particles: int) -> int:
+    """Number of strips that hold so many particles."""
     return -(-particles // LANES)
 
 
@@ -42,18 +52,48 @@ def share(number, thread, threads):
 
 
 @scalar
-def load(rows, i, row, like):
-    """Lane i of consecutive rows, as a tuple as long as `like`."""
+def place(particle, rows, row):
+    """Where a row's value for a particle, counted through the blocks, lies in memory."""
+    block = np.uint64(particle) >> BLOCK_BITS
+    lane = np.uint64(particle) & np.uint64(BLOCK - 1)
+    return block * np.uint64(rows * ROW) + np.uint64(row * ROW) + lane
+
+
+@scalar
+def strip_of(data, number, rows):
+    """The part of the blocks that holds a strip: row k of lane i is at k * ROW + i."""
+    start = number // STRIPS * (rows * ROW) + number % STRIPS * LANES
+    return data[start : start + (rows - 1) * ROW + LANES]
+
+
+@scalar
+def load(strip, i, row, like):
+    """Lane i of consecutive rows of particles, as a tuple as long as `like`."""
     for k in range(len(like)):
-        like = tuple_setitem(like, k, rows[(row + k) * ROW + i])
+        like = tuple_setitem(like, k, strip[(row + k) * ROW + i])
     return like
 
 
 @scalar
-def store(rows, i, row, values):
-    """Write a tuple into lane i of consecutive rows."""
+def store(strip, i, row, values):
+    """Write a tuple into lane i of consecutive rows of particles."""
     for k in range(len(values)):
-        rows[(row + k) * ROW + i] = values[k]
+        strip[(row + k) * ROW + i] = values[k]
+
+
+@scalar
+def recall(scratch, i, like):
+    """Lane i of a strip's scratch rows, as a tuple as long as `like`."""
+    for k in range(len(like)):
+        like = tuple_setitem(like, k, scratch[k * SCRATCH_ROW + i])
+    return like
+
+
+@scalar
+def note(scratch, i, values):
+    """Write a tuple into lane i of a strip's scratch rows."""
+    for k in range(len(values)):
+        scratch[k * SCRATCH_ROW + i] = values[k]
 
 
 @scalar
@@ -68,16 +108,16 @@ def from_fixed(total, terms, scale):
     return float(total - np.int64(terms) * ROUNDER_BITS) / scale
 
 
-def mass_of(masses: Any, block: Any, i: Any, row: Any) -> Any:
+def mass_of(masses: Any, strip: Any, i: Any, row: Any) -> Any:
     """Mass of the particle in lane i: `masses` is (mass,) for all, or () for a row of masses."""
     raise NotImplementedError
 
 
 @by_type(mass_of)
-def _mass_of(masses: Any, block: Any, i: Any, row: Any) -> Callable:
+def _mass_of(masses: Any, strip: Any, i: Any, row: Any) -> Callable:
     if len(masses) == 1:
-        return lambda masses, block, i, row: masses[0]
-    return lambda masses, block, i, row: block[row * ROW + i]
+        return lambda masses, strip, i, row: masses[0]
+    return lambda masses, strip, i, row: strip[row * ROW + i]
 
 
 def mass_term(masses: Any, m: Any) -> Any:
@@ -134,7 +174,7 @@ def _read_sums(
         n = totals[i]
         values = scales
         for k in range(len(scales)):
-            values = tuple_setitem(values, k, from_fixed(totals[(k + 1) * ROW + i], n, scales[k]))
+            values = tuple_setitem(values, k, from_fixed(totals[(k + 1) * SCRATCH_ROW + i], n, scales[k]))
         mass = max(float(n), 1.0) * masses[0] if uniform else max(values[d], 1e-300)
         m_v_squared = values[at_energy] if asked else 0.0
         return float(n), mass, values[:d], m_v_squared, values[own:]

@@ -1,6 +1,6 @@
 """Sums over all particles that observables ask for; the same bits for any number of threads.
 
-Each block writes its own partial sum, and the partial sums are added in order.
+Each strip writes its own partial sum, and the partial sums are added in order.
 """
 
 import numpy as np
@@ -8,20 +8,20 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.box import fold
 from mesokit.elementary import sincos_turn
-from mesokit.execute.layout import LANES, ROW, kernel, load, mass_of, share
+from mesokit.execute.layout import LANES, kernel, load, mass_of, share, strip_of
 from mesokit.scalar import dot, scaled
 
 
 @kernel
 def totals(thread, threads, gate, physics, data, count, rows, like, out):
-    """Momentum, sum of m v^2 and largest component of |v| in each block: out (blocks, d + 2)."""
+    """Momentum, sum of m v^2 and largest component of |v| in each strip: out (blocks, d + 2)."""
     d = len(like)
     first, last = share((count + LANES - 1) // LANES, thread, threads)
     for b in range(first, last):
-        block = data[b * rows * ROW : (b + 1) * rows * ROW]
+        strip = strip_of(data, b, rows)
         for i in range(min(LANES, count - b * LANES)):
-            v = load(block, i, d, like)
-            m = mass_of(physics.masses, block, i, 2 * d)
+            v = load(strip, i, d, like)
+            m = mass_of(physics.masses, strip, i, 2 * d)
             for k in range(d):
                 out[b, k] += m * v[k]
                 out[b, d + 1] = max(out[b, d + 1], abs(v[k]))
@@ -39,11 +39,11 @@ def bin_sums(thread, threads, gate, physics, box, data, count, rows, like, axes,
     out = out[thread]
     first, last = share((count + LANES - 1) // LANES, thread, threads)
     for b in range(first, last):
-        block = data[b * rows * ROW : (b + 1) * rows * ROW]
+        strip = strip_of(data, b, rows)
         for i in range(min(LANES, count - b * LANES)):
-            r, v = load(block, i, 0, like), load(block, i, d, like)
+            r, v = load(strip, i, 0, like), load(strip, i, d, like)
             r, v, _ = fold(box, r, v, scaled(0.0, like))
-            m = mass_of(physics.masses, block, i, 2 * d)
+            m = mass_of(physics.masses, strip, i, 2 * d)
             place = 0
             for k in range(2):
                 x = int(r[axes[k]] / box.size[axes[k]] * bins[k])
@@ -57,18 +57,18 @@ def bin_sums(thread, threads, gate, physics, box, data, count, rows, like, axes,
 
 @kernel
 def modes(thread, threads, gate, physics, box, data, count, rows, like, waves, out):
-    """Fourier sums of mass and momentum of each block: out (blocks, waves, 1 + d, 2).
+    """Fourier sums of mass and momentum of each strip: out (blocks, waves, 1 + d, 2).
 
     `waves` are wave vectors over 2 pi, in turns per length.
     """
     d = len(like)
     first, last = share((count + LANES - 1) // LANES, thread, threads)
     for b in range(first, last):
-        block = data[b * rows * ROW : (b + 1) * rows * ROW]
+        strip = strip_of(data, b, rows)
         for i in range(min(LANES, count - b * LANES)):
-            r, v = load(block, i, 0, like), load(block, i, d, like)
+            r, v = load(strip, i, 0, like), load(strip, i, d, like)
             r, v, _ = fold(box, r, v, scaled(0.0, like))
-            m = mass_of(physics.masses, block, i, 2 * d)
+            m = mass_of(physics.masses, strip, i, 2 * d)
             for w in range(len(waves)):
                 phase = 0.0
                 for k in range(d):
@@ -91,12 +91,12 @@ def gather_by_id(
     limit = len(position)
     first, last = share((count + LANES - 1) // LANES, thread, threads)
     for b in range(first, last):
-        block = data[b * rows * ROW : (b + 1) * rows * ROW]
+        strip = strip_of(data, b, rows)
         for i in range(min(LANES, count - b * LANES)):
             j = b * LANES + i
             who = ident[j]
             if who < limit:
-                r, v = load(block, i, 0, like), load(block, i, d, like)
+                r, v = load(strip, i, 0, like), load(strip, i, d, like)
                 if unwrapped:
                     for k in range(d):
                         r = tuple_setitem(r, k, r[k] + image[k, j] * box.size[k])

@@ -7,23 +7,23 @@ rarely. The order is that of a stable counting sort, whatever the number of thre
 import numpy as np
 
 from mesokit.box import fold
-from mesokit.execute.layout import LANES, ROW, inner, kernel, load, share, store
+from mesokit.execute.layout import LANES, inner, kernel, load, place, share, store, strip_of
 from mesokit.execute.stages import cell_index
 from mesokit.execute.team import wait
 from mesokit.scalar import scaled
 
 
 @inner
-def wrap(thread, threads, box, grid, data, cell, image, blocks, rows, like):
+def wrap(thread, threads, box, grid, data, cell, image, strips, rows, like):
     """Move every particle to its image in the primary box, count the boxes crossed, find cells."""
     d = len(like)
-    first, last = share(blocks, thread, threads)
+    first, last = share(strips, thread, threads)
     for b in range(first, last):
-        block = data[b * rows * ROW : (b + 1) * rows * ROW]
+        strip = strip_of(data, b, rows)
         for i in range(LANES):
-            r, v = load(block, i, 0, like), load(block, i, d, like)
+            r, v = load(strip, i, 0, like), load(strip, i, d, like)
             r, v, crossed = fold(box, r, v, scaled(0.0, like))
-            store(block, i, 0, r + v)
+            store(strip, i, 0, r + v)
             cell[b * LANES + i] = cell_index(r, grid)
             for k in range(d):
                 image[k, b * LANES + i] += np.int32(crossed[k])
@@ -58,10 +58,10 @@ def reorder_row(thread, threads, gate, data, rows, row, order, count, spare):
     first, last = share(count, thread, threads)
     for j in range(first, last):
         i = order[j]
-        spare[j] = data[(i // LANES * rows + row) * ROW + i % LANES]
+        spare[j] = data[place(i, rows, row)]
     wait(gate, threads)
     for j in range(first, last):
-        data[(j // LANES * rows + row) * ROW + j % LANES] = spare[j]
+        data[place(j, rows, row)] = spare[j]
     wait(gate, threads)
 
 
@@ -78,11 +78,11 @@ def reorder(thread, threads, gate, values, order, count, spare):
 
 @kernel
 def sort(
-    thread, threads, gate, box, grid, data, cell, ident, image, count, blocks, rows, order, ends,
+    thread, threads, gate, box, grid, data, cell, ident, image, count, strips, rows, order, ends,
     spare, whole, like,
 ):  # fmt: skip
     """Wrap and sort; `spare` and `whole` are float64 and int32 scratch of a place per particle."""
-    wrap(thread, threads, box, grid, data, cell, image, blocks, rows, like)
+    wrap(thread, threads, box, grid, data, cell, image, strips, rows, like)
     wait(gate, threads)
     order_by_cell(thread, threads, gate, cell, count, ends, order)
     for row in range(rows):

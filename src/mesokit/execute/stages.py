@@ -1,4 +1,4 @@
-"""The stages of a step, each a loop over the lanes of one block of particles."""
+"""The stages of a step, each a loop over the lanes of one strip of particles."""
 
 import math
 from typing import NamedTuple
@@ -16,6 +16,8 @@ from mesokit.execute.layout import (
     load,
     mass_of,
     mass_term,
+    note,
+    recall,
     store,
 )
 from mesokit.geometry.protocol import closes, exposed, touches
@@ -32,7 +34,7 @@ class Physics(NamedTuple):
     thermostat: tuple
     field: tuple
     solid: tuple
-    masses: tuple  # (mass,) or () for a row of masses in each block
+    masses: tuple  # (mass,) or () for a row of masses in each strip
     energy: tuple  # (0.0,) if the cells must know their kinetic energy, else ()
     timestep: float
     kT: float
@@ -69,21 +71,21 @@ def cell_index(r, grid):
 
 
 @scalar
-def collide_block(physics, grid, block, cell, coefficients, stride, gathered, like, c):
+def collide_strip(physics, grid, strip, cell, coefficients, stride, gathered, like, c):
     """Velocities after the collision, from the coefficients of each particle's cell."""
     for i in range(LANES):
         start = np.int64(cell[i]) * stride
         for k in range(len(c)):
             c = tuple_setitem(c, k, coefficients[start + k])
-        store(gathered, i, 0, c)
+        note(gathered, i, c)
     d = len(like)
     for i in range(LANES):
-        r, v = load(block, i, 0, like), load(block, i, d, like)
-        store(block, i, d, collide(physics.rule, load(gathered, i, 0, c), v, in_cell(r, grid)))
+        r, v = load(strip, i, 0, like), load(strip, i, d, like)
+        store(strip, i, d, collide(physics.rule, recall(gathered, i, c), v, in_cell(r, grid)))
 
 
 @scalar
-def stream_block(physics, block, count, hits, saved, impulse, scales, like):
+def stream_strip(physics, strip, count, hits, saved, impulse, scales, like):
     """Positions and velocities a timestep later; the momentum that surfaces take goes to impulse."""
     d = len(like)
     dt = physics.timestep
@@ -91,7 +93,7 @@ def stream_block(physics, block, count, hits, saved, impulse, scales, like):
     if exposed(physics.solid):
         any_hit = 0
         for i in range(LANES):
-            r, v = load(block, i, 0, like), load(block, i, d, like)
+            r, v = load(strip, i, 0, like), load(strip, i, d, like)
             a = vector(halfway(physics.field, r, v, dt), like)
             hit = np.int64(touches(physics.solid, r, v, a, dt))
             hits[i] = hit
@@ -100,47 +102,48 @@ def stream_block(physics, block, count, hits, saved, impulse, scales, like):
             for i in range(count):
                 if hits[i] != 0:
                     hits[found] = i
-                    store(saved, found, 0, load(block, i, 0, like) + load(block, i, d, like))
+                    note(saved, found, load(strip, i, 0, like) + load(strip, i, d, like))
                     found += 1
     for i in range(LANES):
-        r, v = load(block, i, 0, like), load(block, i, d, like)
+        r, v = load(strip, i, 0, like), load(strip, i, d, like)
         r, v = fall(r, v, halfway(physics.field, r, v, dt), dt)
-        store(block, i, 0, r + v)
+        store(strip, i, 0, r + v)
     for j in range(found):
         i = hits[j]
-        r, v = load(saved, j, 0, like), load(saved, j, d, like)
+        both = recall(saved, j, like + like)
+        r, v = both[:d], both[d:]
         a = vector(halfway(physics.field, r, v, dt), like)
         r, v, lower, upper = bounce(physics.solid, r, v, a, dt)
-        store(block, i, 0, r + v)
-        m = mass_of(physics.masses, block, i, 2 * d)
+        store(strip, i, 0, r + v)
+        m = mass_of(physics.masses, strip, i, 2 * d)
         for k in range(d):
             impulse[k] += np.int64(np.rint(m * lower[k] * scales[0]))
             impulse[d + k] += np.int64(np.rint(m * upper[k] * scales[0]))
 
 
 @scalar
-def slide_block(box, grid, block, image, like):
+def slide_strip(box, grid, strip, image, like):
     """Bring particles that left a sheared box back into it; nothing in other boxes."""
     d = len(like)
     for i in range(LANES):
-        r, v = load(block, i, 0, like), load(block, i, d, like)
+        r, v = load(strip, i, 0, like), load(strip, i, d, like)
         r, v, crossed = slide(box, r, v, grid.shift)
-        store(block, i, 0, r + v)
+        store(strip, i, 0, r + v)
         count_images(image, i, crossed)
 
 
 @scalar
-def bin_block(physics, counter, grid, block, cell, ident, terms_rows, scales, like):
+def bin_strip(physics, counter, grid, strip, cell, ident, terms_rows, scales, like):
     """Cell of each particle and, as rounded numbers, what it adds to the sums of that cell."""
     d = len(like)
     for i in range(LANES):
-        r, v = load(block, i, 0, like), load(block, i, d, like)
-        m = mass_of(physics.masses, block, i, 2 * d)
+        r, v = load(strip, i, 0, like), load(strip, i, d, like)
+        m = mass_of(physics.masses, strip, i, 2 * d)
         kept, own = contribute(physics.rule, counter, ident[i], m, v, in_cell(r, grid))
         terms = scaled(m, v) + mass_term(physics.masses, m) + energy_term(physics.energy, m, v) + own
         cell[i] = cell_index(r, grid)
-        store(block, i, d, kept)
-        store(terms_rows, i, 0, rounded(terms, scales))
+        store(strip, i, d, kept)
+        note(terms_rows, i, rounded(terms, scales))
 
 
 @scalar
@@ -153,19 +156,19 @@ def rounded(terms, scales):
 
 
 @scalar
-def add_block(cell, terms_rows, sums, count, terms):
+def add_strip(cell, terms_rows, sums, count, terms):
     """Add the terms of each particle to the sums of its cell, and count it."""
     width = len(terms) + 1
     for i in range(count):
         start = np.int64(cell[i]) * width
-        terms = load(terms_rows, i, 0, terms)
+        terms = recall(terms_rows, i, terms)
         sums[start] += 1
         for k in range(len(terms)):
             sums[start + 1 + k] += terms[k]
 
 
 @scalar
-def fill_block(physics, counter, grid, block, number, like):
+def fill_strip(physics, counter, grid, strip, number, like):
     """Virtual particles: a thermal gas of the fluid's density in the solid part of cut cells.
 
     Together the two layers of cut cells of a slit hold one layer of cells of solid, whatever the
@@ -178,6 +181,6 @@ def fill_block(physics, counter, grid, block, number, like):
         place = first((unit_open(a), unit_open(b), unit_open(c)), like)
         r, u = closes(physics.solid, place, grid.shift)
         a, b, c, e = words(counter, VIRTUAL_VELOCITY, number + i, 0)
-        m = mass_of(physics.masses, block, i, 2 * d)
+        m = mass_of(physics.masses, strip, i, 2 * d)
         v = added(u, scaled(math.sqrt(physics.kT / m), normals(like, a, b, c, e)))
-        store(block, i, 0, r + v)
+        store(strip, i, 0, r + v)

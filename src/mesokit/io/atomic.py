@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from mesokit.errors import RunError
@@ -34,10 +34,8 @@ def replacing(path: str | Path) -> Iterator[Path]:
     except OSError as error:
         raise RunError(f"cannot write {path}: {_reason(error)}") from error
     finally:
-        try:
+        with suppress(OSError):  # where the folder itself is not there, the error above says so
             temporary.unlink(missing_ok=True)
-        except OSError:
-            pass  # the folder itself is not there: the error above says so
 
 
 def write_text(path: str | Path, text: str) -> None:

@@ -69,7 +69,10 @@ def write(
                 steps = None
                 if trajectory is not None:
                     steps = trajectory.steps()
-                    _particles(file, case, trajectory, steps, masses, species)
+                    if len(steps) or not _kept(file, path):
+                        _particles(file, case, trajectory, steps, masses, species)
+                    else:
+                        steps = file["particles/fluid/box/edges/step"][()]
                 for result in results:
                     _result(file.require_group("results"), result)
                     _time_series(file, result, steps)
@@ -103,6 +106,16 @@ def _header(file: Any, case: Case, provenance: Mapping[str, Any]) -> None:
     parameters = file.create_group("parameters")
     parameters["case"] = case.to_toml()
     parameters["provenance"] = json.dumps(provenance)
+
+
+def _kept(file: Any, path: str | Path) -> bool:
+    """Take the frames over from the old data file of a run that had ended, if there is one."""
+    if not Path(path).exists():
+        return False
+    with opened(path) as old:
+        if "particles" in old:
+            old.copy("particles", file)
+        return "particles" in old
 
 
 # --- particles ----------------------------------------------------------------------------------

@@ -8,6 +8,7 @@ twice. At the end all frames go to the data file of the run, one by one.
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -33,7 +34,9 @@ class Trajectory:
 
     every: int = param(doc="steps between two frames", ge=1)
     fields: tuple[Quantity, ...] = param(("position",), doc="what is written", min_length=1)
-    subset: int | None = param(None, doc="only the first particles, so many (all unless said)", ge=1)
+    subset: int | None = param(
+        None, doc="only the first particles, so many (all unless said)", ge=1
+    )
     precision: Literal["float32", "float64"] = param("float32", doc="of the stored numbers")
     compression: int = param(4, doc="gzip level: 0 none, 9 smallest", ge=0, le=9)
 
@@ -107,11 +110,12 @@ class TrajectoryWriter:
         return sorted(self.folder.glob("segment-*.npz"))
 
     def remove(self) -> None:
-        """Delete the segments, after their frames have gone to the data file."""
-        for path in self.segments():
-            path.unlink()
-        if self.folder.is_dir() and not any(self.folder.iterdir()):
-            self.folder.rmdir()
+        """Delete all segments at once, after their frames have gone to the data file."""
+        if self.folder.is_dir():
+            done = self.folder.with_name(f".{self.folder.name}.done")
+            shutil.rmtree(done, ignore_errors=True)
+            self.folder.rename(done)  # all or none, should we be killed here
+            shutil.rmtree(done, ignore_errors=True)
 
     def _write(self, frames: list[Frame]) -> None:
         path = self.folder / f"segment-{int(frames[0]['step']):015d}.npz"
@@ -120,7 +124,7 @@ class TrajectoryWriter:
             np.savez(file, **stacked)  # type: ignore[arg-type]
 
 
-def _inside(position: NDArray[Any], box: NDArray[np.float64]) -> NDArray[Any]:
+def _inside(position: NDArray[Any], box: NDArray[Any]) -> NDArray[Any]:
     """Rounding to float32 may lift a particle onto the upper face: keep it just below."""
     edge = np.asarray(box, position.dtype)
     return np.where(position >= edge, np.nextafter(edge, np.zeros_like(edge)), position)

@@ -9,7 +9,7 @@ from mesokit.observe.density_field import DensityField
 from mesokit.observe.density_profile import DensityProfile
 from mesokit.observe.longitudinal_modes import LongitudinalModes
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
-from mesokit.observe.protocol import Accumulator, RunningFluid, Observable
+from mesokit.observe.protocol import Accumulator, Observable, RunningFluid
 from mesokit.observe.result import Comparison, Result
 from mesokit.observe.stress import Stress
 from mesokit.observe.temperature_profile import TemperatureProfile
@@ -43,11 +43,11 @@ __all__ = [
     "Conservation",
     "DensityField",
     "DensityProfile",
-    "RunningFluid",
     "LongitudinalModes",
     "MeanSquareDisplacement",
     "Observable",
     "Result",
+    "RunningFluid",
     "Stress",
     "TemperatureProfile",
     "TransverseModes",

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from mesokit.box import AXES
 from mesokit.component import component, tag
 from mesokit.observe import setting
-from mesokit.observe.protocol import RunningFluid, Observable, State, pack, unpack
-from mesokit.observe.result import Comparison, Result
+from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
+from mesokit.observe.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
@@ -69,16 +69,15 @@ class ConservationAccumulator:
                 kept += 1
         self.counts = np.array([kept, stride, samples + 1])
 
-    def _temperature(self, number: int, momentum: NDArray[np.float64], energy: float) -> float:
+    def _temperature(self, number: int, momentum: Array, energy: float) -> float:
         """Twice the energy per degree of freedom; a free fluid cannot move as a whole."""
         if number == 0:
             return np.nan
         if self.case.walls:
             return 2 * energy / (self.dimension * number)
         total_mass = number * self.case.fluid.mass
-        return (2 * energy - momentum @ momentum / total_mass) / (
-            self.dimension * max(number - 1, 1)
-        )
+        about_mean = 2 * energy - float(momentum @ momentum) / total_mass
+        return about_mean / (self.dimension * max(number - 1, 1))
 
     def state(self) -> State:
         """All it has to remember."""
@@ -132,7 +131,7 @@ class ConservationAccumulator:
         """No thermostat, and no work is done."""
         return self.conserves_momentum() and not setting.isothermal(self.case)
 
-    def _expected(self, value: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _expected(self, value: Array) -> Array:
         expected = np.full(value.shape, np.nan)
         expected[:, 0] = self.first[0]
         if self.conserves_momentum():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from mesokit.observe.estimate import Estimate
 from mesokit.statistics import MultipleTau
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 
 
 def normalised(correlator: MultipleTau) -> tuple[NDArray[np.int64], Estimate]:

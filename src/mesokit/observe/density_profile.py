@@ -54,9 +54,7 @@ class DensityProfileAccumulator(ProfileAccumulator):
                     mean[part] = 1 / cell
                     value, error = density.scalar(mean @ density.value, mean)
                     where = f"density in the cell at the {name} plate"
-                    found.append(
-                        Comparison(where, value, error, float(mean @ expected), "1/cell")
-                    )
+                    found.append(Comparison(where, value, error, float(mean @ expected), "1/cell"))
         return Result(
             quantity="density-profile",
             name=self.name,

@@ -8,14 +8,14 @@ done on what comes out of it.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.statistics import Blocks, ChiSquare, plateau_error
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 
 
 class Estimate(NamedTuple):
@@ -32,11 +32,9 @@ class Estimate(NamedTuple):
 
     def linear(self, matrix: Array) -> Estimate:
         """The linear combinations `matrix` (p, n) of a value of shape (n,)."""
-        return Estimate(
-            matrix @ self.value, self.residuals @ matrix.T, _per_block(self.weights)
-        )
+        return Estimate(matrix @ self.value, self.residuals @ matrix.T, _per_block(self.weights))
 
-    def scalar(self, value: float, gradient: Array) -> tuple[float, float]:
+    def scalar(self, value: float | Array, gradient: Array) -> tuple[float, float]:
         """A function of the value (n,), given what it is and its gradient: value and error."""
         error = plateau_error(self.residuals @ gradient, _per_block(self.weights))
         return float(value), float(error)

@@ -12,13 +12,13 @@ from mesokit.box import Axis
 from mesokit.component import component, param
 from mesokit.errors import CaseError
 from mesokit.observe import setting
-from mesokit.observe.protocol import RunningFluid, Observable, State, pack, unpack
+from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case import Case
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 CAPACITY = 16  # blocks
 
 
@@ -49,8 +49,9 @@ class FieldAccumulator:
             np.linspace(0.0, case.box.size[a], n + 1)
             for a, n in zip(self.axes, self.bins, strict=True)
         ]
-        self.coordinates = {
-            name: (e[1:] + e[:-1]) / 2 for name, e in zip(observable.axes, self.edges, strict=True)
+        self.coordinates: dict[str, Array] = {
+            str(name): (e[1:] + e[:-1]) / 2
+            for name, e in zip(observable.axes, self.edges, strict=True)
         }
         self.blocks = Blocks((width, *self.bins), capacity=CAPACITY)
 

@@ -51,15 +51,6 @@ class LongitudinalModesAccumulator(ModesAccumulator):
         """The oscillation for each wave number, sound speed and attenuation from each."""
         time, value, error = self.curves()
         coefficients = setting.transport(self.case) if self.undisturbed() else None
-        expected = None
-        if coefficients is not None and coefficients.sound_attenuation is not None:
-            expected = np.stack(
-                [
-                    self.sound(time, k, coefficients.sound_speed, coefficients.sound_attenuation)
-                    for k in self.wavenumbers
-                ],
-                axis=1,
-            )
         first = self.equipartition() if self.undisturbed() else None
         return Result(
             quantity="longitudinal-modes",
@@ -69,11 +60,20 @@ class LongitudinalModesAccumulator(ModesAccumulator):
             error=error,
             label="longitudinal mode correlation",
             units={"value": "", "time": "tau", "wavenumber": "1/a"},
-            expected=expected,
+            expected=self.law(time),
             theory="damped sound",
             comparisons=tuple([c for c in [*self.fits(coefficients), first] if c]),
             samples=self.shells[0].correlator.count,
+            extra=self.smooth(time),
         )
+
+    def law(self, time: Array) -> Array | None:
+        """The damped oscillation of `sound`."""
+        coefficients = setting.transport(self.case) if self.undisturbed() else None
+        if coefficients is None or coefficients.sound_attenuation is None:
+            return None
+        speed, attenuation = coefficients.sound_speed, coefficients.sound_attenuation
+        return np.stack([self.sound(time, k, speed, attenuation) for k in self.wavenumbers], axis=1)
 
     @staticmethod
     def sound(time: Array, k: float, speed: float, attenuation: float) -> Array:

@@ -12,14 +12,14 @@ from mesokit.box import AXES
 from mesokit.component import component, param
 from mesokit.errors import CaseError
 from mesokit.observe import setting
-from mesokit.observe.protocol import RunningFluid, Observable, State, pack, unpack
+from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Comparison
 from mesokit.statistics import MultipleTau
 
 if TYPE_CHECKING:
     from mesokit.case import Case
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 SHOWN = 6  # wave numbers in the comparisons, longest waves first
 
 
@@ -138,7 +138,19 @@ class ModesAccumulator:
             values.append(found.value[0])
             variances.append(found.error[0] ** 2)
         mean, error = np.mean(values) / total, np.sqrt(np.sum(variances)) / len(values) / total
-        return Comparison("mean square of the modes", float(mean), float(error), 1.0, "N m kT")
+        error = setting.with_start(self.case, float(error), 1.0)
+        return Comparison("mean square of the modes", float(mean), error, 1.0, "N m kT")
+
+    def law(self, time: Array) -> Array | None:
+        """The normalised correlation expected, (n, shells); None without a theory."""
+        raise NotImplementedError
+
+    def smooth(self, time: Array) -> dict[str, Array]:
+        """The law on a fine grid, for a figure."""
+        slowest = self.wavenumbers[0] ** 2  # theory is drawn until 20/k^2, where all is quiet
+        fine = np.linspace(0, min(time[-1] if len(time) else 0.0, 20 / slowest), 2000)
+        curve = self.law(fine)
+        return {} if curve is None else {"curve_time": fine, "curve": curve}
 
     def undisturbed(self) -> bool:
         """Whether theory of a fluid at rest without walls applies."""
@@ -157,5 +169,3 @@ def transverse_units(wavevector: Array) -> Array:
     first = np.cross(unit, np.eye(3)[np.argmin(abs(unit))])
     first /= np.linalg.norm(first)
     return np.array([first, np.cross(unit, first)])
-
-

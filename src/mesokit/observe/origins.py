@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mesokit.observe.estimate import Estimate
 from mesokit.observe.protocol import State
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 POINTS = 16  # kept per level; lags are at most 1/8 apart
 GROUPS = 32  # of particles, for the error bars
 

@@ -12,14 +12,14 @@ from mesokit.box import Axis
 from mesokit.component import component, param
 from mesokit.observe import setting
 from mesokit.observe.estimate import Estimate, mode_chi_square
-from mesokit.observe.protocol import RunningFluid, Observable, State, pack, unpack
+from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Comparison
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case import Case
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 
 
 @component

@@ -14,7 +14,7 @@ from mesokit.observe.result import Result
 if TYPE_CHECKING:
     from mesokit.case import Case
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 State = dict[str, NDArray[Any]]
 
 
@@ -42,9 +42,7 @@ class RunningFluid(Protocol):
     def modes(
         self, wavevectors: Array
     ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]: ...
-    def positions(
-        self, ids: NDArray[np.int64] | None = None, unwrapped: bool = False
-    ) -> Array: ...
+    def positions(self, ids: NDArray[np.int64] | None = None, unwrapped: bool = False) -> Array: ...
     def velocities(self, ids: NDArray[np.int64] | None = None) -> Array: ...
     def images(self, ids: NDArray[np.int64] | None = None) -> NDArray[np.int64]: ...
     def masses(self, ids: NDArray[np.int64] | None = None) -> Array: ...

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 
 
 @dataclass(frozen=True)
@@ -52,8 +52,10 @@ class Comparison:
     def __str__(self) -> str:
         text = f"{self.what}: {with_error(self.measured, self.error)} {self.unit}".rstrip()
         if not math.isnan(self.expected):
-            text += f", expected {self.expected:.4g}" if self.expected % 1 == 0 else (
-                f", expected {self.expected:#.4g}"
+            text += (
+                f", expected {self.expected:.4g}"
+                if self.expected % 1 == 0
+                else (f", expected {self.expected:#.4g}")
             )
         if math.isfinite(self.deviation):
             text += f": {self.deviation:+.1f} standard errors"
@@ -68,6 +70,8 @@ def with_error(value: float, error: float) -> str:
     >>> with_error(0.8705, 0.0123), with_error(1234.5, 12), with_error(2.0, 0.0)
     ('0.871(12)', '1234(12)', '2.000')
     """
+    if value == 0 and not error > 0:
+        return "0"
     if not math.isfinite(value) or not error > 0 or not math.isfinite(error):
         return f"{value:#.4g}"
     digits = 1 - math.floor(math.log10(error))

@@ -12,7 +12,7 @@ from mesokit.box import AXES
 from mesokit.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.observe import setting
-from mesokit.observe.protocol import RunningFluid, Observable, State, pack, unpack
+from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -130,12 +130,13 @@ class StressAccumulator:
                     )
                 )
         known = setting.isothermal(case) or not setting.driven(case)
+        ideal = case.fluid.density * case.fluid.kT
         found.append(
             Comparison(
                 "pressure",
                 float(-np.trace(mean[2]) / case.box.dimension),
-                float(self.trace_error()),
-                case.fluid.density * case.fluid.kT if known else np.nan,
+                setting.with_start(case, float(self.trace_error()), ideal),
+                ideal if known else np.nan,
                 UNIT[self.case.box.dimension],
             )
         )

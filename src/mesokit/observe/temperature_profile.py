@@ -56,12 +56,13 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
         if expected is not None and self.blocks.count:
             weight = number.sum(axis=0) / number.sum()
             everywhere = of_ratio(peculiar.sum(axis=1), d * number.sum(axis=1))
+            mean = float(weight @ expected)
             found.append(
                 Comparison(
                     "mean temperature",
                     float(everywhere.value),
-                    float(everywhere.error),
-                    float(weight @ expected),
+                    setting.with_start(self.case, float(everywhere.error), mean),
+                    mean,
                     "m a^2/tau^2",
                 )
             )
@@ -97,8 +98,8 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
         inside_slice = (self.edges[1] - self.edges[0]) ** 2
         counted = 0.0 if fluid.collision.rule.startswith("at") else 1.0
         shear2 = np.zeros(self.bins)
-        for component in range(d):
-            flow = setting.flow(self.case, component)
+        for direction in range(d):
+            flow = setting.flow(self.case, direction)
             if flow.profile is None:
                 return None
             if flow.across == self.axis:

@@ -51,11 +51,6 @@ class TransverseModesAccumulator(ModesAccumulator):
         """The decay for each wave number, and the viscosity from each."""
         time, value, error = self.curves()
         coefficients = setting.transport(self.case) if self.undisturbed() else None
-        expected = None
-        if coefficients is not None:
-            expected = theory.transverse_correlation(
-                self.wavenumbers, time[:, None], coefficients.viscosity
-            )
         first = self.equipartition() if self.undisturbed() else None
         fits = self.viscosities(coefficients)
         return Result(
@@ -66,10 +61,20 @@ class TransverseModesAccumulator(ModesAccumulator):
             error=error,
             label="transverse mode correlation",
             units={"value": "", "time": "tau", "wavenumber": "1/a"},
-            expected=expected,
+            expected=self.law(time),
             theory="exp(-nu k^2 t)",
             comparisons=tuple([c for c in [*fits, first] if c]),
             samples=self.shells[0].correlator.count,
+            extra=self.smooth(time),
+        )
+
+    def law(self, time: Array) -> Array | None:
+        """exp(-nu k^2 t)."""
+        coefficients = setting.transport(self.case) if self.undisturbed() else None
+        if coefficients is None:
+            return None
+        return theory.transverse_correlation(
+            self.wavenumbers, time[:, None], coefficients.viscosity
         )
 
     def viscosities(self, coefficients: theory.Transport | None) -> list[Comparison]:

@@ -15,7 +15,7 @@ from mesokit.observe import setting
 from mesokit.observe.estimate import Estimate
 from mesokit.observe.mean_square_displacement import spread_ids
 from mesokit.observe.origins import Origins
-from mesokit.observe.protocol import RunningFluid, Observable, State, pack, unpack
+from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ class VelocityAutocorrelation(Observable):
 
     quantity: Literal["velocity-autocorrelation"] = tag("velocity-autocorrelation")
     every: int = param(1, doc="steps between two samples", ge=1, kw_only=True)
-    particles: int = param(10_000, doc="particles followed", ge=1)
+    particles: int = param(2000, doc="particles followed", ge=1)
     max_lag: int = param(200, doc="longest lag", unit="steps", ge=1)
 
     def check(self, case: Case) -> None:
@@ -126,6 +126,7 @@ class VelocityAutocorrelationAccumulator:
         found = []
         if len({kind.mass for kind in fluid.species}) < 2:
             equipartition = fluid.kT / fluid.mass
+            error = setting.with_start(self.case, error, equipartition)
             found.append(Comparison("value at lag 0", value, error, equipartition, "a^2/tau^2"))
         if coefficients is None or expected is None or n < 3:
             return found

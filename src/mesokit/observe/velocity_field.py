@@ -61,11 +61,11 @@ class VelocityFieldAccumulator(FieldAccumulator):
     def expected(self) -> Array | None:
         """The flow where it varies along an axis of the map, else nan."""
         expected = np.full((*self.bins, self.case.box.dimension), np.nan)
-        for component in range(self.case.box.dimension):
-            flow = setting.flow(self.case, component)
+        for direction in range(self.case.box.dimension):
+            flow = setting.flow(self.case, direction)
             if flow.across in self.axes:
                 place = self.axes.index(flow.across)
                 profile = flow.bins(flow.across, self.edges[place])
                 if profile is not None:
-                    expected[..., component] = profile[:, None] if place == 0 else profile
+                    expected[..., direction] = profile[:, None] if place == 0 else profile
         return None if np.isnan(expected).all() else expected

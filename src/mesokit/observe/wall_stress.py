@@ -13,7 +13,7 @@ from mesokit.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.observe import setting
 from mesokit.observe.estimate import of_mean
-from mesokit.observe.protocol import RunningFluid, Observable, State, pack, unpack
+from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -32,9 +32,11 @@ class WallStress(Observable):
     measures: ClassVar[tuple[str, ...]] = ("walls",)
 
     def check(self, case: Case) -> None:
-        """Raise CaseError without walls."""
+        """Raise CaseError without walls, or for a second one: it sees what the first left."""
         if not case.walls:
             raise CaseError("wall-stress needs a [[wall]]")
+        if sum(other.quantity == self.quantity for other in case.observe) > 1:
+            raise CaseError("expected one wall-stress: it measures both plates, every component")
 
     def accumulator(self, case: Case) -> WallStressAccumulator:
         """An empty memory for it."""
@@ -53,9 +55,9 @@ class WallStressAccumulator:
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        impulse, steps = fluid.wall_impulse, fluid.wall_steps
+        steps = fluid.wall_steps  # before the impulse, whose reading starts the count anew
         if steps:
-            self.blocks.add(impulse / (steps * self.case.fluid.timestep * self.area))
+            self.blocks.add(fluid.wall_impulse / (steps * self.case.fluid.timestep * self.area))
 
     def state(self) -> State:
         """All it has to remember."""

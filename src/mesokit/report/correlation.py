@@ -36,11 +36,12 @@ def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
         ax.set_xscale("log")
         ax.set_yscale("log")
     components = result.extra.get("components", "")
-    label = f"{result.label}" + (f" along {', '.join(components)}" if components else "")
+    label = "mean square\ndisplacement" + (f" along {', '.join(components)}" if components else "")
     ax.set_ylabel(labelled(label, result.units["value"]))
     ax.legend(loc="upper left")
     if below is not None:
-        ratio, error = (a[use] / result.expected[use] for a in (result.value, result.error))
+        theory = np.asarray(result.expected)[use]
+        ratio, error = result.value[use] / theory, result.error[use] / theory
         below.axhline(1, color="black", lw=1)
         below.errorbar(t, ratio, error, fmt="o", mfc="white", ms=3, color=COLOURS[0])
         below.set_ylabel("measured\n/ theory")
@@ -51,25 +52,30 @@ def draw_memory(result: Result, figure: Any, ax: Any) -> None:
     """Logarithmic in value and time, as a power law follows an exponential."""
     ax = figure.subplots() if ax is None else ax
     time = result.x["time"]
-    use = (time > 0) & (result.value > 0)
-    error = result.error[use]
-    ax.errorbar(
-        time[use], result.value[use], np.minimum(error, 0.999 * result.value[use]), fmt="o",
-        mfc="white", color=COLOURS[0], label=r"measured, $\pm$ one standard error", zorder=2,
-    )  # fmt: skip
-    if result.expected is not None and (result.expected > 0).all():
-        line = result.expected
-        label = f"theory: {result.theory}"
-        ax.plot(time[time > 0], line[time > 0], "-", color="black", label=label, zorder=3)
+    late, size = time > 0, abs(result.value)
+    signs = {"measured, positive": result.value > 0, "measured, negative": result.value < 0}
+    for (label, sign), fill in zip(signs.items(), ("white", COLOURS[0]), strict=True):
+        use = late & sign
+        if use.any():
+            error = np.minimum(result.error[use], 0.999 * size[use])
+            ax.errorbar(
+                time[use], size[use], error, fmt="o", mfc=fill, color=COLOURS[0], label=label,
+                zorder=2,
+            )  # fmt: skip
+    if result.expected is not None:
+        line, label = abs(result.expected), f"theory: {result.theory}"
+        ax.plot(time[late], line[late], "-", color="black", label=label, zorder=3)
     tail = result.extra.get("tail")
     if tail is not None and np.isfinite(tail).any():
         ax.plot(time, tail, "--", color=COLOURS[1], lw=1.5, label="theory: hydrodynamic tail")
-    if use.any():
+    if (size[late] > 0).any():
         ax.set_xscale("log")
         ax.set_yscale("log")
-        ax.set_ylim(bottom=0.3 * max(result.value[use].min(), 1e-6 * result.value[use].max()))
+        noise = np.nanmedian(result.error[late]) if np.isfinite(result.error[late]).any() else 0.0
+        largest = size[late].max()
+        ax.set_ylim(0.2 * max(noise, 1e-6 * largest), 3 * largest)
     ax.set_xlabel(labelled("time lag $t$", result.units["time"]))
-    label = r"velocity autocorrelation $\langle v_x(0)\, v_x(t)\rangle$"
+    label = r"$|\langle v_x(0)\, v_x(t)\rangle|$"
     ax.set_ylabel(labelled(label, result.units["value"]))
     ax.legend(loc="best")
 
@@ -81,7 +87,6 @@ def draw_modes(result: Result, figure: Any, ax: Any) -> None:
     if not len(time):
         return
     end = _end(time, result)
-    fine = np.linspace(0, end, 400)
     for i, k in enumerate(result.x["wavenumber"][:shown]):
         colour, use = COLOURS[i % len(COLOURS)], time <= end
         ax.errorbar(
@@ -89,9 +94,11 @@ def draw_modes(result: Result, figure: Any, ax: Any) -> None:
             mfc="white", color=colour, lw=0.8, label=f"$k = {k:.4g}/a$", zorder=2,
         )  # fmt: skip
         if result.expected is not None:
-            line = np.interp(fine, time[use], result.expected[use, i])
+            fine, line = time[use], result.expected[use, i]
+            if "curve" in result.extra:
+                fine, line = result.extra["curve_time"], result.extra["curve"][:, i]
             label = f"theory: {_pretty(result.theory)}" if i == 0 else None
-            ax.plot(fine, line, ls=LINES[i % len(LINES)], color="black", lw=1, label=label, zorder=3)
+            ax.plot(fine, line, ls=LINES[i % len(LINES)], color="black", lw=1, label=label)
     ax.axhline(0, color="0.6", lw=0.8, zorder=1)
     ax.set_xlim(0, end)
     ax.set_xlabel(labelled("time lag $t$", result.units["time"]))

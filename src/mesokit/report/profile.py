@@ -60,10 +60,10 @@ def _frame(ax: Any, result: Result) -> None:
         return
     low, high = ax.get_ylim()
     level = float(np.nanmean(expected))
-    half = max(high - level, level - low, 0.01 * abs(level)) * 1.25
+    half = max(high - level, level - low, 0.01 * abs(level)) * 1.5
     ax.set_ylim(level - half, level + half)
 
 
 def _with_index(label: str) -> str:
-    words = label.split()
-    return " ".join(f"${w.replace('k_B', 'k_B')}$" if "_" in w else w for w in words)
+    words = label.replace("k_B T", "k_BT").split()
+    return " ".join(f"${w}$" if "_" in w else w for w in words)

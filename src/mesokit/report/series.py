@@ -14,29 +14,29 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     """Momentum, kinetic energy and temperature in time; in given axes the temperature alone."""
     time, names = result.x["time"], [str(name) for name in result.x["component"]]
     if ax is not None:
-        _one(result, ax, names.index("temperature"), r"temperature $k_B T$")
+        _one(result, ax, names.index("temperature"), "temperature\n$k_BT$")
         ax.set_xlabel(labelled("time $t$", result.units["time"]))
         return
     top, middle, bottom = figure.subplots(3, 1, sharex=True)
     momenta = [i for i, name in enumerate(names) if name.startswith("momentum")]
     for line, i in enumerate(momenta):
         change = result.value[:, i] - result.value[:1, i]
-        top.plot(
-            time, change, ls=LINES[line], color=COLOURS[line], lw=1, label=f"${names[i][-1]}$"
-        )
+        top.plot(time, change, ls=LINES[line], color=COLOURS[line], lw=1, label=f"${names[i][-1]}$")
     top.set_ylabel(labelled("momentum\nchange", result.units[names[momenta[0]]]))
     top.legend(loc="upper left", ncols=3)
     energy = result.value[:, names.index("kinetic_energy")]
     first = energy[0] if len(energy) and energy[0] else 1.0
     middle.plot(time, energy / first - 1, color=COLOURS[0], lw=1)
     middle.set_ylabel("kinetic energy\nrelative change")
-    _one(result, bottom, names.index("temperature"), "temperature $k_B T$")
+    _one(result, bottom, names.index("temperature"), "temperature\n$k_BT$")
     bottom.set_xlabel(labelled("time $t$", result.units["time"]))
     for panel in (top, middle):
         panel.ticklabel_format(axis="y", style="sci", scilimits=(-2, 3))
     bottom.ticklabel_format(axis="y", useOffset=False)
     if len(time) > 1:
         bottom.set_xlim(time[0], time[-1])
+    for panel in (top, middle, bottom):
+        panel.yaxis.label.set_size(9)
     figure.align_ylabels()
 
 

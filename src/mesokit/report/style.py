@@ -12,7 +12,7 @@ MARKERS = "osD^v<>pP*X"
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)))
 # dark enough for white paper, and each of its own grey
 COLOURS = ("#1b4f8a", "#c1491d", "#2a7f4f", "#7a3b8f", "#8a6d1b", "#444444")
-STYLE = {
+STYLE: Any = {
     "font.size": 10,
     "axes.labelsize": 11,
     "legend.fontsize": 9,

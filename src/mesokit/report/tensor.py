@@ -23,7 +23,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
 
 
 def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) -> None:
-    groups, inner = list(result.x.values())[0], _inner_names(result, entries)
+    groups, inner = next(iter(result.x.values())), _inner_names(result, entries)
     width = 0.6 / max(len(groups), 1)
     for number, group in enumerate(groups):
         chosen = [e for e in entries if e[0] == number]

@@ -1,0 +1,82 @@
+"""The workloads of the speed comparison, as cases; and one timed run of one of them.
+
+    python benchmarks/workloads.py W1 --threads 2 --seconds 3
+
+prints one JSON line: particle-steps per second, nanoseconds per particle-step of each stage, bytes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import resource
+import time
+
+from mesokit import (
+    AT,
+    SRD,
+    Box,
+    Case,
+    Fluid,
+    MaxwellBoltzmann,
+    NoForce,
+    NoThermostat,
+    Plates,
+    Run,
+    Simulation,
+    Uniform,
+)
+
+STEPS = 10**9  # the clock ends a run
+
+
+def case(name: str) -> Case:
+    """W1 to W4, with -thermostat or -at behind the name for these in place of plain SRD."""
+    workload, _, variant = name.partition("-")
+    size = {"W1": [30] * 3, "W2": [64] * 3, "W3": [30] * 3, "W4": [160] * 2}[workload]
+    wall = workload == "W3"
+    return Case(
+        run=Run(steps=STEPS),
+        box=Box(size),
+        fluid=Fluid(
+            density=10,
+            timestep=0.1,
+            collision=AT() if variant == "at" else SRD(angle=130),
+            thermostat=MaxwellBoltzmann() if variant == "thermostat" else NoThermostat(),
+            force=Uniform([0.01, 0, 0]) if wall else NoForce(),
+        ),
+        walls=[Plates("z")] if wall else [],
+    )
+
+
+def measure(name: str, threads: int, seconds: float, warm: int = 101) -> dict[str, object]:
+    """Run for about so many seconds; the warm-up takes compiling and the first sorts out of it."""
+    simulation = Simulation(case(name), threads=threads)
+    fluid = simulation.fluid
+    fluid.advance(warm)
+    start, before, chunk = time.perf_counter(), dict(fluid.seconds), 2 * fluid.sort_every
+    first = fluid.step
+    while time.perf_counter() - start < seconds:
+        fluid.advance(chunk)
+    elapsed = time.perf_counter() - start
+    work = (fluid.step - first) * fluid.n
+    stages = {stage: 1e9 * (s - before[stage]) / work for stage, s in fluid.seconds.items()}
+    return {
+        "workload": name,
+        "threads": threads,
+        "particles": fluid.n,
+        "rate": work / elapsed,
+        "nanoseconds": 1e9 * elapsed / work,
+        "stages": stages,
+        "bytes_per_particle": fluid.bytes_held / fluid.n,
+        "peak_kilobytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
+    }
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("workload")
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--seconds", type=float, default=3.0)
+    given = parser.parse_args()
+    print(json.dumps(measure(given.workload, given.threads, given.seconds)))

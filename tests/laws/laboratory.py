@@ -1,0 +1,143 @@
+"""Small fluids, and what is measured on them, for tests of the laws that they obey."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from mesokit.box import Box
+from mesokit.case import Case
+from mesokit.execute.cpu import CPU
+from mesokit.mpcd.fluid import Fluid
+from mesokit.mpcd.initial import start
+from mesokit.run import Run
+
+SMALL = 0.01  # value of a parameter that a component has no default for
+
+
+def example(component: type, dimension: int) -> Any:
+    """A component with its defaults, and something small where there is none."""
+    required = {}
+    for field in dataclasses.fields(component):
+        # pydantic keeps the default of a field in its own place
+        if component.__pydantic_fields__[field.name].is_required():
+            vector = "tuple" in str(component.__pydantic_fields__[field.name].annotation)
+            required[field.name] = (SMALL,) * dimension if vector else SMALL
+    return component(**required)
+
+
+def make_case(size, walls=(), observe=(), shear_rate=0.0, seed=1, **fluid) -> Case:
+    """A case with one step to run."""
+    box = Box(size, shear_rate=shear_rate)
+    return Case(
+        run=Run(steps=1, seed=seed), box=box, fluid=Fluid(**fluid), walls=walls, observe=observe
+    )
+
+
+def make_fluid(
+    size, positions=None, velocities=None, measures=(), threads=2, **parts
+) -> CPU:
+    """A fluid in memory, ready to advance."""
+    cpu = CPU(make_case(size, **parts), threads, measures)
+    start(cpu, positions, velocities)
+    return cpu
+
+
+def cells(fluid: CPU) -> np.ndarray:
+    """The unshifted cell of each particle, by id."""
+    index = np.zeros(fluid.n, int)
+    place = np.floor(fluid.positions()).astype(int)
+    for k, length in enumerate(fluid.box.astype(int)):
+        index = index * length + place[:, k] % length
+    return index
+
+
+def per_cell(index: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Sums over the particles of each cell, (cells, ...)."""
+    values = values.reshape(len(index), -1)
+    return np.stack([np.bincount(index, weights=column) for column in values.T], axis=1)
+
+
+def conserved_sums(fluid: CPU, velocities: np.ndarray) -> dict[str, np.ndarray]:
+    """What each unshifted cell holds of everything that a collision rule may conserve."""
+    index, m = cells(fluid), fluid.masses()[:, None]
+    r = fluid.positions() % 1.0 - 0.5
+    if fluid.dimension == 2:
+        angular = r[:, :1] * velocities[:, 1:] - r[:, 1:] * velocities[:, :1]
+    else:
+        angular = np.cross(r, velocities)
+    return {
+        "mass": per_cell(index, m),
+        "momentum": per_cell(index, m * velocities),
+        "energy": per_cell(index, 0.5 * (m * velocities**2).sum(axis=1)),
+        "angular momentum": per_cell(index, m * angular),
+    }
+
+
+def relative_energy(fluid: CPU) -> tuple[np.ndarray, np.ndarray]:
+    """Number of particles of each unshifted cell, and kinetic energy about its centre of mass."""
+    sums = conserved_sums(fluid, fluid.velocities())
+    number = np.bincount(cells(fluid))
+    occupied = number > 0
+    mass, momentum = sums["mass"][occupied, 0], sums["momentum"][occupied]
+    energy = sums["energy"][occupied, 0] - 0.5 * (momentum**2).sum(axis=1) / mass
+    return number[occupied], energy
+
+
+@dataclasses.dataclass(frozen=True)
+class Measured:
+    """A number and its standard error."""
+
+    value: float
+    error: float
+
+    def agrees(self, expected: float, systematic: float = 0.0, sigmas: float = 3.5) -> bool:
+        """Within so many standard errors, plus a systematic deviation relative to the expected."""
+        return abs(self.value - expected) <= sigmas * self.error + systematic * abs(expected)
+
+    def __str__(self) -> str:
+        return f"{self.value:.5g} +- {self.error:.2g}"
+
+
+def mean(samples) -> Measured:
+    """Mean of independent samples."""
+    samples = np.asarray(samples, float)
+    return Measured(samples.mean(), samples.std(ddof=1) / np.sqrt(len(samples)))
+
+
+def shear_viscosity(
+    length, amplitude=0.5, drift=0.0, runs=3, decays=2.5, viscosity=0.8, every=5, **parts
+) -> Measured:
+    """Viscosity from the decay of a helical shear wave in a cube.
+
+    The velocity (cos ky, 0, sin ky) has the same energy everywhere, so that it heats evenly, and
+    decays as exp(-nu k^2 t) without any nonlinear term. Each of its two modes is an
+    autoregressive process driven by thermal noise; the decay is its maximum-likelihood estimate,
+    whose error the noise of equipartition gives. `drift` moves the whole fluid along y.
+    """
+    k = 2 * np.pi / length
+    products = squares = 0.0
+    for seed in range(1, runs + 1):
+        fluid = make_fluid((length,) * 3, seed=seed, **parts)
+        r, v = fluid.positions(), fluid.velocities()
+        v[:, 0] += amplitude * np.cos(k * r[:, 1])
+        v[:, 2] += amplitude * np.sin(k * r[:, 1])
+        v[:, 1] += drift
+        start(fluid, r, v)
+        steps = int(decays / (viscosity * k * k * fluid.timestep))
+        fluid.advance(10)  # until the stress has grown to its steady value
+        modes = []
+        for _ in range(steps // every):
+            _, momentum = fluid.modes(np.array([[0.0, k, 0.0]]))
+            phase = np.exp(1j * k * drift * fluid.time)
+            modes.append(momentum[0, [0, 2]] * phase / fluid.n)
+            fluid.advance(every)
+        x = np.array(modes)
+        products += np.sum((x[1:] * x[:-1].conj()).real)
+        squares += np.sum(abs(x[:-1]) ** 2)
+    kept = products / squares
+    noise = (1 - kept**2) * parts.get("kT", 1.0) / (2 * fluid.n)  # of the part along x
+    elapsed = every * fluid.timestep * k * k
+    return Measured(-np.log(kept) / elapsed, np.sqrt(noise / squares) / kept / elapsed)

@@ -1,0 +1,143 @@
+"""Flow between plates and in a sheared box."""
+
+import numpy as np
+import pytest
+from laboratory import make_case, make_fluid, mean
+from scipy import stats
+
+from mesokit import theory
+from mesokit.execute.cpu import CPU
+from mesokit.geometry import Plates, Surface
+from mesokit.mpcd.collision import SRD
+from mesokit.mpcd.field import Uniform
+from mesokit.mpcd.initial import start
+from mesokit.mpcd.thermostat import MaxwellBoltzmann
+from mesokit.statistics import weighted_line
+
+LENGTH, HEIGHT = 48, 16
+BINS = 2 * HEIGHT
+Y = (np.arange(BINS) + 0.5) / 2
+INSIDE = (Y > 1) & (Y < HEIGHT - 1)  # the cells next to the plates obey no-slip only roughly
+NU = theory.transport("srd", 2, 10, 0.1, angle=90).viscosity  # 1.5 % of it are fluctuations
+
+
+def slit(acceleration=0.0, speed=0.0, virtual="fill", **parts):
+    """A 2D slit whose plates move at -speed and speed."""
+    lower, upper = (Surface(velocity=(u, 0.0)) for u in (-speed, speed))
+    return make_fluid(
+        (LENGTH, HEIGHT), walls=[Plates(axis="y", lower=lower, upper=upper, virtual=virtual)],
+        force=Uniform(acceleration=(acceleration, 0.0)), collision=SRD(angle=90),
+        thermostat=MaxwellBoltzmann(), **parts,
+    )  # fmt: skip
+
+
+def profile(fluid, warmup, blocks, steps=500):
+    """Velocity (blocks, BINS) and density, each the mean over some relaxation times."""
+    fluid.advance(warmup)
+    velocity, density = [], []
+    for _ in range(blocks):
+        sums = np.zeros((2, BINS))
+        for _ in range(steps // 5):
+            fluid.advance(5)
+            number, mass, momentum, _ = fluid.moments((1,), (BINS,))
+            sums += mass, momentum[0]
+            assert number.sum() == fluid.n
+        velocity.append(sums[1] / sums[0])
+        density.append(sums[0] / (steps // 5))
+    return np.array(velocity), np.array(density)
+
+
+@pytest.fixture(scope="module")
+def poiseuille():
+    """Acceleration, velocity and density of a driven slit, from its expected state."""
+    top = 0.4
+    g = 8 * NU * top / HEIGHT**2
+    fluid = slit(g)
+    r, v = fluid.positions(), fluid.velocities()
+    v[:, 0] += theory.poiseuille_velocity(r[:, 1], HEIGHT, g, NU)
+    start(fluid, r, v)
+    return g, top, *profile(fluid, 2000, 40)
+
+
+def test_poiseuille_flow_is_the_parabola_of_the_viscosity(poiseuille):
+    g, top, velocity, _ = poiseuille
+    fits = [theory.poiseuille_fit(Y[INSIDE], v[INSIDE], HEIGHT, g) for v in velocity]
+    nu, slip = mean([f.viscosity for f in fits]), mean([f.slip for f in fits])
+    assert nu.error < 0.015 * NU
+    # 2 %: molecular chaos, fluctuations of a small 2D box (0.749 of an independent simulation)
+    assert nu.agrees(NU, systematic=0.03), (nu, NU)
+    assert abs(slip.value) < 0.03 * top + 3 * slip.error, slip
+    middle = theory.poiseuille_fit(Y[INSIDE], velocity.mean(axis=0)[INSIDE], HEIGHT, g)
+    parabola = middle.slip + theory.poiseuille_velocity(Y, HEIGHT, g, middle.viscosity)
+    assert abs(velocity.mean(axis=0) - parabola)[INSIDE].max() < 0.01 * top
+
+
+def test_density_is_uniform_up_to_the_plates(poiseuille):
+    density = poiseuille[3] / (LENGTH * 0.5)
+    error = density.std(axis=0, ddof=1) / np.sqrt(len(density))
+    chi2 = np.sum(((density.mean(axis=0) - 10) / error) ** 2)
+    # blocks of 40: the estimated errors make it an F rather than a chi-square distribution
+    assert stats.f.sf(chi2 / BINS, BINS, len(density) - 1) > 1e-3
+
+
+def test_couette_flow_is_linear_and_not_damped():
+    u = 0.4
+    fluid = slit(speed=u)
+    r, v = fluid.positions(), fluid.velocities()
+    v[:, 0] += theory.couette_velocity(r[:, 1], HEIGHT, -u, u)
+    start(fluid, r, v)
+    velocity, _ = profile(fluid, 1500, 24)
+    fits = np.array([np.polynomial.polynomial.polyfit(Y[INSIDE], v[INSIDE], 2) for v in velocity])
+    lines = [np.polynomial.polynomial.polyfit(Y[INSIDE] - HEIGHT / 2, v[INSIDE], 1)
+             for v in velocity]  # fmt: skip
+    slope = mean([line[1] for line in lines])
+    assert slope.agrees(2 * u / HEIGHT, systematic=0.01), slope
+    assert mean([line[0] for line in lines]).agrees(0.0)
+    assert mean(fits[:, 2]).agrees(0.0)
+
+
+@pytest.mark.parametrize("virtual", ["fill", "top-up", "none"])
+def test_what_the_force_gives_the_walls_take(virtual):
+    """Momentum balance of the fluid, to rounding, step by step."""
+    g, u = 0.03, 0.2
+    fluid = slit(g, u, virtual, measures=("walls",))
+    fluid.advance(7)
+    assert fluid.wall_steps == 7
+    fluid.wall_impulse
+    before = fluid.totals()[1]
+    fluid.advance(50)
+    gained = fluid.totals()[1] - before
+    taken = fluid.wall_impulse
+    given = np.array([fluid.n * g * 50 * fluid.timestep, 0.0])
+    np.testing.assert_allclose(gained + taken.sum(axis=0), given, atol=1e-7)
+    # pressure on each plate: an ideal gas of density 10, 5 % by chance
+    pressure = taken[:, 1] / (50 * fluid.timestep * LENGTH)
+    np.testing.assert_allclose(pressure, [-10, 10], rtol=0.2)
+
+
+def test_sheared_box_has_a_linear_profile():
+    """From rest: the sliding images alone set the fluid in motion."""
+    rate, size = 0.1, (8, 12, 10)
+    case = make_case(size, shear_rate=rate, thermostat=MaxwellBoltzmann())
+    fluid = CPU(case, 2)
+    random = np.random.default_rng(2)
+    n = case.particles
+    start(fluid, random.random((n, 3)) * size, random.standard_normal((n, 3)))
+    fluid.advance(1200)  # seven times L^2/(pi^2 nu)
+    y = np.arange(0.05, 12, 0.1)
+    slopes, shapes = [], []
+    for _ in range(40):
+        sums = np.zeros((2, 120))
+        for _ in range(40):
+            fluid.advance(5)
+            _, mass, momentum, _ = fluid.moments((1,), (120,))
+            sums += mass, momentum[0]
+        v = sums[1] / sums[0]
+        fit = weighted_line(y - 6, v, 1.0)
+        slopes.append(fit.coefficients[1])
+        shapes.append(v - fit.coefficients[0])
+    slope = mean(slopes)
+    assert slope.error < 0.01 * rate
+    assert slope.agrees(rate), slope
+    shape = np.mean(shapes, axis=0)
+    assert np.sqrt(np.mean((shape - rate * (y - 6)) ** 2)) < 0.01 * rate * 12
