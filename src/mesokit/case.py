@@ -118,9 +118,9 @@ def _read(path: Path) -> str:
     try:
         return path.read_text(encoding="utf-8")
     except FileNotFoundError:
-        there = [p.name for p in path.parent.glob("*.toml")] if path.parent.is_dir() else []
-        close = difflib.get_close_matches(path.name, there, 1, 0.5)
-        hint = f"; did you mean {show(close[0])}?" if close else ""
+        there = [p.stem for p in path.parent.glob("*.toml")] if path.parent.is_dir() else []
+        close = difflib.get_close_matches(path.stem, there, 1, 0.6)
+        hint = f"; did you mean {show(close[0] + '.toml')}?" if close else ""
         raise CaseError(f"no such file{hint}") from None
     except UnicodeDecodeError as error:
         raise CaseError(f"byte {error.start}: not UTF-8 text") from None

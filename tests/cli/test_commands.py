@@ -264,7 +264,7 @@ class TestProgress:
         lines = stream.getvalue().splitlines()
         assert lines[0] == "running: 1000 steps of 500 particles"
         assert "compiling" in lines[1]
-        assert "%, 100 steps/s, 0.05 M particle-steps/s, 9.4 s left" in lines[2]
+        assert "%, 100 steps/s, 0.05 M particle-steps/s, 8.9 s left" in lines[2]
         assert lines[-1].startswith("running: step 1000 of 1000 after")
         assert len(lines) == 5
 

@@ -104,10 +104,9 @@ def start(cpu: CPU, positions: Any = None, velocities: Any = None) -> None:
 def _put(cpu: CPU, row: int, values: Floats) -> None:
     """Write values, by place in memory, into a row of the blocks."""
     rows = cpu.row(row)
-    whole = len(values) // rows.shape[1]
-    rows[:whole] = values[: whole * rows.shape[1]].reshape(whole, -1)
-    if whole < len(rows):
-        rows[whole, : len(values) - whole * rows.shape[1]] = values[whole * rows.shape[1] :]
+    for block in range(len(rows)):
+        part = values[block * rows.shape[1] : (block + 1) * rows.shape[1]]
+        rows[block, : len(part)] = part
 
 
 def _put_masses(cpu: CPU, mass: Floats) -> None:
