@@ -69,7 +69,8 @@ def test_autocorrelation(make_case):
 
 def test_particles_that_know_nothing_of_hydrodynamics_have_no_tail(make_case):
     case = make_case((32, 32), density=5)
-    result = watched(case, VelocityAutocorrelation(particles=10_000, max_lag=80), kept_by(case), 200)
+    observable = VelocityAutocorrelation(particles=10_000, max_lag=80)
+    result = watched(case, observable, kept_by(case), 200)
     ratio = result.comparisons[-1]
     assert ratio.what == "ratio to the hydrodynamic tail"
     assert abs(ratio.measured) < 4 * ratio.error and ratio.error < 0.5

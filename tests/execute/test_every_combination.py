@@ -1,0 +1,122 @@
+"""Any two registered components run together, or are refused by name.
+
+Of all combinations a few are chosen so that every pair of kinds is met at least once; they are
+compiled by a second process, beside the other tests.
+"""
+
+import itertools
+import multiprocessing
+import sys
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mesokit.errors import CaseError
+from mesokit.geometry import Plates, Surface
+from mesokit.mpcd import collision, field, thermostat
+from mesokit.mpcd.species import Species
+
+BOUNDARIES = {
+    "periodic": lambda d: {},
+    "sheared": lambda d: {"shear_rate": 0.1},
+    "filled slit": lambda d: {"walls": [Plates(axis="y")]},
+    "topped-up slit": lambda d: {"walls": [Plates(axis="xyz"[d - 1], virtual="top-up")]},
+    "half-slip slit": lambda d: {
+        "walls": [Plates(axis="y", virtual="none", upper=Surface("slip"))]
+    },
+}
+KINDS = {
+    "dimension": (2, 3),
+    "rule": collision.RULES,
+    "thermostat": thermostat.RULES,
+    "field": field.RULES,
+    "boundary": tuple(BOUNDARIES),
+    "masses": (1, 2),
+}
+
+
+def build(dimension, rule, thermostat, field, boundary, masses):
+    """The case of a combination. Raises CaseError where there is no physics for it."""
+    from laboratory import example, make_case
+
+    species = (Species(mass=1, density=3), Species(mass=2, density=2)) if masses == 2 else ()
+    return make_case(
+        (4, 6, 5)[:dimension], collision=rule(), thermostat=thermostat(),
+        force=example(field, dimension), **({"species": species} if species else {"density": 5}),
+        **BOUNDARIES[boundary](dimension),
+    )  # fmt: skip
+
+
+def pairs(combination):
+    return set(itertools.combinations(enumerate(combination), 2))
+
+
+def cover():
+    """Few valid combinations with every pair that occurs in any: greedily the most new pairs."""
+    valid, refused = [], []
+    for combination in itertools.product(*KINDS.values()):
+        try:
+            build(*combination)
+            valid.append(combination)
+        except CaseError as error:
+            refused.append((combination, str(error)))
+    missing, chosen = set().union(*map(pairs, valid)), []
+    while missing:
+        best = max(valid, key=lambda combination: len(pairs(combination) & missing))
+        chosen.append(best)
+        missing -= pairs(best)
+    return chosen, refused
+
+
+CHOSEN, REFUSED = cover()
+
+
+def run(path, combination):
+    """Three steps, in a process of its own."""
+    sys.path[:] = path
+    from mesokit.execute.cpu import CPU
+    from mesokit.mpcd.initial import start
+
+    fluid = CPU(build(*combination), 2)
+    start(fluid)
+    fluid.advance(3)
+    number, _, energy = fluid.totals()
+    r, v = fluid.positions(), fluid.velocities()
+    inside = bool((r >= 0).all() and (r <= fluid.box).all())
+    return number, energy, inside, bool(np.isfinite(v).all())
+
+
+@pytest.fixture(scope="module")
+def running():
+    """All chosen combinations, under way."""
+    path = [str(Path(__file__).parent.parent / "laws"), *sys.path]
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(2, mp_context=context) as pool:
+        yield {c: pool.submit(run, path, c) for c in CHOSEN}
+
+
+def name(combination):
+    return " ".join(getattr(part, "__name__", str(part)) for part in combination)
+
+
+@pytest.mark.parametrize("combination", CHOSEN, ids=name)
+def test_combination_runs(running, combination):
+    number, energy, inside, finite = running[combination].result()
+    assert inside and finite
+    volume = (24, 120)[combination[0] - 2]
+    assert number == 5 * volume
+    assert 0.7 < energy / (0.5 * combination[0] * number) < 1.6  # near kT, whatever the rule
+
+
+def test_what_is_refused_is_named():
+    for _, message in REFUSED:
+        assert "\n" not in message and any(
+            key in message for key in ("thermostat", "force", "shear_rate", "wall", "collision")
+        ), message
+
+
+def test_every_kind_is_met():
+    met = set().union(*map(set, CHOSEN))
+    assert set().union(*map(set, KINDS.values())) <= met

@@ -1,0 +1,54 @@
+"""Sorting brings the particles of a cell together, loses none and keeps their order."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from laboratory import make_fluid
+
+SIZE = (5, 7)
+
+
+@given(
+    n=st.integers(2, 700), threads=st.sampled_from([1, 2, 3, 5]), seed=st.integers(0, 1000),
+    spread=st.floats(1, 40),
+)  # fmt: skip
+@settings(deadline=None, derandomize=True, max_examples=60)
+def test_sort_is_a_stable_permutation(n, threads, seed, spread):
+    random = np.random.default_rng(seed)
+    fluid = make_fluid(SIZE, density=n / 35, threads=threads)
+    assert fluid.n == n
+    r = random.uniform(-spread, spread, (n, 2))
+    ids = random.permutation(n).astype(np.int32)
+    for k in range(2):
+        fluid.row(k)[...].flat[:n] = 0.0  # a copy if not contiguous: written below for certain
+        rows = fluid.row(k)
+        for j in range(n):
+            rows[j // rows.shape[1], j % rows.shape[1]] = r[j, k]
+    fluid.ident[:n] = ids
+    before = fluid.images().copy()
+    fluid.sort()
+    after = fluid.ident[:n]
+    assert sorted(after) == list(range(n))
+    rows = np.stack([fluid.row(k).reshape(-1)[:n] for k in range(2)], axis=1)
+    assert (rows >= 0).all() and (rows <= SIZE).all()
+    cell = np.floor(rows[:, 0]) % 5 + 5 * (np.floor(rows[:, 1]) % 7)
+    assert (np.diff(cell) >= 0).all()
+    place = np.empty(n, int)
+    place[ids] = np.arange(n)  # where each particle was
+    for c in np.unique(cell):
+        assert (np.diff(place[after[cell == c]]) > 0).all()
+    moved = fluid.images() - before
+    unwrapped = fluid.positions(unwrapped=True) - before * SIZE
+    np.testing.assert_allclose(unwrapped[ids], r, atol=1e-12)
+    assert moved.any() or spread < 5
+
+
+@pytest.mark.parametrize("threads", [2, 3, 5])
+def test_order_does_not_depend_on_threads(threads):
+    orders = []
+    for count in (1, threads):
+        fluid = make_fluid((6, 7), density=9.5, threads=count)
+        fluid.advance(300)
+        orders.append(fluid.ident[: fluid.n].copy())
+    np.testing.assert_array_equal(*orders)

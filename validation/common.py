@@ -1,0 +1,143 @@
+"""What the validation scripts share: numbers next to theory, and the page that shows them."""
+
+from __future__ import annotations
+
+import math
+import platform
+import sys
+import time
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import mesokit
+import numba
+import numpy as np
+from mesokit import Comparison
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  the backend comes first
+
+FOLDER = Path(__file__).resolve().parent.parent / "docs" / "validation"
+ANGLE = math.degrees(2.27)  # the angle at which the 3D viscosity is quoted in the literature
+BLUE, RED, GREEN, PURPLE, GREY = "#1b4f8a", "#c1491d", "#2a7f4f", "#7a3b8f", "#444444"
+
+plt.rcParams.update(
+    {
+        "font.size": 10, "legend.frameon": False, "legend.fontsize": 9, "xtick.direction": "in",
+        "ytick.direction": "in", "xtick.top": True, "ytick.right": True, "lines.markersize": 4,
+        "errorbar.capsize": 2, "savefig.dpi": 150,
+    }
+)  # fmt: skip
+
+
+class Page:
+    """A page of docs/validation: text, tables, figures, and what had to be shown."""
+
+    def __init__(self, name: str, title: str) -> None:
+        self.name, self.title = name, title
+        self.parts: list[str] = []
+        self.checks: list[tuple[str, bool]] = []
+        self.began = time.perf_counter()
+
+    def text(self, text: str) -> None:
+        """A paragraph."""
+        self.parts.append(" ".join(text.split()) + "\n")
+
+    def heading(self, text: str) -> None:
+        """A heading."""
+        self.parts.append(f"## {text}\n")
+
+    def table(self, rows: list[Comparison]) -> None:
+        """Measured against theory."""
+        lines = ["| quantity | measured | standard error | theory | deviation | in s.e. | note |"]
+        lines.append("|---|---|---|---|---|---|---|")
+        for c in rows:
+            error, digits = c.error, decimals(c.error, c.measured)
+            percent = f"{c.percent:+.2f} %" if math.isfinite(c.percent) else ""
+            lines.append(
+                f"| {c.what} | {c.measured:.{digits}f} {c.unit} | {error:.{digits}f} | "
+                + (f"{c.expected:.{digits}f}" if math.isfinite(c.expected) else "")
+                + f" | {percent} | "
+                + (f"{c.deviation:+.1f}" if math.isfinite(c.deviation) else "")
+                + f" | {c.note} |"
+            )
+        self.parts.append("\n".join(lines) + "\n")
+        print("\n".join(f"  {c}" for c in rows), flush=True)
+
+    def grid(self, head: list[str], rows: list[list[Any]]) -> None:
+        """Any other table."""
+        lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+        lines += ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]
+        self.parts.append("\n".join(lines) + "\n")
+        print("\n".join(lines), flush=True)
+
+    def figure(self, fig: Any, caption: str, suffix: str = "") -> None:
+        """Save a figure beside the page, and show it there."""
+        FOLDER.mkdir(parents=True, exist_ok=True)
+        file = f"{self.name}{suffix}.png"
+        fig.tight_layout()
+        fig.savefig(FOLDER / file)
+        plt.close(fig)
+        caption = " ".join(caption.split())
+        self.parts.append(f"![{caption}]({file})\n\n*{caption}*\n")
+
+    def check(self, what: str, met: bool) -> None:
+        """Something that had to be shown, and whether it was."""
+        self.checks.append((what, bool(met)))
+        print(f"  {'met' if met else 'NOT MET'}: {what}", flush=True)
+
+    def write(self) -> int:
+        """Write the page; returns how many requirements were not met."""
+        FOLDER.mkdir(parents=True, exist_ok=True)
+        seconds = time.perf_counter() - self.began
+        versions = f"mesokit {mesokit.__version__}, Python {platform.python_version()}"
+        versions += f", NumPy {np.__version__}, Numba {numba.__version__}"
+        head = [
+            f"# {self.title}\n",
+            f"Made by `python validation/{self.name}.py` on {date.today()} in {seconds:.0f} s, "
+            f"one thread; {versions}. Units: cell side a, kT and particle mass are 1. "
+            "Errors are one standard error.\n",
+        ]
+        marks = [f"- {'met' if met else '**not met**'}: {what}" for what, met in self.checks]
+        if marks:
+            head.append("\n".join(marks) + "\n")
+        (FOLDER / f"{self.name}.md").write_text("\n".join(head + self.parts), encoding="utf-8")
+        return sum(not met for _, met in self.checks)
+
+
+def decimals(error: float, value: float) -> int:
+    """Decimals that show two digits of an error (four digits of a value without one)."""
+    scale = error / 10 if error > 0 and math.isfinite(error) else abs(value) / 1000
+    return max(0, -math.floor(math.log10(scale))) if scale > 0 else 3
+
+
+def mean_and_error(values: Any) -> tuple[Any, Any]:
+    """Mean of independent repetitions (along the first axis), and its standard error."""
+    values = np.asarray(values, float)
+    return values.mean(axis=0), values.std(axis=0, ddof=1) / math.sqrt(len(values))
+
+
+def simulate(**parts: Any) -> mesokit.Simulation:
+    """Run a case to its end on one thread."""
+    simulation = mesokit.Simulation(threads=1, **parts)
+    simulation.run()
+    return simulation
+
+
+def found(result: mesokit.Result, what: str) -> Comparison:
+    """The comparison of a result that starts with `what`."""
+    return next(c for c in result.comparisons if c.what.startswith(what))
+
+
+def renamed(c: Comparison, what: str, note: str = "", expected: float | None = None) -> Comparison:
+    """The same numbers under another name."""
+    return Comparison(
+        what, c.measured, c.error, c.expected if expected is None else expected, c.unit, note
+    )
+
+
+def main(make: Any) -> None:
+    """Run a script: exit status 1 if something was not met."""
+    sys.exit(1 if make() else 0)
