@@ -54,7 +54,9 @@ class Box:
     def kernel(self, closed: tuple[bool, ...], time: float = 0.0) -> Periodic | Sheared:
         """Parameters for `fold` at a time; `closed` says which axes walls close."""
         size = tuple(float(length) for length in self.size)
-        inverse = tuple(0.0 if shut else 1.0 / length for shut, length in zip(closed, size))
+        inverse = tuple(
+            0.0 if shut else 1.0 / length for shut, length in zip(closed, size, strict=True)
+        )
         if self.shear_rate == 0.0:
             return Periodic(size, inverse)
         speed = self.shear_rate * size[1]

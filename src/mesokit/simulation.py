@@ -147,8 +147,7 @@ class Simulation:
         Ctrl-C or SIGTERM writes a checkpoint and raises KeyboardInterrupt; `resume` goes on.
         """
         progress = progress or Reporter(quiet=True)
-        phase = "warming up" if self.step < self.case.run.warmup else "running"
-        progress.start(self.last_step, self.fluid.n, phase, self.step)
+        progress.start(self.last_step, self.fluid.n, "running", self.step)
         try:
             with self._catching_signals():
                 self._compile(progress)

@@ -33,7 +33,7 @@ def total_block(sums, start, count, totals, terms):
 @scalar
 def draw_block(physics, counter, start, count, totals, variates, accepted):
     """The thermostat's random number for each cell; the few that are refused are drawn again."""
-    refused = 0
+    refused = np.int64(0)
     for i in range(LANES):
         n = float(totals[i])
         x, good = draw(physics.thermostat, counter, start + i, 0, freedom(physics.rule, n))

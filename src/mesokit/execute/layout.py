@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 from numba.cpython.unsafe.tuple import tuple_setitem
+
 from mesokit.execute.cache import cached_kernel
 from mesokit.scalar import by_type, dot, scalar
 
@@ -174,7 +175,9 @@ def _read_sums(
         n = totals[i]
         values = scales
         for k in range(len(scales)):
-            values = tuple_setitem(values, k, from_fixed(totals[(k + 1) * SCRATCH_ROW + i], n, scales[k]))
+            values = tuple_setitem(
+                values, k, from_fixed(totals[(k + 1) * SCRATCH_ROW + i], n, scales[k])
+            )
         mass = max(float(n), 1.0) * masses[0] if uniform else max(values[d], 1e-300)
         m_v_squared = values[at_energy] if asked else 0.0
         return float(n), mass, values[:d], m_v_squared, values[own:]

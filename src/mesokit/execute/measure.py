@@ -1,15 +1,29 @@
 """Sums over all particles that observables ask for; the same bits for any number of threads.
 
-Each strip writes its own partial sum, and the partial sums are added in order.
+Each strip writes its own partial sum, to be added in order; or the sums are of whole numbers.
 """
+
+import math
 
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.box import fold
 from mesokit.elementary import sincos_turn
-from mesokit.execute.layout import LANES, kernel, load, mass_of, share, strip_of
-from mesokit.scalar import dot, scaled
+from mesokit.execute.layout import (
+    LANES,
+    ROUNDER_BITS,
+    fixed,
+    integers,
+    kernel,
+    load,
+    mass_of,
+    note,
+    share,
+    strip_of,
+)
+from mesokit.execute.stages import add_strip, rounded
+from mesokit.scalar import dot, scalar, scaled
 
 
 @kernel
@@ -29,56 +43,71 @@ def totals(thread, threads, gate, physics, data, count, rows, like, out):
 
 
 @kernel
-def bin_sums(thread, threads, gate, physics, box, data, count, rows, like, axes, bins, scales, out):
-    """Number, mass, momentum and m v^2 in bins along one or two axes, as fixed-point sums.
+def bin_sums(
+    thread, threads, gate, physics, box, data, count, rows, like, axes, bins, scales, scratch, out
+):  # fmt: skip
+    """Number, momentum, mass and m v^2 in bins along one or two axes, as fixed-point sums.
 
     `axes` and `bins` hold two entries each; for a profile the second has one bin. `out` is
-    (threads, bins, d + 3).
+    (threads, bins * (d + 3)), to be zero.
     """
     d = len(like)
-    out = out[thread]
+    place, quanta = scratch
+    place, quanta, out = place[thread], quanta[thread], out[thread]
+    terms = integers(scales)
     first, last = share((count + LANES - 1) // LANES, thread, threads)
     for b in range(first, last):
         strip = strip_of(data, b, rows)
-        for i in range(min(LANES, count - b * LANES)):
+        for i in range(LANES):
             r, v = load(strip, i, 0, like), load(strip, i, d, like)
             r, v, _ = fold(box, r, v, scaled(0.0, like))
             m = mass_of(physics.masses, strip, i, 2 * d)
-            place = 0
+            index = 0.0
             for k in range(2):
-                x = int(r[axes[k]] / box.size[axes[k]] * bins[k])
-                place = place * bins[k] + min(max(x, 0), bins[k] - 1)
-            out[place, 0] += 1
-            out[place, 1] += np.int64(np.rint(m * scales[1]))
-            for k in range(d):
-                out[place, 2 + k] += np.int64(np.rint(m * v[k] * scales[0]))
-            out[place, 2 + d] += np.int64(np.rint(m * dot(v, v) * scales[2]))
+                x = math.floor(r[axes[k]] / box.size[axes[k]] * bins[k])
+                index = index * bins[k] + min(max(x, 0.0), bins[k] - 1.0)
+            place[i] = np.int32(index)
+            note(quanta, i, rounded(scaled(m, v) + (m, m * dot(v, v)), scales))
+        add_strip(place, quanta, out, min(LANES, count - b * LANES), terms)
 
 
 @kernel
-def modes(thread, threads, gate, physics, box, data, count, rows, like, waves, out):
-    """Fourier sums of mass and momentum of each strip: out (blocks, waves, 1 + d, 2).
+def modes(thread, threads, gate, physics, box, data, count, rows, like, waves, scale, out):
+    """Fourier sums of mass and momentum as fixed-point sums: out (threads, waves, 2 (1 + d)).
 
-    `waves` are wave vectors over 2 pi, in turns per length.
+    `waves` are wave vectors over 2 pi, in turns per length. Each row holds mass times cosine and
+    minus sine, then the same of each component of the momentum; each sum has a multiple of LANES
+    terms, zero in spare lanes.
     """
     d = len(like)
     first, last = share((count + LANES - 1) // LANES, thread, threads)
     for b in range(first, last):
         strip = strip_of(data, b, rows)
-        for i in range(min(LANES, count - b * LANES)):
-            r, v = load(strip, i, 0, like), load(strip, i, d, like)
-            r, v, _ = fold(box, r, v, scaled(0.0, like))
-            m = mass_of(physics.masses, strip, i, 2 * d)
-            for w in range(len(waves)):
-                phase = 0.0
-                for k in range(d):
-                    phase += waves[w, k] * r[k]
-                s, c = sincos_turn(phase - np.floor(phase))
-                out[b, w, 0, 0] += m * c
-                out[b, w, 0, 1] -= m * s
-                for k in range(d):
-                    out[b, w, 1 + k, 0] += m * v[k] * c
-                    out[b, w, 1 + k, 1] -= m * v[k] * s
+        lanes = min(LANES, count - b * LANES)
+        for w in range(len(waves)):
+            wave = load_wave(waves, w, like)
+            sums = integers((0.0, 0.0) + like + like)
+            for i in range(LANES):
+                r, v = load(strip, i, 0, like), load(strip, i, d, like)
+                r, v, _ = fold(box, r, v, scaled(0.0, like))
+                m = mass_of(physics.masses, strip, i, 2 * d)
+                m = m if i < lanes else 0.0
+                phase = dot(wave, r)
+                s, c = sincos_turn(phase - math.floor(phase))
+                c, s = m * c, -m * s
+                values = (c, s) + scaled(c, v) + scaled(s, v)
+                for k in range(len(sums)):
+                    sums = tuple_setitem(sums, k, sums[k] + fixed(values[k], scale))
+            for k in range(len(sums)):
+                out[thread, w, k] += sums[k] - np.int64(LANES * ROUNDER_BITS)
+
+
+@scalar
+def load_wave(waves, w, like):
+    """One wave vector as a tuple."""
+    for k in range(len(like)):
+        like = tuple_setitem(like, k, waves[w, k])
+    return like
 
 
 @kernel

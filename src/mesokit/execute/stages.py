@@ -44,7 +44,9 @@ class Grid(NamedTuple):
     """The collision cells of one step."""
 
     shift: tuple  # added to positions, in cells
-    first: tuple  # cell number, along each axis, of the cell at 0 (1 where a wall's cell comes first)
+    first: (
+        tuple  # cell number, along each axis, of the cell at 0 (1 where a wall's cell comes first)
+    )
     cells: tuple  # number along each axis
     inverse: tuple
 
@@ -91,7 +93,7 @@ def stream_strip(physics, strip, count, hits, saved, impulse, scales, like):
     dt = physics.timestep
     found = 0
     if exposed(physics.solid):
-        any_hit = 0
+        any_hit = np.int64(0)
         for i in range(LANES):
             r, v = load(strip, i, 0, like), load(strip, i, d, like)
             a = vector(halfway(physics.field, r, v, dt), like)
@@ -140,7 +142,9 @@ def bin_strip(physics, counter, grid, strip, cell, ident, terms_rows, scales, li
         r, v = load(strip, i, 0, like), load(strip, i, d, like)
         m = mass_of(physics.masses, strip, i, 2 * d)
         kept, own = contribute(physics.rule, counter, ident[i], m, v, in_cell(r, grid))
-        terms = scaled(m, v) + mass_term(physics.masses, m) + energy_term(physics.energy, m, v) + own
+        terms = (
+            scaled(m, v) + mass_term(physics.masses, m) + energy_term(physics.energy, m, v) + own
+        )
         cell[i] = cell_index(r, grid)
         store(strip, i, d, kept)
         note(terms_rows, i, rounded(terms, scales))

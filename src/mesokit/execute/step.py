@@ -1,6 +1,5 @@
 """The step: its stages in order, run by all threads of a team together."""
 
-
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.box import at_time

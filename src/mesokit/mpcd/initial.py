@@ -57,7 +57,8 @@ def _load(name: str, path: str) -> Any:
     try:
         found = np.load(path, allow_pickle=False)
     except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
-        raise CaseError(f"{key}: expected a .npy or .npz file: {error}") from None
+        reason = f": {error.strerror}" if isinstance(error, OSError) and error.strerror else ""
+        raise CaseError(f"{key}: expected a .npy or .npz file of numbers{reason}") from None
     if isinstance(found, np.ndarray):
         return found
     if name not in found.files and len(found.files) != 1:

@@ -64,9 +64,7 @@ def _(rule, counter, ident, m, v, r):
 def _(rule, counter, ident, m, v, r):
     w = thermal_velocity(counter, ident, rule.kT, m, v)
     lost = cross(r, (v[0] - w[0], v[1] - w[1], v[2] - w[2]))
-    return w, (
-        scaled(m, w) + scaled(m, r) + scaled(m, second_moment(r)) + scaled(m, lost)
-    )
+    return w, (scaled(m, w) + scaled(m, r) + scaled(m, second_moment(r)) + scaled(m, lost))
 
 
 @freedom.register(ATPlusA2)
