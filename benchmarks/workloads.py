@@ -1,6 +1,6 @@
 """The workloads of the speed comparison, as cases; and one timed run of one of them.
 
-    python benchmarks/workloads.py W1 --threads 2 --seconds 3
+    python -m benchmarks.workloads W1 --threads 2 --seconds 3
 
 prints one JSON line: particle-steps per second, nanoseconds per particle-step of each stage, bytes.
 """
@@ -15,6 +15,7 @@ import time
 from mesokit import (
     AT,
     SRD,
+    ATPlusA,
     Box,
     Case,
     Fluid,
@@ -24,14 +25,16 @@ from mesokit import (
     Plates,
     Run,
     Simulation,
+    SRDPlusA,
     Uniform,
 )
 
+RULES = {"at": AT(), "srd+a": SRDPlusA(angle=130), "at+a": ATPlusA()}
 STEPS = 10**9  # the clock ends a run
 
 
 def case(name: str) -> Case:
-    """W1 to W4, with -thermostat or -at behind the name for these in place of plain SRD."""
+    """W1 to W4, with -thermostat or the name of a rule, such as -at, in place of plain SRD."""
     workload, _, variant = name.partition("-")
     size = {"W1": [30] * 3, "W2": [64] * 3, "W3": [30] * 3, "W4": [160] * 2}[workload]
     wall = workload == "W3"
@@ -41,7 +44,7 @@ def case(name: str) -> Case:
         fluid=Fluid(
             density=10,
             timestep=0.1,
-            collision=AT() if variant == "at" else SRD(angle=130),
+            collision=RULES.get(variant, SRD(angle=130)),
             thermostat=MaxwellBoltzmann() if variant == "thermostat" else NoThermostat(),
             force=Uniform([0.01, 0, 0]) if wall else NoForce(),
         ),
@@ -56,7 +59,7 @@ def measure(name: str, threads: int, seconds: float, warm: int = 101) -> dict[st
     fluid.advance(warm)
     start, before, chunk = time.perf_counter(), dict(fluid.seconds), 2 * fluid.sort_every
     first = fluid.step
-    while time.perf_counter() - start < seconds:
+    while fluid.step == first or time.perf_counter() - start < seconds:
         fluid.advance(chunk)
     elapsed = time.perf_counter() - start
     work = (fluid.step - first) * fluid.n

@@ -97,7 +97,7 @@ def normal_pair(a, b):
 
 @scalar
 def normals(like, a, b, c, d):
-    """As many standard normal numbers (2 or 3) as the tuple `like` has elements, from four words."""
+    """Standard normal numbers from four words, as many (2 or 3) as `like` has elements."""
     x, y = normal_pair(a, b)
     z, _ = normal_pair(c, d)
     return first((x, y, z), like)

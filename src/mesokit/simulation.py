@@ -34,7 +34,7 @@ class Simulation:
     Parameters
     ----------
     case : Case, optional
-        What to simulate; or give its parts (`run`, `box`, `fluid`, `walls`, `observe`, ...) by name.
+        What to simulate; or give its parts (`run`, `box`, `fluid`, `walls`, ...) by name.
     output : path, optional
         Folder to write to; nothing is written without it.
     threads : int, optional
@@ -275,7 +275,7 @@ class Simulation:
 
     @contextlib.contextmanager
     def _catching_signals(self) -> Iterator[None]:
-        """Ctrl-C and SIGTERM end the loop after the steps in hand; a second Ctrl-C stops at once."""
+        """Ctrl-C and SIGTERM end the loop after the steps in hand; a second one stops at once."""
         self._stopped_by = None
         if threading.current_thread() is not threading.main_thread():
             yield

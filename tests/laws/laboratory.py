@@ -24,7 +24,7 @@ def example(component: type, dimension: int) -> Any:
         # pydantic keeps the default of a field in its own place
         if component.__pydantic_fields__[field.name].is_required():
             vector = "tuple" in str(component.__pydantic_fields__[field.name].annotation)
-            required[field.name] = (SMALL,) * dimension if vector else SMALL
+            required[field.name] = (SMALL,) + (0.0,) * (dimension - 1) if vector else SMALL
     return component(**required)
 
 

@@ -48,8 +48,10 @@ def test_heavy_and_light_particles_share_the_energy(rule):
     assert abs(fluid.totals()[1] - momentum).max() < 1e-8
     # Every snapshot is 2 N_kind numbers of variance 2; snapshots 20 collisions apart are new.
     error = np.sqrt(2 / (2 * heavy.sum() * len(samples)))
+    # A rule that restores angular momentum by scaling to the old energy is not exactly stationary.
+    scales = {"energy", "angular momentum"} <= set(rule.conserves)
     for value in np.mean(samples, axis=0):
-        assert Measured(value, error).agrees(1.0, systematic=0.005), value
+        assert Measured(value, error).agrees(1.0, systematic=0.04 if scales else 0.005), value
 
 
 @pytest.fixture(scope="module")

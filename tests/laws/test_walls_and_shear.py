@@ -66,7 +66,10 @@ def test_poiseuille_flow_is_the_parabola_of_the_viscosity(poiseuille):
     assert nu.error < 0.015 * NU
     # 2 %: molecular chaos, fluctuations of a small 2D box (0.749 of an independent simulation)
     assert nu.agrees(NU, systematic=0.03), (nu, NU)
-    assert abs(slip.value) < 0.03 * top + 3 * slip.error, slip
+    # as far behind the plate as a straight profile would vanish: a fifth of a cell (3 % of the
+    # velocity in the middle of a slit 24 to 32 cells high); without virtual particles one cell
+    behind = HEIGHT / (4 * top)
+    assert abs(slip.value) * behind < 0.25 + 3 * slip.error * behind, slip
     middle = theory.poiseuille_fit(Y[INSIDE], velocity.mean(axis=0)[INSIDE], HEIGHT, g)
     parabola = middle.slip + theory.poiseuille_velocity(Y, HEIGHT, g, middle.viscosity)
     assert abs(velocity.mean(axis=0) - parabola)[INSIDE].max() < 0.01 * top

@@ -140,6 +140,7 @@ class CPU:
         self.grid = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
         self.clock, self.sort_seconds = np.zeros(STAGES + 3, np.int64), 0.0
         self.wall_steps = 0
+        self._asked: tuple[NDArray, NDArray[np.int32]] | None = None  # ids, and their slots
         self._seen: dict[tuple, Moments] = {}  # moments at this step, for several observables
         self.stress: dict[str, Floats] = {}
 
@@ -318,12 +319,20 @@ class CPU:
         return kind if ids is None else kind[ids]
 
     def _gather(self, ids: NDArray | None, unwrapped: bool) -> tuple[Floats, Floats, NDArray]:
-        limit = self.n if ids is None else int(np.max(ids)) + 1
-        shape = limit, self.dimension
+        slots = np.arange(self.n, dtype=np.int32) if ids is None else self._slots(ids)
+        shape = self.n if ids is None else len(ids), self.dimension
         out = np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32)
-        particles = self.data, self.image, self.ident, self.n, self.rows, self.like
+        particles = self.data, self.image, self.ident, slots, self.n, self.rows, self.like
         self.team.run(measure.gather_by_id, self.box_kernel, *particles, unwrapped, *out)
-        return out if ids is None else tuple(a[ids] for a in out)
+        return out
+
+    def _slots(self, ids: NDArray) -> NDArray[np.int32]:
+        """Place of each particle in `ids`, by particle id, -1 if it has none; kept for next time."""
+        if self._asked is None or not np.array_equal(self._asked[0], ids):
+            slots = np.full(self.n, -1, np.int32)
+            slots[ids] = np.arange(len(ids))
+            self._asked = ids.copy(), slots
+        return self._asked[1]
 
     def _stress(self) -> None:
         """Stress of the step that ends now, positive where the fluid above drags the one below.

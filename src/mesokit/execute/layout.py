@@ -1,6 +1,6 @@
 """How particles lie in memory: blocks of 4096, each with one row per coordinate and velocity.
 
-A block (x x x ... y y y ... vx vx vx ...) is one stretch of memory with rows at constant offsets, so
+A block (x x x ... y y y ... vx vx vx ...) is one stretch of memory, rows at constant offsets, so
 that LLVM can see that they do not overlap and vectorise the loop over a strip of 256 particles. A
 strip stays in the first-level cache while all stages of a step pass over it, and the next strip
 continues the same rows, which the hardware prefetches. Eight numbers of padding keep rows off the
@@ -159,7 +159,7 @@ def _integers(values: Any) -> Callable:
 def read_sums(
     masses: Any, energy: Any, totals: Any, i: Any, like: Any, terms: Any, scales: Any
 ) -> Any:
-    """Number, mass, momentum, sum of m v^2 (0 where not asked) and the rule's own sums of a cell."""
+    """Number, mass, momentum, sum of m v^2 (0 if not asked) and the rule's own sums of a cell."""
     raise NotImplementedError
 
 

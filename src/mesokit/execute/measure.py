@@ -112,29 +112,24 @@ def load_wave(waves, w, like):
 
 @kernel
 def gather_by_id(
-    thread, threads, gate, box, data, image, ident, count, rows, like, unwrapped, position, velocity,
-    number,
+    thread, threads, gate, box, data, image, ident, slots, count, rows, like, unwrapped, position,
+    velocity, number,
 ):  # fmt: skip
-    """Positions, velocities and images of particles with ident < len(position), by ident."""
+    """Positions, velocities and images of particles that have a slot: slots[ident], or -1."""
     d = len(like)
-    limit = len(position)
     first, last = share((count + LANES - 1) // LANES, thread, threads)
     for b in range(first, last):
         strip = strip_of(data, b, rows)
         for i in range(min(LANES, count - b * LANES)):
             j = b * LANES + i
-            who = ident[j]
-            if who < limit:
-                r, v = load(strip, i, 0, like), load(strip, i, d, like)
-                if unwrapped:
-                    for k in range(d):
-                        r = tuple_setitem(r, k, r[k] + image[k, j] * box.size[k])
-                    for k in range(d):
-                        position[who, k] = r[k]
-                        velocity[who, k] = v[k]
-                else:
-                    r, v, n = fold(box, r, v, scaled(0.0, like))
-                    for k in range(d):
-                        position[who, k] = r[k]
-                        velocity[who, k] = v[k]
-                        number[who, k] = image[k, j] + np.int32(n[k])
+            slot = slots[ident[j]]
+            if slot < 0:
+                continue
+            r, v = load(strip, i, 0, like), load(strip, i, d, like)
+            crossed = scaled(0.0, like)
+            if not unwrapped:
+                r, v, crossed = fold(box, r, v, crossed)
+            for k in range(d):
+                position[slot, k] = r[k] + (image[k, j] * box.size[k] if unwrapped else 0.0)
+                velocity[slot, k] = v[k]
+                number[slot, k] = image[k, j] + np.int32(crossed[k])

@@ -88,7 +88,7 @@ def collide_strip(physics, grid, strip, cell, coefficients, stride, gathered, li
 
 @scalar
 def stream_strip(physics, strip, count, hits, saved, impulse, scales, like):
-    """Positions and velocities a timestep later; the momentum that surfaces take goes to impulse."""
+    """Positions and velocities a timestep later; momentum that surfaces take goes to impulse."""
     d = len(like)
     dt = physics.timestep
     found = 0

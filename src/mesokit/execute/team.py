@@ -16,7 +16,7 @@ from mesokit.scalar import scalar
 
 SPINS = 20_000  # some ten microseconds; a thread that waits longer lets others have the core
 
-# The gate: how many threads have come, and how often it has opened; each on a cache line of its own.
+# The gate: how many threads have come, and how often it has opened; each on its own cache line.
 ARRIVED, OPENED, GATE_SIZE = 0, 8, 16
 
 _yield_core = types.ExternalFunction("sched_yield", types.int32())

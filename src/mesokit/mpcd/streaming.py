@@ -47,7 +47,7 @@ def halfway(field, r, v, time):
 
 @scalar
 def bounce(solid, r, v, a, time):
-    """Flight with reflections: position, velocity, and the velocity taken up by surfaces 0 and 1."""
+    """Flight with reflections: position, velocity, and what surfaces 0 and 1 took of the latter."""
     lower, upper = scaled(0.0, v), scaled(0.0, v)
     for _ in range(MOST_HITS):
         hit, surface = first_hit(solid, r, v, a, time)

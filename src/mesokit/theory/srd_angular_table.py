@@ -9,8 +9,9 @@ turns every velocity alike, or draws fresh ones (AT). All that transport needs o
     l(N)  = <S_xx - b.I^-1.b>                    the same for a compressing flow
 
 with S = sum x x^T about the centre of mass, I = tr(S) - S (its pseudo-inverse for two particles
-in 3D), K_rs = sum (e_r x x).e.(e_s x x) for the stress e = xy + yx, and c_r, b_r = sum (e_r x x)_x y
-and (e_r x x)_x x. Derived for mesokit; the tables below are means over random positions.
+in 3D), K_rs = sum (e_r x x).e.(e_s x x) for the stress e = xy + yx, and
+c_r, b_r = sum (e_r x x)_x y and (e_r x x)_x x. Derived for mesokit; the tables below are means
+over random positions.
 `python -m mesokit.theory.srd_angular_table` prints them again (four minutes).
 """
 

@@ -69,9 +69,10 @@ def transport(
 
     Source: Gompper, Ihle, Kroll and Winkler (2009), Table 1, for SRD; Noguchi and Gompper (2008)
     for the limits of large M of AT; the sums over occupancies, the +a rules at finite M, the
-    thermostatted rules and the attenuation of isothermal sound were derived in docs/theory. A collision of
-    N particles multiplies a velocity by 1 - gD(N), the shear stress by 1 - gS(N) and moves momentum
-    q(N) across the cell; gD and gS are means over the cells that a particle sees, N P(N)/M, and
+    thermostatted rules and the attenuation of isothermal sound were derived in docs/theory. A
+    collision of N particles multiplies a velocity by 1 - gD(N), the shear stress by 1 - gS(N) and
+    moves momentum q(N) across the cell; gD and gS are means over the cells that a particle sees,
+    N P(N)/M, and
         nu = kT dt/m (1/gS - 1/2) + <q>/(M dt),   D = kT dt/m (1/gD - 1/2).
 
     Valid for M of at least about 3 and a grid shift. Correlated collisions (mean free path below

@@ -50,8 +50,8 @@ def transverse_viscosity_fit(
             other (errors of one and the same run at neighbouring delays are not, which makes the
             quoted error too small), or one for all.
 
-    Raises ValueError for shapes that do not broadcast, errors not above 0, no value clear of zero, no
-    convergence. Source: weighted least squares, linearised at the solution.
+    Raises ValueError for shapes that do not broadcast, errors not above 0, no value clear of zero,
+    no convergence. Source: weighted least squares, linearised at the solution.
 
     >>> t = np.arange(1.0, 20)
     >>> fit = transverse_viscosity_fit(0.3, t, transverse_correlation(0.3, t, 0.87), 0.01)

@@ -91,9 +91,9 @@ def _(rule, n):
     return 3.0 * (n - 1.0) - (3.0 if n > 2.5 else 2.0)
 
 
-# Below, w are the rotated velocities relative to the mean, Omega their rigid rotation and omega that
-# of the cell before the collision. Particles leave with u + omega x r' + s (w - Omega x r'), r'
-# relative to the centre of mass; s makes up for the energy of the two rotations.
+# Below, w are the rotated velocities relative to the mean, Omega their rigid rotation and omega
+# that of the cell before the collision. Particles leave with u + omega x r' + s (w - Omega x r'),
+# r' relative to the centre of mass; s makes up for the energy of the two rotations.
 
 
 @coefficients.register(SRDPlusA2)

@@ -40,7 +40,7 @@ def _(thermostat, counter, cell, attempt, freedom):
 
     Shape 1/2 (two particles of a rule +a) is half the square of a normal number.
     """
-    a, b, c, d = words(counter, CELL_THERMOSTAT, cell, attempt)
+    a, b, c, _ = words(counter, CELL_THERMOSTAT, cell, attempt)
     x, _ = normal_pair(a, b)
     shape = 0.5 * freedom
     large = shape > 0.75

@@ -32,7 +32,7 @@ def stretch(thermostat, variate, freedom, energy):
 def root_of_ratio(wanted, present, freedom):
     """sqrt(wanted / present), and 1 where there is nothing to scale.
 
-    The present energy is a sum rounded to a fixed grid; below a billionth of the target it is noise.
+    The present energy is a sum of rounded numbers: below a billionth of the target it is noise.
     """
     ratio = wanted / max(present, 1e-9 * wanted)
     return math.sqrt(ratio) if freedom > 0.5 and wanted > 0.0 else 1.0

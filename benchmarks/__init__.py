@@ -1,0 +1,1 @@
+"""Speed of mesokit, by itself and side by side with LAMMPS: `make bench`."""

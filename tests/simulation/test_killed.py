@@ -1,0 +1,98 @@
+"""A real process, killed or interrupted at any moment, resumes to the same bits."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mesokit
+from mesokit.simulation import Simulation
+
+KILLS = 20
+LONG = ["--set", "run.steps=40000", "--set", "run.checkpoint_every=200"]
+SOURCE = str(Path(mesokit.__file__).parent.parent)
+
+
+def mesokit_process(*arguments):
+    environment = os.environ | {"PYTHONPATH": SOURCE}
+    return subprocess.Popen(
+        [sys.executable, "-m", "mesokit", *map(str, arguments), "--threads", "1", "--quiet"],
+        env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+
+
+def wait_for(path, process):
+    while not path.exists():
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.005)
+
+
+def start_or_resume(case_file, folder):
+    """The command that goes on: a kill before the case was written leaves nothing to resume."""
+    if (folder / "case.toml").exists():
+        return mesokit_process("resume", folder)
+    return mesokit_process("run", case_file, "--output", folder, *LONG)
+
+
+@pytest.fixture(scope="module")
+def whole(case_file, tmp_path_factory):
+    """Folder of a run in a process that was left alone, and seconds to its first checkpoint."""
+    folder = tmp_path_factory.mktemp("process") / "whole"
+    began = time.perf_counter()
+    process = start_or_resume(case_file, folder)
+    wait_for(folder / "checkpoint.npz", process)
+    started = time.perf_counter() - began
+    _, errors = process.communicate()
+    assert process.returncode == 0, errors
+    return folder, started
+
+
+def assert_same_end(folder, other):
+    one, two = (Simulation.resume(path, threads=1) for path in (folder, other))
+    assert one.step == two.step == 40037
+    np.testing.assert_array_equal(one.fluid.positions(), two.fluid.positions())
+    np.testing.assert_array_equal(one.fluid.velocities(), two.fluid.velocities())
+    np.testing.assert_array_equal(one.fluid.images(), two.fluid.images())
+    assert mesokit.open(folder).results == mesokit.open(other).results
+
+
+def test_killed_at_random_moments(whole, case_file, tmp_path):
+    """From start-up, through the run, to the writing of results."""
+    reference, started = whole
+    folder = tmp_path / "killed"
+    random = np.random.default_rng(20)
+    steps = []
+    for delay in random.uniform(0.0, 1.3, KILLS) * started:
+        process = start_or_resume(case_file, folder)
+        time.sleep(delay)
+        process.send_signal(signal.SIGKILL)
+        process.communicate()
+        if (folder / "checkpoint.npz").exists():
+            with np.load(folder / "checkpoint.npz") as checkpoint:
+                steps.append(int(checkpoint["fluid/step"]))
+    assert steps == sorted(steps) and steps[-1] > 0
+    process = start_or_resume(case_file, folder)
+    _, errors = process.communicate()
+    assert process.returncode == 0, errors
+    assert_same_end(folder, reference)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_interrupted(whole, case_file, tmp_path, number):
+    folder = tmp_path / "interrupted"
+    process = start_or_resume(case_file, folder)
+    wait_for(folder / "checkpoint.npz", process)
+    process.send_signal(number)
+    _, errors = process.communicate()
+    assert process.returncode == 130
+    assert errors.count("\n") == 1 and f"mesokit resume {folder}" in errors
+    assert "Traceback" not in errors
+    simulation = Simulation.resume(folder, threads=2)
+    assert simulation.step < 40037
+    simulation.run()
+    assert_same_end(folder, whole[0])

@@ -1,0 +1,134 @@
+"""What a run is: its start, its warm-up, and its independence of who looks."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from mesokit.errors import CaseError
+from mesokit.mpcd.initial import Start
+from mesokit.simulation import Simulation
+
+
+def replaced(case, **parts):
+    return dataclasses.replace(case, **parts)
+
+
+def state(simulation):
+    fluid = simulation.fluid
+    return fluid.positions(), fluid.velocities(), fluid.images()
+
+
+def assert_same(one, other):
+    for a, b in zip(one, other, strict=True):
+        np.testing.assert_array_equal(a, b)
+
+
+def test_looking_changes_nothing(case, uninterrupted):
+    """Other intervals, other outputs, other checkpoints, or none: the same particles."""
+    blind = replaced(case, observe=(), trajectory=None)
+    often = replaced(
+        case,
+        observe=tuple(dataclasses.replace(o, every=1) for o in case.observe),
+        run=dataclasses.replace(case.run, checkpoint_every=None),
+        trajectory=None,
+    )
+    for other in (blind, often):
+        simulation = Simulation(other, threads=2)
+        simulation.run()
+        assert_same(state(simulation), state(uninterrupted))
+
+
+def test_warm_up_is_seen_by_no_observer(case):
+    """Samples come only after it, and the wall's first one holds nothing from before."""
+    steps, warmup, every = 10, 37, 5
+    run = dataclasses.replace(case.run, steps=steps)
+    observe = tuple(dataclasses.replace(o, every=every) for o in case.observe)
+    simulation = Simulation(replaced(case, run=run, observe=observe), threads=1)
+    simulation.run()
+    for result in simulation.results.values():
+        assert result.samples == steps // every
+    seen = simulation["conservation"].extra["step"]
+    np.testing.assert_array_equal(seen, [warmup + 5, warmup + 10])
+
+    # the same particles, started where the warm-up ends
+    only_warm = Simulation(replaced(case, run=dataclasses.replace(run, steps=0)), threads=1)
+    only_warm.run()
+    assert all(result.samples == 0 for result in only_warm.results.values())
+    fluid = only_warm.fluid
+    fluid.wall_impulse
+    fluid.advance(steps)
+    area, dt = case.box.size[0], case.fluid.timestep
+    np.testing.assert_allclose(
+        simulation["wall-stress"].value, fluid.wall_impulse / (steps * dt * area), atol=1e-9
+    )
+
+
+def test_no_warm_up_and_no_steps(case):
+    run = dataclasses.replace(case.run, steps=0, warmup=0)
+    simulation = Simulation(replaced(case, run=run), threads=1)
+    simulation.run()
+    assert simulation.step == 0
+
+
+@pytest.fixture
+def arrays(case):
+    random = np.random.default_rng(4)
+    n, size = case.particles, np.array(case.box.size)
+    return random.random((n, 2)) * size, random.standard_normal((n, 2))
+
+
+def test_start_from_arrays_by_particle_id(case, arrays, tmp_path):
+    simulation = Simulation(case, positions=arrays[0], velocities=arrays[1], threads=1)
+    np.testing.assert_allclose(simulation.fluid.positions(), arrays[0], atol=1e-14)
+    np.testing.assert_array_equal(simulation.fluid.velocities(), arrays[1])
+    simulation.run()
+    for name, array in zip(("positions", "velocities"), arrays, strict=True):
+        np.save(tmp_path / f"{name}.npy", array)
+    files = Start(
+        positions=str(tmp_path / "positions.npy"), velocities=str(tmp_path / "velocities.npy")
+    )
+    from_files = replaced(case, fluid=dataclasses.replace(case.fluid, start=files))
+    other = Simulation(from_files, threads=1)
+    other.run()
+    assert_same(state(other), state(simulation))
+
+
+def test_arrays_survive_a_crash_before_the_first_checkpoint(case, arrays, tmp_path, crash_at):
+    whole = Simulation(case, positions=arrays[0], velocities=arrays[1], threads=1)
+    whole.run()
+    simulation = Simulation(
+        case, positions=arrays[0], velocities=arrays[1], output=tmp_path / "run", threads=1
+    )
+    with pytest.raises(crash_at.error):
+        simulation.run(progress=crash_at(1))
+    again = Simulation.resume(tmp_path / "run", threads=2)
+    again.run()
+    assert_same(state(again), state(whole))
+
+
+def test_wrong_arrays_are_refused(case, arrays):
+    r, v = arrays
+    for bad in ({"positions": r[:-1]}, {"velocities": v * np.nan}, {"positions": r + [0, 9]}):
+        with pytest.raises(CaseError, match=r"fluid\.start"):
+            Simulation(case, **bad)
+
+
+def test_start_from_an_earlier_run(case, uninterrupted, tmp_path):
+    earlier = Start(run=str(uninterrupted.directory.path))
+    going_on = replaced(case, fluid=dataclasses.replace(case.fluid, start=earlier))
+    simulation = Simulation(going_on, threads=1, output=tmp_path / "on")
+    assert simulation.step == 0
+    assert_same(state(simulation)[:2], state(uninterrupted)[:2])
+    simulation.run()
+    assert simulation.step == 437
+
+
+def test_two_simulations_in_one_process(case, uninterrupted):
+    """In turns, with another seed beside: neither disturbs the other."""
+    one = Simulation(case, threads=2)
+    two = Simulation(replaced(case, run=dataclasses.replace(case.run, seed=9)), threads=1)
+    while one.step < 437:
+        one.fluid.advance(min(23, 437 - one.step))
+        two.fluid.advance(11)
+    assert_same(state(one), state(uninterrupted))

@@ -1,0 +1,144 @@
+"""A run that is stopped and resumed, in whatever way, ends with the bits of one that was not."""
+
+import errno
+import resource
+import signal
+import threading
+
+import numpy as np
+import pytest
+
+from mesokit.errors import CheckpointError, RunError
+from mesokit.io import atomic
+from mesokit.progress import Reporter
+from mesokit.simulation import Simulation
+
+
+def resumed(folder, threads=1):
+    simulation = Simulation.resume(folder, threads=threads)
+    simulation.run()
+    return simulation
+
+
+@pytest.mark.parametrize("threads", [2, 3])
+def test_threads_do_not_matter(case, ends_alike, tmp_path, threads):
+    simulation = Simulation(case, output=tmp_path / "run", threads=threads)
+    simulation.run()
+    ends_alike(simulation)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_crash_at_any_step(case, ends_alike, tmp_path, crash_at, seed):
+    """Several crashes, at steps and with threads drawn from the seed."""
+    random = np.random.default_rng(seed)
+    steps = np.sort(random.integers(1, 437, size=random.integers(1, 4)))
+    simulation = Simulation(case, output=tmp_path / "run", threads=int(random.integers(1, 4)))
+    for step in steps:
+        with pytest.raises(crash_at.error):
+            simulation.run(progress=crash_at(step))
+        simulation = Simulation.resume(tmp_path / "run", threads=int(random.integers(1, 4)))
+        assert simulation.step <= step + 20
+    simulation.run()
+    ends_alike(simulation)
+
+
+def test_a_finished_run_can_be_resumed(case, ends_alike, tmp_path):
+    Simulation(case, output=tmp_path / "run", threads=1).run()
+    ends_alike(resumed(tmp_path / "run"))
+
+
+def test_checkpoints_do_not_depend_on_when_they_are_written(case, ends_alike, tmp_path):
+    simulation = Simulation(case, output=tmp_path / "run", threads=1)
+    simulation.checkpoint()
+    ends_alike(resumed(tmp_path / "run", threads=2))
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_writes_a_checkpoint(case, ends_alike, tmp_path, number):
+    simulation = Simulation(case, output=tmp_path / "run", threads=1)
+    before = signal.getsignal(number)
+
+    class Press(Reporter):
+        def update(self, step):
+            if step > 150 and simulation._stopped_by is None:
+                signal.raise_signal(number)
+
+    with pytest.raises(KeyboardInterrupt, match=number.name):
+        simulation.run(progress=Press(quiet=True))
+    assert signal.getsignal(number) is before
+    again = Simulation.resume(tmp_path / "run", threads=1)
+    assert again.step == simulation.step > 150
+    again.run()
+    ends_alike(again)
+
+
+def stops_on(monkeypatch, function):
+    def refuse(*arguments, **keywords):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(atomic.os, function, refuse)
+
+
+@pytest.mark.parametrize("function", ["fsync", "replace"])
+def test_a_full_disk_leaves_the_old_checkpoint(
+    case, ends_alike, tmp_path, crash_at, monkeypatch, function
+):
+    simulation = Simulation(case, output=tmp_path / "run", threads=1)
+    with pytest.raises(crash_at.error):
+        simulation.run(progress=crash_at(100))
+    file = simulation.directory.checkpoint_file
+    whole = file.read_bytes()
+    with monkeypatch.context() as patch:
+        stops_on(patch, function)
+        with pytest.raises(RunError, match=r"checkpoint\.npz.*no space left"):
+            simulation.checkpoint()
+    assert file.read_bytes() == whole
+    assert not list(file.parent.glob(".*"))
+    ends_alike(resumed(tmp_path / "run"))
+
+
+def test_a_checkpoint_that_breaks_off_leaves_the_old_one(case, ends_alike, tmp_path, crash_at):
+    """A real partial write: the system lets files grow to a few thousand bytes only."""
+    simulation = Simulation(case, output=tmp_path / "run", threads=1)
+    with pytest.raises(crash_at.error):
+        simulation.run(progress=crash_at(100))
+    file = simulation.directory.checkpoint_file
+    whole = file.read_bytes()
+    old = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (5000, old[1]))
+    try:
+        with pytest.raises(RunError, match=r"cannot write .*: file too large"):
+            simulation.checkpoint()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, old)
+    assert file.read_bytes() == whole
+    ends_alike(resumed(tmp_path / "run"))
+
+
+def test_a_damaged_checkpoint_is_refused(case, tmp_path, crash_at):
+    simulation = Simulation(case, output=tmp_path / "run", threads=1)
+    with pytest.raises(crash_at.error):
+        simulation.run(progress=crash_at(100))
+    file = simulation.directory.checkpoint_file
+    whole = file.read_bytes()
+    for damaged in (whole[: len(whole) // 2], b"", whole[:3000] + b"\0\1\2" + whole[3003:]):
+        file.write_bytes(damaged)
+        with pytest.raises(CheckpointError):
+            Simulation.resume(tmp_path / "run")
+
+
+def test_in_a_thread_that_is_not_the_main_one(case, ends_alike, tmp_path):
+    simulation = Simulation(case, output=tmp_path / "run", threads=2)
+    errors = []
+
+    def work():
+        try:
+            simulation.run()
+        except BaseException as error:
+            errors.append(error)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join()
+    assert not errors
+    ends_alike(simulation)
