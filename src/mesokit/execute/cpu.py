@@ -327,7 +327,7 @@ class CPU:
         return out
 
     def _slots(self, ids: NDArray) -> NDArray[np.int32]:
-        """Place of each particle in `ids`, by particle id, -1 if it has none; kept for next time."""
+        """Place of each particle in `ids`, by particle id, -1 if none; kept for the next time."""
         if self._asked is None or not np.array_equal(self._asked[0], ids):
             slots = np.full(self.n, -1, np.int32)
             slots[ids] = np.arange(len(ids))

@@ -1,0 +1,82 @@
+"""Everything that the README and the guide tell users to type works."""
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from mesokit import Case
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = ["README.md", "docs/guide.md"]
+SHORT = ["--set", "run.steps=40", "--set", "run.warmup=10"]
+
+
+def blocks(page: str, language: str) -> list[str]:
+    text = (ROOT / page).read_text()
+    return re.findall(rf"^```{language}\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
+
+
+def commands(page: str) -> list[str]:
+    lines = "\n".join(blocks(page, "")).splitlines()
+    return [line.split("#")[0].strip() for line in lines if line.strip()]
+
+
+CASES = [(page, i) for page in PAGES for i in range(len(blocks(page, "toml")))]
+
+
+@pytest.mark.parametrize(("page", "number"), CASES)
+def test_every_case_is_valid(page: str, number: int, tmp_path: Path) -> None:
+    file = tmp_path / "case.toml"
+    file.write_text(blocks(page, "toml")[number])
+    assert Case.from_toml(file).run.steps > 0
+
+
+@pytest.fixture(scope="session")
+def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("documents")
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_commands_and_scripts_run_in_order(page: str, workplace: Path) -> None:
+    if not (workplace / "poiseuille.toml").exists():
+        run("mesokit new poiseuille", workplace)
+    for command in commands(page):
+        if command.startswith("mesokit run") and (workplace / "poiseuille").exists():
+            command = f"{command} --overwrite" if "--output" not in command else command
+        if command.startswith("mesokit") and not (
+            command == "mesokit new poiseuille" and (workplace / "poiseuille.toml").exists()
+        ):
+            run(command, workplace)
+    for script in blocks(page, "python"):
+        done = subprocess.run(
+            [sys.executable, "-c", script], cwd=workplace, capture_output=True, text=True
+        )
+        assert done.returncode == 0, done.stderr
+
+
+def test_make_targets_exist() -> None:
+    makefile = (ROOT / "Makefile").read_text()
+    for page in PAGES:
+        for command in commands(page):
+            if command.startswith("make "):
+                assert f"\n{command.split()[1]}:" in makefile
+
+
+def test_links_lead_somewhere() -> None:
+    for page in [*PAGES, *(f"docs/{p.name}" for p in (ROOT / "docs").glob("*.md"))]:
+        for link in re.findall(r"\]\(([^)#]+)\)", (ROOT / page).read_text()):
+            if "://" not in link:
+                assert ((ROOT / page).parent / link).exists(), f"{page}: {link}"
+
+
+def run(command: str, folder: Path) -> None:
+    words = shlex.split(command)
+    words = [sys.executable, "-m", "mesokit", *words[1:]]
+    if words[3] == "run":
+        words += SHORT
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, f"{command}: {done.stderr}"

@@ -1,0 +1,101 @@
+"""Lees-Edwards shear: linear in bins of a tenth of a cell, a staircase without the grid shift."""
+
+from __future__ import annotations
+
+import mesokit
+import numpy as np
+from common import ANGLE, BLUE, GREEN, GREY, RED, Page, found, main, plt, simulate
+from mesokit import SRD, Box, Comparison, Fluid, MaxwellBoltzmann, Run
+
+LENGTH, RATE, BINS = 30, 0.1, 10
+
+
+def profile(strength: float, steps: int) -> mesokit.Result:
+    """The velocity profile of the sheared cube."""
+    simulation = simulate(
+        run=Run(steps=steps, warmup=500, seed=1),
+        box=Box([LENGTH] * 3, shear_rate=RATE),
+        fluid=Fluid(
+            density=10, timestep=0.1, collision=SRD(angle=ANGLE), thermostat=MaxwellBoltzmann(),
+            grid_shift=strength,
+        ),
+        observe=[mesokit.VelocityProfile(bins_per_cell=BINS, every=10)],
+    )  # fmt: skip
+    return simulation["velocity-profile"]
+
+
+def within_cells(result: mesokit.Result) -> tuple[np.ndarray, np.ndarray]:
+    """Deviation from the line against the place within a cell, averaged over all cells."""
+    deviation = (result.value - result.expected).reshape(LENGTH, BINS)
+    return deviation.mean(axis=0), deviation.std(axis=0, ddof=1) / LENGTH**0.5
+
+
+def make() -> int:
+    """Write the page."""
+    page = Page("lees_edwards_profile", "Profile of sheared fluid")
+    shifted, fixed = profile(1.0, 2000), profile(0.0, 500)
+    page.text(
+        f"SRD in a cube of {LENGTH}^3 cells (density 10, 2.27 rad, timestep 0.1, Maxwell-Boltzmann "
+        f"thermostat) at shear rate {RATE}, measured in {LENGTH * BINS} slices of a/10 every 10 "
+        "steps. Neighbouring slices rise and fall with the same eddies, so their errors are not "
+        "independent and a chi-square over slices would be wrong. Fourier modes of the deviation "
+        "from the line are independent of each other in a uniform fluid: the chi-square is "
+        "taken over them, each with its own error from blocking in time."
+    )
+    slope, chi = found(shifted, "shear rate"), found(shifted, "chi-square")
+    page.table([slope, chi])
+    page.check(f"slope {slope.percent:+.2f} % from the shear rate (at most 1 %)",
+               abs(slope.percent) < 1)  # fmt: skip
+    page.check(
+        f"linear: chi-square per degree of freedom {chi.measured:.2f}, {chi.note}",
+        float(chi.note.split("p = ")[1].split(",")[0]) > 0.001,
+    )
+    places = (np.arange(BINS) + 0.5) / BINS
+    line = np.polynomial.polynomial.polyfit
+    rows, slopes = [], {}
+    for name, result in (("full grid shift", shifted), ("no grid shift", fixed)):
+        mean, error = within_cells(result)
+        # errors of the slices of one cell: their scatter over the 30 cells
+        matrix = np.linalg.pinv(np.stack([np.ones(BINS), places - 0.5], axis=1))
+        slopes[name] = line(places - 0.5, mean, 1)[1] + RATE
+        uncertainty = float(np.sqrt((matrix[1] ** 2) @ error**2))
+        rows.append(
+            Comparison(f"shear rate within cells, {name}", slopes[name], uncertainty, RATE, "1/tau")
+        )
+    page.text(
+        "Without the grid shift the fluid of a cell moves as one: the shear rate within cells "
+        "is far below the mean one, and the profile is a staircase."
+    )
+    page.table(rows)
+    smooth, steps = rows
+    page.check(f"same slope within cells with the shift: {smooth.deviation:+.1f} s.e.",
+               abs(smooth.deviation) < 3)  # fmt: skip
+    page.check(f"staircase without it: slope within cells {steps.percent:+.0f} %",
+               steps.percent < -30)  # fmt: skip
+    fig, axes = plt.subplots(1, 2, figsize=(9, 3.8))
+    y = shifted.x["y"]
+    show = (y > 12) & (y < 18)
+    for edge in range(12, 19):
+        axes[0].axvline(edge, color=GREY, lw=0.4)
+    for result, marker, colour, name in (
+        (shifted, "o", BLUE, "full grid shift"), (fixed, "s", RED, "no grid shift"),
+    ):  # fmt: skip
+        axes[0].errorbar(y[show], result.value[show], result.error[show], fmt=marker, ms=3,
+                         lw=0.8, color=colour, label=name)  # fmt: skip
+        mean, error = within_cells(result)
+        axes[1].errorbar(places, mean, error, fmt=marker, color=colour, label=name)
+    axes[0].plot(y[show], shifted.expected[show], "-", color=GREEN, label="linear")
+    axes[0].set(xlabel="y", ylabel="velocity", xlim=(12, 18))
+    axes[0].legend(loc="upper left")
+    axes[1].axhline(0, color=GREEN)
+    axes[1].set(xlabel="place within the cell", ylabel="velocity - linear")
+    axes[1].legend()
+    page.figure(
+        fig, "Left: the middle of the profile, with cell boundaries. Right: deviation from the "
+        "straight line against the place within a cell, mean over all cells.",
+    )  # fmt: skip
+    return page.write()
+
+
+if __name__ == "__main__":
+    main(make)
