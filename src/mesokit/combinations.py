@@ -64,6 +64,9 @@ def walls(case: Case) -> Iterator[str]:
     """One slit, whose plates move along themselves."""
     if len(case.walls) > 1:
         yield f"wall[#2]: expected one [[wall]], not {len(case.walls)}"
+    masses = {kind.mass for kind in case.fluid.species}
+    if len(masses) > 1 and any(wall.virtual == "top-up" for wall in case.walls):
+        yield "wall[#1].virtual = 'top-up': not with species of different mass; use 'extrapolate'"
     for key, surface, axis in _surfaces(case):
         velocity = surface.velocity
         if velocity is None:

@@ -13,7 +13,7 @@ SIZE = (5, 7)
     n=st.integers(2, 5000), threads=st.sampled_from([1, 2, 3, 5]), seed=st.integers(0, 1000),
     spread=st.floats(1, 40),
 )  # fmt: skip
-@settings(deadline=None, derandomize=True, max_examples=60)
+@settings(deadline=None, derandomize=True, max_examples=40)
 def test_sort_is_a_stable_permutation(n, threads, seed, spread):
     random = np.random.default_rng(seed)
     fluid = make_fluid(SIZE, density=n / 35, threads=threads)
@@ -24,7 +24,6 @@ def test_sort_is_a_stable_permutation(n, threads, seed, spread):
         rows = fluid.row(k)
         rows[np.arange(n) // rows.shape[1], np.arange(n) % rows.shape[1]] = r[:, k]
     fluid.ident[:n] = ids
-    before = fluid.images().copy()
     fluid.sort()
     after = fluid.ident[:n]
     assert sorted(after) == list(range(n))
@@ -36,10 +35,7 @@ def test_sort_is_a_stable_permutation(n, threads, seed, spread):
     place[ids] = np.arange(n)  # where each particle was
     for c in np.unique(cell):
         assert (np.diff(place[after[cell == c]]) > 0).all()
-    moved = fluid.images() - before
-    unwrapped = fluid.positions(unwrapped=True) - before * SIZE
-    np.testing.assert_allclose(unwrapped[ids], r, atol=1e-12)
-    assert moved.any() or spread < 5
+    np.testing.assert_allclose(fluid.positions(unwrapped=True)[ids], r, atol=1e-12)
 
 
 @pytest.mark.parametrize("threads", [2, 3, 5])

@@ -10,7 +10,7 @@ from mesokit.mpcd.collision import AT, RULES, SRD
 from mesokit.mpcd.initial import start
 
 # Molecular chaos leaves out correlated collisions (1 to 2 %) and the loop of fluctuations (1 to
-# 2 % at ten particles per cell); a wave 20 cells long sees 1 % less of the transfer within cells.
+# 2 % at ten particles per cell); a wave 16 cells long sees 1 % less of the transfer within cells.
 CHAOS = 0.03
 
 
@@ -22,7 +22,7 @@ def expected(rule, **parameters):
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.__name__)
 def test_viscosity(rule):
     nu = expected(rule(), density=10, timestep=0.1).viscosity
-    found = shear_viscosity(20, viscosity=nu, collision=rule(), density=10, timestep=0.1)
+    found = shear_viscosity(16, viscosity=nu, collision=rule(), density=10, timestep=0.1)
     assert found.error < 0.015 * nu
     assert found.agrees(nu, systematic=CHAOS), (found, nu)
 
@@ -87,7 +87,7 @@ def ringing(t, damping, frequency, cosine, sine):
     return np.exp(-damping * t) * (cosine * np.cos(frequency * t) + sine * np.sin(frequency * t))
 
 
-def sound_speed(collision, seed, size=(32, 12, 12), amplitude=0.12):
+def sound_speed(collision, seed, size=(32, 8, 8), amplitude=0.15):
     """Speed of a standing wave of sound from its frequency and damping."""
     fluid = make_fluid(size, collision=collision, seed=seed)
     k = 2 * np.pi / size[0]

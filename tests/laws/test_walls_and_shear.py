@@ -6,12 +6,14 @@ from laboratory import make_case, make_fluid, mean
 from scipy import stats
 
 from mesokit import theory
+from mesokit.errors import CaseError
 from mesokit.execute.cpu import CPU
 from mesokit.geometry import Plates, Surface
 from mesokit.mpcd.collision import SRD
 from mesokit.mpcd.field import Uniform
 from mesokit.mpcd.initial import start
 from mesokit.mpcd.thermostat import MaxwellBoltzmann
+from mesokit.observe import WallStress
 from mesokit.statistics import weighted_line
 
 LENGTH, HEIGHT = 48, 16
@@ -37,13 +39,13 @@ def profile(fluid, warmup, blocks, steps=500):
     velocity, density = [], []
     for _ in range(blocks):
         sums = np.zeros((2, BINS))
-        for _ in range(steps // 5):
-            fluid.advance(5)
+        for _ in range(steps // 10):
+            fluid.advance(10)
             number, mass, momentum, _ = fluid.moments((1,), (BINS,))
             sums += mass, momentum[0]
             assert number.sum() == fluid.n
         velocity.append(sums[1] / sums[0])
-        density.append(sums[0] / (steps // 5))
+        density.append(sums[0] / (steps // 10))
     return np.array(velocity), np.array(density)
 
 
@@ -72,7 +74,9 @@ def test_poiseuille_flow_is_the_parabola_of_the_viscosity(poiseuille):
     assert abs(slip.value) * behind < 0.25 + 3 * slip.error * behind, slip
     middle = theory.poiseuille_fit(Y[INSIDE], velocity.mean(axis=0)[INSIDE], HEIGHT, g)
     parabola = middle.slip + theory.poiseuille_velocity(Y, HEIGHT, g, middle.viscosity)
-    assert abs(velocity.mean(axis=0) - parabola)[INSIDE].max() < 0.01 * top
+    away = abs(velocity.mean(axis=0) - parabola)[INSIDE]
+    assert (away < 4 * (velocity.std(axis=0) / np.sqrt(len(velocity)))[INSIDE]).all()
+    assert away.max() < 0.02 * top
 
 
 def test_density_is_uniform_up_to_the_plates(poiseuille):
@@ -89,7 +93,7 @@ def test_couette_flow_is_linear_and_not_damped():
     r, v = fluid.positions(), fluid.velocities()
     v[:, 0] += theory.couette_velocity(r[:, 1], HEIGHT, -u, u)
     start(fluid, r, v)
-    velocity, _ = profile(fluid, 1500, 24)
+    velocity, _ = profile(fluid, 1500, 16)
     fits = np.array([np.polynomial.polynomial.polyfit(Y[INSIDE], v[INSIDE], 2) for v in velocity])
     lines = [np.polynomial.polynomial.polyfit(Y[INSIDE] - HEIGHT / 2, v[INSIDE], 1)
              for v in velocity]  # fmt: skip
@@ -99,7 +103,7 @@ def test_couette_flow_is_linear_and_not_damped():
     assert mean(fits[:, 2]).agrees(0.0)
 
 
-@pytest.mark.parametrize("virtual", ["fill", "top-up", "none"])
+@pytest.mark.parametrize("virtual", ["fill", "none"])
 def test_what_the_force_gives_the_walls_take(virtual):
     """Momentum balance of the fluid, to rounding, step by step."""
     g, u = 0.03, 0.2
@@ -118,11 +122,18 @@ def test_what_the_force_gives_the_walls_take(virtual):
     np.testing.assert_allclose(pressure, [-10, 10], rtol=0.2)
 
 
+def test_wall_stress_is_refused_where_it_is_not_counted():
+    with pytest.raises(CaseError, match="top-up"):
+        make_case(
+            (4, 4), walls=[Plates(axis="y", virtual="top-up")], observe=[WallStress()]
+        )  # fmt: skip
+
+
 def test_sheared_box_has_a_linear_profile():
     """From rest: the sliding images alone set the fluid in motion."""
     rate, size = 0.1, (8, 12, 10)
     case = make_case(size, shear_rate=rate, thermostat=MaxwellBoltzmann())
-    fluid = CPU(case, 2)
+    fluid = CPU(case)
     random = np.random.default_rng(2)
     n = case.particles
     start(fluid, random.random((n, 3)) * size, random.standard_normal((n, 3)))

@@ -79,6 +79,14 @@ class CrashAt(Reporter):
             raise Crash
 
 
+@pytest.fixture(scope="session", autouse=True)
+def no_figures():
+    """Figures take most of the time of so small a run; other tests look at them."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("mesokit.report.save_all", lambda results, folder: [])
+        yield
+
+
 @pytest.fixture(scope="session")
 def crash_at():
     """`crash_at(step)` is a reporter; `crash_at.error` what it raises."""

@@ -27,7 +27,7 @@ def test_threads_do_not_matter(case, ends_alike, tmp_path, threads):
     ends_alike(simulation)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(8))
 def test_a_crash_at_any_step(case, ends_alike, tmp_path, crash_at, seed):
     """Several crashes, at steps and with threads drawn from the seed."""
     random = np.random.default_rng(seed)

@@ -84,7 +84,9 @@ class CPU:
         if self.n == 0:
             raise RunError(f"fluid.density = {fluid.density:g}: no particle in the box")
         layer = math.prod(s for s, shut in zip(box.size, self.closed, strict=True) if not shut)
-        self.n_virtual = round(fluid.density * layer) if self.virtual == "fill" else 0
+        self.n_virtual = (
+            round(fluid.density * layer) if self.virtual in ("fill", "extrapolate") else 0
+        )
 
         uniform = len({mass for mass, _ in kinds}) == 1
         rule = fluid.collision.kernel(d, fluid.kT)
@@ -165,6 +167,7 @@ class CPU:
         most = max(self.coefficient_count, 2 * d)
         parts = self.strips[0] if "stress" in self.measures else 1
         self.impulse = np.zeros((threads, 2 * d), np.int64)
+        self.wall_rates = np.zeros((2, d))
         self.tensor = np.zeros((2, parts, 2 * d * d))
         self.sweep_scratch = (
             np.zeros((threads, most * SCRATCH_ROW)),
@@ -173,6 +176,7 @@ class CPU:
             np.zeros((threads, len(self.terms) * SCRATCH_ROW), np.int64),
             self.impulse,
             self.tensor,
+            self.wall_rates,
         )
         self.cell_scratch = (
             np.zeros((threads, most * SCRATCH_ROW)),
@@ -221,6 +225,7 @@ class CPU:
             advance, self.clock, steps, self.step, self.case.run.seed, self.case.fluid.grid_shift,
             tuple(float(shut) for shut in self.closed), what,
             (self.case.fluid.density,) if self.virtual == "top-up" else (),
+            (1.0,) if self.virtual == "extrapolate" else (),
             self.physics, self.box_kernel, self.grid, self.particles, self.cell_arrays,
             self.number_of_cells, self.sweep_scratch, self.cell_scratch, self.like, self.c,
             self.terms, self.scales,
@@ -377,6 +382,7 @@ class CPU:
             "step": np.int64(self.step),
             "impulse": self.impulse.sum(axis=0),
             "wall_steps": np.int64(self.wall_steps),
+            "wall_rates": self.wall_rates.copy(),
         }
 
     def restore(self, state: dict[str, NDArray]) -> None:
@@ -389,6 +395,7 @@ class CPU:
         self.impulse[:] = 0
         self.impulse[0] = state["impulse"]
         self.wall_steps = int(state["wall_steps"])
+        self.wall_rates[:] = state["wall_rates"]
         self.box_kernel = self.case.box.kernel(self.closed, self.time)
 
     @property

@@ -200,3 +200,33 @@ def _count_images(image: Any, i: Any, crossed: Any) -> Callable:
             image[k, i] += np.int32(crossed[k])
 
     return count
+
+
+def read_total(masses: Any, sums: Any, cell: Any, like: Any, terms: Any, scales: Any) -> Any:
+    """Mass and momentum of a cell, added up over what the threads found."""
+    raise NotImplementedError
+
+
+@by_type(read_total)
+def _read_total(masses: Any, sums: Any, cell: Any, like: Any, terms: Any, scales: Any) -> Callable:
+    d, uniform = len(like), len(masses) == 1
+
+    def read(masses, sums, cell, like, terms, scales):
+        start = cell * (len(terms) + 1)
+        n = np.int64(0)
+        for t in range(sums.shape[0]):
+            n += sums[t, start]
+        momentum = like
+        for k in range(d):
+            total = np.int64(0)
+            for t in range(sums.shape[0]):
+                total += sums[t, start + 1 + k]
+            momentum = tuple_setitem(momentum, k, from_fixed(total, n, scales[k]))
+        total = np.int64(0)
+        if not uniform:
+            for t in range(sums.shape[0]):
+                total += sums[t, start + 1 + d]
+        mass = n * masses[0] if uniform else from_fixed(total, n, scales[d])
+        return mass, momentum
+
+    return read

@@ -172,7 +172,7 @@ def add_strip(cell, terms_rows, sums, count, terms):
 
 
 @scalar
-def fill_strip(physics, counter, grid, strip, number, like):
+def fill_strip(physics, counter, grid, strip, number, rates, like):
     """Virtual particles: a thermal gas of the fluid's density in the solid part of cut cells.
 
     Together the two layers of cut cells of a slit hold one layer of cells of solid, whatever the
@@ -180,10 +180,14 @@ def fill_strip(physics, counter, grid, strip, number, like):
     lower or the upper plate.
     """
     d = len(like)
+    lower, upper = like, like
+    for k in range(d):
+        lower = tuple_setitem(lower, k, rates[0, k])
+        upper = tuple_setitem(upper, k, rates[1, k])
     for i in range(LANES):
         a, b, c, _ = words(counter, VIRTUAL_POSITION, number + i, 0)
         place = first((unit_open(a), unit_open(b), unit_open(c)), like)
-        r, u = closes(physics.solid, place, grid.shift)
+        r, u = closes(physics.solid, place, grid.shift, lower, upper)
         a, b, c, e = words(counter, VIRTUAL_VELOCITY, number + i, 0)
         m = mass_of(physics.masses, strip, i, 2 * d)
         v = added(u, scaled(math.sqrt(physics.kT / m), normals(like, a, b, c, e)))

@@ -10,6 +10,7 @@ from mesokit.execute.stages import Grid
 from mesokit.execute.sweep import COLLIDE, MEASURE_STRESS, MEASURE_WALLS, STREAM, sweep
 from mesokit.execute.team import wait
 from mesokit.execute.top_up import top_up
+from mesokit.execute.wall_flow import follow
 from mesokit.random import Counter, grid_shift
 from mesokit.scalar import scalar
 
@@ -28,7 +29,7 @@ def cells_at(shift, old, closed):
 
 @kernel
 def advance(
-    thread, threads, gate, clock, steps, done, seed, strength, closed, what, density,
+    thread, threads, gate, clock, steps, done, seed, strength, closed, what, density, wanted,
     physics, box, grid, particles, cells, number, scratch, cell_scratch, like, c, terms, scales,
 ):  # fmt: skip
     """Run some steps; velocities are those after the collision of the last when it returns.
@@ -51,8 +52,9 @@ def advance(
         )  # fmt: skip
         wait(gate, threads)
         if thread == 0:
+            follow(wanted, physics, new, cells[2], scratch[6], like, terms, scales)
             top_up(density, physics, counter, new, cells, number, like, scales)
-        if len(density) > 0:
+        if len(density) + len(wanted) > 0:
             wait(gate, threads)
         lap(clock, thread, SWEEP)
         # thermostat and collision rule: what the particles of each cell need, at t + dt

@@ -60,7 +60,7 @@ def sweep(
     """
     data, cell, ident, image, count, strips, first_virtual, rows, spare_cell = particles
     coefficients, stride, sums = cells
-    gathered, saved, hits, quanta, impulse, tensor = scratch
+    gathered, saved, hits, quanta, impulse, tensor, rates = scratch
     gathered, saved, hits = gathered[thread], saved[thread], hits[thread]
     quanta, impulse = quanta[thread], impulse[thread]
     first, last = share(strips[0] + strips[1], thread, threads)
@@ -83,7 +83,7 @@ def sweep(
                 if what & MEASURE_STRESS:
                     momentum_flux(physics, box, grid, strip, lanes, tensor[0, s], like)
             else:
-                fill_strip(physics, counter, grid, strip, number, like)
+                fill_strip(physics, counter, grid, strip, number, rates, like)
                 if what & MEASURE_WALLS:
                     wall_momentum(physics, strip, lanes, impulse, scales[0], -1.0, like)
             who = ident[b * LANES : (b + 1) * LANES]

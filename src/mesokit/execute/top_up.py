@@ -61,7 +61,8 @@ def _add_missing(density, physics, counter, grid, cells, number, like, scales):
                 along = (index[k] - grid.shift[k] + u[k]) / physics.solid.size[k]
                 inside = below * depth if lower else below + (1.0 - below) * depth
                 place = tuple_setitem(place, k, inside if normal[k] > 0.5 else along)
-            r, drift = closes(physics.solid, place, grid.shift)
+            zero = scaled(0.0, like)
+            r, drift = closes(physics.solid, place, grid.shift, zero, zero)
             if side(physics.solid, r) == 2:
                 break
             a, b, c, d = words(counter, CELL_VIRTUAL, cell, 2 + 2 * j)

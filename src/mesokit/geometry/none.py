@@ -35,7 +35,7 @@ def _(solid):
 
 
 @closes.register(Nothing)
-def _(solid, place, shift):
+def _(solid, place, shift, lower_rate, upper_rate):
     return place, place
 
 

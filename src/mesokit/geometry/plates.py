@@ -30,10 +30,11 @@ class Plates:
     axis: Axis = param(doc="axis that the plates close")
     lower: Surface = param(Surface(), doc="the plate at 0")
     upper: Surface = param(Surface(), doc="the plate at the far end")
-    virtual: Literal["fill", "top-up", "none"] = param(
-        "fill",
-        doc="virtual particles in the cells that a no-slip plate cuts: 'fill' the solid part, "
-        "'top-up' the cell to the mean density, or 'none'",
+    virtual: Literal["extrapolate", "fill", "top-up", "none"] = param(
+        "extrapolate",
+        doc="virtual particles in the cells that a no-slip plate cuts: 'fill' the solid part with "
+        "a gas at the plate's velocity, 'extrapolate' the fluid's velocity into that gas, 'top-up' "
+        "each cell to the mean density, or 'none'",
     )
 
     def kernel(self, size: tuple[int, ...]) -> Slit:
@@ -123,7 +124,7 @@ def _(solid):
 
 
 @closes.register(Slit)
-def _(solid, place, shift):
+def _(solid, place, shift, lower_rate, upper_rate):
     # Cells end at heights k - shift: the part of shift after the point is the depth of the lower
     # layer of cut cells in its plate, and the rest of one cell that of the upper.
     s = dot(solid.normal, shift)
@@ -134,9 +135,11 @@ def _(solid, place, shift):
     for k in range(len(place)):
         along = place[k] * solid.size[k]
         place = tuple_setitem(place, k, height if solid.normal[k] > 0.5 else along)
+    behind = depth if low else depth - below
     for k in range(len(place)):
         u = solid.lower_velocity[k] if low else solid.upper_velocity[k]
-        shift = tuple_setitem(shift, k, u)
+        rate = lower_rate[k] if low else upper_rate[k]
+        shift = tuple_setitem(shift, k, u - behind * rate)
     return place, shift
 
 

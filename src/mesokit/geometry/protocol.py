@@ -38,8 +38,12 @@ def exposed(solid):
 
 
 @generic
-def closes(solid, place, shift):
-    """Position and mean velocity of a virtual particle, from uniform numbers and the grid shift."""
+def closes(solid, place, shift, lower_rate, upper_rate):
+    """Position and mean velocity of a virtual particle, from uniform numbers and the grid shift.
+
+    The rates are those at which the fluid's velocity rises with the distance from surfaces 0 and 1;
+    within the solid it goes on falling.
+    """
     raise NotImplementedError
 
 

@@ -35,6 +35,8 @@ class WallStress(Observable):
         """Raise CaseError without walls, or for a second one: it sees what the first left."""
         if not case.walls:
             raise CaseError("wall-stress needs a [[wall]]")
+        if any(wall.virtual == "top-up" for wall in case.walls):
+            raise CaseError("wall-stress is not counted with virtual = 'top-up'; use 'extrapolate'")
         if sum(other.quantity == self.quantity for other in case.observe) > 1:
             raise CaseError("expected one wall-stress: it measures both plates, every component")
 

@@ -1,0 +1,57 @@
+"""How fast the fluid's velocity rises with the distance from a plate.
+
+Virtual particles at rest with the plate drag the fluid as if the plate lay deeper: in the part of a
+cell that is solid the fluid's linear profile would go on, to velocities beyond the plate's. With
+the rate of the profile known they can move like that; the plate is then where it should be.
+"""
+
+import math
+
+from numba.cpython.unsafe.tuple import tuple_setitem
+
+from mesokit.execute.layout import read_total
+from mesokit.scalar import by_type, dot
+
+MEMORY = 1.0 / 32.0  # weight of one step; the mean must not follow the noise of single steps
+
+
+def follow(wanted, physics, grid, sums, rates, like, terms, scales):
+    """Update the rates (2, d) of the lower and upper plate, if `wanted` is not ()."""
+    raise NotImplementedError
+
+
+@by_type(follow)
+def _follow(wanted, physics, grid, sums, rates, like, terms, scales):
+    if len(wanted) == 0:
+        return lambda wanted, physics, grid, sums, rates, like, terms, scales: None
+    return _update
+
+
+def _update(wanted, physics, grid, sums, rates, like, terms, scales):
+    """From the cells next to the cut ones, which hold no virtual particles, at this step."""
+    solid = physics.solid
+    layers = int(dot(solid.normal, grid.cells))
+    s = dot(solid.normal, grid.shift)
+    below = s - math.floor(s)
+    stride, across = 1, 1
+    for k in range(len(like)):  # cells are numbered with x fastest
+        if solid.normal[k] > 0.5:
+            across = stride
+        stride *= int(grid.cells[k])
+    columns = stride // layers
+    for surface in range(2):
+        # Heights of the layer's middle: cells end at k - shift.
+        layer = 1 if surface == 0 else layers - 2
+        height = 1.5 - below if surface == 0 else 0.5 + below
+        mass, momentum = 0.0, like
+        for column in range(columns):
+            cell = column // across * across * layers + layer * across + column % across
+            m, p = read_total(physics.masses, sums, cell, like, terms, scales)
+            mass += m
+            for k in range(len(like)):
+                momentum = tuple_setitem(momentum, k, momentum[k] + p[k])
+        for k in range(len(like)):
+            u = solid.lower_velocity[k] if surface == 0 else solid.upper_velocity[k]
+            rate = (momentum[k] / max(mass, 1e-300) - u) / height if mass > 0.0 else 0.0
+            rate = rate if solid.normal[k] < 0.5 else 0.0
+            rates[surface, k] += MEMORY * (rate - rates[surface, k])

@@ -1,0 +1,33 @@
+"""Run the validation scripts, all or those named, and say which requirements were not met.
+
+    python validation/all.py [names...]
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+
+NAMES = (
+    "viscosity_routes", "viscosity_rules", "lees_edwards_profile", "wall_slip", "thermostat",
+    "conservation",
+)  # fmt: skip
+
+
+def run(names: list[str]) -> int:
+    """Run scripts by name; returns how many requirements were not met, 2 for a wrong name."""
+    unknown = [name for name in names if name not in NAMES]
+    if unknown:
+        print(f"unknown: {', '.join(unknown)}; there are {', '.join(NAMES)}", file=sys.stderr)
+        return 2
+    missed = {}
+    for name in names or NAMES:
+        print(f"== {name}", flush=True)
+        missed[name] = importlib.import_module(name).make()
+    for name, number in missed.items():
+        print(f"{name}: {'all met' if not number else f'{number} not met'}; docs/validation/{name}.md")
+    return 1 if any(missed.values()) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(run(sys.argv[1:]))
