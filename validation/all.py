@@ -1,6 +1,6 @@
 """Run the validation scripts, all or those named, and say which requirements were not met.
 
-    python validation/all.py [names...]
+Usage: python validation/all.py [names...]
 """
 
 from __future__ import annotations
@@ -25,7 +25,9 @@ def run(names: list[str]) -> int:
         print(f"== {name}", flush=True)
         missed[name] = importlib.import_module(name).make()
     for name, number in missed.items():
-        print(f"{name}: {'all met' if not number else f'{number} not met'}; docs/validation/{name}.md")
+        print(
+            f"{name}: {'all met' if not number else f'{number} not met'}; docs/validation/{name}.md"
+        )
     return 1 if any(missed.values()) else 0
 
 

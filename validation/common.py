@@ -11,13 +11,14 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
-import mesokit
 import numba
 import numpy as np
+
+import mesokit
 from mesokit import Comparison
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  the backend comes first
+import matplotlib.pyplot as plt
 
 FOLDER = Path(__file__).resolve().parent.parent / "docs" / "validation"
 ANGLE = math.degrees(2.27)  # the angle at which the 3D viscosity is quoted in the literature

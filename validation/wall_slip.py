@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import mesokit
 import numpy as np
 from common import ANGLE, BLUE, GREEN, GREY, PURPLE, RED, Page, found, main, plt, simulate
+
+import mesokit
 from mesokit import (
     SRD,
     Box,
@@ -113,11 +114,15 @@ def make() -> int:
         share, error = slip.measured / 100, slip.error / 100
         length, spread = HEIGHT / 4 * share / (1 - share), HEIGHT / 4 * error / (1 - share) ** 2
         ratio = 4 * length / REFERENCE
-        there, uncertain = 100 * ratio / (1 + ratio), 100 * 4 * spread / REFERENCE / (1 + ratio) ** 2
+        there, uncertain = (
+            100 * ratio / (1 + ratio),
+            100 * 4 * spread / REFERENCE / (1 + ratio) ** 2,
+        )
         rates[d, dt, kind] = length, spread, there, uncertain
         chi = found(density, "chi-square")
-        lower, upper = found(density, "density in the cell at the l"), found(
-            density, "density in the cell at the u"
+        lower, upper = (
+            found(density, "density in the cell at the l"),
+            found(density, "density in the cell at the u"),
         )
         p = float(chi.note.split("p = ")[1].split(",")[0])
         densities.append((f"{d}D dt {dt:g} {kind}", p, lower, upper))

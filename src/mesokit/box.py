@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from typing import Literal, NamedTuple
 
+import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 from pydantic import field_validator
 
@@ -102,7 +102,7 @@ def _(box, time):
 def images(box, r, shift):
     """How many boxes r + shift is away from the primary one, along each axis, as floats."""
     for k in range(len(r)):
-        r = tuple_setitem(r, k, math.floor((r[k] + shift[k]) * box.inverse[k]))
+        r = tuple_setitem(r, k, np.floor((r[k] + shift[k]) * box.inverse[k]))
     return r
 
 
@@ -135,7 +135,7 @@ def _(box, r, v, shift):
 
 @fold.register(Sheared)
 def _(box, r, v, shift):
-    up = math.floor((r[1] + shift[1]) * box.inverse[1])  # first, because it moves x
+    up = np.floor((r[1] + shift[1]) * box.inverse[1])  # first, because it moves x
     r = tuple_setitem(r, 0, r[0] - up * box.offset)
     v = tuple_setitem(v, 0, v[0] - up * box.speed)
     n = images(box, r, shift)

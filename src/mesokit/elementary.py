@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from mesokit.scalar import scalar
+from mesokit.scalar import mul_add, scalar
 
 _MANTISSA = np.int64(0x000FFFFFFFFFFFFF)
 _ONE = np.int64(0x3FF0000000000000)
@@ -19,28 +19,28 @@ _SQRT2 = math.sqrt(2.0)
 @scalar
 def sincos_turn(u):
     """Sine and cosine of 2 pi u for 0 <= u <= 1 (u in turns)."""
-    quarter = math.floor(4.0 * u + 0.5)
+    quarter = np.floor(4.0 * u + 0.5)
     x = (u - 0.25 * quarter) * 6.283185307179586
     z = x * x
     s = -1.0 / 1307674368000.0
-    s = 1.0 / 6227020800.0 + z * s
-    s = -1.0 / 39916800.0 + z * s
-    s = 1.0 / 362880.0 + z * s
-    s = -1.0 / 5040.0 + z * s
-    s = 1.0 / 120.0 + z * s
-    s = -1.0 / 6.0 + z * s
-    s = x + x * z * s
+    s = mul_add(z, s, 1.0 / 6227020800.0)
+    s = mul_add(z, s, -1.0 / 39916800.0)
+    s = mul_add(z, s, 1.0 / 362880.0)
+    s = mul_add(z, s, -1.0 / 5040.0)
+    s = mul_add(z, s, 1.0 / 120.0)
+    s = mul_add(z, s, -1.0 / 6.0)
+    s = mul_add(x * z, s, x)
     c = 1.0 / 20922789888000.0
-    c = -1.0 / 87178291200.0 + z * c
-    c = 1.0 / 479001600.0 + z * c
-    c = -1.0 / 3628800.0 + z * c
-    c = 1.0 / 40320.0 + z * c
-    c = -1.0 / 720.0 + z * c
-    c = 1.0 / 24.0 + z * c
-    c = 1.0 - 0.5 * z + z * z * c
-    half = math.floor(0.5 * quarter)
+    c = mul_add(z, c, -1.0 / 87178291200.0)
+    c = mul_add(z, c, 1.0 / 479001600.0)
+    c = mul_add(z, c, -1.0 / 3628800.0)
+    c = mul_add(z, c, 1.0 / 40320.0)
+    c = mul_add(z, c, -1.0 / 720.0)
+    c = mul_add(z, c, 1.0 / 24.0)
+    c = mul_add(z * z, c, mul_add(-0.5, z, 1.0))
+    half = np.floor(0.5 * quarter)
     swap = quarter - 2.0 * half > 0.5
-    sign = 1.0 - 2.0 * (half - 2.0 * math.floor(0.5 * half))
+    sign = 1.0 - 2.0 * (half - 2.0 * np.floor(0.5 * half))
     return sign * (c if swap else s), sign * (-s if swap else c)
 
 
@@ -56,13 +56,13 @@ def log(x):
     s = (m - 1.0) / (m + 1.0)
     z = s * s
     p = 1.0 / 21.0
-    p = 1.0 / 19.0 + z * p
-    p = 1.0 / 17.0 + z * p
-    p = 1.0 / 15.0 + z * p
-    p = 1.0 / 13.0 + z * p
-    p = 1.0 / 11.0 + z * p
-    p = 1.0 / 9.0 + z * p
-    p = 1.0 / 7.0 + z * p
-    p = 1.0 / 5.0 + z * p
-    p = 1.0 / 3.0 + z * p
-    return exponent * _LN2 + (2.0 * s + 2.0 * s * z * p)
+    p = mul_add(z, p, 1.0 / 19.0)
+    p = mul_add(z, p, 1.0 / 17.0)
+    p = mul_add(z, p, 1.0 / 15.0)
+    p = mul_add(z, p, 1.0 / 13.0)
+    p = mul_add(z, p, 1.0 / 11.0)
+    p = mul_add(z, p, 1.0 / 9.0)
+    p = mul_add(z, p, 1.0 / 7.0)
+    p = mul_add(z, p, 1.0 / 5.0)
+    p = mul_add(z, p, 1.0 / 3.0)
+    return mul_add(exponent, _LN2, mul_add(2.0 * s * z, p, 2.0 * s))

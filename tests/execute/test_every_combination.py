@@ -45,7 +45,8 @@ PLAIN[3] += [(collision.AT, FREE, rule, "periodic", 1) for rule in field.RULES]
 CANONICAL = thermostat.MaxwellBoltzmann
 PLAIN[3] += [(collision.SRD, CANONICAL, BARE, "sheared", 1)]
 PLAIN[2] += [
-    (collision.SRD, CANONICAL, field.Uniform, boundary, 1) for boundary in ("slit", "topped-up slit")
+    (collision.SRD, CANONICAL, field.Uniform, boundary, 1)
+    for boundary in ("slit", "topped-up slit")
 ]
 
 

@@ -90,10 +90,8 @@ def test_uniform_numbers(sample):
     for column in sample.T[:3]:
         assert column.min() >= 0 and column.max() < 1
         assert stats.kstest(column, "uniform").pvalue > UNLIKELY
-        last_bits = (column * 2**32) % 1 if column is sample.T[0] else (column * 2**31) % 1
-        assert stats.kstest(last_bits[:5000], "uniform").pvalue > UNLIKELY or len(
-            set(last_bits[:100])
-        ) <= 4  # one word holds 32 bits and a half, no more
+    low_bits = sample[:, 0] * 2**40 % 1  # twelve bits that only the second word gives
+    assert stats.kstest(low_bits, stats.uniform(0, 1 - 2**-12).cdf).pvalue > UNLIKELY
     assert unit_open(np.uint64(0)) > 0 and unit_open(np.uint64(2**32 - 1)) < 1
     assert unit(np.uint64(2**32 - 1), np.uint64(0)) < 1
     assert unit(np.uint64(0), np.uint64(0)) == 0

@@ -36,9 +36,7 @@ def make_case(size, walls=(), observe=(), shear_rate=0.0, seed=1, **fluid) -> Ca
     )
 
 
-def make_fluid(
-    size, positions=None, velocities=None, measures=(), threads=1, **parts
-) -> CPU:
+def make_fluid(size, positions=None, velocities=None, measures=(), threads=1, **parts) -> CPU:
     """A fluid in memory, ready to advance."""
     cpu = CPU(make_case(size, **parts), threads, measures)
     start(cpu, positions, velocities)

@@ -17,7 +17,7 @@ def total_block(sums, start, count, totals, terms):
     """Add up what the threads found for these cells, and clear it."""
     width = len(terms) + 1
     for i in range(count):
-        cell = (start + i) * width
+        cell = np.uint64(start + i) * np.uint64(width)
         n = np.int64(0)
         for k in range(len(terms)):
             terms = tuple_setitem(terms, k, np.int64(0))
@@ -25,8 +25,8 @@ def total_block(sums, start, count, totals, terms):
             n += sums[t, cell]
             sums[t, cell] = 0
             for k in range(len(terms)):
-                terms = tuple_setitem(terms, k, terms[k] + sums[t, cell + 1 + k])
-                sums[t, cell + 1 + k] = 0
+                terms = tuple_setitem(terms, k, terms[k] + sums[t, cell + np.uint64(1 + k)])
+                sums[t, cell + np.uint64(1 + k)] = 0
         note(totals, i, (n,) + terms)
 
 
@@ -70,10 +70,20 @@ def solve(thread, threads, physics, counter, cells, number, scratch, like, c, te
             )
             x, cell = variates[i], start + i
             answer = coefficients_of(
-                physics.rule, physics.thermostat, x, counter, cell, n, mass, momentum, energy, own
+                physics.rule,
+                physics.thermostat,
+                x,
+                counter,
+                cell,
+                n,
+                mass,
+                momentum,
+                energy,
+                own,
             )
             note(rows, i, answer)
         for i in range(count):
             answer = recall(rows, i, c)
+            first_place = np.uint64(start + i) * np.uint64(stride)
             for k in range(len(c)):
-                coefficients[(start + i) * stride + k] = answer[k]
+                coefficients[first_place + np.uint64(k)] = answer[k]

@@ -16,7 +16,7 @@ from numba import njit
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.execute.cache import cached_kernel
-from mesokit.scalar import by_type, dot, scalar
+from mesokit.scalar import by_type, dot, mul_add, scalar
 
 LANES = 256  # particles of a strip, cells of a batch
 BLOCK = 4096
@@ -100,7 +100,7 @@ def note(scratch, i, values):
 @scalar
 def fixed(x, scale):
     """x * scale rounded to a whole number, plus ROUNDER_BITS, as int64."""
-    return np.float64(x * scale + ROUNDER).view(np.int64)
+    return np.float64(mul_add(x, scale, ROUNDER)).view(np.int64)
 
 
 @scalar

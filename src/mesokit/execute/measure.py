@@ -3,8 +3,6 @@
 Each strip writes its own partial sum, to be added in order; or the sums are of whole numbers.
 """
 
-import math
-
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
@@ -64,7 +62,7 @@ def bin_sums(
             m = mass_of(physics.masses, strip, i, 2 * d)
             index = 0.0
             for k in range(2):
-                x = math.floor(r[axes[k]] / box.size[axes[k]] * bins[k])
+                x = np.floor(r[axes[k]] / box.size[axes[k]] * bins[k])
                 index = index * bins[k] + min(max(x, 0.0), bins[k] - 1.0)
             place[i] = np.int32(index)
             note(quanta, i, rounded(scaled(m, v) + (m, m * dot(v, v)), scales))
@@ -93,7 +91,7 @@ def modes(thread, threads, gate, physics, box, data, count, rows, like, waves, s
                 m = mass_of(physics.masses, strip, i, 2 * d)
                 m = m if i < lanes else 0.0
                 phase = dot(wave, r)
-                s, c = sincos_turn(phase - math.floor(phase))
+                s, c = sincos_turn(phase - np.floor(phase))
                 c, s = m * c, -m * s
                 values = (c, s) + scaled(c, v) + scaled(s, v)
                 for k in range(len(sums)):

@@ -24,7 +24,7 @@ from mesokit.geometry.protocol import closes, exposed, touches
 from mesokit.mpcd.collision.protocol import collide, contribute
 from mesokit.mpcd.streaming import bounce, fall, halfway, vector
 from mesokit.random import VIRTUAL_POSITION, VIRTUAL_VELOCITY, normals, unit_open, words
-from mesokit.scalar import added, first, scalar, scaled
+from mesokit.scalar import added, first, mul_add, scalar, scaled
 
 
 class Physics(NamedTuple):
@@ -56,7 +56,7 @@ def in_cell(r, grid):
     """Position relative to the centre of its cell."""
     for k in range(len(r)):
         x = r[k] + grid.shift[k]
-        r = tuple_setitem(r, k, x - math.floor(x) - 0.5)
+        r = tuple_setitem(r, k, x - np.floor(x) - 0.5)
     return r
 
 
@@ -66,9 +66,9 @@ def cell_index(r, grid):
     index = 0.0
     for j in range(len(r)):
         k = len(r) - 1 - j
-        i = math.floor(r[k] + grid.shift[k]) + grid.first[k]
-        i -= grid.cells[k] * math.floor((i + 0.5) * grid.inverse[k])
-        index = index * grid.cells[k] + i
+        i = np.floor(r[k] + grid.shift[k]) + grid.first[k]
+        i = mul_add(-grid.cells[k], np.floor((i + 0.5) * grid.inverse[k]), i)
+        index = mul_add(index, grid.cells[k], i)
     return np.int32(index)
 
 
@@ -76,14 +76,19 @@ def cell_index(r, grid):
 def collide_strip(physics, grid, strip, cell, coefficients, stride, gathered, like, c):
     """Velocities after the collision, from the coefficients of each particle's cell."""
     for i in range(LANES):
-        start = np.int64(cell[i]) * stride
+        start = np.uint64(np.uint32(cell[i])) * np.uint64(stride)
         for k in range(len(c)):
-            c = tuple_setitem(c, k, coefficients[start + k])
+            c = tuple_setitem(c, k, coefficients[start + np.uint64(k)])
         note(gathered, i, c)
     d = len(like)
     for i in range(LANES):
         r, v = load(strip, i, 0, like), load(strip, i, d, like)
-        store(strip, i, d, collide(physics.rule, recall(gathered, i, c), v, in_cell(r, grid)))
+        store(
+            strip,
+            i,
+            d,
+            collide(physics.rule, recall(gathered, i, c), v, in_cell(r, grid)),
+        )
 
 
 @scalar
@@ -164,11 +169,11 @@ def add_strip(cell, terms_rows, sums, count, terms):
     """Add the terms of each particle to the sums of its cell, and count it."""
     width = len(terms) + 1
     for i in range(count):
-        start = np.int64(cell[i]) * width
+        start = np.uint64(np.uint32(cell[i])) * np.uint64(width)
         terms = recall(terms_rows, i, terms)
         sums[start] += 1
         for k in range(len(terms)):
-            sums[start + 1 + k] += terms[k]
+            sums[start + np.uint64(1 + k)] += terms[k]
 
 
 @scalar

@@ -35,7 +35,7 @@ def _add_missing(density, physics, counter, grid, cells, number, like, scales):
     normal = physics.solid.normal
     layers = dot(normal, grid.cells)
     s = dot(normal, grid.shift)
-    below = s - math.floor(s)
+    below = s - np.floor(s)
     m = physics.masses[0]
     for cell in range(number):
         index, rest = like, cell

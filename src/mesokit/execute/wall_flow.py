@@ -5,8 +5,7 @@ cell that is solid the fluid's linear profile would go on, to velocities beyond 
 the rate of the profile known they can move like that; the plate is then where it should be.
 """
 
-import math
-
+import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.execute.layout import read_total
@@ -32,7 +31,7 @@ def _update(wanted, physics, grid, sums, rates, like, terms, scales):
     solid = physics.solid
     layers = int(dot(solid.normal, grid.cells))
     s = dot(solid.normal, grid.shift)
-    below = s - math.floor(s)
+    below = s - np.floor(s)
     stride, across = 1, 1
     for k in range(len(like)):  # cells are numbered with x fastest
         if solid.normal[k] > 0.5:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Literal, NamedTuple
 
+import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.box import AXES, Axis
@@ -128,7 +129,7 @@ def _(solid, place, shift, lower_rate, upper_rate):
     # Cells end at heights k - shift: the part of shift after the point is the depth of the lower
     # layer of cut cells in its plate, and the rest of one cell that of the upper.
     s = dot(solid.normal, shift)
-    below = s - math.floor(s)
+    below = s - np.floor(s)
     depth = dot(solid.normal, place)
     low = depth < below
     height = -depth if low else solid.width + (depth - below)

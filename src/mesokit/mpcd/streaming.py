@@ -5,7 +5,7 @@ from typing import Any
 
 from mesokit.geometry.protocol import confine, first_hit, reflect
 from mesokit.mpcd.field.protocol import acceleration
-from mesokit.scalar import added, by_type, scalar, scaled
+from mesokit.scalar import added, added_scaled, by_type, scalar, scaled
 
 MOST_HITS = 64  # within one timestep; a corner or a grazing flight may need a few
 
@@ -18,11 +18,11 @@ def fall(r: Any, v: Any, a: Any, time: Any) -> Any:
 @by_type(fall)
 def _fall(r: Any, v: Any, a: Any, time: Any) -> Callable:
     if len(a) == 0:
-        return lambda r, v, a, time: (added(r, scaled(time, v)), v)
+        return lambda r, v, a, time: (added_scaled(r, time, v), v)
 
     def parabola(r, v, a, time):
-        mean = added(v, scaled(0.5 * time, a))
-        return added(r, scaled(time, mean)), added(v, scaled(time, a))
+        mean = added_scaled(v, 0.5 * time, a)
+        return added_scaled(r, time, mean), added_scaled(v, time, a)
 
     return parabola
 
@@ -42,7 +42,7 @@ def _vector(a: Any, like: Any) -> Callable:
 @scalar
 def halfway(field, r, v, time):
     """Acceleration at the middle of the straight flight."""
-    return acceleration(field, added(r, scaled(0.5 * time, v)))
+    return acceleration(field, added_scaled(r, 0.5 * time, v))
 
 
 @scalar
@@ -56,7 +56,7 @@ def bounce(solid, r, v, a, time):
         r, v = fall(r, v, a, hit)
         r = confine(solid, r)
         left = reflect(solid, surface, v)
-        taken = added(v, scaled(-1.0, left))
+        taken = added_scaled(v, -1.0, left)
         if surface == 0:
             lower = added(lower, taken)
         else:

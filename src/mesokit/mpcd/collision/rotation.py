@@ -4,7 +4,7 @@ import math
 
 from mesokit.elementary import sincos_turn
 from mesokit.random import unit, words
-from mesokit.scalar import scalar
+from mesokit.scalar import added_scaled, dot, mul_add, scalar, scaled
 
 
 @scalar
@@ -20,18 +20,18 @@ def random_axis(counter, purpose, cell):
 @scalar
 def rotate(w, n, cos, sin):
     """Rotate the vector w about the unit vector n (Rodrigues)."""
-    along = (1.0 - cos) * (n[0] * w[0] + n[1] * w[1] + n[2] * w[2])
-    return (
-        cos * w[0] + sin * (n[1] * w[2] - n[2] * w[1]) + along * n[0],
-        cos * w[1] + sin * (n[2] * w[0] - n[0] * w[2]) + along * n[1],
-        cos * w[2] + sin * (n[0] * w[1] - n[1] * w[0]) + along * n[2],
-    )
+    turned = added_scaled(scaled(cos, w), sin, cross(n, w))
+    return added_scaled(turned, (1.0 - cos) * dot(n, w), n)
 
 
 @scalar
 def cross(a, b):
     """Vector product."""
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+    return (
+        mul_add(a[1], b[2], -(a[2] * b[1])),
+        mul_add(a[2], b[0], -(a[0] * b[2])),
+        mul_add(a[0], b[1], -(a[1] * b[0])),
+    )
 
 
 @scalar

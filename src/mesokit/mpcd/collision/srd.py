@@ -13,7 +13,7 @@ from mesokit.mpcd.collision.protocol import coefficients, collide, contribute, f
 from mesokit.mpcd.collision.rotation import random_axis, rotate
 from mesokit.mpcd.thermostat.protocol import stretch
 from mesokit.random import CELL_COLLISION, unit, words
-from mesokit.scalar import optional
+from mesokit.scalar import added_scaled, mul_add, optional
 
 ONE = np.uint64(1)
 
@@ -117,7 +117,8 @@ def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums)
 @collide.register(SRD2, SRD2Uniform)
 def _(rule, c, v, r):
     wx, wy = v[0] - c[0], v[1] - c[1]
-    return c[0] + (c[2] * wx - c[3] * wy), c[1] + (c[3] * wx + c[2] * wy)
+    x = mul_add(c[2], wx, mul_add(-c[3], wy, c[0]))
+    return x, mul_add(c[3], wx, mul_add(c[2], wy, c[1]))
 
 
 @collide.register(SRD3)
@@ -125,4 +126,4 @@ def _(rule, c, v, r):
     w = v[0] - c[0], v[1] - c[1], v[2] - c[2]
     w = rotate(w, (c[3], c[4], c[5]), rule.cos, rule.sin)
     s = optional(c[6:], 1.0)
-    return c[0] + s * w[0], c[1] + s * w[1], c[2] + s * w[2]
+    return added_scaled((c[0], c[1], c[2]), s, w)

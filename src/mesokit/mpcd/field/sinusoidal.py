@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from typing import Literal, NamedTuple
+
+import numpy as np
 
 from mesokit.box import AXES, Axis
 from mesokit.component import component, param, tag
@@ -40,5 +41,5 @@ class Wave(NamedTuple):
 @acceleration.register(Wave)
 def _(field, r):
     phase = dot(field.turns, r)
-    sin, _ = sincos_turn(phase - math.floor(phase))
+    sin, _ = sincos_turn(phase - np.floor(phase))
     return scaled(sin, field.vector)
