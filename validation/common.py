@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 import platform
 import sys
@@ -31,6 +32,15 @@ plt.rcParams.update(
         "errorbar.capsize": 2, "savefig.dpi": 150,
     }
 )  # fmt: skip
+
+
+def sources() -> str:
+    """A digest of the package's sources, so that a page says which code it judges."""
+    package = Path(mesokit.__file__).parent
+    digest = hashlib.sha256()
+    for file in sorted(package.rglob("*.py")):
+        digest.update(str(file.relative_to(package)).encode() + file.read_bytes())
+    return digest.hexdigest()[:12]
 
 
 class Page:
@@ -93,7 +103,7 @@ class Page:
         """Write the page; returns how many requirements were not met."""
         FOLDER.mkdir(parents=True, exist_ok=True)
         seconds = time.perf_counter() - self.began
-        versions = f"mesokit {mesokit.__version__}, Python {platform.python_version()}"
+        versions = f"mesokit {mesokit.__version__} (sources {sources()}), Python {platform.python_version()}"
         versions += f", NumPy {np.__version__}, Numba {numba.__version__}"
         head = [
             f"# {self.title}\n",

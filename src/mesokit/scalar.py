@@ -5,7 +5,6 @@ from collections.abc import Callable
 from typing import Any
 
 from numba import njit, types
-from numba.cpython.unsafe.tuple import tuple_setitem
 from numba.extending import intrinsic, overload
 
 
@@ -112,20 +111,51 @@ def mul_add(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
     return double(a, b, c), generate
 
 
-@scalar
-def scaled(factor, x):
+def written_out(signature: str, line: str, length: int, result: str = "", **names: Any) -> Callable:
+    """A function that does `line` for each of the elements {k} of its tuples, without a loop.
+
+    Loops over long tuples are not unrolled by the compiler, and what is not unrolled goes through
+    memory. `result` is an expression in which {all} stands for the lines joined by commas.
+    """
+    lines = [line.format(k=k) for k in range(length)]
+    if result:
+        body = f"    return {result.format(all=', '.join(lines))}"
+    else:
+        body = "\n".join(f"    {text}" for text in lines) or "    pass"
+    space: dict[str, Any] = dict(names)
+    exec(f"def made({signature}):\n{body}", space)
+    return space["made"]
+
+
+def scaled(factor: Any, x: Any) -> Any:
     """A vector times a number."""
-    for k in range(len(x)):
-        x = tuple_setitem(x, k, factor * x[k])
-    return x
+    raise NotImplementedError
 
 
-@scalar
-def added(a, b):
+@by_type(scaled)
+def _scaled(factor: Any, x: Any) -> Callable:
+    return written_out("factor, x", "factor * x[{k}]", len(x), "({all},)")
+
+
+def added(a: Any, b: Any) -> Any:
     """The sum of two vectors."""
-    for k in range(len(a)):
-        a = tuple_setitem(a, k, a[k] + b[k])
-    return a
+    raise NotImplementedError
+
+
+@by_type(added)
+def _added(a: Any, b: Any) -> Callable:
+    return written_out("a, b", "a[{k}] + b[{k}]", len(a), "({all},)")
+
+
+def added_scaled(a: Any, factor: Any, b: Any) -> Any:
+    """a + factor * b for vectors a and b."""
+    raise NotImplementedError
+
+
+@by_type(added_scaled)
+def _added_scaled(a: Any, factor: Any, b: Any) -> Callable:
+    line = "mul_add(factor, b[{k}], a[{k}])"
+    return written_out("a, factor, b", line, len(a), "({all},)", mul_add=mul_add)
 
 
 @scalar
@@ -135,11 +165,3 @@ def dot(a, b):
     for k in range(1, len(a)):
         total = mul_add(a[k], b[k], total)
     return total
-
-
-@scalar
-def added_scaled(a, factor, b):
-    """a + factor * b for vectors a and b."""
-    for k in range(len(a)):
-        a = tuple_setitem(a, k, mul_add(factor, b[k], a[k]))
-    return a

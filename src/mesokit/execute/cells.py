@@ -1,13 +1,22 @@
 """One pass over all cells: from the sums over their particles to what these need to collide."""
 
 import numpy as np
-from numba.cpython.unsafe.tuple import tuple_setitem
 
-from mesokit.execute.layout import LANES, inner, note, read_sums, recall, share
+from mesokit.execute.layout import (
+    LANES,
+    fetch,
+    inner,
+    integers,
+    note,
+    put,
+    read_sums,
+    recall,
+    share,
+)
 from mesokit.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.mpcd.collision.protocol import freedom
 from mesokit.mpcd.thermostat.protocol import draw
-from mesokit.scalar import scalar
+from mesokit.scalar import added, scalar
 
 MOST_DRAWS = 1000  # of a thermostat's random number, each accepted with more than 95 %
 
@@ -18,16 +27,12 @@ def total_block(sums, start, count, totals, terms):
     width = len(terms) + 1
     for i in range(count):
         cell = np.uint64(start + i) * np.uint64(width)
-        n = np.int64(0)
-        for k in range(len(terms)):
-            terms = tuple_setitem(terms, k, np.int64(0))
+        zeros = (np.int64(0),) + integers(terms)
+        found = zeros
         for t in range(sums.shape[0]):
-            n += sums[t, cell]
-            sums[t, cell] = 0
-            for k in range(len(terms)):
-                terms = tuple_setitem(terms, k, terms[k] + sums[t, cell + np.uint64(1 + k)])
-                sums[t, cell + np.uint64(1 + k)] = 0
-        note(totals, i, (n,) + terms)
+            found = added(found, fetch(sums[t], cell, zeros))
+            put(sums[t], cell, zeros)
+        note(totals, i, found)
 
 
 @scalar
@@ -83,7 +88,4 @@ def solve(thread, threads, physics, counter, cells, number, scratch, like, c, te
             )
             note(rows, i, answer)
         for i in range(count):
-            answer = recall(rows, i, c)
-            first_place = np.uint64(start + i) * np.uint64(stride)
-            for k in range(len(c)):
-                coefficients[first_place + np.uint64(k)] = answer[k]
+            put(coefficients, np.uint64(start + i) * np.uint64(stride), recall(rows, i, c))

@@ -33,8 +33,8 @@ from mesokit.geometry.none import Nothing
 if TYPE_CHECKING:
     from mesokit.case import Case
 
-# Whole numbers of this many per thermal unit: 2^-42 of a thermal momentum, 2^-36 of kT.
-MOMENTUM_BITS, MASS_BITS, ENERGY_BITS = 42, 44, 36
+# Whole numbers of this many per thermal unit: 2^-42 of a thermal momentum, 2^-39 of kT.
+MOMENTUM_BITS, MASS_BITS, ENERGY_BITS = 42, 44, 39
 SORT_DISTANCE_SQUARED = 0.5  # particles are sorted again after straying less than a cell
 
 Floats = NDArray[np.float64]

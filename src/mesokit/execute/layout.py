@@ -16,7 +16,7 @@ from numba import njit
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.execute.cache import cached_kernel
-from mesokit.scalar import by_type, dot, mul_add, scalar
+from mesokit.scalar import by_type, dot, mul_add, scalar, written_out
 
 LANES = 256  # particles of a strip, cells of a batch
 BLOCK = 4096
@@ -67,34 +67,48 @@ def strip_of(data, number, rows):
     return data[start : start + (rows - 1) * ROW + LANES]
 
 
-@scalar
-def load(strip, i, row, like):
+def load(strip: Any, i: Any, row: Any, like: Any) -> Any:
     """Lane i of consecutive rows of particles, as a tuple as long as `like`."""
-    for k in range(len(like)):
-        like = tuple_setitem(like, k, strip[(row + k) * ROW + i])
-    return like
+    raise NotImplementedError
 
 
-@scalar
-def store(strip, i, row, values):
+@by_type(load)
+def _load(strip: Any, i: Any, row: Any, like: Any) -> Callable:
+    line = "strip[(row + {k}) * ROW + i]"
+    return written_out("strip, i, row, like", line, len(like), "({all},)", ROW=ROW)
+
+
+def store(strip: Any, i: Any, row: Any, values: Any) -> Any:
     """Write a tuple into lane i of consecutive rows of particles."""
-    for k in range(len(values)):
-        strip[(row + k) * ROW + i] = values[k]
+    raise NotImplementedError
 
 
-@scalar
-def recall(scratch, i, like):
+@by_type(store)
+def _store(strip: Any, i: Any, row: Any, values: Any) -> Callable:
+    line = "strip[(row + {k}) * ROW + i] = values[{k}]"
+    return written_out("strip, i, row, values", line, len(values), ROW=ROW)
+
+
+def recall(scratch: Any, i: Any, like: Any) -> Any:
     """Lane i of a strip's scratch rows, as a tuple as long as `like`."""
-    for k in range(len(like)):
-        like = tuple_setitem(like, k, scratch[k * SCRATCH_ROW + i])
-    return like
+    raise NotImplementedError
 
 
-@scalar
-def note(scratch, i, values):
+@by_type(recall)
+def _recall(scratch: Any, i: Any, like: Any) -> Callable:
+    line = "scratch[{k} * SCRATCH_ROW + i]"
+    return written_out("scratch, i, like", line, len(like), "({all},)", SCRATCH_ROW=SCRATCH_ROW)
+
+
+def note(scratch: Any, i: Any, values: Any) -> Any:
     """Write a tuple into lane i of a strip's scratch rows."""
-    for k in range(len(values)):
-        scratch[k * SCRATCH_ROW + i] = values[k]
+    raise NotImplementedError
+
+
+@by_type(note)
+def _note(scratch: Any, i: Any, values: Any) -> Callable:
+    line = "scratch[{k} * SCRATCH_ROW + i] = values[{k}]"
+    return written_out("scratch, i, values", line, len(values), SCRATCH_ROW=SCRATCH_ROW)
 
 
 @scalar
@@ -173,11 +187,7 @@ def _read_sums(
 
     def read(masses, energy, totals, i, like, terms, scales):
         n = totals[i]
-        values = scales
-        for k in range(len(scales)):
-            values = tuple_setitem(
-                values, k, from_fixed(totals[(k + 1) * SCRATCH_ROW + i], n, scales[k])
-            )
+        values = floats(totals, i, n, scales)
         mass = max(float(n), 1.0) * masses[0] if uniform else max(values[d], 1e-300)
         m_v_squared = values[at_energy] if asked else 0.0
         return float(n), mass, values[:d], m_v_squared, values[own:]
@@ -230,3 +240,59 @@ def _read_total(masses: Any, sums: Any, cell: Any, like: Any, terms: Any, scales
         return mass, momentum
 
     return read
+
+
+def rounded(terms: Any, scales: Any) -> Any:
+    """Each term as a fixed-point number."""
+    raise NotImplementedError
+
+
+@by_type(rounded)
+def _rounded(terms: Any, scales: Any) -> Callable:
+    line = "fixed(terms[{k}], scales[{k}])"
+    return written_out("terms, scales", line, len(terms), "({all},)", fixed=fixed)
+
+
+def fetch(values: Any, start: Any, like: Any) -> Any:
+    """Consecutive values of an array from `start` (unsigned), as a tuple as long as `like`."""
+    raise NotImplementedError
+
+
+@by_type(fetch)
+def _fetch(values: Any, start: Any, like: Any) -> Callable:
+    line = "values[start + np.uint64({k})]"
+    return written_out("values, start, like", line, len(like), "({all},)", np=np)
+
+
+def put(values: Any, start: Any, given: Any) -> None:
+    """Write a tuple to consecutive places of an array from `start` (unsigned)."""
+    raise NotImplementedError
+
+
+@by_type(put)
+def _put(values: Any, start: Any, given: Any) -> Callable:
+    line = "values[start + np.uint64({k})] = given[{k}]"
+    return written_out("values, start, given", line, len(given), np=np)
+
+
+def add_to(values: Any, start: Any, given: Any) -> None:
+    """Add a tuple to consecutive places of an array from `start` (unsigned)."""
+    raise NotImplementedError
+
+
+@by_type(add_to)
+def _add_to(values: Any, start: Any, given: Any) -> Callable:
+    line = "values[start + np.uint64({k})] += given[{k}]"
+    return written_out("values, start, given", line, len(given), np=np)
+
+
+def floats(totals: Any, i: Any, n: Any, scales: Any) -> Any:
+    """Lane i of the totals of n particles after the first row, as floats."""
+    raise NotImplementedError
+
+
+@by_type(floats)
+def _floats(totals: Any, i: Any, n: Any, scales: Any) -> Callable:
+    line = "from_fixed(totals[{k} * ROW + ROW + i], n, scales[{k}])"
+    names = {"from_fixed": from_fixed, "ROW": SCRATCH_ROW}
+    return written_out("totals, i, n, scales", line, len(scales), "({all},)", **names)

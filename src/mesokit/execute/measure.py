@@ -17,10 +17,11 @@ from mesokit.execute.layout import (
     load,
     mass_of,
     note,
+    rounded,
     share,
     strip_of,
 )
-from mesokit.execute.stages import add_strip, rounded
+from mesokit.execute.stages import add_strip
 from mesokit.scalar import dot, scalar, scaled
 
 

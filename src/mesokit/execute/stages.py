@@ -9,15 +9,16 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from mesokit.box import slide
 from mesokit.execute.layout import (
     LANES,
+    add_to,
     count_images,
     energy_term,
-    fixed,
-    integers,
+    fetch,
     load,
     mass_of,
     mass_term,
     note,
     recall,
+    rounded,
     store,
 )
 from mesokit.geometry.protocol import closes, exposed, touches
@@ -77,9 +78,7 @@ def collide_strip(physics, grid, strip, cell, coefficients, stride, gathered, li
     """Velocities after the collision, from the coefficients of each particle's cell."""
     for i in range(LANES):
         start = np.uint64(np.uint32(cell[i])) * np.uint64(stride)
-        for k in range(len(c)):
-            c = tuple_setitem(c, k, coefficients[start + np.uint64(k)])
-        note(gathered, i, c)
+        note(gathered, i, fetch(coefficients, start, c))
     d = len(like)
     for i in range(LANES):
         r, v = load(strip, i, 0, like), load(strip, i, d, like)
@@ -156,24 +155,13 @@ def bin_strip(physics, counter, grid, strip, cell, ident, terms_rows, scales, li
 
 
 @scalar
-def rounded(terms, scales):
-    """Each term as a fixed-point number."""
-    out = integers(terms)
-    for k in range(len(terms)):
-        out = tuple_setitem(out, k, fixed(terms[k], scales[k]))
-    return out
-
-
-@scalar
 def add_strip(cell, terms_rows, sums, count, terms):
     """Add the terms of each particle to the sums of its cell, and count it."""
     width = len(terms) + 1
     for i in range(count):
         start = np.uint64(np.uint32(cell[i])) * np.uint64(width)
-        terms = recall(terms_rows, i, terms)
         sums[start] += 1
-        for k in range(len(terms)):
-            sums[start + np.uint64(1 + k)] += terms[k]
+        add_to(sums, start + np.uint64(1), recall(terms_rows, i, terms))
 
 
 @scalar

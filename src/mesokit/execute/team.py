@@ -14,7 +14,7 @@ from numba.extending import intrinsic
 
 from mesokit.scalar import scalar
 
-SPINS = 20_000  # some ten microseconds; a thread that waits longer lets others have the core
+SPINS = 1_000  # some ten microseconds; a thread that waits longer lets others have the core
 
 # The gate: how many threads have come, and how often it has opened; each on its own cache line.
 ARRIVED, OPENED, GATE_SIZE = 0, 8, 16

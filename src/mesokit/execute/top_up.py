@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
-from mesokit.execute.layout import energy_term, mass_term
-from mesokit.execute.stages import in_cell, rounded
+from mesokit.execute.layout import energy_term, mass_term, rounded
+from mesokit.execute.stages import in_cell
 from mesokit.geometry.protocol import closes, side
 from mesokit.mpcd.collision.protocol import contribute
 from mesokit.random import CELL_VIRTUAL, normals, unit_open, words

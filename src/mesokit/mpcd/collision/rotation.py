@@ -20,8 +20,14 @@ def random_axis(counter, purpose, cell):
 @scalar
 def rotate(w, n, cos, sin):
     """Rotate the vector w about the unit vector n (Rodrigues)."""
+    return turn(w, n, cos, sin, 1.0 - cos)
+
+
+@scalar
+def turn(w, n, cos, sin, along):
+    """cos * w + sin * (n x w) + along * (n . w) n."""
     turned = added_scaled(scaled(cos, w), sin, cross(n, w))
-    return added_scaled(turned, (1.0 - cos) * dot(n, w), n)
+    return added_scaled(turned, along * dot(n, w), n)
 
 
 @scalar

@@ -16,10 +16,11 @@ from mesokit.mpcd.collision.rotation import (
     random_axis,
     rotate,
     second_moment,
+    turn,
 )
 from mesokit.mpcd.thermostat.protocol import root_of_ratio, target
 from mesokit.random import CELL_COLLISION, words
-from mesokit.scalar import added, dot, scaled
+from mesokit.scalar import added, added_scaled, dot, scaled
 
 ONE = np.uint64(1)
 
@@ -50,7 +51,7 @@ class SRDPlusA:
 
     def coefficient_count(self, dimension: int, stretched: bool) -> int:
         """How many numbers `coefficients` gives; `stretched` says that a thermostat acts."""
-        return 5 if dimension == 2 else 10
+        return 5 if dimension == 2 else 12
 
 
 class SRDPlusA2(NamedTuple):
@@ -93,7 +94,10 @@ def _(rule, n):
 
 # Below, w are the rotated velocities relative to the mean, Omega their rigid rotation and omega
 # that of the cell before the collision. Particles leave with u + omega x r' + s (w - Omega x r'),
-# r' relative to the centre of mass; s makes up for the energy of the two rotations.
+# r' relative to the centre of mass; s makes up for the energy of the two rotations. Where hardly
+# any energy is left for s to scale (two particles whose w is all rotation) the cell does not collide:
+# rounding would be all that is scaled, and the energy would not be conserved.
+LEAST_SHARE = 1e-4
 
 
 @coefficients.register(SRDPlusA2)
@@ -101,19 +105,19 @@ def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums)
     ux, uy = momentum[0] / mass, momentum[1] / mass
     x, y = sums[0] / mass, sums[1] / mass
     inertia = max(sums[2] - mass * (x * x + y * y), 1e-30)
-    turn = sums[3] - mass * (x * uy - y * ux)
+    spun = sums[3] - mass * (x * uy - y * ux)
     pull = sums[4] - mass * (x * ux + y * uy)
     a, _, _, _ = words(counter, CELL_COLLISION, cell, 0)
     sin = rule.sin * (1.0 - 2.0 * float(np.int64(a & ONE)))
-    rotated_turn = rule.cos * turn + sin * pull
+    rotated_turn = rule.cos * spun + sin * pull
     relative = 0.5 * (energy - mass * (ux * ux + uy * uy))
-    before = relative - 0.5 * turn * turn / inertia
+    before = relative - 0.5 * spun * spun / inertia
     after = relative - 0.5 * rotated_turn * rotated_turn / inertia
     free = freedom(rule, n)
     s = root_of_ratio(target(thermostat, variate, free, before), after, free)
-    several = n > 1.5
-    cos, sin = (s * rule.cos, s * sin) if several else (1.0, 0.0)
-    omega = (turn - s * rotated_turn) / inertia if several else 0.0
+    collides = n > 1.5 and after > LEAST_SHARE * before
+    cos, sin = (s * rule.cos, s * sin) if collides else (1.0, 0.0)
+    omega = (spun - s * rotated_turn) / inertia if collides else 0.0
     return (
         cos,
         sin,
@@ -132,23 +136,26 @@ def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums)
     tx = added(sums[9:12], scaled(-mass * r[0], u))
     ty = added(sums[12:15], scaled(-mass * r[1], u))
     tz = added(sums[15:18], scaled(-mass * r[2], u))
-    turn = ty[2] - tz[1], tz[0] - tx[2], tx[1] - ty[0]
+    moment_of_momentum = ty[2] - tz[1], tz[0] - tx[2], tx[1] - ty[0]
     axis = random_axis(counter, CELL_COLLISION, cell)
     tx = rotate(tx, axis, rule.cos, rule.sin)
     ty = rotate(ty, axis, rule.cos, rule.sin)
     tz = rotate(tz, axis, rule.cos, rule.sin)
-    rotated_turn = ty[2] - tz[1], tz[0] - tx[2], tx[1] - ty[0]
-    some = 1.0 if n > 1.5 else 0.0
-    omega = scaled(some, angular_velocity(moment, turn))
-    omega_rotated = scaled(some, angular_velocity(moment, rotated_turn))
+    rotated_moment = ty[2] - tz[1], tz[0] - tx[2], tx[1] - ty[0]
+    omega = angular_velocity(moment, moment_of_momentum)
+    omega_rotated = angular_velocity(moment, rotated_moment)
     relative = 0.5 * (energy - mass * dot(u, u))
-    before = relative - 0.5 * dot(omega, turn)
-    after = relative - 0.5 * dot(omega_rotated, rotated_turn)
+    before = relative - 0.5 * dot(omega, moment_of_momentum)
+    after = relative - 0.5 * dot(omega_rotated, rotated_moment)
     free = freedom(rule, n)
     s = root_of_ratio(target(thermostat, variate, free, before), after, free)
-    spin = added(omega, scaled(-s, omega_rotated))
-    turned = scaled(-s, rotate(u, axis, rule.cos, rule.sin))
-    return axis + (s,) + spin + added(added(u, turned), cross(r, spin))
+    collides = n > 1.5 and after > LEAST_SHARE * before
+    cos = s * rule.cos if collides else 1.0
+    sin = s * rule.sin if collides else 0.0
+    along = s * (1.0 - rule.cos) if collides else 0.0
+    spin = scaled(1.0 if collides else 0.0, added_scaled(omega, -s, omega_rotated))
+    rest = added_scaled(u, -1.0, turn(u, axis, cos, sin, along))
+    return axis + (cos, sin, along) + spin + added(rest, cross(r, spin))
 
 
 @collide.register(SRDPlusA2)
@@ -161,5 +168,5 @@ def _(rule, c, v, r):
 
 @collide.register(SRDPlusA3)
 def _(rule, c, v, r):
-    w = scaled(c[3], rotate(v, (c[0], c[1], c[2]), rule.cos, rule.sin))
-    return added(added(w, cross((c[4], c[5], c[6]), r)), (c[7], c[8], c[9]))
+    w = turn(v, (c[0], c[1], c[2]), c[3], c[4], c[5])
+    return added(added(w, cross((c[6], c[7], c[8]), r)), (c[9], c[10], c[11]))
