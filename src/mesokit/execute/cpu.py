@@ -248,8 +248,9 @@ class CPU:
         self._check_speed()
 
     def _check_speed(self) -> None:
-        fastest = self._totals()[:, -1].max()
-        if not fastest < self.fastest:
+        totals = self._totals()
+        fastest = totals[:, -1].max()
+        if not (fastest < self.fastest and np.isfinite(totals).all()):
             raise RunError(
                 f"step {self.step}: a particle moves at {fastest:g}, beyond the {self.fastest:g} "
                 "that cell sums can hold; the fluid heats up: add a thermostat, or lower the force"

@@ -63,14 +63,15 @@ def in_cell(r, grid):
 
 @scalar
 def cell_index(r, grid):
-    """Number of the cell at r; x varies fastest."""
-    index = 0.0
+    """Number of the cell at r; x varies fastest. A place that is no number gets the spare cell."""
+    index, cells = 0.0, 1.0
     for j in range(len(r)):
         k = len(r) - 1 - j
         i = np.floor(r[k] + grid.shift[k]) + grid.first[k]
         i = mul_add(-grid.cells[k], np.floor((i + 0.5) * grid.inverse[k]), i)
         index = mul_add(index, grid.cells[k], i)
-    return np.int32(index)
+        cells *= grid.cells[k]
+    return np.int32(index if index < cells else cells)
 
 
 @scalar

@@ -7,7 +7,13 @@ from typing import ClassVar, Literal, NamedTuple
 from mesokit.component import component, tag
 from mesokit.mpcd.collision.at import thermal_velocity
 from mesokit.mpcd.collision.protocol import coefficients, collide, contribute, freedom
-from mesokit.mpcd.collision.rotation import angular_velocity, central, cross, second_moment
+from mesokit.mpcd.collision.rotation import (
+    angular_speed,
+    angular_velocity,
+    central,
+    cross,
+    second_moment,
+)
 from mesokit.scalar import added, scaled
 
 
@@ -83,7 +89,7 @@ def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums)
     x, y = sums[2] / mass, sums[3] / mass
     inertia = sums[4] - mass * (x * x + y * y)
     lost = sums[5] - mass * (x * by - y * bx)
-    omega = lost / max(inertia, 1e-30) if n > 1.5 else 0.0
+    omega = angular_speed(n, mass, inertia, lost)
     return bx + omega * y, by - omega * x, omega
 
 
@@ -98,8 +104,7 @@ def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums)
     moment = central(sums[6:12], mass, r)
     shift = cross(r, b)
     lost = sums[12] - mass * shift[0], sums[13] - mass * shift[1], sums[14] - mass * shift[2]
-    some = 1.0 if n > 1.5 else 0.0
-    omega = scaled(some, angular_velocity(moment, lost))
+    omega = angular_velocity(n, mass, moment, lost)
     return added(b, cross(r, omega)) + omega
 
 

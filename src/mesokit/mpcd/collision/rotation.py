@@ -6,6 +6,9 @@ from mesokit.elementary import sincos_turn
 from mesokit.random import unit, words
 from mesokit.scalar import added_scaled, dot, mul_add, scalar, scaled
 
+ONE_PLACE = 1e-8  # of the mass: particles within 1e-4 cells of one another are in one place
+LINE = 1e-7  # det / trace^3 of an inertia tensor below which the particles lie on a line
+
 
 @scalar
 def random_axis(counter, purpose, cell):
@@ -41,12 +44,13 @@ def cross(a, b):
 
 
 @scalar
-def angular_velocity(q, angular_momentum):
+def angular_velocity(n, mass, q, angular_momentum):
     """Solve I omega = L for the inertia tensor I = tr(q) 1 - q, with q = sum m r r as
-    (xx, yy, zz, xy, xz, yz).
+    (xx, yy, zz, xy, xz, yz), of n particles of this total mass.
 
     Two particles (or a line of them) have no inertia about their own axis, and no angular momentum
-    either: the pseudo-inverse is then 2 / tr(I).
+    either: the pseudo-inverse is then 2 / tr(I). Particles in one place do not rotate: what the
+    rounded sums say there is noise.
     """
     lx, ly, lz = angular_momentum
     a, b, c = q[1] + q[2], q[0] + q[2], q[0] + q[1]
@@ -55,9 +59,10 @@ def angular_velocity(q, angular_momentum):
     m11, m12, m22 = a * c - e * e, d * e - a * f, a * b - d * d
     det = a * m00 + d * m01 + e * m02
     trace = a + b + c
-    regular = det > 1e-10 * trace * trace * trace
+    apart = n > 1.5 and trace > ONE_PLACE * mass
+    regular = n > 2.5 and trace > 1e4 * ONE_PLACE * mass and det > LINE * trace * trace * trace
     inverse = 1.0 / (det if regular else 1.0)
-    line = 2.0 / max(trace, 1e-30)
+    line = 2.0 / trace if apart else 0.0
     x = inverse * (m00 * lx + m01 * ly + m02 * lz)
     y = inverse * (m01 * lx + m11 * ly + m12 * lz)
     z = inverse * (m02 * lx + m12 * ly + m22 * lz)
@@ -66,6 +71,13 @@ def angular_velocity(q, angular_momentum):
         y if regular else line * ly,
         z if regular else line * lz,
     )
+
+
+@scalar
+def angular_speed(n, mass, inertia, angular_momentum):
+    """The same in 2D."""
+    apart = n > 1.5 and inertia > ONE_PLACE * mass
+    return angular_momentum / inertia if apart else 0.0
 
 
 @scalar

@@ -10,6 +10,7 @@ import numpy as np
 from mesokit.component import component, param, tag
 from mesokit.mpcd.collision.protocol import coefficients, collide, contribute, freedom
 from mesokit.mpcd.collision.rotation import (
+    angular_speed,
     angular_velocity,
     central,
     cross,
@@ -104,20 +105,22 @@ LEAST_SHARE = 1e-4
 def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
     ux, uy = momentum[0] / mass, momentum[1] / mass
     x, y = sums[0] / mass, sums[1] / mass
-    inertia = max(sums[2] - mass * (x * x + y * y), 1e-30)
+    inertia = sums[2] - mass * (x * x + y * y)
     spun = sums[3] - mass * (x * uy - y * ux)
     pull = sums[4] - mass * (x * ux + y * uy)
     a, _, _, _ = words(counter, CELL_COLLISION, cell, 0)
     sin = rule.sin * (1.0 - 2.0 * float(np.int64(a & ONE)))
     rotated_turn = rule.cos * spun + sin * pull
     relative = 0.5 * (energy - mass * (ux * ux + uy * uy))
-    before = relative - 0.5 * spun * spun / inertia
-    after = relative - 0.5 * rotated_turn * rotated_turn / inertia
+    omega = angular_speed(n, mass, inertia, spun)
+    omega_rotated = angular_speed(n, mass, inertia, rotated_turn)
+    before = relative - 0.5 * omega * spun
+    after = relative - 0.5 * omega_rotated * rotated_turn
     free = freedom(rule, n)
     s = root_of_ratio(target(thermostat, variate, free, before), after, free)
-    collides = n > 1.5 and after > LEAST_SHARE * before
+    collides = n > 1.5 and before > 0.0 and after > LEAST_SHARE * before
     cos, sin = (s * rule.cos, s * sin) if collides else (1.0, 0.0)
-    omega = (spun - s * rotated_turn) / inertia if collides else 0.0
+    omega = omega - s * omega_rotated if collides else 0.0
     return (
         cos,
         sin,
@@ -142,14 +145,14 @@ def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums)
     ty = rotate(ty, axis, rule.cos, rule.sin)
     tz = rotate(tz, axis, rule.cos, rule.sin)
     rotated_moment = ty[2] - tz[1], tz[0] - tx[2], tx[1] - ty[0]
-    omega = angular_velocity(moment, moment_of_momentum)
-    omega_rotated = angular_velocity(moment, rotated_moment)
+    omega = angular_velocity(n, mass, moment, moment_of_momentum)
+    omega_rotated = angular_velocity(n, mass, moment, rotated_moment)
     relative = 0.5 * (energy - mass * dot(u, u))
     before = relative - 0.5 * dot(omega, moment_of_momentum)
     after = relative - 0.5 * dot(omega_rotated, rotated_moment)
     free = freedom(rule, n)
     s = root_of_ratio(target(thermostat, variate, free, before), after, free)
-    collides = n > 1.5 and after > LEAST_SHARE * before
+    collides = n > 1.5 and before > 0.0 and after > LEAST_SHARE * before
     cos = s * rule.cos if collides else 1.0
     sin = s * rule.sin if collides else 0.0
     along = s * (1.0 - rule.cos) if collides else 0.0
