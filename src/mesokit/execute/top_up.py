@@ -7,10 +7,10 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.execute.layout import energy_term, mass_term, rounded
 from mesokit.execute.stages import in_cell
-from mesokit.geometry.protocol import closes, side
+from mesokit.geometry.protocol import across, closes, side
 from mesokit.mpcd.collision.protocol import contribute
 from mesokit.random import CELL_VIRTUAL, normals, unit_open, words
-from mesokit.scalar import added, by_type, dot, first, scaled
+from mesokit.scalar import added, by_type, first, scaled
 
 
 def top_up(density, physics, counter, grid, cells, number, like, scales):
@@ -32,9 +32,8 @@ def _add_missing(density, physics, counter, grid, cells, number, like, scales):
     """
     sums = cells[2]
     width = 1 + len(scales)
-    normal = physics.solid.normal
-    layers = dot(normal, grid.cells)
-    s = dot(normal, grid.shift)
+    axis = across(physics.solid)
+    layers, s = grid.cells[axis], grid.shift[axis]
     below = s - np.floor(s)
     m = physics.masses[0]
     for cell in range(number):
@@ -43,7 +42,7 @@ def _add_missing(density, physics, counter, grid, cells, number, like, scales):
             size = int(grid.cells[k])
             index = tuple_setitem(index, k, float(rest % size))
             rest //= size
-        layer = dot(normal, index)
+        layer = index[axis]
         lower = layer < 0.5
         if (not lower and layer < layers - 1.5) or below == 0.0:
             continue
@@ -55,12 +54,12 @@ def _add_missing(density, physics, counter, grid, cells, number, like, scales):
         for j in range(missing):
             a, b, c, _ = words(counter, CELL_VIRTUAL, cell, 1 + 2 * j)
             u = first((unit_open(a), unit_open(b), unit_open(c)), like)
-            depth = dot(normal, u)
+            depth = u[axis]
             place = u
             for k in range(len(like)):
                 along = (index[k] - grid.shift[k] + u[k]) / physics.solid.size[k]
                 inside = below * depth if lower else below + (1.0 - below) * depth
-                place = tuple_setitem(place, k, inside if normal[k] > 0.5 else along)
+                place = tuple_setitem(place, k, inside if k == axis else along)
             zero = scaled(0.0, like)
             r, drift = closes(physics.solid, place, grid.shift, zero, zero)
             if side(physics.solid, r) == 2:

@@ -9,7 +9,8 @@ import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.execute.layout import read_total
-from mesokit.scalar import by_type, dot
+from mesokit.geometry.protocol import across
+from mesokit.scalar import by_type
 
 MEMORY = 1.0 / 32.0  # weight of one step; the mean must not follow the noise of single steps
 
@@ -29,13 +30,13 @@ def _follow(wanted, physics, grid, sums, rates, like, terms, scales):
 def _update(wanted, physics, grid, sums, rates, like, terms, scales):
     """From the cells next to the cut ones, which hold no virtual particles, at this step."""
     solid = physics.solid
-    layers = int(dot(solid.normal, grid.cells))
-    s = dot(solid.normal, grid.shift)
+    axis = across(solid)
+    layers, s = int(grid.cells[axis]), grid.shift[axis]
     below = s - np.floor(s)
-    stride, across = 1, 1
+    stride, beside = 1, 1
     for k in range(len(like)):  # cells are numbered with x fastest
-        if solid.normal[k] > 0.5:
-            across = stride
+        if k == axis:
+            beside = stride
         stride *= int(grid.cells[k])
     columns = stride // layers
     for surface in range(2):
@@ -44,7 +45,7 @@ def _update(wanted, physics, grid, sums, rates, like, terms, scales):
         height = 1.5 - below if surface == 0 else 0.5 + below
         mass, momentum = 0.0, like
         for column in range(columns):
-            cell = column // across * across * layers + layer * across + column % across
+            cell = column // beside * beside * layers + layer * beside + column % beside
             m, p = read_total(physics.masses, sums, cell, like, terms, scales)
             mass += m
             for k in range(len(like)):
@@ -52,5 +53,5 @@ def _update(wanted, physics, grid, sums, rates, like, terms, scales):
         for k in range(len(like)):
             u = solid.lower_velocity[k] if surface == 0 else solid.upper_velocity[k]
             rate = (momentum[k] / max(mass, 1e-300) - u) / height if mass > 0.0 else 0.0
-            rate = rate if solid.normal[k] < 0.5 else 0.0
+            rate = 0.0 if k == axis else rate
             rates[surface, k] += MEMORY * (rate - rates[surface, k])

@@ -11,6 +11,7 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from mesokit.box import AXES, Axis
 from mesokit.component import component, param, tag
 from mesokit.geometry.protocol import (
+    across,
     closes,
     confine,
     exposed,
@@ -20,7 +21,7 @@ from mesokit.geometry.protocol import (
     touches,
 )
 from mesokit.geometry.surface import Surface
-from mesokit.scalar import added, dot, scalar, scaled
+from mesokit.scalar import added_scaled, mul_add, scalar, scaled
 
 
 @component
@@ -41,10 +42,8 @@ class Plates:
     def kernel(self, size: tuple[int, ...]) -> Slit:
         """Parameters for the scalar functions below."""
         axis = AXES.index(self.axis)
-        normal = tuple(float(k == axis) for k in range(len(size)))
         rest = (0.0,) * len(size)
-        return Slit(
-            normal,
+        return (SlitX, SlitY, SlitZ)[axis](
             tuple(float(length) for length in size),
             float(size[axis]),
             self.lower.velocity or rest,
@@ -55,15 +54,50 @@ class Plates:
 
 
 class Slit(NamedTuple):
-    """Fluid in 0 <= r . normal <= width; surface 0 is the lower plate, 1 the upper."""
+    """Fluid in 0 <= height <= width; surface 0 is the lower plate, 1 the upper."""
 
-    normal: tuple[float, ...]
     size: tuple[float, ...]
     width: float
     lower_velocity: tuple[float, ...]
     upper_velocity: tuple[float, ...]
     lower_slips: float
     upper_slips: float
+
+
+# A class for each axis, so that picking the height out of a position costs nothing.
+
+
+class SlitX(Slit):
+    """Plates across x."""
+
+    __slots__ = ()
+
+
+class SlitY(Slit):
+    """Plates across y."""
+
+    __slots__ = ()
+
+
+class SlitZ(Slit):
+    """Plates across z."""
+
+    __slots__ = ()
+
+
+@across.register(SlitX)
+def _(solid):
+    return 0
+
+
+@across.register(SlitY)
+def _(solid):
+    return 1
+
+
+@across.register(SlitZ)
+def _(solid):
+    return 2
 
 
 @scalar
@@ -83,70 +117,63 @@ def time_to_fall(height, v, a, time):
     return -(v + down) / a if a < 0.0 else late
 
 
-@touches.register(Slit)
+@touches.register(SlitX, SlitY, SlitZ)
 def _(solid, r, v, a, time):
-    h, w, g = dot(solid.normal, r), dot(solid.normal, v), dot(solid.normal, a)
-    end = h + w * time + 0.5 * g * time * time
-    final = w + g * time
-    # A flight whose normal velocity changes sign may touch a plate and come back.
-    turns = w * final < 0.0
-    bulge = (abs(w) + abs(final)) * time if turns else 0.0
-    low, high = min(h, end) - bulge, max(h, end) + bulge
-    return (low <= 0.0) | (high >= solid.width)
+    k = across(solid)
+    h, end = r[k], mul_add(v[k], time, r[k])
+    bend = 0.5 * time * time * abs(a[k])  # no parabola is further from its straight line
+    return (min(h, end) - bend <= 0.0) | (max(h, end) + bend >= solid.width)
 
 
-@first_hit.register(Slit)
+@first_hit.register(SlitX, SlitY, SlitZ)
 def _(solid, r, v, a, time):
-    h, w, g = dot(solid.normal, r), dot(solid.normal, v), dot(solid.normal, a)
-    below = time_to_fall(h, w, g, time)
-    above = time_to_fall(solid.width - h, -w, -g, time)
+    k = across(solid)
+    below = time_to_fall(r[k], v[k], a[k], time)
+    above = time_to_fall(solid.width - r[k], -v[k], -a[k], time)
     return (below, 0) if below < above else (above, 1)
 
 
-@reflect.register(Slit)
+@reflect.register(SlitX, SlitY, SlitZ)
 def _(solid, surface, v):
+    k = across(solid)
     u = solid.lower_velocity if surface == 0 else solid.upper_velocity
     slips = solid.lower_slips if surface == 0 else solid.upper_slips
-    back = added(scaled(2.0, u), scaled(-1.0, v))
-    mirrored = added(v, scaled(-2.0 * dot(solid.normal, v), solid.normal))
+    back = added_scaled(scaled(2.0, u), -1.0, v)
+    mirrored = tuple_setitem(v, k, -v[k])
     return mirrored if slips > 0.5 else back
 
 
-@confine.register(Slit)
+@confine.register(SlitX, SlitY, SlitZ)
 def _(solid, r):
-    h = dot(solid.normal, r)
-    inside = min(max(h, 0.0), solid.width)
-    return added(r, scaled(inside - h, solid.normal))
+    k = across(solid)
+    return tuple_setitem(r, k, min(max(r[k], 0.0), solid.width))
 
 
-@exposed.register(Slit)
+@exposed.register(SlitX, SlitY, SlitZ)
 def _(solid):
     return True
 
 
-@closes.register(Slit)
+@closes.register(SlitX, SlitY, SlitZ)
 def _(solid, place, shift, lower_rate, upper_rate):
     # Cells end at heights k - shift: the part of shift after the point is the depth of the lower
     # layer of cut cells in its plate, and the rest of one cell that of the upper.
-    s = dot(solid.normal, shift)
-    below = s - np.floor(s)
-    depth = dot(solid.normal, place)
+    axis = across(solid)
+    below = shift[axis] - np.floor(shift[axis])
+    depth = place[axis]
     low = depth < below
-    height = -depth if low else solid.width + (depth - below)
-    for k in range(len(place)):
-        along = place[k] * solid.size[k]
-        place = tuple_setitem(place, k, height if solid.normal[k] > 0.5 else along)
     behind = depth if low else depth - below
     for k in range(len(place)):
         u = solid.lower_velocity[k] if low else solid.upper_velocity[k]
         rate = lower_rate[k] if low else upper_rate[k]
         shift = tuple_setitem(shift, k, u - behind * rate)
-    return place, shift
+        place = tuple_setitem(place, k, place[k] * solid.size[k])
+    return tuple_setitem(place, axis, -behind if low else solid.width + behind), shift
 
 
-@side.register(Slit)
+@side.register(SlitX, SlitY, SlitZ)
 def _(solid, r):
-    low = dot(solid.normal, r) < 0.5 * solid.width
+    low = r[across(solid)] < 0.5 * solid.width
     slips = solid.lower_slips if low else solid.upper_slips
     surface = 0 if low else 1
     return 2 if slips > 0.5 else surface

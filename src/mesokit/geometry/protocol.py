@@ -8,6 +8,12 @@ from mesokit.scalar import generic
 
 
 @generic
+def across(solid):
+    """The axis that plates close, as a literal."""
+    raise NotImplementedError
+
+
+@generic
 def touches(solid, r, v, a, time):
     """Whether the flight may touch the solid within the time (a cheap test for every particle)."""
     raise NotImplementedError

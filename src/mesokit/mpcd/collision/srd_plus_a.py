@@ -96,8 +96,8 @@ def _(rule, n):
 # Below, w are the rotated velocities relative to the mean, Omega their rigid rotation and omega
 # that of the cell before the collision. Particles leave with u + omega x r' + s (w - Omega x r'),
 # r' relative to the centre of mass; s makes up for the energy of the two rotations. Where hardly
-# any energy is left for s to scale (two particles whose w is all rotation) the cell does not collide:
-# rounding would be all that is scaled, and the energy would not be conserved.
+# any energy is left for s to scale (two particles whose w is all rotation) the cell does not
+# collide: rounding would be all that is scaled, and the energy would not be conserved.
 LEAST_SHARE = 1e-4
 
 
