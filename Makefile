@@ -3,13 +3,14 @@ PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/ready
 
-.PHONY: help demo test check bench clean
+.PHONY: help demo test check bench validate clean
 help:
-	@echo "make demo    run a channel flow and draw it with the theory"
-	@echo "make test    run the tests"
-	@echo "make check   lint, types, import rules"
-	@echo "make bench   measure the speed, side by side with LAMMPS"
-	@echo "make clean   remove what these made"
+	@echo "make demo      run a channel flow and draw it with the theory"
+	@echo "make test      run the tests"
+	@echo "make check     lint, types, import rules"
+	@echo "make bench     measure the speed, side by side with LAMMPS"
+	@echo "make validate  write docs/validation: measured against theory, law by law"
+	@echo "make clean     remove what these made"
 
 $(READY): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -35,6 +36,9 @@ check: $(READY)
 
 bench: $(READY)
 	@$(BIN)/python -m benchmarks
+
+validate: $(READY)
+	@$(BIN)/python validation/all.py
 
 clean:
 	@rm -rf .venv demo

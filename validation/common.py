@@ -103,7 +103,8 @@ class Page:
         """Write the page; returns how many requirements were not met."""
         FOLDER.mkdir(parents=True, exist_ok=True)
         seconds = time.perf_counter() - self.began
-        versions = f"mesokit {mesokit.__version__} (sources {sources()}), Python {platform.python_version()}"
+        versions = f"mesokit {mesokit.__version__} (sources {sources()})"
+        versions += f", Python {platform.python_version()}"
         versions += f", NumPy {np.__version__}, Numba {numba.__version__}"
         head = [
             f"# {self.title}\n",
