@@ -14,12 +14,17 @@ from mesokit.scalar import scaled
 
 
 @inner
-def wrap(thread, threads, box, grid, data, cell, image, strips, rows, like):
-    """Move every particle to its image in the primary box, count the boxes crossed, find cells."""
+def wrap(thread, threads, box, grid, data, cell, image, count, strips, rows, like):
+    """Move every particle to its image in the primary box, count the boxes crossed, find cells.
+
+    Spare lanes go back to zero: nothing else keeps them from running away.
+    """
     d = len(like)
     first, last = share(strips, thread, threads)
     for b in range(first, last):
         strip = strip_of(data, b, rows)
+        for i in range(min(LANES, count - b * LANES), LANES):
+            store(strip, i, 0, like + like)
         for i in range(LANES):
             r, v = load(strip, i, 0, like), load(strip, i, d, like)
             r, v, crossed = fold(box, r, v, scaled(0.0, like))
@@ -82,7 +87,7 @@ def sort(
     spare, whole, like,
 ):  # fmt: skip
     """Wrap and sort; `spare` and `whole` are float64 and int32 scratch of a place per particle."""
-    wrap(thread, threads, box, grid, data, cell, image, strips, rows, like)
+    wrap(thread, threads, box, grid, data, cell, image, count, strips, rows, like)
     wait(gate, threads)
     order_by_cell(thread, threads, gate, cell, count, ends, order)
     for row in range(rows):

@@ -71,7 +71,7 @@ def cell_index(r, grid):
         i = mul_add(-grid.cells[k], np.floor((i + 0.5) * grid.inverse[k]), i)
         index = mul_add(index, grid.cells[k], i)
         cells *= grid.cells[k]
-    return np.int32(index if index < cells else cells)
+    return np.int32(index if (index >= 0.0) & (index < cells) else cells)
 
 
 @scalar

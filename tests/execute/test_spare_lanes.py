@@ -1,0 +1,29 @@
+"""The lanes of the last strip that hold no particle cannot harm those that do."""
+
+import numpy as np
+import pytest
+
+from mesokit import SRD, Box, Case, Fluid, MaxwellBoltzmann, Plates, Run, Uniform
+from mesokit.execute.cpu import CPU
+from mesokit.mpcd.initial import start
+
+
+@pytest.mark.parametrize("rubbish", [1e20, -1e20, np.inf, np.nan])
+def test_rubbish_in_spare_lanes_changes_nothing(rubbish: float) -> None:
+    case = Case(
+        run=Run(steps=1),
+        box=Box([6, 9]),
+        fluid=Fluid(collision=SRD(90), thermostat=MaxwellBoltzmann(), force=Uniform([0.001, 0.0])),
+        walls=[Plates("y")],
+    )
+    found = []
+    for dirty in (False, True):
+        fluid = CPU(case)
+        start(fluid)
+        assert fluid.n % 256 != 0
+        for k in range(4 * dirty):
+            fluid.row(k).reshape(-1)[fluid.n :] = rubbish
+        fluid.advance(150)
+        found.append((fluid.positions(), fluid.velocities()))
+    assert np.array_equal(found[0][0], found[1][0])
+    assert np.array_equal(found[0][1], found[1][1])
