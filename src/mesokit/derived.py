@@ -19,15 +19,15 @@ from mesokit.observe import setting
 if TYPE_CHECKING:
     from mesokit.case import Case
 
-# What one thread does on the machine that the project measures on (2 cores, AMD EPYC): million
+# What one thread does on the machine that the project measures on (docs/benchmark.md): million
 # particle-steps per second, by dimension and collision rule.
 RATES = {
-    (2, "srd"): 60.0, (2, "at"): 30.0, (2, "srd+a"): 25.0, (2, "at+a"): 20.0,
-    (3, "srd"): 60.0, (3, "at"): 30.0, (3, "srd+a"): 20.0, (3, "at+a"): 15.0,
+    (2, "srd"): 210.0, (2, "at"): 80.0, (2, "srd+a"): 120.0, (2, "at+a"): 60.0,
+    (3, "srd"): 130.0, (3, "at"): 58.0, (3, "srd+a"): 40.0, (3, "at+a"): 33.0,
 }  # fmt: skip
-COSTS = {"thermostat": 1.15, "walls": 1.15, "shear": 1.2, "thread": 0.93}  # factors of time, rate
-SAMPLE = 35e-9  # seconds for each particle in each sample of an observable
-BYTES = {"particle 2D": 80, "particle 3D": 110, "cell 2D": 60, "cell 3D": 80, "program": 200e6}
+COSTS = {"thermostat": 1.15, "walls": 1.25, "shear": 1.2, "thread": 0.85}  # factors of time, rate
+SAMPLE = 12e-9  # seconds for each particle in each sample of an observable
+BYTES = {"particle 2D": 68, "particle 3D": 88, "cell 2D": 60, "cell 3D": 110, "program": 250e6}
 WIDTHS = {"image": 4, "id": 8}  # bytes of a trajectory field; the others follow the precision
 COMPRESSED = 0.9  # thermal noise hardly compresses
 
