@@ -35,15 +35,15 @@ def rules(rounds: int, seconds: float) -> Iterator[str]:
 
 def memory(rounds: int, seconds: float) -> Iterator[str]:
     """Bytes per particle: what the arrays take, and how the whole process grows."""
-    small, large = once.run("W1", 1, 0.0), once.run("W2", 1, 0.0)
+    small, large = once.run("W1@80", 1, 0.0), once.run("W1@112", 1, 0.0)
     grown = 1024 * (large["peak_kilobytes"] - small["peak_kilobytes"])
     slope = grown / (large["particles"] - small["particles"])
     yield "## Memory"
     yield ""
     yield (
-        f"Arrays: {large['bytes_per_particle']:.0f} bytes per particle (64^3 cells, 10 per cell). "
-        f"Peak of the whole process, from 30^3 to 64^3 cells: {slope:.0f} bytes per particle more, "
-        f"on top of {small['peak_kilobytes'] / 1024:.0f} MB at 30^3."
+        f"3D, 10 particles per cell, one thread. Arrays: {large['bytes_per_particle']:.0f} bytes "
+        f"per particle. Peak of the whole process from 80^3 to 112^3 cells: {slope:.0f} bytes per "
+        f"particle more, on top of {small['peak_kilobytes'] / 1024:.0f} MB at 80^3."
     )
 
 

@@ -34,9 +34,14 @@ STEPS = 10**9  # the clock ends a run
 
 
 def case(name: str) -> Case:
-    """W1 to W4, with -thermostat or the name of a rule, such as -at, in place of plain SRD."""
+    """W1 to W4, with -thermostat or the name of a rule, such as -at, in place of plain SRD.
+
+    W1@48 is W1 with another length of the box.
+    """
     workload, _, variant = name.partition("-")
+    workload, _, length = workload.partition("@")
     size = {"W1": [30] * 3, "W2": [64] * 3, "W3": [30] * 3, "W4": [160] * 2}[workload]
+    size = [int(length)] * len(size) if length else size
     wall = workload == "W3"
     return Case(
         run=Run(steps=STEPS),

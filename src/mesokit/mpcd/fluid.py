@@ -26,8 +26,8 @@ class Fluid:
         NOT_GIVEN, doc="particles per cell (10 unless said)", unit="1/a^d", gt=0,
         validate_default=False,
     )  # fmt: skip
-    timestep: float = param(0.1, doc="time between two collisions", gt=0)
-    kT: float = param(1.0, doc="thermal energy", gt=0)
+    timestep: float = param(0.1, doc="time between two collisions", gt=0, ge=1e-9, le=1e9)
+    kT: float = param(1.0, doc="thermal energy", gt=0, ge=1e-12, le=1e12)
     mass: float = param(
         NOT_GIVEN, doc="mass of a particle (1 unless said)", unit="m", gt=0, validate_default=False
     )
