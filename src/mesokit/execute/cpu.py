@@ -375,7 +375,8 @@ class CPU:
         return whole.reshape(-1, self.rows, ROW)[:, k, :BLOCK]
 
     def state(self) -> dict[str, NDArray]:
-        """Everything that the next step depends on."""
+        """Everything that the next step depends on. Raises RunError if sums have overflowed."""
+        self._check_speed()
         return {
             "data": self.data[: self.real_blocks * self.rows * ROW].copy(),
             "ident": self.ident[: self.n].copy(),
