@@ -76,7 +76,7 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "not a number": ({"timestep = 0.1": "timestep = nan"}, ("fluid.timestep = nan", "finite")),
     # ranges
     "negative density": ({"density = 5": "density = -5"}, ("fluid.density = -5", "above 0")),
-    "no timestep": ({"timestep = 0.1": "timestep = 0"}, ("fluid.timestep = 0", "above 0")),
+    "no timestep": ({"timestep = 0.1": "timestep = 0"}, ("fluid.timestep = 0", "at least 1e-09")),
     "negative steps": ({"steps = 10": "steps = -1"}, ("run.steps = -1", "at least 0")),
     "large seed": ({"steps = 10": "steps = 10\nseed = 72057594037927936"}, ("run.seed",)),
     "angle too large": ({"angle = 90": "angle = 200"}, ("fluid.collision.angle = 200", "180")),
