@@ -118,8 +118,9 @@ def run(
             click.echo(f"warning: {warning}", err=True)
     from mesokit.simulation import Simulation
 
-    _clear(output)
-    simulation = Simulation(full, output=output, threads=threads)
+    simulation = Simulation(full, threads=threads)
+    _clear(output)  # only now: a case that cannot start must not cost an earlier run
+    simulation.write_to(output)
     with _run_errors(output):
         simulation.run(progress=Reporter(quiet))
     if not quiet:

@@ -78,10 +78,14 @@ class Simulation:
         start(self.fluid, positions, velocities)
         self.directory: RunDirectory | None = None
         if output is not None:
-            self._attach(RunDirectory.create(output, self.case))
-            self._save_provenance(provenance(self.case, self.threads))
+            self.write_to(output)
             if given:
                 self.checkpoint()
+
+    def write_to(self, output: str | Path) -> None:
+        """Write to this new folder from now on. Raises RunError if it holds something already."""
+        self._attach(RunDirectory.create(output, self.case))
+        self._save_provenance(provenance(self.case, self.threads))
 
     @classmethod
     def resume(cls, output: str | Path, threads: int | None = None) -> Simulation:
