@@ -4,6 +4,7 @@ import numpy as np
 
 from mesokit.execute.layout import (
     LANES,
+    QUAD,
     fetch,
     inner,
     integers,
@@ -11,8 +12,11 @@ from mesokit.execute.layout import (
     put,
     read_sums,
     recall,
+    record_length,
     share,
+    sums_length,
 )
+from mesokit.execute.records import spread, take
 from mesokit.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.mpcd.collision.protocol import freedom
 from mesokit.mpcd.thermostat.protocol import draw
@@ -24,15 +28,18 @@ MOST_DRAWS = 1000  # of a thermostat's random number, each accepted with more th
 @scalar
 def total_block(sums, start, count, totals, terms):
     """Add up what the threads found for these cells, and clear it."""
-    width = len(terms) + 1
-    for i in range(count):
-        cell = np.uint64(start + i) * np.uint64(width)
-        zeros = (np.int64(0),) + integers(terms)
-        found = zeros
-        for t in range(sums.shape[0]):
-            found = added(found, fetch(sums[t], cell, zeros))
-            put(sums[t], cell, zeros)
-        note(totals, i, found)
+    none = (np.int64(0),) + integers(terms)
+    for i in range(LANES):
+        note(totals, i, none)
+    together = count - count % QUAD
+    length = sums_length(len(terms))
+    for t in range(sums.shape[0]):
+        for i in range(0, together, QUAD):
+            take(sums[t], start + i, i, totals, terms)
+        for i in range(together, count):
+            cell = np.uint64(start + i) * np.uint64(length)
+            note(totals, i, added(recall(totals, i, none), fetch(sums[t], cell, none)))
+            put(sums[t], cell, none)
 
 
 @scalar
@@ -59,7 +66,9 @@ def draw_block(physics, counter, start, count, totals, variates, accepted):
 @inner
 def solve(thread, threads, physics, counter, cells, number, scratch, like, c, terms, scales):
     """Coefficients of every cell from its sums, which are cleared for the next step."""
-    coefficients, stride, sums = cells
+
+    coefficients, sums = cells
+    stride = record_length(len(c))
     rows, variates, accepted, totals = scratch
     rows, variates = rows[thread], variates[thread]
     accepted, totals = accepted[thread], totals[thread]
@@ -87,5 +96,8 @@ def solve(thread, threads, physics, counter, cells, number, scratch, like, c, te
                 own,
             )
             note(rows, i, answer)
-        for i in range(count):
+        together = count - count % QUAD
+        for i in range(0, together, QUAD):
+            spread(coefficients, start + i, i, rows, c)
+        for i in range(together, count):
             put(coefficients, np.uint64(start + i) * np.uint64(stride), recall(rows, i, c))

@@ -21,7 +21,10 @@ from mesokit.execute.layout import (
     SCRATCH_ROW,
     STRIPS,
     blocks_for,
+    record_length,
     strips_for,
+    sums_length,
+    zeros,
 )
 from mesokit.execute.sort import sort
 from mesokit.execute.stages import Grid, Physics
@@ -153,36 +156,34 @@ class CPU:
         self.strips = strips_for(self.n), strips_for(self.n_virtual)
         blocks = self.real_blocks + blocks_for(self.n_virtual)
         lanes = blocks * BLOCK
-        self.data = np.zeros(blocks * self.rows * ROW)
-        self.cell = np.zeros(lanes, np.int32)
+        self.data = zeros(blocks * self.rows * ROW)
+        self.cell = zeros(lanes, np.int32)
         self.ident = np.arange(lanes, dtype=np.int32)  # beyond n: virtual particles
-        self.image = np.zeros((d, lanes), np.int32)
-        self.order, self.spare = np.zeros(self.n, np.int32), np.zeros(self.n)
-        self.ends = np.zeros((threads, self.number_of_cells), np.int32)
-        width = len(self.terms) + 1
-        self.stride = 4 * math.ceil(self.coefficient_count / 4)
+        self.image = zeros((d, lanes), np.int32)
+        self.order, self.spare = zeros(self.n, np.int32), zeros(self.n)
+        self.ends = zeros((threads, self.number_of_cells), np.int32)
         spare_cell = self.number_of_cells  # where lanes that must not act leave their terms
-        self.coefficients = np.zeros((spare_cell + 1) * self.stride)
-        self.sums = np.zeros((threads, (spare_cell + 1) * width), np.int64)
+        self.coefficients = zeros((spare_cell + 1) * record_length(self.coefficient_count))
+        self.sums = zeros((threads, (spare_cell + 1) * sums_length(len(self.terms))), np.int64)
         most = max(self.coefficient_count, 2 * d)
         parts = self.strips[0] if "stress" in self.measures else 1
-        self.impulse = np.zeros((threads, 2 * d), np.int64)
-        self.wall_rates = np.zeros((2, d))
-        self.tensor = np.zeros((2, parts, 2 * d * d))
+        self.impulse = zeros((threads, 2 * d), np.int64)
+        self.wall_rates = zeros((2, d))
+        self.tensor = zeros((2, parts, 2 * d * d))
         self.sweep_scratch = (
-            np.zeros((threads, most * SCRATCH_ROW)),
-            np.zeros((threads, 2 * d * SCRATCH_ROW)),
-            np.zeros((threads, LANES), np.int64),
-            np.zeros((threads, len(self.terms) * SCRATCH_ROW), np.int64),
+            zeros((threads, most * SCRATCH_ROW)),
+            zeros((threads, 2 * d * SCRATCH_ROW)),
+            zeros((threads, LANES), np.int64),
+            zeros((threads, len(self.terms) * SCRATCH_ROW), np.int64),
             self.impulse,
             self.tensor,
             self.wall_rates,
         )
         self.cell_scratch = (
-            np.zeros((threads, most * SCRATCH_ROW)),
-            np.zeros((threads, LANES)),
-            np.zeros((threads, LANES), np.int64),
-            np.zeros((threads, width * SCRATCH_ROW), np.int64),
+            zeros((threads, most * SCRATCH_ROW)),
+            zeros((threads, LANES)),
+            zeros((threads, LANES), np.int64),
+            zeros((threads, (len(self.terms) + 1) * SCRATCH_ROW), np.int64),
         )
         self.particles = (
             self.data,
@@ -195,7 +196,7 @@ class CPU:
             self.rows,
             spare_cell,
         )
-        self.cell_arrays = (self.coefficients, self.stride, self.sums)
+        self.cell_arrays = (self.coefficients, self.sums)
 
     # --- the step -------------------------------------------------------------------------------
 
@@ -280,14 +281,15 @@ class CPU:
         two = (axes + axes)[:2], tuple(float(n) for n in (*bins, 1)[:2])
         names = ["momentum"] * d + ["mass", "energy"]
         scales = tuple(self.units[name] for name in names)
-        part = np.zeros((threads, size * (d + 3)), np.int64)
+        length = sums_length(d + 2)
+        part = zeros((threads, size * length), np.int64)
         quanta = (
             np.zeros((threads, LANES), np.int32),
             np.zeros((threads, (d + 2) * SCRATCH_ROW), np.int64),
         )
         particles = self.physics, self.box_kernel, self.data, self.n, self.rows, self.like
         self.team.run(measure.bin_sums, *particles, *two, scales, quanta, part)
-        total = part.sum(axis=0).reshape(size, d + 3)
+        total = part.sum(axis=0).reshape(size, length)[:, : d + 3]
         number, sums = total[:, 0], total[:, 1:] - total[:, :1] * ROUNDER_BITS
         values = (sums / np.array(scales)).T.reshape(-1, *bins)
         return number.astype(float).reshape(bins), values[d], values[:d], values[d + 1]

@@ -12,8 +12,9 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba import njit
+from numba import njit, types
 from numba.cpython.unsafe.tuple import tuple_setitem
+from numba.extending import intrinsic
 
 from mesokit.execute.cache import cached_kernel
 from mesokit.scalar import by_type, dot, mul_add, scalar, written_out
@@ -24,6 +25,8 @@ ROW = BLOCK + 8
 STRIPS = BLOCK // LANES
 BLOCK_BITS = np.uint64(12)  # BLOCK = 2^12
 SCRATCH_ROW = LANES + 8
+LINE = 64  # bytes of a cache line
+QUAD = 4  # numbers of a vector; so many records are turned into rows together
 
 # Cells add up fixed-point numbers, because integer sums do not depend on the order of the terms.
 # Adding 1.5 * 2^52 leaves the rounded number in the low bits of the mantissa; the constant's own
@@ -36,6 +39,14 @@ kernel = cached_kernel
 inner = njit(nogil=True, error_model="numpy")  # a part of a kernel, compiled with it
 
 
+def zeros(shape: int | tuple[int, ...], kind: Any = np.float64) -> Any:
+    """An array of zeros that starts on a cache line: no vector of a row then straddles two."""
+    size = int(np.prod(shape)) * np.dtype(kind).itemsize
+    raw = np.zeros(size + LINE, np.uint8)
+    start = -raw.ctypes.data % LINE
+    return raw[start : start + size].view(kind).reshape(shape)
+
+
 def blocks_for(particles: int) -> int:
     """Number of blocks that hold so many particles."""
     return -(-particles // BLOCK)
@@ -44,6 +55,33 @@ def blocks_for(particles: int) -> int:
 def strips_for(particles: int) -> int:
     """Number of strips that hold so many particles."""
     return -(-particles // LANES)
+
+
+@intrinsic
+def wide(typing_context: Any) -> Any:
+    """Say, in the body of a kernel, that its loops are worth the widest vectors of the machine.
+
+    LLVM by itself keeps to half of them, for processors that once slowed down with the others.
+    """
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        # llvmlite knows only LLVM's own attributes; this one is the machine's, a pair of strings.
+        set.add(builder.function.attributes, '"prefer-vector-width"="512"')
+        return context.get_dummy_value()
+
+    return types.void(), generate
+
+
+@scalar
+def record_length(numbers):
+    """Length of a record of so many numbers: even, as they are moved in pairs."""
+    return numbers + numbers % 2
+
+
+@scalar
+def sums_length(terms):
+    """Length of the sums of a cell: the number of particles, so many terms, whole vectors."""
+    return (terms + 1 + QUAD - 1) // QUAD * QUAD
 
 
 @scalar
@@ -120,7 +158,7 @@ def fixed(x, scale):
 @scalar
 def from_fixed(total, terms, scale):
     """A sum of `terms` fixed-point numbers as a float."""
-    return float(total - np.int64(terms) * ROUNDER_BITS) / scale
+    return float(total - np.int64(terms) * ROUNDER_BITS) * (1.0 / scale)
 
 
 def mass_of(masses: Any, strip: Any, i: Any, row: Any) -> Any:
@@ -222,7 +260,7 @@ def _read_total(masses: Any, sums: Any, cell: Any, like: Any, terms: Any, scales
     d, uniform = len(like), len(masses) == 1
 
     def read(masses, sums, cell, like, terms, scales):
-        start = cell * (len(terms) + 1)
+        start = cell * sums_length(len(terms))
         n = np.int64(0)
         for t in range(sums.shape[0]):
             n += sums[t, start]

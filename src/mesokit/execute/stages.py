@@ -9,10 +9,10 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from mesokit.box import slide
 from mesokit.execute.layout import (
     LANES,
+    QUAD,
     add_to,
     count_images,
     energy_term,
-    fetch,
     load,
     mass_of,
     mass_term,
@@ -20,7 +20,9 @@ from mesokit.execute.layout import (
     recall,
     rounded,
     store,
+    sums_length,
 )
+from mesokit.execute.records import gather, scatter_add
 from mesokit.geometry.protocol import closes, exposed, touches
 from mesokit.mpcd.collision.protocol import collide, contribute
 from mesokit.mpcd.streaming import bounce, fall, halfway, vector
@@ -75,11 +77,10 @@ def cell_index(r, grid):
 
 
 @scalar
-def collide_strip(physics, grid, strip, cell, coefficients, stride, gathered, like, c):
+def collide_strip(physics, grid, strip, cell, coefficients, gathered, like, c):
     """Velocities after the collision, from the coefficients of each particle's cell."""
-    for i in range(LANES):
-        start = np.uint64(np.uint32(cell[i])) * np.uint64(stride)
-        note(gathered, i, fetch(coefficients, start, c))
+    for i in range(0, LANES, QUAD):
+        gather(coefficients, cell, i, gathered, c)
     d = len(like)
     for i in range(LANES):
         r, v = load(strip, i, 0, like), load(strip, i, d, like)
@@ -158,8 +159,11 @@ def bin_strip(physics, counter, grid, strip, cell, ident, terms_rows, scales, li
 @scalar
 def add_strip(cell, terms_rows, sums, count, terms):
     """Add the terms of each particle to the sums of its cell, and count it."""
-    width = len(terms) + 1
-    for i in range(count):
+    width = sums_length(len(terms))
+    together = count - count % QUAD
+    for i in range(0, together, QUAD):
+        scatter_add(sums, cell, i, terms_rows, terms)
+    for i in range(together, count):
         start = np.uint64(np.uint32(cell[i])) * np.uint64(width)
         sums[start] += 1
         add_to(sums, start + np.uint64(1), recall(terms_rows, i, terms))

@@ -5,7 +5,7 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from mesokit.box import at_time
 from mesokit.execute.cells import solve
 from mesokit.execute.clock import lap
-from mesokit.execute.layout import kernel
+from mesokit.execute.layout import kernel, wide
 from mesokit.execute.stages import Grid
 from mesokit.execute.sweep import COLLIDE, MEASURE_STRESS, MEASURE_WALLS, STREAM, sweep
 from mesokit.execute.team import wait
@@ -37,6 +37,7 @@ def advance(
     The collision of step n is done in the sweep that streams to n + 1, while the particles are in
     the cache. With MEASURE_STRESS in `what` the last step is measured.
     """
+
     lap(clock, thread, -1)
     walls = what & MEASURE_WALLS
     for n in range(steps):
@@ -52,7 +53,7 @@ def advance(
         )  # fmt: skip
         wait(gate, threads)
         if thread == 0:
-            follow(wanted, physics, new, cells[2], scratch[6], like, terms, scales)
+            follow(wanted, physics, new, cells[1], scratch[6], like, terms, scales)
             top_up(density, physics, counter, new, cells, number, like, scales)
         if len(density) + len(wanted) > 0:
             wait(gate, threads)

@@ -6,7 +6,7 @@ Blocks are shared out among the threads in order; each thread adds to cell sums 
 import numpy as np
 
 from mesokit.box import peculiar
-from mesokit.execute.layout import LANES, inner, load, mass_of, share, strip_of
+from mesokit.execute.layout import LANES, inner, load, mass_of, share, strip_of, wide
 from mesokit.execute.stages import (
     add_strip,
     bin_strip,
@@ -59,7 +59,8 @@ def sweep(
     step n + 1 after STREAM, with their cells and cell sums.
     """
     data, cell, ident, image, count, strips, first_virtual, rows, spare_cell = particles
-    coefficients, stride, sums = cells
+
+    coefficients, sums = cells
     gathered, saved, hits, quanta, impulse, tensor, rates = scratch
     gathered, saved, hits = gathered[thread], saved[thread], hits[thread]
     quanta, impulse = quanta[thread], impulse[thread]
@@ -71,7 +72,7 @@ def sweep(
         number = s * LANES if real else (s - strips[0]) * LANES
         lanes = min(LANES, (count[0] if real else count[1]) - number)
         if what & COLLIDE and (real or what & MEASURE_WALLS):
-            collide_strip(physics, old, strip, here, coefficients, stride, gathered, like, c)
+            collide_strip(physics, old, strip, here, coefficients, gathered, like, c)
             if not real:
                 wall_momentum(physics, strip, lanes, impulse, scales[0], 1.0, like)
             if what & MEASURE_STRESS and not what & STREAM:

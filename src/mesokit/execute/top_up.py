@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
-from mesokit.execute.layout import energy_term, mass_term, rounded
+from mesokit.execute.layout import energy_term, mass_term, rounded, sums_length
 from mesokit.execute.stages import in_cell
 from mesokit.geometry.protocol import across, closes, side
 from mesokit.mpcd.collision.protocol import contribute
@@ -30,8 +30,8 @@ def _add_missing(density, physics, counter, grid, cells, number, like, scales):
 
     A fractional density is met on average. Places are uniform in the solid part of the cell.
     """
-    sums = cells[2]
-    width = 1 + len(scales)
+    sums = cells[1]
+    width = sums_length(len(scales))
     axis = across(physics.solid)
     layers, s = grid.cells[axis], grid.shift[axis]
     below = s - np.floor(s)
