@@ -19,7 +19,7 @@ from mesokit.execute.layout import (
 from mesokit.execute.records import spread, take
 from mesokit.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.mpcd.collision.protocol import freedom
-from mesokit.mpcd.thermostat.protocol import draw
+from mesokit.mpcd.thermostat.protocol import draw, guess
 from mesokit.scalar import added, scalar
 
 MOST_DRAWS = 1000  # of a thermostat's random number, each accepted with more than 95 %
@@ -43,23 +43,23 @@ def total_block(sums, start, count, totals, terms):
 
 
 @scalar
-def draw_block(physics, counter, start, count, totals, variates, accepted):
-    """The thermostat's random number for each cell; the few that are refused are drawn again."""
-    refused = np.int64(0)
+def draw_block(physics, counter, start, count, totals, variates, doubtful):
+    """The thermostat's random number for each cell; the few in doubt are drawn with care."""
+    in_doubt = np.int64(0)
     for i in range(LANES):
-        n = float(totals[i])
-        x, good = draw(physics.thermostat, counter, start + i, 0, freedom(physics.rule, n))
+        free = freedom(physics.rule, float(totals[i]))
+        x, sure = guess(physics.thermostat, counter, start + i, free)
         variates[i] = x
-        accepted[i] = np.int64(good)
-        refused |= 1 - np.int64(good)
-    if refused != 0:
+        doubtful[i] = 1 - np.int64(sure)
+        in_doubt |= doubtful[i]
+    if in_doubt != 0:
         for i in range(count):
-            attempt = 1
-            while accepted[i] == 0 and attempt < MOST_DRAWS:
+            attempt = 0
+            while doubtful[i] != 0 and attempt < MOST_DRAWS:
                 free = freedom(physics.rule, float(totals[i]))
                 x, good = draw(physics.thermostat, counter, start + i, attempt, free)
                 variates[i] = x
-                accepted[i] = np.int64(good)
+                doubtful[i] = 1 - np.int64(good)
                 attempt += 1
 
 
@@ -69,15 +69,15 @@ def solve(thread, threads, physics, counter, cells, number, scratch, like, c, te
 
     coefficients, sums = cells
     stride = record_length(len(c))
-    rows, variates, accepted, totals = scratch
+    rows, variates, doubtful, totals = scratch
     rows, variates = rows[thread], variates[thread]
-    accepted, totals = accepted[thread], totals[thread]
+    doubtful, totals = doubtful[thread], totals[thread]
     first, last = share((number + LANES - 1) // LANES, thread, threads)
     for b in range(first, last):
         start = b * LANES
         count = min(LANES, number - start)
         total_block(sums, start, count, totals, terms)
-        draw_block(physics, counter, start, count, totals, variates, accepted)
+        draw_block(physics, counter, start, count, totals, variates, doubtful)
         for i in range(LANES):
             n, mass, momentum, energy, own = read_sums(
                 physics.masses, physics.energy, totals, i, like, terms, scales

@@ -82,15 +82,17 @@ def _(rule, n):
 
 @coefficients.register(AT2)
 def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
-    return (momentum[0] - sums[0]) / mass, (momentum[1] - sums[1]) / mass
+    share = 1.0 / mass
+    return (momentum[0] - sums[0]) * share, (momentum[1] - sums[1]) * share
 
 
 @coefficients.register(AT3)
 def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
+    share = 1.0 / mass
     return (
-        (momentum[0] - sums[0]) / mass,
-        (momentum[1] - sums[1]) / mass,
-        (momentum[2] - sums[2]) / mass,
+        (momentum[0] - sums[0]) * share,
+        (momentum[1] - sums[1]) * share,
+        (momentum[2] - sums[2]) * share,
     )
 
 

@@ -85,8 +85,9 @@ def _(rule, n):
 
 @coefficients.register(ATPlusA2)
 def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
-    bx, by = (momentum[0] - sums[0]) / mass, (momentum[1] - sums[1]) / mass
-    x, y = sums[2] / mass, sums[3] / mass
+    share = 1.0 / mass
+    bx, by = (momentum[0] - sums[0]) * share, (momentum[1] - sums[1]) * share
+    x, y = sums[2] * share, sums[3] * share
     inertia = sums[4] - mass * (x * x + y * y)
     lost = sums[5] - mass * (x * by - y * bx)
     omega = angular_speed(n, mass, inertia, lost)
@@ -95,12 +96,13 @@ def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums)
 
 @coefficients.register(ATPlusA3)
 def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
+    share = 1.0 / mass
     b = (
-        (momentum[0] - sums[0]) / mass,
-        (momentum[1] - sums[1]) / mass,
-        (momentum[2] - sums[2]) / mass,
+        (momentum[0] - sums[0]) * share,
+        (momentum[1] - sums[1]) * share,
+        (momentum[2] - sums[2]) * share,
     )
-    r = sums[3] / mass, sums[4] / mass, sums[5] / mass
+    r = sums[3] * share, sums[4] * share, sums[5] * share
     moment = central(sums[6:12], mass, r)
     shift = cross(r, b)
     lost = sums[12] - mass * shift[0], sums[13] - mass * shift[1], sums[14] - mass * shift[2]

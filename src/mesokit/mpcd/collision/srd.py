@@ -88,7 +88,8 @@ def _(rule, n):
 
 @coefficients.register(SRD2)
 def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
-    u = momentum[0] / mass, momentum[1] / mass
+    share = 1.0 / mass
+    u = momentum[0] * share, momentum[1] * share
     a, _, _, _ = words(counter, CELL_COLLISION, cell, 0)
     sign = 1.0 - 2.0 * float(np.int64(a & ONE))
     relative = energy - mass * (u[0] * u[0] + u[1] * u[1])
@@ -98,7 +99,8 @@ def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums)
 
 @coefficients.register(SRD2Uniform)
 def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
-    u = momentum[0] / mass, momentum[1] / mass
+    share = 1.0 / mass
+    u = momentum[0] * share, momentum[1] * share
     a, b, _, _ = words(counter, CELL_COLLISION, cell, 0)
     sin, cos = sincos_turn(unit(a, b))
     relative = energy - mass * (u[0] * u[0] + u[1] * u[1])
@@ -108,7 +110,8 @@ def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums)
 
 @coefficients.register(SRD3)
 def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
-    u = momentum[0] / mass, momentum[1] / mass, momentum[2] / mass
+    share = 1.0 / mass
+    u = momentum[0] * share, momentum[1] * share, momentum[2] * share
     relative = energy - mass * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2])
     s = stretch(thermostat, variate, freedom(rule, n), 0.5 * relative)
     return u + random_axis(counter, CELL_COLLISION, cell) + s

@@ -103,8 +103,9 @@ LEAST_SHARE = 1e-4
 
 @coefficients.register(SRDPlusA2)
 def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
-    ux, uy = momentum[0] / mass, momentum[1] / mass
-    x, y = sums[0] / mass, sums[1] / mass
+    share = 1.0 / mass
+    ux, uy = momentum[0] * share, momentum[1] * share
+    x, y = sums[0] * share, sums[1] * share
     inertia = sums[2] - mass * (x * x + y * y)
     spun = sums[3] - mass * (x * uy - y * ux)
     pull = sums[4] - mass * (x * ux + y * uy)
@@ -132,8 +133,9 @@ def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums)
 
 @coefficients.register(SRDPlusA3)
 def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
-    u = momentum[0] / mass, momentum[1] / mass, momentum[2] / mass
-    r = sums[0] / mass, sums[1] / mass, sums[2] / mass
+    share = 1.0 / mass
+    u = momentum[0] * share, momentum[1] * share, momentum[2] * share
+    r = sums[0] * share, sums[1] * share, sums[2] * share
     moment = central(sums[3:9], mass, r)
     # rows of sum m r' w before the rotation
     tx = added(sums[9:12], scaled(-mass * r[0], u))

@@ -7,8 +7,9 @@ from typing import ClassVar, Literal, NamedTuple
 
 from mesokit.component import component, tag
 from mesokit.elementary import log
-from mesokit.mpcd.thermostat.protocol import draw, root_of_ratio, stretch, target
+from mesokit.mpcd.thermostat.protocol import draw, guess, root_of_ratio, stretch, target
 from mesokit.random import CELL_THERMOSTAT, normal_pair, unit_open, words
+from mesokit.scalar import mul_add, scalar
 
 
 @component
@@ -34,22 +35,44 @@ class Canonical(NamedTuple):
     kT: float
 
 
-@draw.register(Canonical)
-def _(thermostat, counter, cell, attempt, freedom):
-    """A number from the gamma distribution of shape freedom / 2 (Marsaglia and Tsang 2000).
+@scalar
+def propose(counter, cell, attempt, freedom):
+    """A candidate for a gamma variate of shape freedom / 2 (Marsaglia and Tsang 2000, section 2).
 
-    Shape 1/2 (two particles of a rule +a) is half the square of a normal number.
+    Gives the candidate and what decides on it: the normal number x, u, e, 1 / sqrt(9 e), and
+    1 + x / sqrt(9 e). Shape 1/2 (two particles of a rule +a) is half the square of x, to be taken
+    as it is; e is then 0.
     """
     a, b, c, _ = words(counter, CELL_THERMOSTAT, cell, attempt)
     x, _ = normal_pair(a, b)
     shape = 0.5 * freedom
     large = shape > 0.75
     e = shape - 1.0 / 3.0 if large else 1.0
-    t = 1.0 + x / math.sqrt(9.0 * e)
+    width = 1.0 / math.sqrt(9.0 * e)
+    t = mul_add(x, width, 1.0)
+    small = 0.5 * x * x if shape > 0.25 else 0.0
+    return e * (t * t * t) if large else small, x, unit_open(c), e if large else 0.0, width, t
+
+
+@draw.register(Canonical)
+def _(thermostat, counter, cell, attempt, freedom):
+    """Their exact test, in logarithms."""
+    value, x, u, e, _, t = propose(counter, cell, attempt, freedom)
     cube = max(t * t * t, 1e-300)
-    accepted = log(unit_open(c)) < 0.5 * x * x + e - e * cube + e * log(cube)
-    value = e * cube if large else 0.5 * x * x
-    return value if shape > 0.25 else 0.0, accepted or not large
+    accepted = t > 0.0 and log(u) < 0.5 * x * x + e - e * cube + e * log(cube)
+    return value, accepted or e == 0.0
+
+
+@guess.register(Canonical)
+def _(thermostat, counter, cell, freedom):
+    """A bound on what the test compares to, closer than their squeeze where the shape is large.
+
+    With y = x / sqrt(9 e) that logarithm is -e times the integral of 3 s^3 / (1 + s) from 0 to y,
+    for y > -1/2 at least -3/2 e y^4 = -x^4 / (54 e); and log u < -z where u < 1 - z.
+    """
+    value, x, u, e, width, t = propose(counter, cell, 0, freedom)
+    square = x * x * width
+    return value, (t > 0.5 and u < 1.0 - square * square / 6.0) or e == 0.0
 
 
 @target.register(Canonical)

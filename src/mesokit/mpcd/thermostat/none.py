@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import ClassVar, Literal, NamedTuple
 
 from mesokit.component import component, tag
-from mesokit.mpcd.thermostat.protocol import draw, stretch, target
+from mesokit.mpcd.thermostat.protocol import draw, guess, stretch, target
 
 
 @component
@@ -29,6 +29,11 @@ class Free(NamedTuple):
 
 @draw.register(Free)
 def _(thermostat, counter, cell, attempt, freedom):
+    return 0.0, True
+
+
+@guess.register(Free)
+def _(thermostat, counter, cell, freedom):
     return 0.0, True
 
 

@@ -17,6 +17,12 @@ def draw(thermostat, counter, cell, attempt, freedom):
 
 
 @generic
+def guess(thermostat, counter, cell, freedom):
+    """The same number for attempt 0, made fast, and whether it may be used; if not, `draw` it."""
+    raise NotImplementedError
+
+
+@generic
 def target(thermostat, variate, freedom, energy):
     """Kinetic energy to reach, from the present one."""
     raise NotImplementedError

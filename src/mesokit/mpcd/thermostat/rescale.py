@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import ClassVar, Literal, NamedTuple
 
 from mesokit.component import component, tag
-from mesokit.mpcd.thermostat.protocol import draw, root_of_ratio, stretch, target
+from mesokit.mpcd.thermostat.protocol import draw, guess, root_of_ratio, stretch, target
 
 
 @component
@@ -32,6 +32,11 @@ class Isokinetic(NamedTuple):
 
 @draw.register(Isokinetic)
 def _(thermostat, counter, cell, attempt, freedom):
+    return 0.0, True
+
+
+@guess.register(Isokinetic)
+def _(thermostat, counter, cell, freedom):
     return 0.0, True
 
 
