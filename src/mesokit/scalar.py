@@ -147,6 +147,17 @@ def _added(a: Any, b: Any) -> Callable:
     return written_out("a, b", "a[{k}] + b[{k}]", len(a), "({all},)")
 
 
+def chosen(condition: Any, a: Any, b: Any) -> Any:
+    """a where the condition holds, else b, for vectors a and b."""
+    raise NotImplementedError
+
+
+@by_type(chosen)
+def _chosen(condition: Any, a: Any, b: Any) -> Callable:
+    line = "a[{k}] if condition else b[{k}]"
+    return written_out("condition, a, b", line, len(a), "({all},)")
+
+
 def added_scaled(a: Any, factor: Any, b: Any) -> Any:
     """a + factor * b for vectors a and b."""
     raise NotImplementedError

@@ -172,7 +172,6 @@ class CPU:
         self.tensor = zeros((2, parts, 2 * d * d))
         self.sweep_scratch = (
             zeros((threads, most * SCRATCH_ROW)),
-            zeros((threads, 2 * d * SCRATCH_ROW)),
             zeros((threads, LANES), np.int64),
             zeros((threads, len(self.terms) * SCRATCH_ROW), np.int64),
             self.impulse,

@@ -27,7 +27,7 @@ from mesokit.geometry.protocol import closes, exposed, touches
 from mesokit.mpcd.collision.protocol import collide, contribute
 from mesokit.mpcd.streaming import bounce, fall, halfway, vector
 from mesokit.random import VIRTUAL_POSITION, VIRTUAL_VELOCITY, normals, unit_open, words
-from mesokit.scalar import added, first, mul_add, scalar, scaled
+from mesokit.scalar import added, chosen, first, mul_add, scalar, scaled
 
 
 class Physics(NamedTuple):
@@ -47,9 +47,7 @@ class Grid(NamedTuple):
     """The collision cells of one step."""
 
     shift: tuple  # added to positions, in cells
-    first: (
-        tuple  # cell number, along each axis, of the cell at 0 (1 where a wall's cell comes first)
-    )
+    origin: tuple  # the same, plus 1 along an axis where a wall's cell comes first
     cells: tuple  # number along each axis
     inverse: tuple
 
@@ -58,7 +56,7 @@ class Grid(NamedTuple):
 def in_cell(r, grid):
     """Position relative to the centre of its cell."""
     for k in range(len(r)):
-        x = r[k] + grid.shift[k]
+        x = r[k] + grid.origin[k]
         r = tuple_setitem(r, k, x - np.floor(x) - 0.5)
     return r
 
@@ -69,90 +67,106 @@ def cell_index(r, grid):
     index, cells = 0.0, 1.0
     for j in range(len(r)):
         k = len(r) - 1 - j
-        i = np.floor(r[k] + grid.shift[k]) + grid.first[k]
-        i = mul_add(-grid.cells[k], np.floor((i + 0.5) * grid.inverse[k]), i)
-        index = mul_add(index, grid.cells[k], i)
+        i = np.floor(r[k] + grid.origin[k])
+        # half a cell keeps the quotient away from whole numbers, where it might round either way
+        images = np.floor(mul_add(i, grid.inverse[k], 0.5 * grid.inverse[k]))
+        index = mul_add(index, grid.cells[k], mul_add(-grid.cells[k], images, i))
         cells *= grid.cells[k]
     return np.int32(index if (index >= 0.0) & (index < cells) else cells)
 
 
 @scalar
-def collide_strip(physics, grid, strip, cell, coefficients, gathered, like, c):
-    """Velocities after the collision, from the coefficients of each particle's cell."""
+def gather_strip(cell, coefficients, gathered, c):
+    """Bring the coefficients of each particle's cell into rows."""
     for i in range(0, LANES, QUAD):
         gather(coefficients, cell, i, gathered, c)
-    d = len(like)
-    for i in range(LANES):
-        r, v = load(strip, i, 0, like), load(strip, i, d, like)
-        store(
-            strip,
-            i,
-            d,
-            collide(physics.rule, recall(gathered, i, c), v, in_cell(r, grid)),
-        )
 
 
 @scalar
-def stream_strip(physics, strip, count, hits, saved, impulse, scales, like):
-    """Positions and velocities a timestep later; momentum that surfaces take goes to impulse."""
+def collided(physics, grid, gathered, i, r, v, c):
+    """Velocity of lane i after the collision in its cell."""
+    return collide(physics.rule, recall(gathered, i, c), v, in_cell(r, grid))
+
+
+@scalar
+def fly(physics, strip, i, r, v, hits):
+    """Store position and velocity a timestep later; a particle that may hit a surface stays behind.
+
+    The latter is marked in `hits`, and 1 is the answer.
+    """
+    a = halfway(physics.field, r, v, physics.timestep)
+    there = fall(r, v, a, physics.timestep)
+    hit = np.int64(touches(physics.solid, r, v, vector(a, r), physics.timestep))
+    if exposed(physics.solid):
+        hits[i] = hit
+    store(strip, i, 0, chosen(hit != 0, r + v, there[0] + there[1]))
+    return hit
+
+
+@scalar
+def collide_strip(physics, grid, strip, gathered, like, c):
+    """Velocities after the collision."""
+    d = len(like)
+    for i in range(LANES):
+        r, v = load(strip, i, 0, like), load(strip, i, d, like)
+        store(strip, i, d, collided(physics, grid, gathered, i, r, v, c))
+
+
+@scalar
+def stream_strip(physics, strip, hits, like):
+    """Positions and velocities a timestep later; whether particles stayed behind is the answer."""
+    d = len(like)
+    any_hit = np.int64(0)
+    for i in range(LANES):
+        r, v = load(strip, i, 0, like), load(strip, i, d, like)
+        any_hit |= fly(physics, strip, i, r, v, hits)
+    return any_hit
+
+
+@scalar
+def collide_and_stream_strip(physics, grid, strip, gathered, hits, like, c):
+    """The two above in one loop."""
+    d = len(like)
+    any_hit = np.int64(0)
+    for i in range(LANES):
+        r, v = load(strip, i, 0, like), load(strip, i, d, like)
+        v = collided(physics, grid, gathered, i, r, v, c)
+        any_hit |= fly(physics, strip, i, r, v, hits)
+    return any_hit
+
+
+@scalar
+def bounce_strip(physics, strip, count, hits, impulse, scales, like):
+    """Flight of the marked particles, with reflections; what surfaces take goes to impulse."""
     d = len(like)
     dt = physics.timestep
-    found = 0
-    if exposed(physics.solid):
-        any_hit = np.int64(0)
-        for i in range(LANES):
+    for i in range(count):
+        if hits[i] != 0:
             r, v = load(strip, i, 0, like), load(strip, i, d, like)
             a = vector(halfway(physics.field, r, v, dt), like)
-            hit = np.int64(touches(physics.solid, r, v, a, dt))
-            hits[i] = hit
-            any_hit |= hit
-        if any_hit != 0:
-            for i in range(count):
-                if hits[i] != 0:
-                    hits[found] = i
-                    note(saved, found, load(strip, i, 0, like) + load(strip, i, d, like))
-                    found += 1
-    for i in range(LANES):
-        r, v = load(strip, i, 0, like), load(strip, i, d, like)
-        r, v = fall(r, v, halfway(physics.field, r, v, dt), dt)
-        store(strip, i, 0, r + v)
-    for j in range(found):
-        i = hits[j]
-        both = recall(saved, j, like + like)
-        r, v = both[:d], both[d:]
-        a = vector(halfway(physics.field, r, v, dt), like)
-        r, v, lower, upper = bounce(physics.solid, r, v, a, dt)
-        store(strip, i, 0, r + v)
-        m = mass_of(physics.masses, strip, i, 2 * d)
-        for k in range(d):
-            impulse[k] += np.int64(np.rint(m * lower[k] * scales[0]))
-            impulse[d + k] += np.int64(np.rint(m * upper[k] * scales[0]))
+            r, v, lower, upper = bounce(physics.solid, r, v, a, dt)
+            store(strip, i, 0, r + v)
+            m = mass_of(physics.masses, strip, i, 2 * d)
+            for k in range(d):
+                impulse[k] += np.int64(np.rint(m * lower[k] * scales[0]))
+                impulse[d + k] += np.int64(np.rint(m * upper[k] * scales[0]))
 
 
 @scalar
-def slide_strip(box, grid, strip, image, like):
-    """Bring particles that left a sheared box back into it; nothing in other boxes."""
+def bin_strip(physics, box, counter, grid, strip, cell, ident, image, terms_rows, scales, like):
+    """Particles that left a sheared box come back into it; then cells, and terms of their sums."""
     d = len(like)
     for i in range(LANES):
         r, v = load(strip, i, 0, like), load(strip, i, d, like)
         r, v, crossed = slide(box, r, v, grid.shift)
-        store(strip, i, 0, r + v)
         count_images(image, i, crossed)
-
-
-@scalar
-def bin_strip(physics, counter, grid, strip, cell, ident, terms_rows, scales, like):
-    """Cell of each particle and, as rounded numbers, what it adds to the sums of that cell."""
-    d = len(like)
-    for i in range(LANES):
-        r, v = load(strip, i, 0, like), load(strip, i, d, like)
         m = mass_of(physics.masses, strip, i, 2 * d)
         kept, own = contribute(physics.rule, counter, ident[i], m, v, in_cell(r, grid))
         terms = (
             scaled(m, v) + mass_term(physics.masses, m) + energy_term(physics.energy, m, v) + own
         )
         cell[i] = cell_index(r, grid)
-        store(strip, i, d, kept)
+        store(strip, i, 0, r + kept)
         note(terms_rows, i, rounded(terms, scales))
 
 

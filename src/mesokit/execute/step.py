@@ -20,11 +20,11 @@ SWEEP, SOLVE, FINISH = 0, 1, 2  # stages whose time is kept
 @scalar
 def cells_at(shift, old, closed):
     """The cells for this shift; a wall's first cell lies below 0 where the shift is negative."""
-    first = shift
+    origin = shift
     for k in range(len(shift)):
         below = closed[k] > 0.5 and shift[k] < 0.0
-        first = tuple_setitem(first, k, 1.0 if below else 0.0)
-    return Grid(shift, first, old.cells, old.inverse)
+        origin = tuple_setitem(origin, k, shift[k] + (1.0 if below else 0.0))
+    return Grid(shift, origin, old.cells, old.inverse)
 
 
 @kernel
@@ -53,7 +53,7 @@ def advance(
         )  # fmt: skip
         wait(gate, threads)
         if thread == 0:
-            follow(wanted, physics, new, cells[1], scratch[6], like, terms, scales)
+            follow(wanted, physics, new, cells[1], scratch[5], like, terms, scales)
             top_up(density, physics, counter, new, cells, number, like, scales)
         if len(density) + len(wanted) > 0:
             wait(gate, threads)

@@ -10,9 +10,11 @@ from mesokit.execute.layout import LANES, inner, load, mass_of, share, strip_of,
 from mesokit.execute.stages import (
     add_strip,
     bin_strip,
+    bounce_strip,
+    collide_and_stream_strip,
     collide_strip,
     fill_strip,
-    slide_strip,
+    gather_strip,
     stream_strip,
 )
 from mesokit.geometry.protocol import exposed, side
@@ -61,8 +63,8 @@ def sweep(
     data, cell, ident, image, count, strips, first_virtual, rows, spare_cell = particles
 
     coefficients, sums = cells
-    gathered, saved, hits, quanta, impulse, tensor, rates = scratch
-    gathered, saved, hits = gathered[thread], saved[thread], hits[thread]
+    gathered, hits, quanta, impulse, tensor, rates = scratch
+    gathered, hits = gathered[thread], hits[thread]
     quanta, impulse = quanta[thread], impulse[thread]
     first, last = share(strips[0] + strips[1], thread, threads)
     for s in range(first, last):
@@ -71,24 +73,33 @@ def sweep(
         strip, here = strip_of(data, b, rows), cell[b * LANES : (b + 1) * LANES]
         number = s * LANES if real else (s - strips[0]) * LANES
         lanes = min(LANES, (count[0] if real else count[1]) - number)
-        if what & COLLIDE and (real or what & MEASURE_WALLS):
-            collide_strip(physics, old, strip, here, coefficients, gathered, like, c)
-            if not real:
-                wall_momentum(physics, strip, lanes, impulse, scales[0], 1.0, like)
-            if what & MEASURE_STRESS and not what & STREAM:
-                momentum_flux(physics, box, old, strip, lanes, tensor[1, s], like)
+        who = ident[b * LANES : (b + 1) * LANES]
+        boxes = image[:, b * LANES : (b + 1) * LANES]
+        collides = what & COLLIDE and (real or what & MEASURE_WALLS)
+        measured = what & MEASURE_STRESS
+        if collides:
+            gather_strip(here, coefficients, gathered, c)
+        if collides and what & STREAM and real and not measured:
+            if collide_and_stream_strip(physics, old, strip, gathered, hits, like, c):
+                bounce_strip(physics, strip, lanes, hits, impulse, scales, like)
+        else:
+            if collides:
+                collide_strip(physics, old, strip, gathered, like, c)
+                if not real:
+                    wall_momentum(physics, strip, lanes, impulse, scales[0], 1.0, like)
+                if measured and not what & STREAM:
+                    momentum_flux(physics, box, old, strip, lanes, tensor[1, s], like)
+            if what & STREAM and real:
+                if stream_strip(physics, strip, hits, like):
+                    bounce_strip(physics, strip, lanes, hits, impulse, scales, like)
         if what & STREAM:
-            if real:
-                stream_strip(physics, strip, lanes, hits, saved, impulse, scales, like)
-                slide_strip(box, grid, strip, image[:, b * LANES : (b + 1) * LANES], like)
-                if what & MEASURE_STRESS:
-                    momentum_flux(physics, box, grid, strip, lanes, tensor[0, s], like)
-            else:
+            if not real:
                 fill_strip(physics, counter, grid, strip, number, rates, like)
                 if what & MEASURE_WALLS:
                     wall_momentum(physics, strip, lanes, impulse, scales[0], -1.0, like)
-            who = ident[b * LANES : (b + 1) * LANES]
-            bin_strip(physics, counter, grid, strip, here, who, quanta, scales, like)
+            bin_strip(physics, box, counter, grid, strip, here, who, boxes, quanta, scales, like)
+            if measured and real:
+                momentum_flux(physics, box, grid, strip, lanes, tensor[0, s], like)
             if exposed(physics.solid) and not real:
                 for i in range(lanes):
                     if side(physics.solid, load(strip, i, 0, like)) == 2:
