@@ -16,8 +16,8 @@ from mesokit.scalar import first, scalar
 
 # What a number is for. One line each; never reuse a value, or two uses would share their numbers.
 GRID_SHIFT = np.uint64(1)
-CELL_COLLISION = np.uint64(2)
-CELL_THERMOSTAT = np.uint64(3)
+CELL = np.uint64(2)  # two words for the collision rule, two for the thermostat
+CELL_DOUBT = np.uint64(3)
 PARTICLE_VELOCITY = np.uint64(4)
 VIRTUAL_POSITION = np.uint64(5)
 VIRTUAL_VELOCITY = np.uint64(6)

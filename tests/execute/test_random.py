@@ -83,7 +83,7 @@ def samples(count, seed, purpose):
 
 @pytest.fixture(scope="module")
 def sample():
-    return samples(COUNT, 12, rng.CELL_COLLISION)
+    return samples(COUNT, 12, rng.CELL)
 
 
 def test_uniform_numbers(sample):
@@ -108,9 +108,9 @@ def test_normal_numbers_are_normal_and_independent(sample):
 
 
 def test_neighbours_in_index_step_and_purpose_are_independent():
-    many = samples(COUNT, 12, rng.CELL_COLLISION)[:, 0] - 0.5
-    other_purpose = samples(COUNT, 12, rng.CELL_THERMOSTAT)[:, 0] - 0.5
-    other_seed = samples(COUNT, 13, rng.CELL_COLLISION)[:, 0] - 0.5
+    many = samples(COUNT, 12, rng.CELL)[:, 0] - 0.5
+    other_purpose = samples(COUNT, 12, rng.CELL_DOUBT)[:, 0] - 0.5
+    other_seed = samples(COUNT, 13, rng.CELL)[:, 0] - 0.5
     for a, b in ((many[1:], many[:-1]), (many, other_purpose), (many, other_seed)):
         assert abs(np.mean(12 * a * b)) < 4 / np.sqrt(len(a))
 

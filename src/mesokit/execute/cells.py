@@ -20,6 +20,7 @@ from mesokit.execute.records import spread, take
 from mesokit.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.mpcd.collision.protocol import freedom
 from mesokit.mpcd.thermostat.protocol import draw, guess
+from mesokit.random import CELL, words
 from mesokit.scalar import added, scalar
 
 MOST_DRAWS = 1000  # of a thermostat's random number, each accepted with more than 95 %
@@ -43,61 +44,59 @@ def total_block(sums, start, count, totals, terms):
 
 
 @scalar
-def draw_block(physics, counter, start, count, totals, variates, doubtful):
-    """The thermostat's random number for each cell; the few in doubt are drawn with care."""
-    in_doubt = np.int64(0)
-    for i in range(LANES):
-        free = freedom(physics.rule, float(totals[i]))
-        x, sure = guess(physics.thermostat, counter, start + i, free)
-        variates[i] = x
-        doubtful[i] = 1 - np.int64(sure)
-        in_doubt |= doubtful[i]
-    if in_doubt != 0:
-        for i in range(count):
-            attempt = 0
-            while doubtful[i] != 0 and attempt < MOST_DRAWS:
-                free = freedom(physics.rule, float(totals[i]))
-                x, good = draw(physics.thermostat, counter, start + i, attempt, free)
-                variates[i] = x
-                doubtful[i] = 1 - np.int64(good)
-                attempt += 1
+def put_block(coefficients, start, count, rows, c):
+    """Write the rows to the records of these cells."""
+    together = count - count % QUAD
+    for i in range(0, together, QUAD):
+        spread(coefficients, start + i, i, rows, c)
+    for i in range(together, count):
+        put(coefficients, np.uint64(start + i) * np.uint64(record_length(len(c))), recall(rows, i, c))
+
+
+@scalar
+def draw_with_care(physics, counter, cell, free):
+    """The thermostat's random number where a guess was not sure."""
+    x, good = draw(physics.thermostat, counter, cell, free, 0)
+    attempt = 1
+    while not good and attempt < MOST_DRAWS:
+        x, good = draw(physics.thermostat, counter, cell, free, attempt)
+        attempt += 1
+    return x
 
 
 @inner
 def solve(thread, threads, physics, counter, cells, number, scratch, like, c, terms, scales):
     """Coefficients of every cell from its sums, which are cleared for the next step."""
-
     coefficients, sums = cells
-    stride = record_length(len(c))
-    rows, variates, doubtful, totals = scratch
-    rows, variates = rows[thread], variates[thread]
-    doubtful, totals = doubtful[thread], totals[thread]
+    rows, doubtful, totals = scratch
+    rows, doubtful, totals = rows[thread], doubtful[thread], totals[thread]
     first, last = share((number + LANES - 1) // LANES, thread, threads)
     for b in range(first, last):
         start = b * LANES
         count = min(LANES, number - start)
         total_block(sums, start, count, totals, terms)
-        draw_block(physics, counter, start, count, totals, variates, doubtful)
+        in_doubt = np.int64(0)
         for i in range(LANES):
             n, mass, momentum, energy, own = read_sums(
                 physics.masses, physics.energy, totals, i, like, terms, scales
             )
-            x, cell = variates[i], start + i
+            chance = words(counter, CELL, start + i, 0)
+            x, sure = guess(physics.thermostat, chance[2:], freedom(physics.rule, n))
+            doubtful[i] = 1 - np.int64(sure)
+            in_doubt |= doubtful[i]
             answer = coefficients_of(
-                physics.rule,
-                physics.thermostat,
-                x,
-                counter,
-                cell,
-                n,
-                mass,
-                momentum,
-                energy,
-                own,
+                physics.rule, physics.thermostat, x, chance[:2], n, mass, momentum, energy, own
             )
             note(rows, i, answer)
-        together = count - count % QUAD
-        for i in range(0, together, QUAD):
-            spread(coefficients, start + i, i, rows, c)
-        for i in range(together, count):
-            put(coefficients, np.uint64(start + i) * np.uint64(stride), recall(rows, i, c))
+        for i in range(count if in_doubt != 0 else 0):
+            if doubtful[i] != 0:
+                n, mass, momentum, energy, own = read_sums(
+                    physics.masses, physics.energy, totals, i, like, terms, scales
+                )
+                chance = words(counter, CELL, start + i, 0)
+                x = draw_with_care(physics, counter, start + i, freedom(physics.rule, n))
+                answer = coefficients_of(
+                    physics.rule, physics.thermostat, x, chance[:2], n, mass, momentum, energy, own
+                )
+                note(rows, i, answer)
+        put_block(coefficients, start, count, rows, c)

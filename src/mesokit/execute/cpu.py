@@ -180,7 +180,6 @@ class CPU:
         )
         self.cell_scratch = (
             zeros((threads, most * SCRATCH_ROW)),
-            zeros((threads, LANES)),
             zeros((threads, LANES), np.int64),
             zeros((threads, (len(self.terms) + 1) * SCRATCH_ROW), np.int64),
         )

@@ -81,13 +81,13 @@ def _(rule, n):
 
 
 @coefficients.register(AT2)
-def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
+def _(rule, thermostat, variate, chance, n, mass, momentum, energy, sums):
     share = 1.0 / mass
     return (momentum[0] - sums[0]) * share, (momentum[1] - sums[1]) * share
 
 
 @coefficients.register(AT3)
-def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
+def _(rule, thermostat, variate, chance, n, mass, momentum, energy, sums):
     share = 1.0 / mass
     return (
         (momentum[0] - sums[0]) * share,

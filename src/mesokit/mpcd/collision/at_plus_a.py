@@ -84,7 +84,7 @@ def _(rule, n):
 
 
 @coefficients.register(ATPlusA2)
-def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
+def _(rule, thermostat, variate, chance, n, mass, momentum, energy, sums):
     share = 1.0 / mass
     bx, by = (momentum[0] - sums[0]) * share, (momentum[1] - sums[1]) * share
     x, y = sums[2] * share, sums[3] * share
@@ -95,7 +95,7 @@ def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums)
 
 
 @coefficients.register(ATPlusA3)
-def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
+def _(rule, thermostat, variate, chance, n, mass, momentum, energy, sums):
     share = 1.0 / mass
     b = (
         (momentum[0] - sums[0]) * share,

@@ -21,11 +21,11 @@ def freedom(rule, n):
 
 
 @generic
-def coefficients(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
+def coefficients(rule, thermostat, variate, chance, n, mass, momentum, energy, sums):
     """What every particle of a cell needs in order to collide.
 
     n particles of total `mass` and `momentum`, `energy` the sum of m v^2, `sums` the rule's own,
-    `variate` the thermostat's random number.
+    `variate` the thermostat's random number, `chance` two random words.
     """
     raise NotImplementedError
 

@@ -3,7 +3,7 @@
 import math
 
 from mesokit.elementary import sincos_turn
-from mesokit.random import unit, words
+from mesokit.random import unit_open
 from mesokit.scalar import added_scaled, dot, mul_add, scalar, scaled
 
 ONE_PLACE = 1e-8  # of the mass: particles within 1e-4 cells of one another are in one place
@@ -11,11 +11,10 @@ LINE = 1e-7  # det / trace^3 of an inertia tensor below which the particles lie 
 
 
 @scalar
-def random_axis(counter, purpose, cell):
-    """A unit vector, uniform on the sphere."""
-    a, b, c, d = words(counter, purpose, cell, 0)
-    s, co = sincos_turn(unit(a, b))
-    z = 2.0 * unit(c, d) - 1.0
+def random_axis(a, b):
+    """A unit vector, uniform on the sphere, from two random words."""
+    s, co = sincos_turn(unit_open(a))
+    z = 2.0 * unit_open(b) - 1.0
     radius = math.sqrt(max(1.0 - z * z, 0.0))
     return radius * co, radius * s, z
 

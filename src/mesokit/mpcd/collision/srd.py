@@ -12,7 +12,7 @@ from mesokit.elementary import sincos_turn
 from mesokit.mpcd.collision.protocol import coefficients, collide, contribute, freedom
 from mesokit.mpcd.collision.rotation import random_axis, rotate
 from mesokit.mpcd.thermostat.protocol import stretch
-from mesokit.random import CELL_COLLISION, unit, words
+from mesokit.random import unit_open
 from mesokit.scalar import added_scaled, mul_add, optional
 
 ONE = np.uint64(1)
@@ -87,34 +87,32 @@ def _(rule, n):
 
 
 @coefficients.register(SRD2)
-def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
+def _(rule, thermostat, variate, chance, n, mass, momentum, energy, sums):
     share = 1.0 / mass
     u = momentum[0] * share, momentum[1] * share
-    a, _, _, _ = words(counter, CELL_COLLISION, cell, 0)
-    sign = 1.0 - 2.0 * float(np.int64(a & ONE))
+    sign = 1.0 - 2.0 * float(np.int64(chance[0] & ONE))
     relative = energy - mass * (u[0] * u[0] + u[1] * u[1])
     s = optional(stretch(thermostat, variate, freedom(rule, n), 0.5 * relative), 1.0)
     return u[0], u[1], s * rule.cos, s * (sign * rule.sin)
 
 
 @coefficients.register(SRD2Uniform)
-def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
+def _(rule, thermostat, variate, chance, n, mass, momentum, energy, sums):
     share = 1.0 / mass
     u = momentum[0] * share, momentum[1] * share
-    a, b, _, _ = words(counter, CELL_COLLISION, cell, 0)
-    sin, cos = sincos_turn(unit(a, b))
+    sin, cos = sincos_turn(unit_open(chance[0]))
     relative = energy - mass * (u[0] * u[0] + u[1] * u[1])
     s = optional(stretch(thermostat, variate, freedom(rule, n), 0.5 * relative), 1.0)
     return u[0], u[1], s * cos, s * sin
 
 
 @coefficients.register(SRD3)
-def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
+def _(rule, thermostat, variate, chance, n, mass, momentum, energy, sums):
     share = 1.0 / mass
     u = momentum[0] * share, momentum[1] * share, momentum[2] * share
     relative = energy - mass * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2])
     s = stretch(thermostat, variate, freedom(rule, n), 0.5 * relative)
-    return u + random_axis(counter, CELL_COLLISION, cell) + s
+    return u + random_axis(chance[0], chance[1]) + s
 
 
 @collide.register(SRD2, SRD2Uniform)

@@ -20,7 +20,6 @@ from mesokit.mpcd.collision.rotation import (
     turn,
 )
 from mesokit.mpcd.thermostat.protocol import root_of_ratio, target
-from mesokit.random import CELL_COLLISION, words
 from mesokit.scalar import added, added_scaled, dot, scaled
 
 ONE = np.uint64(1)
@@ -102,15 +101,14 @@ LEAST_SHARE = 1e-4
 
 
 @coefficients.register(SRDPlusA2)
-def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
+def _(rule, thermostat, variate, chance, n, mass, momentum, energy, sums):
     share = 1.0 / mass
     ux, uy = momentum[0] * share, momentum[1] * share
     x, y = sums[0] * share, sums[1] * share
     inertia = sums[2] - mass * (x * x + y * y)
     spun = sums[3] - mass * (x * uy - y * ux)
     pull = sums[4] - mass * (x * ux + y * uy)
-    a, _, _, _ = words(counter, CELL_COLLISION, cell, 0)
-    sin = rule.sin * (1.0 - 2.0 * float(np.int64(a & ONE)))
+    sin = rule.sin * (1.0 - 2.0 * float(np.int64(chance[0] & ONE)))
     rotated_turn = rule.cos * spun + sin * pull
     relative = 0.5 * (energy - mass * (ux * ux + uy * uy))
     omega = angular_speed(n, mass, inertia, spun)
@@ -132,7 +130,7 @@ def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums)
 
 
 @coefficients.register(SRDPlusA3)
-def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums):
+def _(rule, thermostat, variate, chance, n, mass, momentum, energy, sums):
     share = 1.0 / mass
     u = momentum[0] * share, momentum[1] * share, momentum[2] * share
     r = sums[0] * share, sums[1] * share, sums[2] * share
@@ -142,7 +140,7 @@ def _(rule, thermostat, variate, counter, cell, n, mass, momentum, energy, sums)
     ty = added(sums[12:15], scaled(-mass * r[1], u))
     tz = added(sums[15:18], scaled(-mass * r[2], u))
     moment_of_momentum = ty[2] - tz[1], tz[0] - tx[2], tx[1] - ty[0]
-    axis = random_axis(counter, CELL_COLLISION, cell)
+    axis = random_axis(chance[0], chance[1])
     tx = rotate(tx, axis, rule.cos, rule.sin)
     ty = rotate(ty, axis, rule.cos, rule.sin)
     tz = rotate(tz, axis, rule.cos, rule.sin)

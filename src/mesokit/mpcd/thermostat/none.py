@@ -28,12 +28,12 @@ class Free(NamedTuple):
 
 
 @draw.register(Free)
-def _(thermostat, counter, cell, attempt, freedom):
+def _(thermostat, counter, cell, freedom, attempt):
     return 0.0, True
 
 
 @guess.register(Free)
-def _(thermostat, counter, cell, freedom):
+def _(thermostat, chance, freedom):
     return 0.0, True
 
 

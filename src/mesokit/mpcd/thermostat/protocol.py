@@ -11,14 +11,14 @@ from mesokit.scalar import generic, scalar
 
 
 @generic
-def draw(thermostat, counter, cell, attempt, freedom):
-    """A random number for `target`, and whether it may be used (if not, try the next attempt)."""
+def guess(thermostat, chance, freedom):
+    """A random number for `target` from two random words, and whether it may surely be used."""
     raise NotImplementedError
 
 
 @generic
-def guess(thermostat, counter, cell, freedom):
-    """The same number for attempt 0, made fast, and whether it may be used; if not, `draw` it."""
+def draw(thermostat, counter, cell, freedom, attempt):
+    """The same with a test that decides, where `guess` was not sure; if refused, try the next."""
     raise NotImplementedError
 
 

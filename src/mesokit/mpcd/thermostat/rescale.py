@@ -31,12 +31,12 @@ class Isokinetic(NamedTuple):
 
 
 @draw.register(Isokinetic)
-def _(thermostat, counter, cell, attempt, freedom):
+def _(thermostat, counter, cell, freedom, attempt):
     return 0.0, True
 
 
 @guess.register(Isokinetic)
-def _(thermostat, counter, cell, freedom):
+def _(thermostat, chance, freedom):
     return 0.0, True
 
 
