@@ -28,17 +28,24 @@ MOST_DRAWS = 1000  # of a thermostat's random number, each accepted with more th
 
 @scalar
 def total_block(sums, start, count, totals, terms):
-    """Add up what the threads found for these cells, and clear it."""
+    """Add up what the threads found for these cells, and clear it.
+
+    A thread that found nothing in four cells is passed over, so that no other writes to its memory.
+    """
     none = (np.int64(0),) + integers(terms)
     for i in range(LANES):
         note(totals, i, none)
     together = count - count % QUAD
-    length = sums_length(len(terms))
+    length = np.uint64(sums_length(len(terms)))
     for t in range(sums.shape[0]):
         for i in range(0, together, QUAD):
-            take(sums[t], start + i, i, totals, terms)
+            found = np.int64(0)
+            for j in range(QUAD):
+                found |= sums[t, np.uint64(start + i + j) * length]
+            if found != 0:
+                take(sums[t], start + i, i, totals, terms)
         for i in range(together, count):
-            cell = np.uint64(start + i) * np.uint64(length)
+            cell = np.uint64(start + i) * length
             note(totals, i, added(recall(totals, i, none), fetch(sums[t], cell, none)))
             put(sums[t], cell, none)
 

@@ -42,13 +42,18 @@ def order_by_cell(thread, threads, gate, cell, count, ends, order):
     for i in range(first, last):
         ends[thread, cell[i]] += 1
     wait(gate, threads)
-    if thread == 0:  # from counts to the place of each thread's first particle of each cell
-        total = 0
-        for c in range(ends.shape[1]):
-            for t in range(threads):
-                here = ends[t, c]
-                ends[t, c] = total
-                total += here
+    # from counts to the place of each thread's first particle of each cell
+    first_cell, last_cell = share(ends.shape[1], thread, threads)
+    total = 0
+    for t in range(threads):
+        for c in range(first_cell):
+            total += ends[t, c]
+    wait(gate, threads)
+    for c in range(first_cell, last_cell):
+        for t in range(threads):
+            here = ends[t, c]
+            ends[t, c] = total
+            total += here
     wait(gate, threads)
     for i in range(first, last):
         c = cell[i]

@@ -66,9 +66,11 @@ def sweep(
     gathered, hits, quanta, impulse, tensor, rates = scratch
     gathered, hits = gathered[thread], hits[thread]
     quanta, impulse = quanta[thread], impulse[thread]
-    first, last = share(strips[0] + strips[1], thread, threads)
-    for s in range(first, last):
-        real = s < strips[0]
+    first, last = share(strips[0], thread, threads)
+    first_of_virtual, last_of_virtual = share(strips[1], thread, threads)
+    for turn in range(last - first + last_of_virtual - first_of_virtual):
+        real = turn < last - first
+        s = first + turn if real else strips[0] + first_of_virtual + turn - (last - first)
         b = s if real else first_virtual + (s - strips[0])
         strip, here = strip_of(data, b, rows), cell[b * LANES : (b + 1) * LANES]
         number = s * LANES if real else (s - strips[0]) * LANES
