@@ -75,8 +75,8 @@ def log(x):
     return mul_add(exponent, _LN2, mul_add(2.0 * s * z, p, 2.0 * s))
 
 
-# For random numbers made of 32-bit words: errors below 1e-10, with coefficients fitted for the least
-# largest error (Lawson's iteration).
+# For random numbers made of 32-bit words: errors below 1e-10, with coefficients fitted for the
+# least largest error (Lawson's iteration).
 
 
 @scalar

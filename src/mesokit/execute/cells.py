@@ -57,7 +57,11 @@ def put_block(coefficients, start, count, rows, c):
     for i in range(0, together, QUAD):
         spread(coefficients, start + i, i, rows, c)
     for i in range(together, count):
-        put(coefficients, np.uint64(start + i) * np.uint64(record_length(len(c))), recall(rows, i, c))
+        put(
+            coefficients,
+            np.uint64(start + i) * np.uint64(record_length(len(c))),
+            recall(rows, i, c),
+        )
 
 
 @scalar

@@ -6,7 +6,7 @@ Blocks are shared out among the threads in order; each thread adds to cell sums 
 import numpy as np
 
 from mesokit.box import peculiar
-from mesokit.execute.layout import LANES, inner, load, mass_of, share, strip_of, wide
+from mesokit.execute.layout import LANES, inner, load, mass_of, share, strip_of
 from mesokit.execute.stages import (
     add_strip,
     bin_strip,
@@ -81,9 +81,9 @@ def sweep(
         measured = what & MEASURE_STRESS
         if collides:
             gather_strip(here, coefficients, gathered, c)
+        behind = np.int64(0)
         if collides and what & STREAM and real and not measured:
-            if collide_and_stream_strip(physics, old, strip, gathered, hits, like, c):
-                bounce_strip(physics, strip, lanes, hits, impulse, scales, like)
+            behind = collide_and_stream_strip(physics, old, strip, gathered, hits, like, c)
         else:
             if collides:
                 collide_strip(physics, old, strip, gathered, like, c)
@@ -92,8 +92,9 @@ def sweep(
                 if measured and not what & STREAM:
                     momentum_flux(physics, box, old, strip, lanes, tensor[1, s], like)
             if what & STREAM and real:
-                if stream_strip(physics, strip, hits, like):
-                    bounce_strip(physics, strip, lanes, hits, impulse, scales, like)
+                behind = stream_strip(physics, strip, hits, like)
+        if behind:
+            bounce_strip(physics, strip, lanes, hits, impulse, scales, like)
         if what & STREAM:
             if not real:
                 fill_strip(physics, counter, grid, strip, number, rates, like)

@@ -13,7 +13,6 @@ from mesokit.mpcd.thermostat.protocol import draw, guess, root_of_ratio, stretch
 from mesokit.random import CELL, CELL_DOUBT, normal_pair, unit_open, words
 from mesokit.scalar import mul_add, scalar
 
-
 LAST_BITS = np.uint64(4095)
 
 
