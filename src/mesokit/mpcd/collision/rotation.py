@@ -7,6 +7,8 @@ from mesokit.random import unit_open
 from mesokit.scalar import added_scaled, dot, mul_add, scalar, scaled
 
 ONE_PLACE = 1e-8  # of the mass: particles within 1e-4 cells of one another are in one place
+SPREAD = 1e-4  # the same within 1e-2 cells
+SLENDER = 1e-4  # det / trace^3 that is safely above LINE
 LINE = 1e-7  # det / trace^3 of an inertia tensor below which the particles lie on a line
 
 
@@ -70,6 +72,19 @@ def angular_velocity(n, mass, q, angular_momentum):
         y if regular else line * ly,
         z if regular else line * lz,
     )
+
+
+@scalar
+def spread_out(n, mass, q):
+    """Whether rounded sums can tell how these particles rotate, as the energy of it needs.
+
+    Not if all lie within a hundredth of a cell, or three and more almost on a line.
+    """
+    a, b, c = q[1] + q[2], q[0] + q[2], q[0] + q[1]
+    d, e, f = -q[3], -q[4], -q[5]
+    det = a * (b * c - f * f) + d * (e * f - d * c) + e * (d * f - e * b)
+    trace = a + b + c
+    return trace > SPREAD * mass and (n < 2.5 or det > SLENDER * trace * trace * trace)
 
 
 @scalar

@@ -10,6 +10,7 @@ import numpy as np
 from mesokit.component import component, param, tag
 from mesokit.mpcd.collision.protocol import coefficients, collide, contribute, freedom
 from mesokit.mpcd.collision.rotation import (
+    SPREAD,
     angular_speed,
     angular_velocity,
     central,
@@ -17,6 +18,7 @@ from mesokit.mpcd.collision.rotation import (
     random_axis,
     rotate,
     second_moment,
+    spread_out,
     turn,
 )
 from mesokit.mpcd.thermostat.protocol import root_of_ratio, target
@@ -97,7 +99,7 @@ def _(rule, n):
 # r' relative to the centre of mass; s makes up for the energy of the two rotations. Where hardly
 # any energy is left for s to scale (two particles whose w is all rotation) the cell does not
 # collide: rounding would be all that is scaled, and the energy would not be conserved.
-LEAST_SHARE = 1e-4
+LEAST_SHARE = 1e-2
 
 
 @coefficients.register(SRDPlusA2)
@@ -117,7 +119,8 @@ def _(rule, thermostat, variate, chance, n, mass, momentum, energy, sums):
     after = relative - 0.5 * omega_rotated * rotated_turn
     free = freedom(rule, n)
     s = root_of_ratio(target(thermostat, variate, free, before), after, free)
-    collides = n > 1.5 and before > 0.0 and after > LEAST_SHARE * before
+    apart = n > 1.5 and inertia > SPREAD * mass
+    collides = apart and before > 0.0 and after > LEAST_SHARE * before
     cos, sin = (s * rule.cos, s * sin) if collides else (1.0, 0.0)
     omega = omega - s * omega_rotated if collides else 0.0
     return (
@@ -152,7 +155,8 @@ def _(rule, thermostat, variate, chance, n, mass, momentum, energy, sums):
     after = relative - 0.5 * dot(omega_rotated, rotated_moment)
     free = freedom(rule, n)
     s = root_of_ratio(target(thermostat, variate, free, before), after, free)
-    collides = n > 1.5 and before > 0.0 and after > LEAST_SHARE * before
+    apart = n > 1.5 and spread_out(n, mass, moment)
+    collides = apart and before > 0.0 and after > LEAST_SHARE * before
     cos = s * rule.cos if collides else 1.0
     sin = s * rule.sin if collides else 0.0
     along = s * (1.0 - rule.cos) if collides else 0.0
