@@ -25,9 +25,15 @@ def scalar(function: Callable) -> Any:
     return njit(forceinline=True, error_model="numpy")(function)
 
 
-def by_type(stub: Callable) -> Callable:
-    """Decorator for a function that chooses, from argument types, how to compile the stub."""
-    return overload(stub, strict=False, jit_options={"forceinline": True, "error_model": "numpy"})
+def by_type(choose: Callable) -> Any:
+    """A function of which `choose`, given the types of the arguments, gives the code to compile."""
+    return _overloaded(choose, choose)
+
+
+def _overloaded(name: Callable, choose: Callable) -> Any:
+    options = {"forceinline": True, "error_model": "numpy"}
+    overload(name, strict=False, jit_options=options)(choose)
+    return name
 
 
 def generic(stub: Callable) -> Any:
@@ -55,7 +61,7 @@ def generic(stub: Callable) -> Any:
     def choose(*arguments: Any) -> Callable | None:
         return table.get(getattr(arguments[0], "instance_class", None))  # type: ignore[arg-type]
 
-    by_type(stub)(choose)
+    _overloaded(stub, choose)
 
     def register(*parameters: type) -> Callable:
         def decorate(implementation: Callable) -> Callable:
@@ -71,33 +77,6 @@ def generic(stub: Callable) -> Any:
     return stub
 
 
-def optional(values: Any, default: Any) -> Any:
-    """The one element of a tuple of parameters that may be empty, or the default."""
-    return values[0] if values else default
-
-
-@by_type(optional)
-def _optional(values: Any, default: Any) -> Callable:
-    if len(values) == 0:
-        return lambda values, default: default
-    return lambda values, default: values[0]
-
-
-def first(values: Any, like: Any) -> Any:
-    """As many of the values as the tuple `like` has elements."""
-    return values[: len(like)]
-
-
-@by_type(first)
-def _first(values: Any, like: Any) -> Callable:
-    count = len(like)
-    if count == 1:
-        return lambda values, like: values[:1]
-    if count == 2:
-        return lambda values, like: values[:2]
-    return lambda values, like: values[:3]
-
-
 @intrinsic
 def mul_add(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
     """a * b + c, rounded once: one instruction, and the same bits wherever it is compiled."""
@@ -111,62 +90,79 @@ def mul_add(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
     return double(a, b, c), generate
 
 
-def written_out(signature: str, line: str, length: int, result: str = "", **names: Any) -> Callable:
-    """A function that does `line` for each of the elements {k} of its tuples, without a loop.
+def elementwise(model: Callable) -> Any:
+    """A function whose answer is a tuple as long as its last argument.
 
-    Loops over long tuples are not unrolled by the compiler, and what is not unrolled goes through
-    memory. `result` is an expression in which {all} stands for the lines joined by commas.
+    The model gives the text of element {k}. Loops over long tuples are not unrolled by the
+    compiler, and what is not unrolled goes through memory: so the elements are written out.
+
+    Examples
+    --------
+    >>> from numba import njit
+    >>> @elementwise
+    ... def larger(a, b):
+    ...     return "max(a[{k}], b[{k}])"
+    >>> njit(lambda a, b: larger(a, b))((1.0, 2.0), (3.0, 0.0))
+    (3.0, 2.0)
     """
-    lines = [line.format(k=k) for k in range(length)]
-    if result:
-        body = f"    return {result.format(all=', '.join(lines))}"
-    else:
-        body = "\n".join(f"    {text}" for text in lines) or "    pass"
-    space: dict[str, Any] = dict(names)
-    exec(f"def made({signature}):\n{body}", space)
-    return space["made"]
+    return _written_out(model, "return ({})", "{}, ")
 
 
-def scaled(factor: Any, x: Any) -> Any:
+def for_each(model: Callable) -> Any:
+    """As `elementwise`, for statements: the function does them and has no answer."""
+    return _written_out(model, "{}pass", "{}; ")
+
+
+def _written_out(model: Callable, body: str, part: str) -> Any:
+    names = ", ".join(inspect.signature(model).parameters)
+    line = model(*names.split(", "))
+
+    def choose(*arguments: Any) -> Callable:
+        parts = (part.format(line.format(k=k)) for k in range(len(arguments[-1])))
+        space: dict[str, Any] = {}
+        code = f"def made({names}): {body.format(''.join(parts))}"
+        exec(code, model.__globals__, space)
+        return space["made"]
+
+    return _overloaded(model, choose)
+
+
+@by_type
+def optional(values, default):
+    """The one element of a tuple of parameters that may be empty, or the default."""
+    if len(values) == 0:
+        return lambda values, default: default
+    return lambda values, default: values[0]
+
+
+@elementwise
+def first(values, like):
+    """As many of the values as the tuple `like` has elements."""
+    return "values[{k}]"
+
+
+@elementwise
+def scaled(factor, x):
     """A vector times a number."""
-    raise NotImplementedError
+    return "factor * x[{k}]"
 
 
-@by_type(scaled)
-def _scaled(factor: Any, x: Any) -> Callable:
-    return written_out("factor, x", "factor * x[{k}]", len(x), "({all},)")
-
-
-def added(a: Any, b: Any) -> Any:
+@elementwise
+def added(a, b):
     """The sum of two vectors."""
-    raise NotImplementedError
+    return "a[{k}] + b[{k}]"
 
 
-@by_type(added)
-def _added(a: Any, b: Any) -> Callable:
-    return written_out("a, b", "a[{k}] + b[{k}]", len(a), "({all},)")
-
-
-def chosen(condition: Any, a: Any, b: Any) -> Any:
+@elementwise
+def chosen(condition, a, b):
     """a where the condition holds, else b, for vectors a and b."""
-    raise NotImplementedError
+    return "a[{k}] if condition else b[{k}]"
 
 
-@by_type(chosen)
-def _chosen(condition: Any, a: Any, b: Any) -> Callable:
-    line = "a[{k}] if condition else b[{k}]"
-    return written_out("condition, a, b", line, len(a), "({all},)")
-
-
-def added_scaled(a: Any, factor: Any, b: Any) -> Any:
+@elementwise
+def added_scaled(a, factor, b):
     """a + factor * b for vectors a and b."""
-    raise NotImplementedError
-
-
-@by_type(added_scaled)
-def _added_scaled(a: Any, factor: Any, b: Any) -> Callable:
-    line = "mul_add(factor, b[{k}], a[{k}])"
-    return written_out("a, factor, b", line, len(a), "({all},)", mul_add=mul_add)
+    return "mul_add(factor, b[{k}], a[{k}])"
 
 
 @scalar

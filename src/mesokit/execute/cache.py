@@ -29,11 +29,19 @@ def folder() -> str:
     return str(Path(base) / "mesokit" / code.hexdigest()[:16])
 
 
-def cached_kernel(function: Callable) -> Any:
-    """Compile for running by several threads at once, and keep the result on disk."""
+def kernel(function: Callable) -> Any:
+    """Compile a loop over particles or cells, and keep the result on disk.
+
+    It takes (thread, threads, ...) and is run by all threads of a team at once.
+    """
     before = config.CACHE_DIR
     config.CACHE_DIR = folder()
     try:
         return njit(nogil=True, cache=True, error_model="numpy")(function)
     finally:
         config.CACHE_DIR = before
+
+
+def inner(function: Callable) -> Any:
+    """A part of a kernel, compiled with it."""
+    return njit(nogil=True, error_model="numpy")(function)

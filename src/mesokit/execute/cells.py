@@ -2,21 +2,11 @@
 
 import numpy as np
 
-from mesokit.execute.layout import (
-    LANES,
-    QUAD,
-    fetch,
-    inner,
-    integers,
-    note,
-    put,
-    read_sums,
-    recall,
-    record_length,
-    share,
-    sums_length,
-)
+from mesokit.execute.cache import inner
+from mesokit.execute.layout import LANES, QUAD, record_length, share, sums_length
 from mesokit.execute.records import spread, take
+from mesokit.execute.rows import fetch, note, put, recall
+from mesokit.execute.sums import nothing_found, read_sums
 from mesokit.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.mpcd.collision.protocol import freedom
 from mesokit.mpcd.thermostat.protocol import draw, guess
@@ -32,7 +22,7 @@ def total_block(sums, start, count, totals, terms):
 
     A thread that found nothing in four cells is passed over, so that no other writes to its memory.
     """
-    none = (np.int64(0),) + integers(terms)
+    none = nothing_found(terms)
     for i in range(LANES):
         note(totals, i, none)
     together = count - count % QUAD
@@ -81,6 +71,7 @@ def solve(thread, threads, physics, counter, cells, number, scratch, like, c, te
     coefficients, sums = cells
     rows, doubtful, totals = scratch
     rows, doubtful, totals = rows[thread], doubtful[thread], totals[thread]
+    none = nothing_found(terms)
     first, last = share((number + LANES - 1) // LANES, thread, threads)
     for b in range(first, last):
         start = b * LANES
@@ -89,7 +80,7 @@ def solve(thread, threads, physics, counter, cells, number, scratch, like, c, te
         in_doubt = np.int64(0)
         for i in range(LANES):
             n, mass, momentum, energy, own = read_sums(
-                physics.masses, physics.energy, totals, i, like, terms, scales
+                physics.masses, physics.energy, recall(totals, i, none), like, scales
             )
             chance = words(counter, CELL, start + i, 0)
             x, sure = guess(physics.thermostat, chance[2:], freedom(physics.rule, n))
@@ -102,7 +93,7 @@ def solve(thread, threads, physics, counter, cells, number, scratch, like, c, te
         for i in range(count if in_doubt != 0 else 0):
             if doubtful[i] != 0:
                 n, mass, momentum, energy, own = read_sums(
-                    physics.masses, physics.energy, totals, i, like, terms, scales
+                    physics.masses, physics.energy, recall(totals, i, none), like, scales
                 )
                 chance = words(counter, CELL, start + i, 0)
                 x = draw_with_care(physics, counter, start + i, freedom(physics.rule, n))

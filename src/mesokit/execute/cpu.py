@@ -16,7 +16,6 @@ from mesokit.execute.clock import STAGES
 from mesokit.execute.layout import (
     BLOCK,
     LANES,
-    ROUNDER_BITS,
     ROW,
     SCRATCH_ROW,
     STRIPS,
@@ -29,6 +28,7 @@ from mesokit.execute.layout import (
 from mesokit.execute.sort import sort
 from mesokit.execute.stages import Grid, Physics
 from mesokit.execute.step import FINISH, SOLVE, SWEEP, advance
+from mesokit.execute.sums import ROUNDER_BITS
 from mesokit.execute.sweep import MEASURE_STRESS, MEASURE_WALLS
 from mesokit.execute.team import Team
 from mesokit.geometry.none import Nothing

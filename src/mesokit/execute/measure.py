@@ -8,20 +8,11 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.box import fold
 from mesokit.elementary import sincos_turn
-from mesokit.execute.layout import (
-    LANES,
-    ROUNDER_BITS,
-    fixed,
-    integers,
-    kernel,
-    load,
-    mass_of,
-    note,
-    rounded,
-    share,
-    strip_of,
-)
+from mesokit.execute.cache import kernel
+from mesokit.execute.layout import LANES, share, strip_of
+from mesokit.execute.rows import load, mass_of, note
 from mesokit.execute.stages import add_strip
+from mesokit.execute.sums import ROUNDER_BITS, fixed, integers, rounded
 from mesokit.scalar import dot, scalar, scaled
 
 

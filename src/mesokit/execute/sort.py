@@ -7,7 +7,9 @@ rarely. The order is that of a stable counting sort, whatever the number of thre
 import numpy as np
 
 from mesokit.box import fold
-from mesokit.execute.layout import LANES, inner, kernel, load, place, share, store, strip_of
+from mesokit.execute.cache import inner, kernel
+from mesokit.execute.layout import LANES, place, share, strip_of
+from mesokit.execute.rows import load, store
 from mesokit.execute.stages import cell_index
 from mesokit.execute.team import wait
 from mesokit.scalar import scaled

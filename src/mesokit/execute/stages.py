@@ -7,22 +7,10 @@ import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.box import slide
-from mesokit.execute.layout import (
-    LANES,
-    QUAD,
-    add_to,
-    count_images,
-    energy_term,
-    load,
-    mass_of,
-    mass_term,
-    note,
-    recall,
-    rounded,
-    store,
-    sums_length,
-)
+from mesokit.execute.layout import LANES, QUAD, sums_length
 from mesokit.execute.records import gather, scatter_add
+from mesokit.execute.rows import add_to, count_images, load, mass_of, note, recall, store
+from mesokit.execute.sums import terms_of
 from mesokit.geometry.protocol import closes, exposed, touches
 from mesokit.mpcd.collision.protocol import collide, contribute
 from mesokit.mpcd.streaming import bounce, fall, halfway, vector
@@ -162,12 +150,9 @@ def bin_strip(physics, box, counter, grid, strip, cell, ident, image, terms_rows
         count_images(image, i, crossed)
         m = mass_of(physics.masses, strip, i, 2 * d)
         kept, own = contribute(physics.rule, counter, ident[i], m, v, in_cell(r, grid))
-        terms = (
-            scaled(m, v) + mass_term(physics.masses, m) + energy_term(physics.energy, m, v) + own
-        )
         cell[i] = cell_index(r, grid)
         store(strip, i, 0, r + kept)
-        note(terms_rows, i, rounded(terms, scales))
+        note(terms_rows, i, terms_of(physics, m, v, own, scales))
 
 
 @scalar

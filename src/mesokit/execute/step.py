@@ -3,9 +3,9 @@
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.box import at_time
+from mesokit.execute.cache import kernel
 from mesokit.execute.cells import solve
 from mesokit.execute.clock import lap
-from mesokit.execute.layout import kernel
 from mesokit.execute.stages import Grid
 from mesokit.execute.sweep import COLLIDE, MEASURE_STRESS, MEASURE_WALLS, STREAM, sweep
 from mesokit.execute.team import wait

@@ -6,7 +6,9 @@ Blocks are shared out among the threads in order; each thread adds to cell sums 
 import numpy as np
 
 from mesokit.box import peculiar
-from mesokit.execute.layout import LANES, inner, load, mass_of, share, strip_of
+from mesokit.execute.cache import inner
+from mesokit.execute.layout import LANES, share, strip_of
+from mesokit.execute.rows import load, mass_of
 from mesokit.execute.stages import (
     add_strip,
     bin_strip,

@@ -5,24 +5,20 @@ import math
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
-from mesokit.execute.layout import energy_term, mass_term, rounded, sums_length
+from mesokit.execute.layout import sums_length
+from mesokit.execute.rows import add_to
 from mesokit.execute.stages import in_cell
+from mesokit.execute.sums import terms_of
 from mesokit.geometry.protocol import across, closes, side
 from mesokit.mpcd.collision.protocol import contribute
 from mesokit.random import CELL_VIRTUAL, normals, unit_open, words
 from mesokit.scalar import added, by_type, first, scaled
 
 
+@by_type
 def top_up(density, physics, counter, grid, cells, number, like, scales):
     """Do so if `density` is (density,); nothing if it is ()."""
-    raise NotImplementedError
-
-
-@by_type(top_up)
-def _top_up(density, physics, counter, grid, cells, number, like, scales):
-    if len(density) == 0:
-        return lambda density, physics, counter, grid, cells, number, like, scales: None
-    return _add_missing
+    return _add_missing if len(density) == 1 else lambda *_: None
 
 
 def _add_missing(density, physics, counter, grid, cells, number, like, scales):
@@ -68,8 +64,6 @@ def _add_missing(density, physics, counter, grid, cells, number, like, scales):
             v = added(drift, scaled(math.sqrt(physics.kT / m), normals(like, a, b, c, d)))
             who = np.int64(2**31) + cell * 64 + j
             _, own = contribute(physics.rule, counter, who, m, v, in_cell(r, grid))
-            terms = scaled(m, v) + mass_term(physics.masses, m)
-            terms = rounded(terms + energy_term(physics.energy, m, v) + own, scales)
-            sums[0, cell * width] += 1
-            for k in range(len(terms)):
-                sums[0, cell * width + 1 + k] += terms[k]
+            start = np.uint64(cell * width)
+            sums[0, start] += 1
+            add_to(sums[0], start + np.uint64(1), terms_of(physics, m, v, own, scales))

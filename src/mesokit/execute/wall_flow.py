@@ -8,23 +8,19 @@ the rate of the profile known they can move like that; the plate is then where i
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
-from mesokit.execute.layout import read_total
+from mesokit.execute.layout import sums_length
+from mesokit.execute.rows import fetch
+from mesokit.execute.sums import nothing_found, read_sums
 from mesokit.geometry.protocol import across
-from mesokit.scalar import by_type
+from mesokit.scalar import added, by_type
 
 MEMORY = 1.0 / 32.0  # weight of one step; the mean must not follow the noise of single steps
 
 
+@by_type
 def follow(wanted, physics, grid, sums, rates, like, terms, scales):
     """Update the rates (2, d) of the lower and upper plate, if `wanted` is not ()."""
-    raise NotImplementedError
-
-
-@by_type(follow)
-def _follow(wanted, physics, grid, sums, rates, like, terms, scales):
-    if len(wanted) == 0:
-        return lambda wanted, physics, grid, sums, rates, like, terms, scales: None
-    return _update
+    return _update if len(wanted) == 1 else lambda *_: None
 
 
 def _update(wanted, physics, grid, sums, rates, like, terms, scales):
@@ -46,8 +42,12 @@ def _update(wanted, physics, grid, sums, rates, like, terms, scales):
         mass, momentum = 0.0, like
         for column in range(columns):
             cell = column // beside * beside * layers + layer * beside + column % beside
-            m, p = read_total(physics.masses, sums, cell, like, terms, scales)
-            mass += m
+            found = nothing_found(terms)
+            for t in range(sums.shape[0]):
+                start = np.uint64(cell * sums_length(len(terms)))
+                found = added(found, fetch(sums[t], start, found))
+            n, m, p, _, _ = read_sums(physics.masses, physics.energy, found, like, scales)
+            mass += m if n > 0.0 else 0.0
             for k in range(len(like)):
                 momentum = tuple_setitem(momentum, k, momentum[k] + p[k])
         for k in range(len(like)):

@@ -1,8 +1,5 @@
 """Flight of a particle through a timestep: a parabola, broken where it meets a surface."""
 
-from collections.abc import Callable
-from typing import Any
-
 from mesokit.geometry.protocol import confine, first_hit, reflect
 from mesokit.mpcd.field.protocol import acceleration
 from mesokit.scalar import added, added_scaled, by_type, scalar, scaled
@@ -10,13 +7,9 @@ from mesokit.scalar import added, added_scaled, by_type, scalar, scaled
 MOST_HITS = 64  # within one timestep; a corner or a grazing flight may need a few
 
 
-def fall(r: Any, v: Any, a: Any, time: Any) -> Any:
+@by_type
+def fall(r, v, a, time):
     """Position and velocity after a time of constant acceleration a, which may be ()."""
-    raise NotImplementedError
-
-
-@by_type(fall)
-def _fall(r: Any, v: Any, a: Any, time: Any) -> Callable:
     if len(a) == 0:
         return lambda r, v, a, time: (added_scaled(r, time, v), v)
 
@@ -27,13 +20,9 @@ def _fall(r: Any, v: Any, a: Any, time: Any) -> Callable:
     return parabola
 
 
-def vector(a: Any, like: Any) -> Any:
+@by_type
+def vector(a, like):
     """The acceleration as a vector, also where it is ()."""
-    raise NotImplementedError
-
-
-@by_type(vector)
-def _vector(a: Any, like: Any) -> Callable:
     if len(a) == 0:
         return lambda a, like: scaled(0.0, like)
     return lambda a, like: a
