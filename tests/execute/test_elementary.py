@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from numba import njit
 
 from mesokit.elementary import log, sincos_turn
-from mesokit.execute.sums import fixed, from_fixed
+from mesokit.execute.fixed_point import fixed, from_fixed
 
 EPSILON = float(np.finfo(float).eps)
 

@@ -12,7 +12,15 @@ from numpy.typing import NDArray
 
 from mesokit.errors import RunError
 from mesokit.execute import measure
+from mesokit.execute.cell_energy import (
+    MOST_ENERGY,
+    MOST_PARTICLES,
+    Column,
+    NotAsked,
+    WithCount,
+)
 from mesokit.execute.clock import STAGES
+from mesokit.execute.fixed_point import ROUNDER_BITS
 from mesokit.execute.layout import (
     BLOCK,
     LANES,
@@ -28,7 +36,6 @@ from mesokit.execute.layout import (
 from mesokit.execute.sort import sort
 from mesokit.execute.stages import Grid, Physics
 from mesokit.execute.step import FINISH, SOLVE, SWEEP, advance
-from mesokit.execute.sums import ROUNDER_BITS
 from mesokit.execute.sweep import MEASURE_STRESS, MEASURE_WALLS
 from mesokit.execute.team import Team
 from mesokit.geometry.none import Nothing
@@ -36,8 +43,9 @@ from mesokit.geometry.none import Nothing
 if TYPE_CHECKING:
     from mesokit.case import Case
 
-# Whole numbers of this many per thermal unit: 2^-42 of a thermal momentum, 2^-39 of kT.
-MOMENTUM_BITS, MASS_BITS, ENERGY_BITS = 42, 44, 39
+# Whole numbers of this many per thermal unit: 2^-42 of a thermal momentum, 2^-39 of kT, and 2^-20
+# of kT where the energy shares an integer with the count.
+MOMENTUM_BITS, MASS_BITS, ENERGY_BITS, WITH_COUNT_BITS = 42, 44, 39, 20
 SORT_DISTANCE_SQUARED = 0.5  # particles are sorted again after straying less than a cell
 
 Floats = NDArray[np.float64]
@@ -93,18 +101,6 @@ class CPU:
 
         uniform = len({mass for mass, _ in kinds}) == 1
         rule = fluid.collision.kernel(d, fluid.kT)
-        needs_energy = fluid.thermostat.needs_energy or fluid.collision.needs_energy
-        self.physics = Physics(
-            rule,
-            fluid.thermostat.kernel(fluid.kT),
-            fluid.force.kernel(box.size),
-            wall.kernel(box.size) if wall else Nothing(),
-            (heaviest,) if uniform else (),
-            (0.0,) if needs_energy else (),
-            fluid.timestep,
-            fluid.kT,
-        )
-
         speed = max(
             math.sqrt(fluid.kT / min(mass for mass, _ in kinds)),
             abs(box.shear_rate) * box.size[1] / 16.0,
@@ -122,7 +118,24 @@ class CPU:
         }
         self.units = units
         self.fastest = 2.0**49 / units["momentum"] / heaviest
-        names = ["momentum"] * d + ([] if uniform else ["mass"]) + ["energy"] * needs_energy
+        energy: NotAsked | Column | WithCount = NotAsked()
+        if fluid.collision.needs_energy:
+            energy = Column()
+        elif fluid.thermostat.needs_energy:
+            energy = WithCount(units["energy"] * 2.0 ** (WITH_COUNT_BITS - ENERGY_BITS))
+            self.fastest = min(self.fastest, math.sqrt(MOST_ENERGY / energy.scale / heaviest))
+        self.physics = Physics(
+            rule,
+            fluid.thermostat.kernel(fluid.kT),
+            fluid.force.kernel(box.size),
+            wall.kernel(box.size) if wall else Nothing(),
+            (heaviest,) if uniform else (),
+            energy,
+            fluid.timestep,
+            fluid.kT,
+        )
+        names = ["momentum"] * d + ([] if uniform else ["mass"])
+        names += ["energy"] * isinstance(energy, Column)
         names += fluid.collision.own_sums(d)
         self.scales = tuple(units[name] for name in names)
         self.masses_of_kinds = [_on_grid(mass, units["mass"]) for mass, _ in kinds]
@@ -173,7 +186,7 @@ class CPU:
         self.sweep_scratch = (
             zeros((threads, most * SCRATCH_ROW)),
             zeros((threads, LANES), np.int64),
-            zeros((threads, len(self.terms) * SCRATCH_ROW), np.int64),
+            zeros((threads, (len(self.terms) + 1) * SCRATCH_ROW), np.int64),
             self.impulse,
             self.tensor,
             self.wall_rates,
@@ -245,6 +258,18 @@ class CPU:
         )  # fmt: skip
         self.sort_seconds += perf_counter() - start
         self._check_speed()
+        self._check_crowd()
+
+    def _check_crowd(self) -> None:
+        """The last sort left in `ends` where each cell's particles end."""
+        if self.n < MOST_PARTICLES or not isinstance(self.physics.energy, WithCount):
+            return
+        most = int(np.diff(self.ends[-1], prepend=0).max())
+        if most >= MOST_PARTICLES:
+            raise RunError(
+                f"step {self.step}: {most} particles in one cell, more than the {MOST_PARTICLES} "
+                "that a thermostat can count"
+            )
 
     def _check_speed(self) -> None:
         totals = self._totals()

@@ -9,10 +9,10 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from mesokit.box import fold
 from mesokit.elementary import sincos_turn
 from mesokit.execute.cache import kernel
+from mesokit.execute.fixed_point import ROUNDER_BITS, fixed, integers, rounded
 from mesokit.execute.layout import LANES, share, strip_of
 from mesokit.execute.rows import load, mass_of, note
 from mesokit.execute.stages import add_strip
-from mesokit.execute.sums import ROUNDER_BITS, fixed, integers, rounded
 from mesokit.scalar import dot, scalar, scaled
 
 
@@ -58,7 +58,7 @@ def bin_sums(
                 index = index * bins[k] + min(max(x, 0.0), bins[k] - 1.0)
             place[i] = np.int32(index)
             note(quanta, i, rounded(scaled(m, v) + (m, m * dot(v, v)), scales))
-        add_strip(place, quanta, out, min(LANES, count - b * LANES), terms)
+        add_strip(place, quanta, out, min(LANES, count - b * LANES), terms, ())
 
 
 @kernel

@@ -66,11 +66,14 @@ def spread(typing_context: Any, records: Any, start: Any, i: Any, rows: Any, lik
 
 
 @intrinsic
-def scatter_add(typing_context: Any, sums: Any, cell: Any, i: Any, rows: Any, terms: Any) -> Any:
+def scatter_add(
+    typing_context: Any, sums: Any, cell: Any, i: Any, rows: Any, terms: Any, tallied: Any
+) -> Any:
     """Count lanes i to i + 3 in the sums of their cells, and add their rows of integers.
 
     The sums of a cell are `sums_length(len(terms))` integers: the number of particles, one for each
-    term, and padding.
+    term, and padding. A particle counts as 1 if `tallied` is (), else as what the row after the
+    terms says.
     """
     count = len(terms)
 
@@ -84,10 +87,12 @@ def scatter_add(typing_context: Any, sums: Any, cell: Any, i: Any, rows: Any, te
             builder.mul(_index(builder, cells, lane, j), ir.Constant(_I64, length))
             for j in range(QUAD)
         ]
-        columns = [ir.Constant(ir.VectorType(_I64, QUAD), [1] * QUAD)] + [
+        columns = [
             _load(builder, source, _plus(builder, lane, k * SCRATCH_ROW), QUAD)
-            for k in range(count)
+            for k in range(count + len(tallied))
         ]
+        ones = ir.Constant(ir.VectorType(_I64, QUAD), [1] * QUAD)
+        columns = [columns.pop() if len(tallied) else ones, *columns]
         columns += [ir.Constant(ir.VectorType(_I64, QUAD), [0] * QUAD)] * (length - count - 1)
         parts = [_turned(builder, columns[k : k + QUAD]) for k in range(0, length, QUAD)]
         for j in range(QUAD):  # lanes in turn, for two may be in one cell
@@ -97,7 +102,7 @@ def scatter_add(typing_context: Any, sums: Any, cell: Any, i: Any, rows: Any, te
                 _store(builder, target, place, builder.add(before, part[j]))
         return context.get_dummy_value()
 
-    return types.void(sums, cell, i, rows, terms), generate
+    return types.void(sums, cell, i, rows, terms, tallied), generate
 
 
 @intrinsic

@@ -7,7 +7,8 @@ import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.box import slide
-from mesokit.execute.layout import LANES, QUAD, sums_length
+from mesokit.execute.cell_energy import tally
+from mesokit.execute.layout import LANES, QUAD, SCRATCH_ROW, sums_length
 from mesokit.execute.records import gather, scatter_add
 from mesokit.execute.rows import add_to, count_images, load, mass_of, note, recall, store
 from mesokit.execute.sums import terms_of
@@ -15,7 +16,7 @@ from mesokit.geometry.protocol import closes, exposed, touches
 from mesokit.mpcd.collision.protocol import collide, contribute
 from mesokit.mpcd.streaming import bounce, fall, halfway, vector
 from mesokit.random import VIRTUAL_POSITION, VIRTUAL_VELOCITY, normals, unit_open, words
-from mesokit.scalar import added, chosen, first, mul_add, scalar, scaled
+from mesokit.scalar import added, chosen, first, mul_add, optional, scalar, scaled
 
 
 class Physics(NamedTuple):
@@ -26,7 +27,7 @@ class Physics(NamedTuple):
     field: tuple
     solid: tuple
     masses: tuple  # (mass,) or () for a row of masses in each strip
-    energy: tuple  # (0.0,) if the cells must know their kinetic energy, else ()
+    energy: tuple  # how cells learn their kinetic energy
     timestep: float
     kT: float
 
@@ -152,19 +153,21 @@ def bin_strip(physics, box, counter, grid, strip, cell, ident, image, terms_rows
         kept, own = contribute(physics.rule, counter, ident[i], m, v, in_cell(r, grid))
         cell[i] = cell_index(r, grid)
         store(strip, i, 0, r + kept)
-        note(terms_rows, i, terms_of(physics, m, v, own, scales))
+        counted = tally(physics.energy, m, v)
+        note(terms_rows, i, terms_of(physics, m, v, own, scales) + counted)
 
 
 @scalar
-def add_strip(cell, terms_rows, sums, count, terms):
-    """Add the terms of each particle to the sums of its cell, and count it."""
+def add_strip(cell, terms_rows, sums, count, terms, tallied):
+    """Add the terms of each particle to the sums of its cell, and count it (see `scatter_add`)."""
     width = sums_length(len(terms))
     together = count - count % QUAD
     for i in range(0, together, QUAD):
-        scatter_add(sums, cell, i, terms_rows, terms)
+        scatter_add(sums, cell, i, terms_rows, terms, tallied)
     for i in range(together, count):
         start = np.uint64(np.uint32(cell[i])) * np.uint64(width)
-        sums[start] += 1
+        row = terms_rows[len(terms) * SCRATCH_ROW :]
+        sums[start] += optional(recall(row, i, tallied), 1)
         add_to(sums, start + np.uint64(1), recall(terms_rows, i, terms))
 
 

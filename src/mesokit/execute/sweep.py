@@ -7,6 +7,7 @@ import numpy as np
 
 from mesokit.box import peculiar
 from mesokit.execute.cache import inner
+from mesokit.execute.cell_energy import tally
 from mesokit.execute.layout import LANES, share, strip_of
 from mesokit.execute.rows import load, mass_of
 from mesokit.execute.stages import (
@@ -109,4 +110,5 @@ def sweep(
                 for i in range(lanes):
                     if side(physics.solid, load(strip, i, 0, like)) == 2:
                         here[i] = spare_cell
-            add_strip(here, quanta, sums[thread], lanes, terms)
+            tallied = tally(physics.energy, 0.0, like)
+            add_strip(here, quanta, sums[thread], lanes, terms, tallied)

@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
+from mesokit.execute.cell_energy import tally, untangled
 from mesokit.execute.layout import sums_length
 from mesokit.execute.rows import add_to
 from mesokit.execute.stages import in_cell
@@ -12,7 +13,7 @@ from mesokit.execute.sums import terms_of
 from mesokit.geometry.protocol import across, closes, side
 from mesokit.mpcd.collision.protocol import contribute
 from mesokit.random import CELL_VIRTUAL, normals, unit_open, words
-from mesokit.scalar import added, by_type, first, scaled
+from mesokit.scalar import added, by_type, first, optional, scaled
 
 
 @by_type
@@ -44,7 +45,7 @@ def _add_missing(density, physics, counter, grid, cells, number, like, scales):
             continue
         present = 0
         for t in range(sums.shape[0]):
-            present += sums[t, cell * width]
+            present += untangled(physics.energy, sums[t, cell * width])[0]
         a, _, _, _ = words(counter, CELL_VIRTUAL, cell, 0)
         missing = int(density[0] + unit_open(a)) - present
         for j in range(missing):
@@ -65,5 +66,5 @@ def _add_missing(density, physics, counter, grid, cells, number, like, scales):
             who = np.int64(2**31) + cell * 64 + j
             _, own = contribute(physics.rule, counter, who, m, v, in_cell(r, grid))
             start = np.uint64(cell * width)
-            sums[0, start] += 1
+            sums[0, start] += optional(tally(physics.energy, m, v), 1)
             add_to(sums[0], start + np.uint64(1), terms_of(physics, m, v, own, scales))

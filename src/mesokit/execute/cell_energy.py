@@ -1,0 +1,82 @@
+"""How cells learn their kinetic energy: not at all, in a column of their sums, or with the count.
+
+A thermostat does not need the last digits. Its energy shares an integer with the number of
+particles, 16 bits for the number and 48 for the energy: cells keep the width that they have without
+a thermostat, which is what makes it cheap. A rule that conserves energy has a column of full width.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from mesokit.execute.fixed_point import ROUNDER_BITS, fixed
+from mesokit.scalar import dot, generic
+
+COUNT_SHIFT = 48
+ONE_PARTICLE = 1 << COUNT_SHIFT
+ENERGY_MASK = ONE_PARTICLE - 1
+MOST_PARTICLES = 1 << 16  # of one cell
+MOST_ENERGY = 2.0 ** (COUNT_SHIFT - 16)  # of one particle, in fixed-point units
+
+
+class NotAsked(NamedTuple):
+    """Nobody needs the energy."""
+
+
+class Column(NamedTuple):
+    """A term of its own in the sums."""
+
+
+class WithCount(NamedTuple):
+    """In the integer that counts the particles; fixed-point units per unit of energy."""
+
+    scale: float
+
+
+@generic
+def energy_term(energy, m, v):
+    """What a particle adds to a column of its own: (m v^2,) or ()."""
+    raise NotImplementedError
+
+
+@generic
+def tally(energy, m, v):
+    """What a particle adds to the integer that counts the particles: (integer,), or () for 1."""
+    raise NotImplementedError
+
+
+@generic
+def untangled(energy, total):
+    """Number of particles, and sum of m v^2 if it is kept with it, from that integer."""
+    raise NotImplementedError
+
+
+@energy_term.register(NotAsked, WithCount)
+def _(energy, m, v):
+    return ()
+
+
+@energy_term.register(Column)
+def _(energy, m, v):
+    return (m * dot(v, v),)
+
+
+@tally.register(NotAsked, Column)
+def _(energy, m, v):
+    return ()
+
+
+@tally.register(WithCount)
+def _(energy, m, v):
+    return (fixed(m * dot(v, v), energy.scale) + np.int64(ONE_PARTICLE - ROUNDER_BITS),)
+
+
+@untangled.register(NotAsked, Column)
+def _(energy, total):
+    return total, 0.0
+
+
+@untangled.register(WithCount)
+def _(energy, total):
+    number = np.int64(np.uint64(total) >> np.uint64(COUNT_SHIFT))
+    return number, float(total & np.int64(ENERGY_MASK)) * (1.0 / energy.scale)
