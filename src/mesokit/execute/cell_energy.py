@@ -68,7 +68,7 @@ def _(energy, m, v):
 
 @tally.register(WithCount)
 def _(energy, m, v):
-    return (fixed(m * dot(v, v), energy.scale) + np.int64(ONE_PARTICLE - ROUNDER_BITS),)
+    return (fixed(dot(v, v), m * energy.scale) + np.int64(ONE_PARTICLE - ROUNDER_BITS),)
 
 
 @untangled.register(NotAsked, Column)

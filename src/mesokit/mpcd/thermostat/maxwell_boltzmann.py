@@ -71,12 +71,13 @@ def _(thermostat, chance, freedom):
     """Sure where all of u's part is below a bound on what the test compares it to.
 
     The test is log u < f, where with y = x / sqrt(9 e) f is -e times the integral of
-    3 s^3 / (1 + s) from 0 to y; for y > -1/2 it is at least -3/2 e y^4 = -x^4 / (54 e). And
-    log u < -z where u < 1 - z.
+    3 s^3 / (1 + s) from 0 to y; for y > -1/2 it is at least -z, z = 3/4 e y^4 max(1, 1 - 2 y), as
+    1 / (1 + y) < 1 - 2 y for negative y. And log u < -z where u < 1 - z.
     """
     value, x, e, width, t = propose(chance, freedom)
     square = x * x * width
-    below = 4096.0 * (1.0 - square * square / 6.0)
+    z = square * square * max(3.0 - 2.0 * t, 1.0) / 12.0
+    below = 4096.0 * (1.0 - z)
     return value, (t > 0.5 and part(chance) + 1.0 < below) or e == 0.0
 
 
