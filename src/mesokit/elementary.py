@@ -103,3 +103,16 @@ def short_sincos(x):
     c = mul_add(z, c, -0.0013887367515317492)
     c = mul_add(z, c, 0.04166664686643257)
     return mul_add(x * z, s, x), mul_add(z * z, c, mul_add(-0.5, z, 1.0))
+
+
+@scalar
+def short_sin(w):
+    """Sine of pi w for -1/2 < w < 1/2."""
+    z = w * w
+    s = -0.007000500255137967
+    s = mul_add(z, s, 0.08203123007687828)
+    s = mul_add(z, s, -0.5992474048905253)
+    s = mul_add(z, s, 2.5501627947199137)
+    s = mul_add(z, s, -5.1677127412215444)
+    s = mul_add(z, s, 3.141592653243754)
+    return w * s

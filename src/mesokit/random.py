@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
-from mesokit.elementary import short_log, short_sincos
+from mesokit.elementary import short_log, short_sin, short_sincos
 from mesokit.scalar import first, scalar
 
 # What a number is for. One line each; never reuse a value, or two uses would share their numbers.
@@ -108,11 +108,16 @@ def normal_pair(a, b):
 
 
 @scalar
+def normal(a, b):
+    """One of the pair: the direction may then lie in one half of the plane."""
+    return math.sqrt(-2.0 * short_log(unit_open(a))) * short_sin(unit_open(b) - 0.5)
+
+
+@scalar
 def normals(like, a, b, c, d):
     """Standard normal numbers from four words, as many (2 or 3) as `like` has elements."""
     x, y = normal_pair(a, b)
-    z, _ = normal_pair(c, d)
-    return first((x, y, z), like)
+    return first((x, y, normal(c, d)), like)
 
 
 @scalar

@@ -10,7 +10,7 @@ import numpy as np
 from mesokit.component import component, tag
 from mesokit.elementary import log
 from mesokit.mpcd.thermostat.protocol import draw, guess, root_of_ratio, stretch, target
-from mesokit.random import CELL, CELL_DOUBT, normal_pair, unit_open, words
+from mesokit.random import CELL, CELL_DOUBT, normal, unit_open, words
 from mesokit.scalar import mul_add, scalar
 
 LAST_BITS = np.uint64(4095)
@@ -47,7 +47,7 @@ def propose(chance, freedom):
     t = 1 + x / sqrt(9 e). Shape 1/2 (two particles of a rule +a) is half the square of x, to be
     taken as it is; e is then 0.
     """
-    x, _ = normal_pair(chance[0], chance[1])
+    x = normal(chance[0], chance[1])
     shape = 0.5 * freedom
     large = shape > 0.75
     e = shape - 1.0 / 3.0 if large else 1.0
