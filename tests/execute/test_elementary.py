@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba import njit
 
-from mesokit.elementary import log, sincos_turn
+from mesokit.elementary import log, short_log, short_sin, short_sincos, sincos_turn
 from mesokit.execute.fixed_point import fixed, from_fixed
 
 EPSILON = float(np.finfo(float).eps)
@@ -58,6 +58,22 @@ def test_logarithm(x):
     with localcontext(prec=40):
         exact = Decimal(x).ln()
         assert abs(Decimal(log(x)) - exact) <= 3 * Decimal(EPSILON) * abs(exact)
+
+
+def test_short_polynomials_are_as_exact_as_32_bit_words():
+    u = (np.arange(0, 2**32, 99_991) + 0.5) / 2**32
+    logs, sines, pairs = (
+        np.array([f(x) for x in values])
+        for f, values in (
+            (short_log, u),
+            (short_sin, u - 0.5),
+            (short_sincos, (u - 0.5) * math.pi / 2),
+        )
+    )
+    assert abs(logs - np.log(u)).max() < 1e-10
+    assert abs(sines - np.sin(np.pi * (u - 0.5))).max() < 1e-10
+    assert abs(pairs[:, 0] - np.sin((u - 0.5) * math.pi / 2)).max() < 1e-10
+    assert abs(pairs[:, 1] - np.cos((u - 0.5) * math.pi / 2)).max() < 1e-10
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 5, 7, 8, 31, 64, 255, 257, 1001])
