@@ -72,12 +72,12 @@ def make() -> int:
     page = Page("conservation", "Conservation")
     page.text(
         "Bulk, density 5, timestep 0.1, no thermostat. Energy relative to itself; momentum "
-        "relative to sum m |v|. SRD runs for 100,000 steps, the other rules for 5,000. AT draws "
+        "relative to sum m |v|. SRD and SRD+a run for 100,000 steps, AT for 5,000. AT draws "
         "velocities anew, so that only its momentum is conserved."
     )
     cases = [
         (SRD(angle=130), 2, 32, 100_000), (SRD(angle=130), 3, 12, 100_000),
-        (SRDPlusA(angle=130), 2, 32, 5_000), (SRDPlusA(angle=130), 3, 12, 5_000),
+        (SRDPlusA(angle=130), 2, 32, 100_000), (SRDPlusA(angle=130), 3, 12, 100_000),
         (AT(), 2, 32, 5_000), (AT(), 3, 12, 5_000),
         (ATPlusA(), 2, 32, 5_000), (ATPlusA(), 3, 12, 5_000),
     ]  # fmt: skip

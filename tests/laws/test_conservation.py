@@ -11,7 +11,7 @@ EVERYTHING = ("mass", "momentum", "energy", "angular momentum")
 ROUNDING = 1e-9  # fixed-point sums of some ten terms, each rounded to 2^-36 or finer
 # A rule that restores both takes the energy from what two rotations leave of it: where a cell has
 # one or three degrees of freedom left, that may be a small difference of rounded sums.
-ILL_CONDITIONED = 1e-5
+ILL_CONDITIONED = 1e-9
 
 UNEQUAL = (Species(mass=1, density=4), Species(mass=5, density=3))
 
