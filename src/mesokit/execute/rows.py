@@ -1,6 +1,10 @@
 """Tuples in memory: lanes of the rows of a strip, and consecutive places of an array."""
 
-from mesokit.execute.layout import ROW
+# ruff: noqa: F401  the lines below, which are written out as text, use what is imported here
+
+import numpy as np
+
+from mesokit.execute.layout import ROW, SCRATCH_ROW
 from mesokit.scalar import by_type, elementwise, for_each
 
 
