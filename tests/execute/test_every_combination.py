@@ -8,7 +8,6 @@ import itertools
 import multiprocessing
 import sys
 from concurrent.futures import ProcessPoolExecutor
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -105,10 +104,9 @@ def run(path, combination):
 @pytest.fixture(scope="module")
 def running():
     """All chosen combinations, under way."""
-    path = [str(Path(__file__).parent.parent / "laws"), *sys.path]
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(2, mp_context=context) as pool:
-        yield {c: pool.submit(run, path, c) for c in CHOSEN}
+        yield {c: pool.submit(run, sys.path, c) for c in CHOSEN}
 
 
 def name(combination):

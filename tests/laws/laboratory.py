@@ -28,11 +28,17 @@ def example(component: type, dimension: int) -> Any:
     return component(**required)
 
 
-def make_case(size, walls=(), observe=(), shear_rate=0.0, seed=1, **fluid) -> Case:
+def make_case(
+    size=(8, 8), observe=(), walls=(), trajectory=None, shear_rate=0.0, seed=1, **fluid
+) -> Case:
     """A case with one step to run."""
-    box = Box(size, shear_rate=shear_rate)
     return Case(
-        run=Run(steps=1, seed=seed), box=box, fluid=Fluid(**fluid), walls=walls, observe=observe
+        run=Run(steps=1, seed=seed),
+        box=Box(size, shear_rate=shear_rate),
+        fluid=Fluid(**fluid),
+        walls=walls,
+        observe=observe,
+        trajectory=trajectory,
     )
 
 

@@ -30,10 +30,7 @@ def gather(typing_context: Any, records: Any, cell: Any, i: Any, rows: Any, like
         target = _start(context, builder, signature, arguments, 3)
         lane = arguments[2]
         length = record_length(count)
-        starts = [
-            builder.mul(_index(builder, cells, lane, j), ir.Constant(_I64, length))
-            for j in range(QUAD)
-        ]
+        starts = _starts(builder, cells, lane, length)
         for k in range(0, count, 2):
             pairs = [_load(builder, source, _plus(builder, start, k), 2) for start in starts]
             for row, values in enumerate(_rows(builder, pairs)[: count - k]):
@@ -83,10 +80,7 @@ def scatter_add(
         source = _start(context, builder, signature, arguments, 3)
         lane = arguments[2]
         length = sums_length(count)
-        starts = [
-            builder.mul(_index(builder, cells, lane, j), ir.Constant(_I64, length))
-            for j in range(QUAD)
-        ]
+        starts = _starts(builder, cells, lane, length)
         columns = [
             _load(builder, source, _plus(builder, lane, k * SCRATCH_ROW), QUAD)
             for k in range(count + len(tallied))
@@ -135,9 +129,11 @@ def _start(context: Any, builder: Any, signature: Any, arguments: Any, k: int) -
     return array.data
 
 
-def _index(builder: Any, cells: Any, lane: Any, j: int) -> Any:
-    number = builder.load(gep(builder, cells, _plus(builder, lane, j), inbounds=True))
-    return builder.zext(number, _I64)
+def _starts(builder: Any, cells: Any, lane: Any, length: int) -> list[Any]:
+    """Where the records of the cells of four lanes start."""
+    places = (gep(builder, cells, _plus(builder, lane, j), inbounds=True) for j in range(QUAD))
+    numbers = (builder.zext(builder.load(place), _I64) for place in places)
+    return [builder.mul(number, ir.Constant(_I64, length)) for number in numbers]
 
 
 def _plus(builder: Any, index: Any, constant: int) -> Any:

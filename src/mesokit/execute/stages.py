@@ -150,7 +150,7 @@ def bin_strip(physics, box, counter, grid, strip, cell, ident, image, terms_rows
         r, v, crossed = slide(box, r, v, grid.shift)
         count_images(image, i, crossed)
         m = mass_of(physics.masses, strip, i, 2 * d)
-        kept, own = contribute(physics.rule, counter, ident[i], m, v, in_cell(r, grid))
+        kept, own = contribute(physics.rule, counter, (ident[i], 0), m, v, in_cell(r, grid))
         cell[i] = cell_index(r, grid)
         store(strip, i, 0, r + kept)
         counted = tally(physics.energy, m, v)

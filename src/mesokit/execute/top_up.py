@@ -63,8 +63,8 @@ def _add_missing(density, physics, counter, grid, cells, number, like, scales):
                 break
             a, b, c, d = words(counter, CELL_VIRTUAL, cell, 2 + 2 * j)
             v = added(drift, scaled(math.sqrt(physics.kT / m), normals(like, a, b, c, d)))
-            who = np.int64(2**31) + cell * 64 + j
-            _, own = contribute(physics.rule, counter, who, m, v, in_cell(r, grid))
+            # draw 0 of any index belongs to the particle of that number
+            _, own = contribute(physics.rule, counter, (cell, 1 + j), m, v, in_cell(r, grid))
             start = np.uint64(cell * width)
             sums[0, start] += optional(tally(physics.energy, m, v), 1)
             add_to(sums[0], start + np.uint64(1), terms_of(physics, m, v, own, scales))

@@ -9,8 +9,11 @@ from mesokit.scalar import generic
 
 
 @generic
-def contribute(rule, counter, ident, m, v, r):
-    """The velocity that a particle keeps until it collides, and what it adds to the rule's sums."""
+def contribute(rule, counter, who, m, v, r):
+    """The velocity that a particle keeps until it collides, and what it adds to the rule's sums.
+
+    `who` is the index and the draw of its random words: no two particles of a step share them.
+    """
     raise NotImplementedError
 
 

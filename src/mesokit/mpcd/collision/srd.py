@@ -72,7 +72,7 @@ class SRD3(NamedTuple):
 
 
 @contribute.register(SRD2, SRD2Uniform, SRD3)
-def _(rule, counter, ident, m, v, r):
+def _(rule, counter, who, m, v, r):
     return v, ()
 
 

@@ -1,0 +1,198 @@
+"""What a fluid is made of in memory: the numbers that follow from its case, and its arrays."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import RunError
+from mesokit.execute.cell_energy import MOST_ENERGY, Column, NotAsked, WithCount
+from mesokit.execute.layout import (
+    BLOCK,
+    LANES,
+    ROW,
+    SCRATCH_ROW,
+    STRIPS,
+    blocks_for,
+    record_length,
+    strips_for,
+    sums_length,
+    zeros,
+)
+from mesokit.execute.stages import Grid, Physics
+from mesokit.geometry.none import Nothing
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+# Whole numbers of this many per thermal unit: 2^-42 of a thermal momentum, 2^-39 of kT, and 2^-20
+# of kT where the energy shares an integer with the count.
+MOMENTUM_BITS, MASS_BITS, ENERGY_BITS, WITH_COUNT_BITS = 42, 44, 39, 20
+SORT_DISTANCE_SQUARED = 0.5  # particles are sorted again after straying less than a cell
+
+Floats = NDArray[np.float64]
+
+
+class Memory:
+    """The arrays of a fluid, and what the kernels must know of its case."""
+
+    def __init__(self, case: Case, threads: int, measures: Sequence[str]) -> None:
+        fluid, box = case.fluid, case.box
+        self.case, self.threads = case, threads
+        self.dimension = d = box.dimension
+        self.box = np.array(box.size, float)
+        self.step, self.timestep = 0, fluid.timestep
+        self.measures = frozenset(measures)
+        wall = case.walls[0] if case.walls else None
+        self.closed = tuple(wall is not None and wall.axis == axis for axis in box.axes)
+        self.virtual = "none"
+        if wall is not None and "no-slip" in (wall.lower.rule, wall.upper.rule):
+            self.virtual = wall.virtual
+
+        kinds = [(kind.mass, kind.density) for kind in fluid.species]
+        kinds = kinds or [(fluid.mass, fluid.density)]
+        heaviest = max(mass for mass, _ in kinds)
+        self.counts = [round(density * box.volume) for _, density in kinds]
+        self.n = sum(self.counts)
+        if self.n == 0:
+            raise RunError(f"fluid.density = {fluid.density:g}: no particle in the box")
+        layer = math.prod(s for s, shut in zip(box.size, self.closed, strict=True) if not shut)
+        self.n_virtual = (
+            round(fluid.density * layer) if self.virtual in ("fill", "extrapolate") else 0
+        )
+
+        uniform = len({mass for mass, _ in kinds}) == 1
+        self.units = units = units_of(case)
+        self.fastest = 2.0**49 / units["momentum"] / heaviest
+        energy: NotAsked | Column | WithCount = NotAsked()
+        if fluid.collision.needs_energy:
+            energy = Column()
+        elif fluid.thermostat.needs_energy:
+            energy = WithCount(units["energy"] * 2.0 ** (WITH_COUNT_BITS - ENERGY_BITS))
+            self.fastest = min(self.fastest, math.sqrt(MOST_ENERGY / energy.scale / heaviest))
+        self.physics = Physics(
+            fluid.collision.kernel(d, fluid.kT),
+            fluid.thermostat.kernel(fluid.kT),
+            fluid.force.kernel(box.size),
+            wall.kernel(box.size) if wall else Nothing(),
+            (heaviest,) if uniform else (),
+            energy,
+            fluid.timestep,
+            fluid.kT,
+        )
+
+        names = ["momentum"] * d + ([] if uniform else ["mass"])
+        names += ["energy"] * isinstance(energy, Column)
+        names += fluid.collision.own_sums(d)
+        self.scales = tuple(units[name] for name in names)
+        self.masses_of_kinds = [_on_grid(mass, units["mass"]) for mass, _ in kinds]
+        self.like = (0.0,) * d
+        self.terms = (0,) * len(names)
+        self.coefficient_count = fluid.collision.coefficient_count(d, fluid.thermostat.needs_energy)
+        self.c = (0.0,) * self.coefficient_count
+
+        self.cells = tuple(size + shut for size, shut in zip(box.size, self.closed, strict=True))
+        self.number_of_cells = math.prod(self.cells)
+        steps = 2.0 * SORT_DISTANCE_SQUARED * fluid.mass / (fluid.kT * fluid.timestep**2)
+        self.sort_every = int(min(max(steps, 10), 100))
+        self._allocate(uniform)
+        self.box_kernel = box.kernel(self.closed, 0.0)
+        zero, cells = (0.0,) * d, tuple(float(n) for n in self.cells)
+        self.grid = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
+
+    def _allocate(self, uniform: bool) -> None:
+        d, threads = self.dimension, self.threads
+        self.rows = 2 * d + (not uniform)
+        self.real_blocks = blocks_for(self.n)
+        self.strips = strips_for(self.n), strips_for(self.n_virtual)
+        blocks = self.real_blocks + blocks_for(self.n_virtual)
+        lanes = blocks * BLOCK
+        self.data = zeros(blocks * self.rows * ROW)
+        self.cell = zeros(lanes, np.int32)
+        self.ident = np.arange(lanes, dtype=np.int32)  # beyond n: virtual particles
+        self.image = zeros((d, lanes), np.int32)
+        self.order, self.spare = zeros(self.n, np.int32), zeros(self.n)
+        self.ends = zeros((threads, self.number_of_cells), np.int32)
+        spare_cell = self.number_of_cells  # where lanes that must not act leave their terms
+        self.coefficients = zeros((spare_cell + 1) * record_length(self.coefficient_count))
+        self.sums = zeros((threads, (spare_cell + 1) * sums_length(len(self.terms))), np.int64)
+        most = max(self.coefficient_count, 2 * d)
+        parts = self.strips[0] if "stress" in self.measures else 1
+        self.impulse = zeros((threads, 2 * d), np.int64)
+        self.wall_rates = zeros((2, d))
+        self.tensor = zeros((2, parts, 2 * d * d))
+        self.sweep_scratch = (
+            zeros((threads, most * SCRATCH_ROW)),
+            zeros((threads, LANES), np.int64),
+            zeros((threads, (len(self.terms) + 1) * SCRATCH_ROW), np.int64),
+            self.impulse,
+            self.tensor,
+            self.wall_rates,
+        )
+        self.cell_scratch = (
+            zeros((threads, most * SCRATCH_ROW)),
+            zeros((threads, LANES), np.int64),
+            zeros((threads, (len(self.terms) + 1) * SCRATCH_ROW), np.int64),
+        )
+        self.particles = (
+            self.data,
+            self.cell,
+            self.ident,
+            self.image,
+            (self.n, self.n_virtual),
+            self.strips,
+            self.real_blocks * STRIPS,
+            self.rows,
+            spare_cell,
+        )
+        self.cell_arrays = (self.coefficients, self.sums)
+
+    def row(self, k: int) -> Floats:
+        """Row k of every block of fluid particles, as a view (blocks, lanes)."""
+        whole = self.data[: self.real_blocks * self.rows * ROW]
+        return whole.reshape(self.real_blocks, self.rows, ROW)[:, k, :BLOCK]
+
+    def virtual_row(self, k: int) -> Floats:
+        """Row k of every block of virtual particles, as a view (blocks, lanes)."""
+        whole = self.data[self.real_blocks * self.rows * ROW :]
+        return whole.reshape(-1, self.rows, ROW)[:, k, :BLOCK]
+
+    @property
+    def bytes_held(self) -> int:
+        """Memory of all arrays."""
+        arrays: list[NDArray] = [
+            self.data, self.cell, self.ident, self.image, self.order, self.spare,
+            self.coefficients, self.sums, self.tensor, *self.sweep_scratch, *self.cell_scratch,
+        ]  # fmt: skip
+        return sum(array.nbytes for array in arrays)
+
+
+def units_of(case: Case) -> dict[str, float]:
+    """How many units of fixed-point sums make one of momentum, mass and energy."""
+    fluid, box = case.fluid, case.box
+    masses = [kind.mass for kind in fluid.species] or [fluid.mass]
+    heaviest = max(masses)
+    speed = max(
+        math.sqrt(fluid.kT / min(masses)),
+        abs(box.shear_rate) * box.size[1] / 16.0,
+        *(
+            abs(u) / 16.0
+            for wall in case.walls
+            for surface in (wall.lower, wall.upper)
+            for u in surface.velocity or ()
+        ),
+    )
+    return {
+        "momentum": 2.0 ** (MOMENTUM_BITS - math.ceil(math.log2(heaviest * speed))),
+        "mass": 2.0 ** (MASS_BITS - math.ceil(math.log2(heaviest))),
+        "energy": 2.0 ** (ENERGY_BITS - math.ceil(math.log2(heaviest * speed * speed))),
+    }
+
+
+def _on_grid(mass: float, scale: float) -> float:
+    """The mass rounded so that sums of masses are exact in fixed point."""
+    return round(mass * scale) / scale

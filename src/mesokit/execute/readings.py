@@ -1,0 +1,138 @@
+"""What observables ask of a fluid in memory."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.execute import measure
+from mesokit.execute.fixed_point import ROUNDER_BITS
+from mesokit.execute.layout import LANES, SCRATCH_ROW, sums_length, zeros
+from mesokit.execute.memory import Floats, Memory
+from mesokit.execute.team import Team
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+Moments = tuple[Floats, Floats, Floats, Floats]
+
+
+class Readings(Memory):
+    """A fluid in memory that can be looked at, by a team of threads."""
+
+    def __init__(self, case: Case, threads: int, measures: Sequence[str]) -> None:
+        super().__init__(case, threads, measures)
+        self.team = Team(threads)
+        self.wall_steps = 0
+        self._asked: tuple[NDArray, NDArray[np.int32]] | None = None  # ids, and their slots
+        self._seen: dict[tuple, Moments] = {}  # moments at this step, for several observables
+        self.stress: dict[str, Floats] = {}
+
+    def totals(self) -> tuple[int, Floats, float]:
+        """Number of particles, momentum (d,) and kinetic energy."""
+        total = self._totals().sum(axis=0)
+        return self.n, total[: self.dimension], 0.5 * float(total[self.dimension])
+
+    def _totals(self) -> Floats:
+        out = np.zeros((self.strips[0], self.dimension + 2))
+        self.team.run(measure.totals, self.physics, self.data, self.n, self.rows, self.like, out)
+        return out
+
+    def moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
+        """Number, mass, momentum (d, ...) and sum of m v^2 in bins along one or two axes."""
+        key = axes, bins
+        if key not in self._seen:
+            self._seen[key] = self._moments(axes, bins)
+        return self._seen[key]
+
+    def _moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
+        d, threads, size = self.dimension, self.threads, math.prod(bins)
+        two = (axes + axes)[:2], tuple(float(n) for n in (*bins, 1)[:2])
+        names = ["momentum"] * d + ["mass", "energy"]
+        scales = tuple(self.units[name] for name in names)
+        length = sums_length(d + 2)
+        part = zeros((threads, size * length), np.int64)
+        quanta = (
+            np.zeros((threads, LANES), np.int32),
+            np.zeros((threads, (d + 2) * SCRATCH_ROW), np.int64),
+        )
+        particles = self.physics, self.box_kernel, self.data, self.n, self.rows, self.like
+        self.team.run(measure.bin_sums, *particles, *two, scales, quanta, part)
+        total = part.sum(axis=0).reshape(size, length)[:, : d + 3]
+        number, sums = total[:, 0], total[:, 1:] - total[:, :1] * ROUNDER_BITS
+        values = (sums / np.array(scales)).T.reshape(-1, *bins)
+        return number.astype(float).reshape(bins), values[d], values[:d], values[d + 1]
+
+    def modes(self, wavevectors: NDArray) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Sums of m exp(-i k r) (K,) and of m v exp(-i k r) (K, d) for wave vectors (K, d)."""
+        waves = np.ascontiguousarray(wavevectors, float) / (2.0 * math.pi)
+        d, scale = self.dimension, self.units["momentum"]
+        part = np.zeros((self.threads, len(waves), 2 + 2 * d), np.int64)
+        particles = self.physics, self.box_kernel, self.data, self.n, self.rows, self.like
+        self.team.run(measure.modes, *particles, waves, scale, part)
+        total = part.sum(axis=0) / scale
+        return total[:, 0] + 1j * total[:, 1], total[:, 2 : 2 + d] + 1j * total[:, 2 + d :]
+
+    def positions(self, ids: NDArray | None = None, unwrapped: bool = False) -> Floats:
+        """Positions (n, d) by particle id, in the box or as if it had no bounds."""
+        return self._gather(ids, unwrapped)[0]
+
+    def velocities(self, ids: NDArray | None = None) -> Floats:
+        """Velocities (n, d) by particle id."""
+        return self._gather(ids, False)[1]
+
+    def images(self, ids: NDArray | None = None) -> NDArray[np.int32]:
+        """How many times each particle left the box along each axis (n, d), by particle id."""
+        return self._gather(ids, False)[2]
+
+    def masses(self, ids: NDArray | None = None) -> Floats:
+        """Masses (n,) by particle id: kinds are numbered one after the other."""
+        mass = np.repeat(self.masses_of_kinds, self.counts)
+        return mass if ids is None else mass[ids]
+
+    def species(self, ids: NDArray | None = None) -> NDArray[np.int64]:
+        """Kind of each particle (n,), by particle id: its place in fluid.species."""
+        kind = np.repeat(np.arange(len(self.counts)), self.counts)
+        return kind if ids is None else kind[ids]
+
+    def _gather(self, ids: NDArray | None, unwrapped: bool) -> tuple[Floats, Floats, NDArray]:
+        slots = np.arange(self.n, dtype=np.int32) if ids is None else self._slots(ids)
+        shape = self.n if ids is None else len(ids), self.dimension
+        out = np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32)
+        particles = self.data, self.image, self.ident, slots, self.n, self.rows, self.like
+        self.team.run(measure.gather_by_id, self.box_kernel, *particles, unwrapped, *out)
+        return out
+
+    def _slots(self, ids: NDArray) -> NDArray[np.int32]:
+        """Place of each particle in `ids`, by particle id, -1 if none; kept for the next time."""
+        if self._asked is None or not np.array_equal(self._asked[0], ids):
+            slots = np.full(self.n, -1, np.int32)
+            slots[ids] = np.arange(len(ids))
+            self._asked = ids.copy(), slots
+        return self._asked[1]
+
+    def _stress(self) -> None:
+        """Stress of the step that ends now, positive where the fluid above drags the one below.
+
+        Kinetic: momentum carried in the flight, which is the mean of the values before and after
+        the collision. Collisional: momentum handed over within cells (Winkler and Huang 2009).
+        """
+        d = self.dimension
+        before, after = self.tensor.sum(axis=1).reshape(2, 2, d, d)
+        volume = math.prod(self.case.box.size)
+        self.stress = {
+            "kinetic": -0.5 * (before[0] + after[0]) / volume,
+            "collisional": -(after[1] - before[1]) / (volume * self.timestep),
+        }
+
+    @property
+    def wall_impulse(self) -> Floats:
+        """Momentum (2, d) that the lower and upper plate took since the last call."""
+        taken = self.impulse.sum(axis=0).astype(float).reshape(2, -1) / self.units["momentum"]
+        self.impulse[:] = 0
+        self.wall_steps = 0
+        return taken

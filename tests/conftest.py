@@ -1,0 +1,17 @@
+"""What the tests of several folders share: the laboratory of the laws and the fake fluid."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+HERE = Path(__file__).parent
+sys.path[:0] = [str(HERE / "laws"), str(HERE / "observe")]  # laboratory.py, fake_fluid.py
+
+
+@pytest.fixture
+def make_case():
+    """A case from a box, observables and what else differs from the defaults."""
+    from laboratory import make_case
+
+    return make_case
