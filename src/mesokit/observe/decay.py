@@ -19,7 +19,8 @@ def normalised(correlator: MultipleTau) -> tuple[NDArray[np.int64], Estimate]:
 
     Lags whose averages are longer than a block of time are left out.
     """
-    lags, values, residuals = [], [], []
+    lags: list[NDArray[np.int64]] = []
+    values, residuals = [], []
     zero, zero_residual = np.ones(1), np.zeros((0, 1))
     weights = np.zeros(0)
     for lag, sums, counts in correlator.products(within_blocks=True):

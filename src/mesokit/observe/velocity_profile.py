@@ -125,7 +125,7 @@ def _poiseuille(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
             error,
             acc.expected_viscosity(),
             VISCOSITY,
-            "whatever the slip",
+            setting.caveat(acc.case) or "whatever the slip",
         )
     ]
     quarter = acc.edges[-1] ** 2 / 4
@@ -188,7 +188,12 @@ def _kolmogorov(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
     value, error = wave.scalar(nu, np.array([0, -nu / amplitude]))
     return basis @ wave.value, [
         Comparison(
-            "viscosity from amplitude", value, error, acc.expected_viscosity(), VISCOSITY, "steady"
+            "viscosity from amplitude",
+            value,
+            error,
+            acc.expected_viscosity(),
+            VISCOSITY,
+            setting.caveat(acc.case) or "steady",
         )
     ]
 

@@ -177,7 +177,8 @@ class MultipleTau:
         array([ 1., -1.])
         """
         axes = _axes(average_over, len(self.shape))
-        lag, value, error = [], [], []
+        lag: list[NDArray[np.int64]] = []
+        value, error = [], []
         zero, zero_residuals = np.ones(()), np.zeros(())
         for lags, sums, counts in self.products():
             sums = sums.mean(axis=axes) if axes else sums

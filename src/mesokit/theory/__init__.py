@@ -6,6 +6,7 @@ Nothing here uses the rest of mesokit, so that it can judge it. Lengths are in c
 from mesokit.theory.couette import couette_velocity
 from mesokit.theory.finite_size import viscosity_renormalised
 from mesokit.theory.gamma import cell_energy_cdf, cell_energy_pdf, cell_energy_variance
+from mesokit.theory.held_temperature import shear_warming, temperature_offset
 from mesokit.theory.kolmogorov import (
     kolmogorov_onset_time,
     kolmogorov_velocity,
@@ -56,6 +57,8 @@ __all__ = [
     "msd_molecular_chaos",
     "poiseuille_fit",
     "poiseuille_velocity",
+    "shear_warming",
+    "temperature_offset",
     "transport",
     "transverse_correlation",
     "transverse_viscosity_fit",
