@@ -23,6 +23,7 @@ from mesokit.theory.mean_square_displacement import (
     decorrelation_from_diffusion,
     msd_molecular_chaos,
 )
+from mesokit.theory.origin import Origin, origins
 from mesokit.theory.poiseuille import PoiseuilleFit, poiseuille_fit, poiseuille_velocity
 from mesokit.theory.transport import Transport, transport
 from mesokit.theory.transverse_modes import (
@@ -37,6 +38,7 @@ from mesokit.theory.velocity_autocorrelation import (
 )
 
 __all__ = [
+    "Origin",
     "PoiseuilleFit",
     "Transport",
     "ViscosityFit",
@@ -55,6 +57,7 @@ __all__ = [
     "maxwell_speed_cdf",
     "maxwell_speed_pdf",
     "msd_molecular_chaos",
+    "origins",
     "poiseuille_fit",
     "poiseuille_velocity",
     "shear_warming",
