@@ -71,7 +71,7 @@ class Comparison:
                 text += f", {self.percent:+.1f} %"
         elif self.approximate and math.isfinite(self.percent):
             text += f": {self.percent:+.2g} %"
-        if self.note and not math.isfinite(self.deviation):
+        if self.note and (not math.isfinite(self.deviation) or "lower bound" in self.note):
             text += f" ({self.note})"
         return text
 
