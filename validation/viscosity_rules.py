@@ -6,6 +6,7 @@ Viscosity of all rules from the Lees-Edwards stress; self-diffusion and sound of
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 import numpy as np
@@ -237,11 +238,8 @@ def draw(shown: list[tuple[str, Comparison, float]]) -> Any:
     ax.plot(place, [loop / c.expected for _, c, loop in shown], "_", ms=18, color=RED, mew=2,
             label="with one loop")  # fmt: skip
     ax.axhline(1, color=GREY, lw=1, label="molecular chaos")
-    ax.set_xticks(
-        place,
-        [name.replace("D ", "D\n").replace(" dt", "\ndt") for name, _, _ in shown],
-        fontsize=7,
-    )
+    names = [re.sub(r"(?<=[23]D) | (?=dt)", "\n", name) for name, _, _ in shown]
+    ax.set_xticks(place, names, fontsize=7)
     ax.set(ylabel="viscosity / molecular chaos")
     ax.legend()
     return fig
