@@ -6,6 +6,7 @@ Viscosity of all rules from the Lees-Edwards stress; self-diffusion and sound of
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 import numpy as np
@@ -220,6 +221,12 @@ def make() -> int:
                 f"{c.what}: {c.percent:+.1f} %, {c.deviation:+.1f} s.e. (at most 2 %)",
                 abs(c.percent) < 2,
             )
+    page.figure(draw(shown), "Measured viscosities over those of molecular chaos.")
+    return page.write()
+
+
+def draw(shown: list[tuple[str, Comparison, float]]) -> Any:
+    """Viscosities over those of molecular chaos."""
     fig, ax = plt.subplots(figsize=(8, 4))
     place = np.arange(len(shown))
     chaos = np.array([c.expected for _, c, _ in shown])
@@ -231,11 +238,11 @@ def make() -> int:
     ax.plot(place, [loop / c.expected for _, c, loop in shown], "_", ms=18, color=RED, mew=2,
             label="with one loop")  # fmt: skip
     ax.axhline(1, color=GREY, lw=1, label="molecular chaos")
-    ax.set_xticks(place, [name.replace(" dt", "\ndt") for name, _, _ in shown], fontsize=7)
+    names = [re.sub(r"(?<=[23]D) | (?=dt)", "\n", name) for name, _, _ in shown]
+    ax.set_xticks(place, names, fontsize=7)
     ax.set(ylabel="viscosity / molecular chaos")
     ax.legend()
-    page.figure(fig, "Measured viscosities over those of molecular chaos.")
-    return page.write()
+    return fig
 
 
 if __name__ == "__main__":

@@ -324,7 +324,7 @@ def _show_results(output: Path) -> None:
 
 
 def _show_theory(given: dict[str, Any]) -> None:
-    from mesokit.theory import transport
+    from mesokit.theory import origins, transport
 
     given["dimension"] = int(given["dimension"])
     needs_angle = given["rule"].startswith("srd") and given["angle_distribution"] == "fixed"
@@ -334,23 +334,23 @@ def _show_theory(given: dict[str, Any]) -> None:
         found = transport(**given)
     except ValueError as error:
         raise CaseError(f"--{error}") from None
-    gompper = "Gompper et al. 2009, Table 1" if given["rule"] == "srd" else (
-        "Noguchi and Gompper 2008; exact sum over occupancies"
-    )  # fmt: skip
-    _rows([
-        ("mean free path", _number(found.mean_free_path, "a"), "timestep sqrt(kT/m)"),
-        ("kinematic viscosity", _number(found.viscosity, "a^2/time"), "kinetic + collisional"),
-        ("  kinetic", _number(found.viscosity_kinetic, "a^2/time"), gompper),
-        ("  collisional", _number(found.viscosity_collisional, "a^2/time"), gompper),
-        ("dynamic viscosity", _number(found.dynamic_viscosity, "m/(a^(d-2) time)"),
-         "density m times kinematic"),
-        ("self-diffusion", _number(found.diffusion, "a^2/time"), "molecular chaos"),
-        ("Schmidt number", _number(found.schmidt), "viscosity / self-diffusion"),
-        ("thermal diffusivity", _number(found.thermal_diffusivity, "a^2/time"), gompper),
-        ("speed of sound", _number(found.sound_speed, "a/time"), "ideal gas; isothermal if held"),
-        ("sound attenuation", _number(found.sound_attenuation, "a^2/time"),
-         "amplitude exp(-G k^2 t/2)"),
-    ])  # fmt: skip
+    rows: list[tuple[str, str, str]] = []
+    known = origins(*(given[k] for k in ("rule", "dimension", "angle_distribution", "thermostat")))
+    for name, field, unit in (
+        ("mean free path", "mean_free_path", "a"),
+        ("kinematic viscosity", "viscosity", "a^2/time"),
+        ("  kinetic", "viscosity_kinetic", "a^2/time"),
+        ("  collisional", "viscosity_collisional", "a^2/time"),
+        ("dynamic viscosity", "dynamic_viscosity", "m/(a^(d-2) time)"),
+        ("self-diffusion", "diffusion", "a^2/time"),
+        ("Schmidt number", "schmidt", ""),
+        ("thermal diffusivity", "thermal_diffusivity", "a^2/time"),
+        ("speed of sound", "sound_speed", "a/time"),
+        ("sound attenuation", "sound_attenuation", "a^2/time"),
+    ):
+        rows.append((name, _number(getattr(found, field), unit), known[field].source))
+        rows.append(("", "", f"holds: {known[field].holds}"))
+    _rows(rows)
 
 
 # --- the end of every command -------------------------------------------------------------------

@@ -206,8 +206,15 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
             f"fluid.density = {fluid.density:g}: below 3 many cells hold no pair that could "
             "collide, and the formulas for the viscosity fail"
         )
+    note = setting.temperature_note(case)
+    if note:
+        yield (
+            f"fluid.thermostat.rule = {fluid.thermostat.rule!r}, fluid.collision.rule = "
+            f"{fluid.collision.rule!r}: {note.removeprefix('approximate: ')} at this density"
+        )
     if transport is None:
-        yield "no formula for the transport coefficients of this fluid: plots will lack theory"
+        reason = setting.caveat(case) or "no formula for this fluid"
+        yield f"transport coefficients: {reason}; plots will lack theory"
     elif case.box.dimension == 2 and fluid.density * fluid.mass * transport.viscosity < 7:
         yield (
             f"in 2D fluctuations raise a dynamic viscosity of {transport.dynamic_viscosity:.3g} "

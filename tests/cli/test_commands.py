@@ -102,6 +102,8 @@ class TestCheck:
             ({"fluid.force.acceleration": "[0.01, 0]"}, "Mach number"),
             ({"fluid.collision.angle": "2.27"}, "2.27 rad is 130.06"),
             ({"fluid.grid_shift": "0"}, "Galilean"),
+            ({"fluid.grid_shift": "0"}, "theory needs the full grid shift"),
+            ({"fluid.thermostat.rule": "rescale"}, "reads up to 1.6 % cold"),
             ({"fluid.timestep": "2"}, "mean free path is 2 cells"),
             ({"fluid.density": "2"}, "below 3"),
             ({"fluid.density": "5", "fluid.timestep": "0.5"}, "fluctuations"),
@@ -206,6 +208,7 @@ def test_theory_prints_coefficients_and_sources(capsys: Captured) -> None:
     out = capsys.readouterr().out
     assert "0.8705" in out
     assert "Gompper" in out
+    assert "holds: grid shift 1" in out
 
 
 def test_help_and_mistyped_commands(capsys: Captured) -> None:

@@ -65,6 +65,15 @@ def test_runs_without_samples_have_no_figure(make_case, tmp_path):
     assert save_all(results, tmp_path) == []
 
 
+def test_the_legend_of_a_tensor_hides_no_data(make_case):
+    from mesokit.observe import WallStress
+
+    figure = plot(result_of(WallStress, make_case, 40))
+    figure.canvas.draw()
+    for ax in figure.axes:
+        assert ax.get_legend().get_window_extent().y1 < ax.get_window_extent().y0
+
+
 def test_wrong_ending_and_missing_folder(make_case, tmp_path):
     result = result_of(OBSERVABLES[0], make_case, 5)
     with pytest.raises(RunError, match="choose one of"):

@@ -187,3 +187,17 @@ def test_wrong_input_is_refused():
         MultipleTau(2).correlation(average_over=1)
     with pytest.raises(KeyError, match="numbers"):
         MultipleTau.from_state({})
+
+
+def test_products_add_up_to_the_correlation():
+    correlator = MultipleTau(shape=(2,), points=4, max_lag=12)
+    for sample in np.random.default_rng(3).normal(size=(100, 2)):
+        correlator.add(sample)
+    whole = correlator.correlation()
+    parts = list(correlator.products())
+    assert np.concatenate([p.lag for p in parts]).tolist() == whole.lag.tolist()
+    means = [p.sums.sum(axis=0) / p.counts.sum(axis=0)[:, None] for p in parts]
+    assert np.allclose(np.concatenate(means), whole.value)
+    assert correlator.block_length == 4
+    short = list(correlator.products(within_blocks=True))
+    assert [p.lag[0] for p in short] == [0, 4, 8]  # averages over 1, 2 and 4 samples

@@ -175,5 +175,6 @@ class ConservationAccumulator:
             )
         mean, error = self.blocks.mean()[-1], self.blocks.error()[-1]
         if self._at_rest():
-            found.append(Comparison("temperature", float(mean), float(error), fluid.kT, ""))
+            note = setting.temperature_note(self.case)
+            found.append(Comparison("temperature", float(mean), float(error), fluid.kT, "", note))
         return found

@@ -19,20 +19,16 @@ def normalised(correlator: MultipleTau) -> tuple[NDArray[np.int64], Estimate]:
 
     Lags whose averages are longer than a block of time are left out.
     """
-    lags, values, residuals = [], [], []
+    lags: list[NDArray[np.int64]] = []
+    values, residuals = [], []
     zero, zero_residual = np.ones(1), np.zeros((0, 1))
     weights = np.zeros(0)
-    for depth in range(len(correlator._levels)):
-        if correlator.averages**depth > correlator.block_length and depth:
-            break
-        lag, sums, counts = correlator._products(depth)
-        if not len(lag):
-            break
+    for lag, sums, counts in correlator.products(within_blocks=True):
         sums = sums.reshape(*sums.shape[:2], -1).mean(axis=-1)
         total = counts.sum(axis=0)
         mean = sums.sum(axis=0) / total
         residual = (sums - mean * counts) / total
-        if depth == 0:
+        if not lags:
             zero, zero_residual, weights = mean[:1], residual[:, :1], counts[:, 0]
         lags.append(lag)
         with np.errstate(divide="ignore", invalid="ignore"):

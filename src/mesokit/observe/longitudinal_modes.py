@@ -108,8 +108,12 @@ class LongitudinalModesAccumulator(ModesAccumulator):
             value, error = fitted.scalar(total / k, slope)
             expected = coefficients.sound_speed if coefficients else np.nan
             at = f"at k = {k:.4g}/a"
-            found.append(Comparison(f"sound speed {at}", value, error, expected, "a/tau"))
+            # c^2 is proportional to the kT that this run started with
+            error = 0.5 * setting.with_start(self.case, 2 * error, value)
+            note = setting.caveat(self.case)
+            found.append(Comparison(f"sound speed {at}", value, error, expected, "a/tau", note))
             slope = np.array([2 / k**2, 0, 0, 0])
             value, error = fitted.scalar(2 * damping / k**2, slope)
-            found.append(Comparison(f"sound attenuation {at}", value, error, known, "a^2/tau"))
+            what = f"sound attenuation {at}"
+            found.append(Comparison(what, value, error, known, "a^2/tau", note))
         return found

@@ -127,7 +127,7 @@ class MeanSquareDisplacementAccumulator:
             units={"value": "a^2", "time": "tau"},
             expected=expected,
             fit=curve,
-            theory="molecular chaos",
+            theory=setting.chaos_label(self.case),
             comparisons=tuple(comparisons),
             samples=self.origins.count,
             extra={"components": "".join("xyz"[axis] for axis in self.axes)},
@@ -164,6 +164,6 @@ class MeanSquareDisplacementAccumulator:
                 error,
                 expected,
                 "a^2/tau",
-                "molecular chaos; correlated collisions add up to 18 % at a short mean free path",
+                setting.chaos(self.case, "correlated collisions add 10 to 18 %"),
             )
         ]

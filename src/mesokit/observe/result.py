@@ -23,7 +23,8 @@ class Comparison:
     measured, error: value and standard error; the error is 0 for what must hold exactly.
     expected: the theory, nan where there is none.
     unit: of all three.
-    note: what the theory assumes, or what the estimate is.
+    note: what the theory assumes, or what the estimate is. One that starts with "approximate" says
+        that the theory is known to be off by more than an error bar: deviations are in percent.
 
     >>> c = Comparison("viscosity", 0.88, 0.01, 0.87, "a^2/time")
     >>> round(c.deviation, 6), round(c.percent, 2)
@@ -41,8 +42,15 @@ class Comparison:
 
     @property
     def deviation(self) -> float:
-        """(measured - expected) in standard errors, nan without an error bar or a theory."""
-        return (self.measured - self.expected) / self.error if self.error > 0 else math.nan
+        """(measured - expected) in standard errors; nan without an error bar or an exact theory."""
+        if self.approximate or not self.error > 0:
+            return math.nan
+        return (self.measured - self.expected) / self.error
+
+    @property
+    def approximate(self) -> bool:
+        """Whether the theory is known to be off by more than an error bar."""
+        return self.note.startswith("approximate")
 
     @property
     def percent(self) -> float:
@@ -61,6 +69,10 @@ class Comparison:
             text += f": {self.deviation:+.1f} standard errors"
             if math.isfinite(self.percent):
                 text += f", {self.percent:+.1f} %"
+        elif self.approximate and math.isfinite(self.percent):
+            text += f": {self.percent:+.2g} %"
+        if self.note and (not math.isfinite(self.deviation) or "lower bound" in self.note):
+            text += f" ({self.note})"
         return text
 
 

@@ -21,26 +21,83 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 
 def transport(case: Case) -> theory.Transport | None:
-    """Transport coefficients of the fluid; None for a mixture, which has no formula."""
-    fluid, rule = case.fluid, case.fluid.collision
-    distribution: Any = getattr(rule, "angle_distribution", "fixed")
-    angle = None if distribution == "uniform" else getattr(rule, "angle", None)
-    if len({kind.mass for kind in fluid.species}) > 1:
+    """Transport coefficients of the fluid; None where `caveat` says why there is no theory."""
+    if caveat(case):
         return None
     try:
-        return theory.transport(
-            rule=rule.rule,
-            dimension=case.box.dimension,
-            density=fluid.density,
-            timestep=fluid.timestep,
-            angle=angle,
-            kT=fluid.kT,
-            mass=fluid.mass,
-            angle_distribution=distribution,
-            thermostat=fluid.thermostat.rule,
-        )
+        return theory.transport(**_parameters(case))
     except ValueError:  # such as a half turn in 2D
         return None
+
+
+def _parameters(case: Case) -> dict[str, Any]:
+    """What the theory of a fluid is a function of."""
+    fluid, rule = case.fluid, case.fluid.collision
+    distribution = getattr(rule, "angle_distribution", "fixed")
+    return {
+        "rule": rule.rule,
+        "dimension": case.box.dimension,
+        "density": fluid.density,
+        "timestep": fluid.timestep,
+        "angle": None if distribution == "uniform" else getattr(rule, "angle", None),
+        "kT": fluid.kT,
+        "mass": fluid.mass,
+        "angle_distribution": distribution,
+        "thermostat": fluid.thermostat.rule,
+    }
+
+
+def caveat(case: Case) -> str:
+    """Why there is no theory of the transport coefficients, "" where there is."""
+    if len({kind.mass for kind in case.fluid.species}) > 1:
+        return "no theory of a mixture"
+    return "theory needs the full grid shift" if case.fluid.grid_shift < 1 else ""
+
+
+def mean_free_path(case: Case) -> float:
+    """Thermal velocity times timestep, in cells."""
+    return float(case.fluid.timestep * (case.fluid.kT / case.fluid.mass) ** 0.5)
+
+
+def chaos(case: Case, off: str) -> str:
+    """The note of a number that molecular chaos gives: `off` says how far off where particles
+    meet again before they have flown a cell."""
+    if caveat(case):
+        return caveat(case)
+    if mean_free_path(case) < 1:
+        return f"approximate: molecular chaos; {off}"
+    return "molecular chaos"
+
+
+def chaos_label(case: Case) -> str:
+    """The same for the legend of a figure."""
+    return "molecular chaos" + (", approximate" if mean_free_path(case) < 1 else "")
+
+
+def warming(case: Case) -> float | None:
+    """Rise of the temperature of a held fluid for each unit of the shear rate squared, as it is
+    counted about the linear profile; None without a theory."""
+    if caveat(case):
+        return None
+    return case.fluid.mass * theory.shear_warming(**_parameters(case))
+
+
+def offset(case: Case) -> float:
+    """Largest known (T - kT)/kT of the fluid at rest."""
+    fluid = case.fluid
+    return theory.temperature_offset(
+        fluid.collision.rule, fluid.thermostat.rule, case.box.dimension, fluid.density,
+        mean_free_path(case),
+    )  # fmt: skip
+
+
+def temperature_note(case: Case) -> str:
+    """How far a thermostat is known to miss kT, "" below 0.1 %."""
+    percent = 100 * offset(case)
+    if abs(percent) <= 0.1:
+        return ""
+    way = "warm" if percent > 0 else "cold"
+    return f"approximate: this thermostat reads up to {abs(percent):.2g} % {way}"
 
 
 def mass_density(case: Case) -> float:

@@ -116,10 +116,15 @@ class StressAccumulator:
         rate = case.box.shear_rate
         if rate:
             scale = setting.mass_density(case) * rate
-            for part, name, nu in zip(
-                (2, 0, 1), ("viscosity", "kinetic part", "collisional part"),
-                (self.viscosities()[i] for i in (2, 0, 1)), strict=True,
-            ):  # fmt: skip
+            notes = (
+                setting.caveat(case),
+                setting.chaos(case, "10 to 30 % low at mean free path 0.1"),
+                setting.chaos(case, "1 to 2 % high at mean free path 0.1"),
+            )
+            for part, name, note in zip(
+                (2, 0, 1), ("viscosity", "kinetic part", "collisional part"), notes, strict=True
+            ):
+                nu = self.viscosities()[part]
                 found.append(
                     Comparison(
                         f"{name} from the stress",
@@ -127,6 +132,7 @@ class StressAccumulator:
                         float(error[part, 0, 1] / abs(scale)),
                         nu,
                         "a^2/tau",
+                        note,
                     )
                 )
         known = setting.isothermal(case) or not setting.driven(case)

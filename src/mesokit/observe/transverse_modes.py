@@ -97,5 +97,6 @@ class TransverseModesAccumulator(ModesAccumulator):
                 continue
             nu, error = fitted.scalar(fitted.value[0] / k**2, np.array([1 / k**2, 0]))
             expected = coefficients.viscosity if coefficients else np.nan
-            found.append(Comparison(f"viscosity at k = {k:.4g}/a", nu, error, expected, "a^2/tau"))
+            what, note = f"viscosity at k = {k:.4g}/a", setting.caveat(self.case)
+            found.append(Comparison(what, nu, error, expected, "a^2/tau", note))
         return found

@@ -56,7 +56,12 @@ def _line(c: Comparison) -> str:
     text = f"{c.what}: {with_error(c.measured, c.error)} {symbols(c.unit)}".rstrip()
     if c.expected == c.expected and (c.expected or c.error > 0):
         text += f"   (theory {c.expected:.4g}"
-        text += f", {c.deviation:+.1f} s.e.)" if c.error > 0 else ")"
+        if c.approximate:
+            text += f", approximate, {c.percent:+.2g} %)"
+        else:
+            text += f", {c.deviation:+.1f} s.e.)" if c.error > 0 else ")"
+    elif c.expected != c.expected and c.note:
+        text += f"   ({c.note})"
     return text
 
 

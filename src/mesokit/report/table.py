@@ -52,4 +52,6 @@ def _cells(c: Comparison) -> tuple[str, ...]:
         deviation = f"{c.deviation:+.1f} s.e."
         if math.isfinite(c.percent) and c.expected:
             deviation += f" ({c.percent:+.1f} %)"
+    elif c.approximate and math.isfinite(c.percent):
+        expected, deviation = f"about {expected}", f"{c.percent:+.2g} %"
     return c.what, with_error(c.measured, c.error), expected, c.unit, deviation, c.note

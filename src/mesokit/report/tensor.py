@@ -47,7 +47,7 @@ def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) 
     ax.margins(y=0.2)
     symbol = r"$\sigma_{\alpha\beta}$" if result.quantity == "stress" else "force per area"
     ax.set_ylabel(labelled(symbol, result.units["value"]))
-    ax.legend(loc="best")
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=2)  # below: no data there
 
 
 def _names(result: Result, entry: tuple[int, ...]) -> list[str]:

@@ -4,7 +4,7 @@ Source: J. Ramirez, S. K. Sukumaran, B. Vorselaars and A. E. Likhtman, J. Chem. 
 154103 (2010).
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,6 +19,14 @@ class Correlation(NamedTuple):
     lag: NDArray[np.int64]
     value: NDArray[np.float64]
     error: NDArray[np.float64]
+
+
+class Products(NamedTuple):
+    """Lags (n,) in samples, sums (blocks, n, *shape) and numbers (blocks, n) of products."""
+
+    lag: NDArray[np.int64]
+    sums: NDArray[np.float64]
+    counts: NDArray[np.float64]
 
 
 class _Level(NamedTuple):
@@ -169,19 +177,17 @@ class MultipleTau:
         array([ 1., -1.])
         """
         axes = _axes(average_over, len(self.shape))
-        lag, value, error = [], [], []
+        lag: list[NDArray[np.int64]] = []
+        value, error = [], []
         zero, zero_residuals = np.ones(()), np.zeros(())
-        for depth in range(len(self._levels)):
-            lags, sums, counts = self._products(depth)
-            if not len(lags):
-                continue
+        for lags, sums, counts in self.products():
             sums = sums.mean(axis=axes) if axes else sums
             counts = counts.reshape(counts.shape + (1,) * (sums.ndim - 2))
             total = counts.sum(axis=0)
             mean = sums.sum(axis=0) / total
             residuals = (sums - mean * counts) / total
             if normalised:
-                if depth == 0:
+                if not lag:
                     zero, zero_residuals = mean[0], residuals[:, :1]
                 with np.errstate(divide="ignore", invalid="ignore"):
                     mean = mean / zero
@@ -194,10 +200,28 @@ class MultipleTau:
             return Correlation(np.zeros(0, np.int64), np.zeros((0, *kept)), np.zeros((0, *kept)))
         return Correlation(np.concatenate(lag), np.concatenate(value), np.concatenate(error))
 
-    def _products(
-        self, depth: int
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
-        """Sampled lags (n,), sums (blocks, n, *shape) and numbers of products (blocks, n)."""
+    def products(self, within_blocks: bool = False) -> Iterator[Products]:
+        """What `correlation` is made of, level by level, shortest lags first.
+
+        Parameters: `within_blocks` leaves out levels that average over more samples than a block
+        of time holds. Yields the levels that have been sampled: lags (n,), sums of products
+        (blocks, n, *shape) and numbers of products (blocks, n).
+
+        >>> correlator = MultipleTau(max_lag=1)
+        >>> for sample in (1.0, 2.0, 3.0):
+        ...     correlator.add(sample)
+        >>> lag, sums, counts = next(correlator.products())
+        >>> sums.sum(axis=0), counts.sum(axis=0)
+        (array([14.,  8.]), array([3., 2.]))
+        """
+        for depth in range(len(self._levels)):
+            if within_blocks and self.averages**depth > self.block_length:
+                return
+            found = self._level_products(depth)
+            if len(found.lag):
+                yield found
+
+    def _level_products(self, depth: int) -> Products:
         step = self.averages**depth
         sums = self._levels[depth].sums[:, ::-1]  # shortest lag first
         offsets = np.arange(self.points - sums.shape[1], self.points)
@@ -208,7 +232,7 @@ class MultipleTau:
         keep = offsets < self.count // step  # the entry `offset` before the last exists
         if self.max_lag is not None:
             keep &= offsets * step <= self.max_lag
-        return step * offsets[keep], sums[:used, keep], counts[:, keep].astype(float)
+        return Products(step * offsets[keep], sums[:used, keep], counts[:, keep].astype(float))
 
     def state(self) -> dict[str, NDArray[Any]]:
         """Everything that `from_state` needs to go on with the same bits, as arrays."""

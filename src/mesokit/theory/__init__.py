@@ -6,6 +6,7 @@ Nothing here uses the rest of mesokit, so that it can judge it. Lengths are in c
 from mesokit.theory.couette import couette_velocity
 from mesokit.theory.finite_size import viscosity_renormalised
 from mesokit.theory.gamma import cell_energy_cdf, cell_energy_pdf, cell_energy_variance
+from mesokit.theory.held_temperature import shear_warming, temperature_offset
 from mesokit.theory.kolmogorov import (
     kolmogorov_onset_time,
     kolmogorov_velocity,
@@ -22,6 +23,7 @@ from mesokit.theory.mean_square_displacement import (
     decorrelation_from_diffusion,
     msd_molecular_chaos,
 )
+from mesokit.theory.origin import Origin, origins
 from mesokit.theory.poiseuille import PoiseuilleFit, poiseuille_fit, poiseuille_velocity
 from mesokit.theory.transport import Transport, transport
 from mesokit.theory.transverse_modes import (
@@ -36,6 +38,7 @@ from mesokit.theory.velocity_autocorrelation import (
 )
 
 __all__ = [
+    "Origin",
     "PoiseuilleFit",
     "Transport",
     "ViscosityFit",
@@ -54,8 +57,11 @@ __all__ = [
     "maxwell_speed_cdf",
     "maxwell_speed_pdf",
     "msd_molecular_chaos",
+    "origins",
     "poiseuille_fit",
     "poiseuille_velocity",
+    "shear_warming",
+    "temperature_offset",
     "transport",
     "transverse_correlation",
     "transverse_viscosity_fit",

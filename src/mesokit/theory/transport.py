@@ -182,6 +182,16 @@ def _check(
         )
 
 
+def cell_means(
+    dimension: int, density: float, angle: float | None, rule: str, thermostat: str
+) -> tuple[Array, Array, Array]:
+    """Occupancies N, their Poisson probabilities, and what a cell keeps of a velocity, r1 s1."""
+    n, p = _poisson(density)
+    rigid = rigid_share(dimension, n) if rule.endswith("+a") else 1 / n
+    r1 = _rotation(dimension, angle)[0]
+    return n, p, r1 * _thermostat(thermostat, np.rint(dimension * n * (1 - rigid)))[0]
+
+
 def _poisson(density: float) -> tuple[Array, Array]:
     """Occupancies N >= 1 that matter and their Poisson probabilities."""
     from scipy.special import gammaln
