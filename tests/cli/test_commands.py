@@ -106,6 +106,7 @@ class TestCheck:
             ({"fluid.force.acceleration": "[0.01, 0]"}, "Mach number"),
             ({"fluid.collision.angle": "2.27"}, "2.27 rad is 130.06"),
             ({"fluid.grid_shift": "0"}, "Galilean"),
+            ({"observe.velocity-profile.component": "y"}, "the flow is along x"),
             ({"fluid.timestep": "2"}, "mean free path is 2 cells"),
             ({"fluid.density": "2"}, "below 3"),
             ({"fluid.density": "5", "fluid.timestep": "0.5"}, "fluctuations"),
@@ -116,7 +117,7 @@ class TestCheck:
             ({"run.steps": "5"}, "takes no sample"),
             ({"observe": "[]"}, "no [[observe]]"),
             ({"trajectory": "{ every = 1 }", "run.steps": "10_000_000"}, "trajectory takes about"),
-            ({"box.size": "[1_000_000, 1_000]"}, "memory"),
+            ({"box.size": "[200_000, 1_000]", "observe": "[]"}, "memory"),
         ],
     )
     def test_warns(self, settings: dict[str, str], words: str, capsys: Captured) -> None:
