@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from mesokit.cli import TEMPLATES
-from mesokit.cli.commands import CASE, SET, THREADS, cli, read
+from mesokit.cli.commands import CASE, SET, THREADS, cli, naming, read
 from mesokit.cli.words import number, show_table
 from mesokit.errors import CaseError
 
@@ -52,8 +52,11 @@ def new(name: str, template: str | None) -> None:
 def check(case: Path, settings: dict[str, str], threads: int | None) -> None:
     """Check CASE, show it with all defaults, what follows from it, and what to mind."""
     from mesokit.derived import derive
+    from mesokit.first_state import first_state
 
     full = read(case, settings)
+    with naming(case):
+        first_state(full)
     _show_check(full, derive(full, threads))
 
 

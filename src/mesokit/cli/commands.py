@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import contextlib
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -54,3 +55,12 @@ def read(path: Path, settings: dict[str, str]) -> Case:
     for problem in case.missing_files():
         raise CaseError(f"{path}: {problem}")
     return case
+
+
+@contextlib.contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Put the name of the case file before what is wrong in it."""
+    try:
+        yield
+    except CaseError as error:
+        raise CaseError(f"{path}: {error}") from None

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from mesokit.cli.commands import CASE, RUN, SET, THREADS, cli, read
+from mesokit.cli.commands import CASE, RUN, SET, THREADS, cli, naming, read
 from mesokit.cli.words import reason
 from mesokit.errors import CaseError, RunError
 
@@ -40,7 +40,8 @@ def run(
             click.echo(f"warning: {warning}", err=True)
     from mesokit.simulation import Simulation
 
-    simulation = Simulation(full, threads=threads)
+    with naming(case):
+        simulation = Simulation(full, threads=threads)
     _clear(output)  # only now: a case that cannot start must not cost an earlier run
     simulation.write_to(output)
     with _run_errors(output):
@@ -58,10 +59,14 @@ def resume(run: Path, threads: int | None, quiet: bool) -> None:
     from mesokit.progress import Reporter
 
     _require_run(run)
+    from mesokit.io.run_directory import RunDirectory
     from mesokit.simulation import Simulation
 
     with _run_errors(run):
-        Simulation.resume(run, threads=threads).run(progress=Reporter(quiet))
+        simulation = Simulation.resume(run, threads=threads)
+        if not (quiet or RunDirectory(run).checkpoint_file.exists()):
+            click.echo(f"{run}: no checkpoint yet; starting from step 0", err=True)
+        simulation.run(progress=Reporter(quiet))
     if not quiet:
         _show_results(run)
 
