@@ -116,7 +116,7 @@ def parse(text: str) -> dict[str, Any]:
 
 def _read(path: Path) -> str:
     try:
-        return path.read_text(encoding="utf-8")
+        return path.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
         there = [p.stem for p in path.parent.glob("*.toml")] if path.parent.is_dir() else []
         close = difflib.get_close_matches(path.stem, there, 1, 0.6)
@@ -150,6 +150,8 @@ def _override(data: dict[str, Any], key: str, value: Any) -> None:
     if isinstance(value, str):
         with contextlib.suppress(tomllib.TOMLDecodeError):  # a bare word is a text
             value = tomllib.loads(f"value = {value}")["value"]
+    if isinstance(here, list) and last:
+        raise _which(key, here)
     if not isinstance(here, dict) or not last:
         raise CaseError(f"{key} = {show(value)}: expected a key path such as fluid.density")
     here[last] = value
@@ -161,11 +163,19 @@ def _step(here: Any, part: str, path: str) -> Any:
         found = [i for i, t in enumerate(tables) if part in (t.get("name"), t.get("quantity"))]
         index = int(part) - 1 if part.isdecimal() else found[0] if len(found) == 1 else -1
         if not 0 <= index < len(here):
-            raise CaseError(f"{path}: expected a number from 1 to {len(here)}, or a unique name")
+            raise _which(path, here)
         return here[index]
     if not isinstance(here, dict):
         raise CaseError(f"{path}: no such table")
     return here.setdefault(part, {})
+
+
+def _which(path: str, items: list[Any]) -> CaseError:
+    """The last part of the path should have said which item of a list is meant."""
+    start, _, last = path.rpartition(".")
+    example = f"{start}.1" if last.isdecimal() else f"{start}.1.{last}"
+    known = f"a number from 1 to {len(items)}" if len(items) != 1 else "the number 1"
+    return CaseError(f"{path}: expected {known} or a unique name after {start}, as in {example}")
 
 
 def _locate(data: dict[str, Any], folder: Path) -> None:

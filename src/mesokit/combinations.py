@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
@@ -14,7 +15,9 @@ from mesokit.geometry import Surface
 if TYPE_CHECKING:
     from mesokit.case import Case
 
-MOST_CELLS = 2**31 - 1  # cell numbers are 32-bit
+MOST_CELLS = MOST_PARTICLES = 2**31 - 1  # their numbers are 32-bit
+MOST_BINS = 2**24  # of one observable: some gigabytes
+LONGEST_PATH = 10.0  # cells
 
 
 def check(case: Case) -> None:
@@ -37,6 +40,38 @@ def size(case: Case) -> Iterator[str]:
         yield f"box.size = {show(case.box.size)}: expected at most {MOST_CELLS} cells"
     if case.particles < 2:
         yield f"fluid.density = {show(case.fluid.density)}: fewer than 2 particles in this box"
+    if case.particles > MOST_PARTICLES:
+        yield (
+            f"fluid.density = {show(case.fluid.density)}: {case.particles} particles in this box; "
+            f"expected at most {MOST_PARTICLES}"
+        )
+
+
+def mean_free_path(case: Case) -> Iterator[str]:
+    """A fluid whose particles meet."""
+    fluid = case.fluid
+    path = fluid.timestep * math.sqrt(fluid.kT / fluid.mass)
+    if path > LONGEST_PATH:
+        yield (
+            f"fluid.timestep = {show(fluid.timestep)}: the mean free path timestep sqrt(kT/mass) "
+            f"is {path:.3g} cells; expected at most {LONGEST_PATH:g}"
+        )
+
+
+def bins(case: Case) -> Iterator[str]:
+    """No more than fit into the memory."""
+    for i, observable in enumerate(case.observe):
+        per_cell = getattr(observable, "bins_per_cell", None)
+        if per_cell is None:
+            continue
+        axes = getattr(observable, "axes", None) or (getattr(observable, "axis", "x"),)
+        lengths: dict[str, int] = dict(zip(AXES, case.box.size, strict=False))
+        number = math.prod(lengths.get(axis, 1) * per_cell for axis in axes)
+        if number > MOST_BINS:
+            yield (
+                f"observe[#{i + 1}].bins_per_cell = {per_cell}: {number} bins in this box; "
+                f"expected at most {MOST_BINS}"
+            )
 
 
 def vectors(case: Case) -> Iterator[str]:
@@ -166,7 +201,8 @@ def trajectory(case: Case) -> Iterator[str]:
 
 
 RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
-    size, axes, vectors, walls, collision, force, shear, start, names, trajectory,
+    size, mean_free_path, axes, vectors, walls, collision, force, shear, start, names, bins,
+    trajectory,
 )  # fmt: skip
 
 

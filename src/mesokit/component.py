@@ -8,12 +8,13 @@ are told apart by their tag (`rule`, `shape` or `quantity`), unknown keys are re
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import difflib
 import functools
+import math
 import numbers
 import operator
-import sys
 import types
 import typing
 from collections.abc import Iterable, Sequence
@@ -126,15 +127,15 @@ def _union(hints: Sequence[Any]) -> Any:
 def _real(value: Any) -> float:
     if not isinstance(value, numbers.Real) or isinstance(value, bool):
         raise PydanticCustomError("number", "expected a number")
-    number: Any = value
-    if abs(number) <= sys.float_info.max:
-        return float(number)
+    with contextlib.suppress(OverflowError):
+        if math.isfinite(number := float(value)):
+            return number
     raise PydanticCustomError("number", "expected a finite number")
 
 
 def _whole(value: Any) -> int:
     if isinstance(value, numbers.Real) and not isinstance(value, bool):
-        whole: Any = value if isinstance(value, numbers.Integral) else float(value)
+        whole: Any = int(value) if isinstance(value, numbers.Integral) else float(value)
         if not abs(whole) < 2**63:
             raise PydanticCustomError("whole", "expected a whole number of at most 63 bits")
         if whole == int(whole):

@@ -196,7 +196,7 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
             f"fluid.grid_shift = {fluid.grid_shift:g}: with a mean free path of {path:.3g} cells "
             "(below 0.5) only the full shift makes the fluid Galilean invariant"
         )
-    if path > 1:
+    if _above(path, 1, 3):
         yield (
             f"fluid.timestep = {fluid.timestep:g}: the mean free path is {path:.3g} cells; above 1 "
             "the fluid is a dilute gas, with slip at walls"
@@ -215,7 +215,7 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
     if transport is None:
         reason = setting.caveat(case) or "no formula for this fluid"
         yield f"transport coefficients: {reason}; plots will lack theory"
-    elif case.box.dimension == 2 and fluid.density * fluid.mass * transport.viscosity < 7:
+    elif case.box.dimension == 2 and _above(7, transport.dynamic_viscosity, 3):
         yield (
             f"in 2D fluctuations raise a dynamic viscosity of {transport.dynamic_viscosity:.3g} "
             "(below 7) by several percent over theory, more in a larger box"
@@ -225,14 +225,14 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
 def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
     fluid, force = case.fluid, case.fluid.force
     sheared = numbers.flow == "lees-edwards"
-    if numbers.mach is not None and numbers.mach > 0.2 and not sheared:
+    if numbers.mach is not None and _above(numbers.mach, 0.2) and not sheared:
         yield (
             f"Mach number {numbers.mach:.2g}: above 0.2 the fluid is compressible; "
             "lower the force or the plate velocity"
         )
     if sheared and numbers.transport:
         cell = abs(case.box.shear_rate) / numbers.transport.sound_speed
-        if cell > 0.2:
+        if _above(cell, 0.2):
             yield (
                 f"box.shear_rate = {case.box.shear_rate:g}: velocities differ by {cell:.2g} of the "
                 "speed of sound across a cell; keep it below 0.2"
@@ -263,7 +263,7 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
         )
     if force.rule == "sinusoidal" and numbers.reynolds is not None:
         flow_size = case.box.size[AXES.index(force.flow)]
-        if numbers.reynolds > 1.4 and flow_size > case.box.size[across] / force.waves:
+        if _above(numbers.reynolds, 1.4) and flow_size > case.box.size[across] / force.waves:
             yield (
                 f"Kolmogorov flow at Reynolds number {numbers.reynolds:.2g} (above 1.4) breaks up "
                 "in a box that is longer along the flow than one wave; make it square"
@@ -279,6 +279,7 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
 
 def _run_warnings(case: Case, numbers: Derived) -> Iterator[str]:
     run = case.run
+    flowing = [a for k, a in enumerate(case.box.axes) if setting.flow(case, k).kind != "rest"]
     if not case.observe and case.trajectory is None:
         yield "no [[observe]] and no [trajectory]: the run will leave nothing but its last state"
     for i, observable in enumerate(case.observe):
@@ -286,6 +287,12 @@ def _run_warnings(case: Case, numbers: Derived) -> Iterator[str]:
             yield (
                 f"observe[#{i + 1}].every = {observable.every}: more than run.steps = {run.steps}; "
                 f"{observable.label} takes no sample"
+            )
+        seen = getattr(observable, "component", None)
+        if observable.quantity == "velocity-profile" and flowing and seen not in flowing:
+            yield (
+                f"observe[#{i + 1}].component = {seen!r}: nothing flows along {seen}; "
+                f"the flow is along {' and '.join(flowing)}"
             )
     if case.trajectory is not None:
         if case.trajectory.every > run.steps:
@@ -303,6 +310,11 @@ def _run_warnings(case: Case, numbers: Derived) -> Iterator[str]:
             f"the run needs {size_text(numbers.memory)} of memory, "
             f"this machine has {size_text(memory)}"
         )
+
+
+def _above(value: float, limit: float, digits: int = 2) -> bool:
+    """Whether a value is above a limit even as it is shown, to so many digits."""
+    return float(f"{value:.{digits}g}") > float(f"{limit:.{digits}g}")
 
 
 def _machine_memory() -> int | None:

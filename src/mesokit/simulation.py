@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import numbers
 import os
 import signal
 import threading
@@ -12,12 +13,14 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from mesokit.case import Case
+from mesokit.component import show
 from mesokit.errors import CaseError, CheckpointError, RunError
 from mesokit.execute.cpu import CPU
+from mesokit.first_state import first_state, part
 from mesokit.io import checkpoint, h5md
 from mesokit.io.run_directory import RunDirectory, now, provenance
 from mesokit.io.trajectory import TrajectoryWriter
-from mesokit.mpcd.initial import read_arrays, start
+from mesokit.mpcd.initial import start
 from mesokit.progress import Reporter
 
 if TYPE_CHECKING:
@@ -33,8 +36,9 @@ class Simulation:
 
     Parameters
     ----------
-    case : Case, optional
-        What to simulate; or give its parts (`run`, `box`, `fluid`, `walls`, ...) by name.
+    case : Case or path, optional
+        What to simulate, or the file of it; or give its parts (`run`, `box`, `fluid`, `walls`,
+        ...) by name.
     output : path, optional
         Folder to write to; nothing is written without it.
     threads : int, optional
@@ -60,7 +64,7 @@ class Simulation:
 
     def __init__(
         self,
-        case: Case | None = None,
+        case: Case | str | Path | None = None,
         *,
         output: str | Path | None = None,
         threads: int | None = None,
@@ -70,12 +74,12 @@ class Simulation:
     ) -> None:
         if (case is None) == (not parts):
             raise CaseError("Simulation: expected a case, or its parts by name")
-        self.case = Case(**parts) if case is None else case
-        self.threads = threads or len(os.sched_getaffinity(0))
-        self._build()
+        self.case = Case(**parts) if case is None else _case(case)
+        self.threads = _threads(threads)
         given = positions is not None or velocities is not None
-        positions, velocities = read_arrays(self.case, positions, velocities, _last_state)
-        start(self.fluid, positions, velocities)
+        state = first_state(self.case, positions, velocities)
+        self._build()
+        start(self.fluid, *state)
         self.directory: RunDirectory | None = None
         if output is not None:
             self.write_to(output)
@@ -94,19 +98,26 @@ class Simulation:
         Raises RunError, CheckpointError if there is none or it is damaged.
         """
         directory = RunDirectory.existing(output)
+        if directory.data_file.exists() and not directory.checkpoint_file.exists():
+            raise CheckpointError(
+                f"{directory.checkpoint_file}: no such checkpoint, though the run had come to "
+                f"{directory.data_file.name}; to run it anew: {directory.again}"
+            )
         self = cls.__new__(cls)
         self.case = Case.from_toml(directory.case_file)
-        self.threads = threads or len(os.sched_getaffinity(0))
+        self.threads = _threads(threads)
         self._build()
         self._attach(directory)
         if directory.checkpoint_file.exists():
             self._restore()
         else:
-            start(self.fluid, *read_arrays(self.case, None, None, _last_state))
+            start(self.fluid, *first_state(self.case))
         if self.writer is not None:
+            self._require_frames(directory, self.writer)
             self.writer.resume(self.step)
         record = directory.read_provenance() or provenance(self.case, self.threads)
-        self._save_provenance(record | {"resumed": [*record.get("resumed", []), now()]})
+        resumed = [*record.get("resumed", []), now()]
+        self._save_provenance(record | {"resumed": resumed, "failed": None})
         return self
 
     def _build(self) -> None:
@@ -158,6 +169,9 @@ class Simulation:
                 self._loop(progress)
                 if self._stopped_by is None:
                     self._end()
+        except RunError as error:
+            self._note_failure(str(error))
+            raise
         finally:
             progress.finish()
         if self._stopped_by is not None:
@@ -260,11 +274,37 @@ class Simulation:
         path = self.directory.checkpoint_file
         arrays, _ = checkpoint.read(path, checkpoint.digest(self.case.to_toml()))
         try:
-            self.fluid.restore(_part(arrays, "fluid/"))
+            self.fluid.restore(part(arrays, "fluid/"))
             for name, accumulator in self.accumulators.items():
-                accumulator.restore(_part(arrays, f"observe/{name}/"))
+                accumulator.restore(part(arrays, f"observe/{name}/"))
         except (KeyError, ValueError, IndexError) as error:
             raise CheckpointError(f"{path}: does not fit this case: {error}") from None
+
+    def _require_frames(self, directory: RunDirectory, writer: TrajectoryWriter) -> None:
+        """Raise RunError unless all frames up to this step are in segments or the data file."""
+        warmup, every = self.case.run.warmup, writer.trajectory.every
+        place, there = directory.trajectory_folder, writer.steps()
+        if not len(there) and directory.data_file.exists():
+            place = directory.data_file
+            try:
+                there = h5md.frame_steps(place)
+            except RunError:
+                raise RunError(
+                    f"{place}: damaged, and only it held the frames of the trajectory; put a copy "
+                    f"in its place, or run anew: {directory.again}"
+                ) from None
+        wanted = range(warmup + every, self.step + 1, every)
+        lost = sorted(set(wanted) - set(there.tolist()))
+        if lost:
+            raise RunError(
+                f"{place}: {len(lost)} of {len(wanted)} frames are missing, the first that of step "
+                f"{lost[0]}; put the files back, or run anew: {directory.again}"
+            )
+
+    def _note_failure(self, reason: str) -> None:
+        if self.directory is not None:
+            with contextlib.suppress(RunError):  # the disk may be what failed
+                self._save_provenance(self.directory.read_provenance() | {"failed": reason})
 
     def _checkpoint_due(self, seconds: float) -> bool:
         if self.directory is None or self._stopped_by is not None:
@@ -298,19 +338,23 @@ class Simulation:
                 signal.signal(number, handler)
 
 
+def _case(given: Any) -> Case:
+    if isinstance(given, Case):
+        return given
+    if isinstance(given, str | os.PathLike):
+        return Case.from_toml(Path(given))
+    raise CaseError(f"Simulation: case = {show(given)}: expected a case, or the path of its file")
+
+
+def _threads(given: Any) -> int:
+    """So many as said, or one for each core."""
+    if given is None:
+        return len(os.sched_getaffinity(0))
+    if not isinstance(given, numbers.Integral) or isinstance(given, bool) or given < 1:
+        raise CaseError(f"threads = {show(given)}: expected a whole number of at least 1")
+    return int(given)
+
+
 def _next_chunk(steps: int, seconds: float) -> int:
     """So many steps that the next call takes CALL_SECONDS, growing at most fourfold at a time."""
     return max(1, min(4 * steps, int(steps * CALL_SECONDS / max(seconds, 1e-9))))
-
-
-def _part(arrays: dict[str, Any], start: str) -> dict[str, Any]:
-    return {key[len(start) :]: v for key, v in arrays.items() if key.startswith(start)}
-
-
-def _last_state(path: str) -> tuple[Any, Any]:
-    """Positions and velocities, by particle id, of the last checkpoint of an earlier run."""
-    directory = RunDirectory.existing(path)
-    fluid = CPU(Case.from_toml(directory.case_file))
-    arrays, _ = checkpoint.read(directory.checkpoint_file)
-    fluid.restore(_part(arrays, "fluid/"))
-    return fluid.positions(), fluid.velocities()

@@ -37,7 +37,7 @@ from mesokit import (
 )
 from mesokit.cli import TEMPLATES
 from mesokit.component import is_component
-from mesokit.derived import derive
+from mesokit.derived import Derived, derive
 
 positive = st.floats(1e-3, 1e3)
 small = st.floats(-1.0, 1.0)
@@ -86,7 +86,7 @@ def cases(draw: st.DrawFn) -> Case:
             size, shear_rate=0.0 if walled or not isinstance(force, NoForce) else draw(small)
         ),
         fluid=Fluid(
-            timestep=draw(positive), kT=draw(positive),
+            timestep=draw(st.floats(1e-5, 1e-2)), kT=draw(positive),
             collision=collision, thermostat=thermostat, force=force, species=tuple(species),
             grid_shift=draw(st.floats(0, 1)),
             start=draw(st.sampled_from([Start(), Start(run="/a b"), Start(positions='/c"\\d')])),
@@ -145,6 +145,37 @@ def test_components_are_frozen_and_take_arrays() -> None:
         box.size = (3, 3)  # type: ignore[misc]
 
 
+def test_numbers_of_numpy_are_numbers() -> None:
+    fluid = Fluid(density=np.float32(0.5), timestep=np.float16(0.25), mass=np.int64(2))  # type: ignore[arg-type]
+    assert (fluid.density, fluid.timestep, fluid.mass) == (0.5, 0.25, 2.0)
+    assert type(fluid.density) is float
+    run = Run(steps=np.int64(7), seed=np.uint8(3), warmup=np.float32(5))  # type: ignore[arg-type]
+    assert (run.steps, run.seed, run.warmup) == (7, 3, 5)
+    assert type(run.steps) is int
+    assert Uniform(np.float32([0.5, 0])).acceleration == (0.5, 0.0)  # type: ignore[arg-type]
+    for wrong in (np.float32("inf"), np.float64("nan"), 10**400):
+        with pytest.raises(CaseError, match="finite"):
+            Fluid(density=wrong)
+    with pytest.raises(CaseError, match="63 bits"):
+        Run(steps=np.int64(-(2**63)))  # type: ignore[arg-type]
+
+
+def test_a_byte_order_mark_is_no_text(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text("[run]\nsteps = 1\n[box]\nsize = [4, 4]", "utf-8-sig")
+    assert Case.from_toml(tmp_path / "case.toml").run.steps == 1
+
+
+def test_a_number_that_is_shown_as_the_limit_is_not_above_it() -> None:
+    def slit(push: float) -> Derived:
+        fluid = Fluid(force=Uniform((push, 0)))
+        return derive(Case(run=Run(1), box=Box([30, 30]), fluid=fluid, walls=(Plates("y"),)))
+
+    mach = slit(0.01).mach
+    assert mach
+    assert "Mach" not in " ".join(slit(0.01 * 0.203 / mach).warnings)
+    assert "Mach number 0.21:" in " ".join(slit(0.01 * 0.207 / mach).warnings)
+
+
 def test_errors_in_python_name_class_and_argument() -> None:
     with pytest.raises(CaseError, match=r"^SRD\.angle = 200: expected a number of at most 180$"):
         SRD(angle=200)
@@ -194,7 +225,12 @@ class TestOverrides:
             ("fluid.densty", "5", "fluid.densty: unknown key; did you mean 'density'?"),
             ("fluid.density", "-5", "fluid.density = -5: expected a number above 0"),
             ("run.steps.more", "5", "run.steps"),
-            ("wall.2.axis", "x", "wall.2: expected a number from 1 to 1"),
+            ("wall.2.axis", "x", "wall.2: expected the number 1 or a unique name"),
+            (
+                "wall.axis",
+                "x",
+                "wall.axis: expected the number 1 or a unique name after wall, as in wall.1.axis",
+            ),
             ("observe.stress.every", "1", "observe.stress: expected a number from 1 to 5"),
             ("", "1", "key path"),
         ],

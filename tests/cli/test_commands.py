@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import errno
 import io
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -12,6 +15,7 @@ from mesokit.case import Case
 from mesokit.cli import TEMPLATES, main
 
 Captured = pytest.CaptureFixture[str]
+SOURCE = str(Path(__file__).parents[2] / "src")
 SMALL = """
 [run]
 steps = 20
@@ -104,6 +108,7 @@ class TestCheck:
             ({"fluid.grid_shift": "0"}, "Galilean"),
             ({"fluid.grid_shift": "0"}, "theory needs the full grid shift"),
             ({"fluid.thermostat.rule": "rescale"}, "reads up to 1.6 % cold"),
+            ({"observe.velocity-profile.component": "y"}, "the flow is along x"),
             ({"fluid.timestep": "2"}, "mean free path is 2 cells"),
             ({"fluid.density": "2"}, "below 3"),
             ({"fluid.density": "5", "fluid.timestep": "0.5"}, "fluctuations"),
@@ -114,7 +119,7 @@ class TestCheck:
             ({"run.steps": "5"}, "takes no sample"),
             ({"observe": "[]"}, "no [[observe]]"),
             ({"trajectory": "{ every = 1 }", "run.steps": "10_000_000"}, "trajectory takes about"),
-            ({"box.size": "[1_000_000, 1_000]"}, "memory"),
+            ({"box.size": "[200_000, 1_000]", "observe": "[]"}, "memory"),
         ],
     )
     def test_warns(self, settings: dict[str, str], words: str, capsys: Captured) -> None:
@@ -195,6 +200,7 @@ def test_commands_on_a_run_need_one(command: str, capsys: Captured) -> None:
         (["--density", "-1"], "--density"),
         (["--angle", "400"], "--angle"),
         (["--rule", "at", "--angle", "90"], "--angle"),
+        (["--angle-distribution", "uniform"], "--angle-distribution = 'uniform'"),
         (["--rule", "sdr"], "--rule"),
         (["--dimension", "4"], "--dimension"),
     ],
@@ -240,6 +246,31 @@ def test_failures_end_in_one_line(
     message = capsys.readouterr().err.strip()
     assert "\n" not in message
     assert words in message
+
+
+INTERRUPT_ON_IMPORT = """
+import runpy, signal, sys
+module = sys.argv.pop(1)
+class Interrupt:
+    def find_spec(self, name, *rest):
+        if name == module:
+            signal.raise_signal(signal.SIGINT)
+sys.meta_path.insert(0, Interrupt())
+sys.argv += ["run", "case.toml"]
+runpy.run_module("mesokit", run_name="__main__")
+"""
+
+
+@pytest.mark.parametrize("module", ["click", "pydantic", "numba", "h5py", "mesokit.simulation"])
+def test_ctrl_c_while_starting(module: str) -> None:
+    Path("case.toml").write_text(SMALL)
+    done = subprocess.run(
+        [sys.executable, "-c", INTERRUPT_ON_IMPORT, module],
+        env=os.environ | {"PYTHONPATH": SOURCE}, capture_output=True, text=True,
+    )  # fmt: skip
+    assert done.returncode == 130
+    assert done.stderr.splitlines()[-1] == "mesokit: interrupted"
+    assert "Traceback" not in done.stderr
 
 
 class Terminal(io.StringIO):

@@ -74,6 +74,11 @@ def flipped(data: bytes) -> bytes:
     return data[:middle] + bytes(255 - b for b in data[middle : middle + 64]) + data[middle + 64 :]
 
 
+def flipped_anywhere(data: bytes) -> bytes:
+    """Whole at its start and of the right length, nonsense from there on."""
+    return data[:2048] + bytes(255 - b for b in data[2048:])
+
+
 def empty(data: bytes) -> bytes:
     return b""
 
@@ -90,7 +95,9 @@ def test_damaged_checkpoint(damage, folder: Path, capsys: pytest.CaptureFixture[
 def test_checkpoint_of_another_case(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     shutil.copy(folder / "other" / "checkpoint.npz", folder / "run" / "checkpoint.npz")
     before = contents(folder)
-    assert "another case" in refusal(capsys, "resume", "run")
+    message = refusal(capsys, "resume", "run")
+    assert "another case" in message
+    assert "fluid.start.run = 'run'" in message
     assert contents(folder) == before
 
 
@@ -109,38 +116,103 @@ def test_broken_case_in_a_run(folder: Path, capsys: pytest.CaptureFixture[str]) 
 
 
 @pytest.mark.parametrize("command", ["info", "plot"])
-@pytest.mark.parametrize("damage", [truncated, empty])
+@pytest.mark.parametrize("damage", [truncated, flipped_anywhere, empty])
 def test_damaged_results(
     damage, command: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     results = folder / "run" / "run.h5"
     results.write_bytes(damage(results.read_bytes()))
-    assert "run.h5" in refusal(capsys, command, "run")
+    assert "run.h5: damaged" in refusal(capsys, command, "run")
+
+
+@pytest.mark.parametrize("damage", [truncated, flipped_anywhere, empty])
+def test_the_frames_are_only_in_the_data_file(
+    damage, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    results = folder / "run" / "run.h5"
+    results.write_bytes(damage(results.read_bytes()))
+    before = contents(folder)
+    message = refusal(capsys, "resume", "run")
+    assert "run/run.h5: damaged" in message
+    assert "mesokit run run/case.toml --output run --overwrite" in message
+    assert contents(folder) == before
+
+
+def test_lost_data_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "run" / "run.h5").unlink()
+    message = refusal(capsys, "resume", "run")
+    assert "run/trajectory: 4 of 4 frames are missing, the first that of step 5" in message
+
+
+def test_lost_checkpoint(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "run" / "checkpoint.npz").unlink()
+    assert "checkpoint.npz: no such checkpoint" in refusal(capsys, "resume", "run")
+    (folder / "run" / "run.h5").unlink()
+    with pytest.raises(SystemExit) as end:
+        main(["resume", "run", "--threads", "1"])
+    assert not end.value.code
+    assert "starting from step 0" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("name", ["positions", "velocities"])
-@pytest.mark.parametrize("content", ["no array", "wrong shape", "not finite"])
+@pytest.mark.parametrize("content", ["no array", "wrong shape", "not finite", "texts"])
+@pytest.mark.parametrize("command", ["check", "run"])
 def test_wrong_start_arrays(
-    name: str, content: str, folder: Path, capsys: pytest.CaptureFixture[str]
+    command: str, name: str, content: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     import numpy as np
 
     if content == "no array":
         (folder / "start.npy").write_text("1 2 3")
+    elif content == "texts":
+        np.save("start.npy", np.full((640, 2), "x"))
     else:
         np.save("start.npy", np.full((640, 3 if content == "wrong shape" else 2), np.nan))
-    message = refusal(
-        capsys, "run", "case.toml", "--output", "new", "--set", f"fluid.start.{name}=start.npy"
-    )
-    assert f"fluid.start.{name}" in message
+    message = refusal(capsys, command, "case.toml", "--set", f"fluid.start.{name}=start.npy")
+    assert f"case.toml: fluid.start.{name}" in message
 
 
-def test_start_from_a_run_of_another_size(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    message = refusal(
-        capsys, "run", "case.toml", "--output", "new",
-        "--set", "fluid.start.run=run", "--set", "fluid.density=11",
-    )  # fmt: skip
-    assert "start" in message
+@pytest.mark.parametrize("command", ["check", "run"])
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        (["fluid.density=11"], "(640, 2): expected (704, 2)"),
+        (["box.size=[8, 8, 2]"], "(640, 2): expected (1280, 3)"),
+        (["fluid.start.run=.."], "holds no run"),
+        (["fluid.start.run=nowhere"], "no such folder"),
+        (["fluid.start.run=unstarted"], "no such checkpoint"),
+    ],
+)
+def test_start_from_a_run_that_does_not_fit(
+    settings: list[str], words: str, command: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "unstarted").mkdir()
+    shutil.copy(folder / "case.toml", folder / "unstarted")
+    options = [part for text in ["fluid.start.run=run", *settings] for part in ("--set", text)]
+    message = refusal(capsys, command, "case.toml", "--output" if command == "run" else "--threads",
+                      "1", *options)  # fmt: skip
+    assert "case.toml: fluid.start.run = " in message
+    assert words in message
+    assert not (folder / "1").exists()
+
+
+@pytest.mark.parametrize("command", ["info", "plot", "resume"])
+def test_a_run_that_failed_says_why(
+    command: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    options = ["--set", "fluid.force={ rule = 'uniform', acceleration = [1e9, 0] }"]
+    assert "heats up" in refusal(capsys, "run", "case.toml", "--output", "hot", "--quiet", *options)
+    if command == "info":
+        main_ends(["info", "hot"])
+        assert "failed: step 20: a particle moves" in capsys.readouterr().out
+    else:
+        assert "heats up" in refusal(capsys, command, "hot", *["--quiet"] * (command == "resume"))
+
+
+def main_ends(arguments: list[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        main(arguments)
+    assert not end.value.code
 
 
 def test_folder_that_cannot_be_made(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -114,6 +114,29 @@ def test_wrong_arrays_are_refused(case, arrays):
             Simulation(case, **bad)
 
 
+def test_arrays_of_no_numbers_are_refused(case):
+    with pytest.raises(CaseError, match=r"fluid\.start\.positions: expected an array of numbers"):
+        Simulation(case, positions=[["a", "b"]])
+
+
+def test_a_case_may_be_the_path_of_its_file(case, case_file):
+    assert (
+        Simulation(case_file, threads=1).case == Simulation(str(case_file), threads=1).case == case
+    )
+    with pytest.raises(CaseError, match=r"case = 3: expected a case, or the path of its file"):
+        Simulation(3)
+    with pytest.raises(CaseError, match=r"nowhere\.toml: no such file"):
+        Simulation("nowhere.toml")
+
+
+@pytest.mark.parametrize("threads", [0, -1, 1.5, True, "2"])
+def test_threads_are_a_whole_number(case, uninterrupted, threads):
+    with pytest.raises(CaseError, match=r"^threads = .*: expected a whole number of at least 1$"):
+        Simulation(case, threads=threads)
+    with pytest.raises(CaseError, match=r"^threads = "):
+        Simulation.resume(uninterrupted.directory.path, threads=threads)
+
+
 def test_start_from_an_earlier_run(case, uninterrupted, tmp_path):
     earlier = Start(run=str(uninterrupted.directory.path))
     going_on = replaced(case, fluid=dataclasses.replace(case.fluid, start=earlier))

@@ -8,6 +8,7 @@ import threading
 import numpy as np
 import pytest
 
+import mesokit
 from mesokit.errors import CheckpointError, RunError
 from mesokit.io import atomic
 from mesokit.progress import Reporter
@@ -40,6 +41,22 @@ def test_a_crash_at_any_step(case, ends_alike, tmp_path, crash_at, seed):
         assert simulation.step <= step + 20
     simulation.run()
     ends_alike(simulation)
+
+
+def test_lost_frames_are_missed(case, tmp_path, crash_at):
+    simulation = Simulation(case, output=tmp_path / "run", threads=1)
+    with pytest.raises(crash_at.error):
+        simulation.run(progress=crash_at(200))
+    assert "its last checkpoint is at step" in repr(mesokit.open(tmp_path / "run"))
+    with pytest.raises(RunError, match=r"has not ended.* of 437.*mesokit resume"):
+        mesokit.open(tmp_path / "run").plot()
+    segments = simulation.writer.segments()
+    lost = segments[1]
+    lost.unlink()
+    step = int(lost.stem.split("-")[1])
+    with pytest.raises(RunError, match=rf"trajectory: .* frames are missing, .* step {step};"):
+        Simulation.resume(tmp_path / "run")
+    assert simulation.writer.segments() == [s for s in segments if s != lost]
 
 
 def test_a_finished_run_can_be_resumed(case, ends_alike, tmp_path):

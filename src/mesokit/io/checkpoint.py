@@ -66,12 +66,30 @@ def read(path: str | Path, case: str | None = None) -> tuple[Arrays, dict[str, A
     missing, truncated, corrupted, of another format or of another case.
     """
     path = Path(path)
+    arrays, header = _load(path)
+    if sorted(arrays) != header["arrays"]:
+        raise CheckpointError(f"{path}: damaged: arrays are missing")
+    if case is not None and header["case"] != case:
+        raise CheckpointError(
+            f"{path}: belongs to another case, or the case was changed since; to start another "
+            f"case from this state, give it fluid.start.run = {str(path.parent)!r}"
+        )
+    return arrays, header["meta"]
+
+
+def read_meta(path: str | Path) -> dict[str, Any]:
+    """Meta alone, without the arrays. Raises CheckpointError as `read` does."""
+    return dict(_load(Path(path), (_META,))[1]["meta"])
+
+
+def _load(path: Path, only: tuple[str, ...] | None = None) -> tuple[Arrays, dict[str, Any]]:
+    """Arrays (all unless said) and header. Raises CheckpointError for a file of another format."""
     try:
         with np.load(path, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
+            arrays = {name: file[name] for name in only or file.files}
         header = json.loads(str(arrays.pop(_META)))
-        version, owner = header["format"], header["case"]
-        names, meta = header["arrays"], header["meta"]
+        version = header["format"]
+        header = {name: header[name] for name in ("case", "arrays", "meta")}
     except FileNotFoundError:
         raise CheckpointError(f"{path}: no such checkpoint") from None
     except OSError as error:
@@ -83,11 +101,7 @@ def read(path: str | Path, case: str | None = None) -> tuple[Arrays, dict[str, A
         raise CheckpointError(
             f"{path}: format {version}; this version of mesokit reads format {FORMAT}"
         )
-    if sorted(arrays) != names:
-        raise CheckpointError(f"{path}: damaged: arrays are missing")
-    if case is not None and owner != case:
-        raise CheckpointError(f"{path}: belongs to another case, or the case was changed since")
-    return arrays, meta
+    return arrays, header
 
 
-__all__ = ["FORMAT", "digest", "read", "write"]
+__all__ = ["FORMAT", "digest", "read", "read_meta", "write"]

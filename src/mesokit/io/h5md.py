@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -73,8 +74,9 @@ def write(
                         _particles(file, case, trajectory, steps, masses, species)
                     else:
                         steps = file["particles/fluid/box/edges/step"][()]
+                measured = file.create_group("results")
                 for result in results:
-                    _result(file.require_group("results"), result)
+                    _result(measured, result)
                     _time_series(file, result, steps)
         except RuntimeError as error:  # what h5py makes of a full disk while closing
             raise OSError(None, str(error).splitlines()[0]) from error
@@ -83,17 +85,32 @@ def write(
 def read_results(path: str | Path) -> dict[str, Result]:
     """Results by name, equal to what was written. Raises RunError for a damaged file."""
     with opened(path) as file:
-        return {name: _read_result(group) for name, group in file.get("results", {}).items()}
+        return {name: _read_result(group) for name, group in file["results"].items()}
 
 
-def opened(path: str | Path) -> Any:
-    """The HDF5 file, for reading. Raises RunError if it is not one."""
+def frame_steps(path: str | Path) -> NDArray[np.int64]:
+    """Steps of the frames in a data file. Raises RunError for a damaged file."""
+    with opened(path) as file:
+        if "particles" not in file:
+            return np.zeros(0, np.int64)
+        return np.asarray(file["particles/fluid/box/edges/step"][()], np.int64)
+
+
+@contextmanager
+def opened(path: str | Path) -> Iterator[Any]:
+    """The HDF5 file, for reading. Raises RunError if it is damaged, also while it is read."""
     try:
-        return h5py.File(path, "r")
+        with h5py.File(path, "r") as file:
+            yield file
     except FileNotFoundError:
         raise RunError(f"{path}: no such file") from None
-    except OSError:
-        raise RunError(f"{path}: damaged: it is not a whole HDF5 file") from None
+    except (OSError, KeyError, ValueError, TypeError, RuntimeError) as error:
+        if getattr(error, "errno", None):  # not the file but the system, such as a full disk
+            raise
+        raise RunError(
+            f"{path}: damaged: it is not a whole HDF5 file; mesokit resume {Path(path).parent} "
+            "writes it again if the checkpoint is whole"
+        ) from None
 
 
 def _header(file: Any, case: Case, provenance: Mapping[str, Any]) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
-from mesokit.io import h5md
+from mesokit.io import checkpoint, h5md
 from mesokit.io.run_directory import RunDirectory
 
 if TYPE_CHECKING:
@@ -66,13 +66,29 @@ class RunFiles:
 
     def _data(self) -> Path:
         if not self.directory.data_file.exists():
-            raise RunError(f"{self.path}: the run has not ended yet; resume it first")
+            raise RunError(f"{self.path}: the run {self._state()}")
         return self.directory.data_file
+
+    def _state(self) -> str:
+        """How far a run has come that has no results yet."""
+        failed, file = self.provenance.get("failed"), self.directory.checkpoint_file
+        last = self.case.run.warmup + self.case.run.steps
+        reached = "it has no checkpoint yet"
+        if file.exists():
+            reached = (
+                f"its last checkpoint is at step {checkpoint.read_meta(file)['step']} of {last}"
+            )
+        if failed:
+            return f"failed: {failed} ({reached})"
+        return (
+            f"has not ended: {reached}; if it is not running any more, go on with: "
+            f"mesokit resume {self.path}"
+        )
 
     def __repr__(self) -> str:
         lines = [f"mesokit run {self.path}", f"  {self.case.title or 'untitled'}"]
         if not self.directory.data_file.exists():
-            return "\n".join([*lines, "  not ended yet"])
+            return "\n".join([*lines, f"  {self._state()}"])
         lines += ["  " + repr(result).replace("\n", "\n  ") for result in self.results.values()]
         if self.trajectory is not None:
             lines.append(f"  {self.trajectory!r}")

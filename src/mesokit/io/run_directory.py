@@ -81,6 +81,11 @@ class RunDirectory:
         write_text(run.case_file, case.to_toml())
         return run
 
+    @property
+    def again(self) -> str:
+        """The command that runs the case anew."""
+        return f"mesokit run {self.case_file} --output {self.path} --overwrite"
+
     @classmethod
     def existing(cls, path: str | Path) -> RunDirectory:
         """An earlier run. Raises RunError if there is none in that folder."""
@@ -108,7 +113,7 @@ class RunDirectory:
 def provenance(case: Case, threads: int) -> dict[str, Any]:
     """Where the numbers of a run come from, as it starts: case, versions, host, time.
 
-    `ended` is None and `timings` empty until someone fills them in.
+    `ended` and `failed` (why) are None and `timings` empty until someone fills them in.
     """
     text = case.to_toml()
     return {
@@ -125,6 +130,7 @@ def provenance(case: Case, threads: int) -> dict[str, Any]:
         "started": now(),
         "resumed": [],
         "ended": None,
+        "failed": None,
         "timings": {},
     }
 

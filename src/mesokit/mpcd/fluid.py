@@ -26,11 +26,12 @@ class Fluid:
         NOT_GIVEN, doc="particles per cell (10 unless said)", unit="1/a^d", gt=0,
         validate_default=False,
     )  # fmt: skip
-    timestep: float = param(0.1, doc="time between two collisions", gt=0, ge=1e-9, le=1e9)
-    kT: float = param(1.0, doc="thermal energy", gt=0, ge=1e-12, le=1e12)
+    timestep: float = param(0.1, doc="time between two collisions", ge=1e-6, le=1e3)
+    kT: float = param(1.0, doc="thermal energy", ge=1e-6, le=1e6)
     mass: float = param(
-        NOT_GIVEN, doc="mass of a particle (1 unless said)", unit="m", gt=0, validate_default=False
-    )
+        NOT_GIVEN, doc="mass of a particle (1 unless said)", unit="m", ge=1e-3, le=1e3,
+        validate_default=False,
+    )  # fmt: skip
     collision: Collision = param(SRD(), doc="collision rule")
     thermostat: Thermostat = param(NoThermostat(), doc="thermostat")
     force: Force = param(NoForce(), doc="body force")

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.box import AXES
 from mesokit.component import component, param
-from mesokit.errors import CaseError
+from mesokit.errors import CaseError, MesokitError
 from mesokit.random import INITIAL_POSITION, INITIAL_VELOCITY
 
 if TYPE_CHECKING:
@@ -39,15 +40,28 @@ def read_arrays(
 ) -> tuple[Any, Any]:
     """The arrays to start from: those given, or those that the case names; None where none.
 
-    `last_state` gives positions and velocities of an earlier run.
+    `last_state` gives positions and velocities of an earlier run. Raises CaseError if an array has
+    the wrong shape, is not finite, or has particles outside the walls.
     """
     given = case.fluid.start
     if given.run is not None:
-        return last_state(given.run)
-    if positions is None and given.positions is not None:
-        positions = _load("positions", given.positions)
-    if velocities is None and given.velocities is not None:
-        velocities = _load("velocities", given.velocities)
+        key = f"fluid.start.run = {given.run!r}"
+        try:
+            positions, velocities = last_state(given.run)
+        except MesokitError as error:
+            raise CaseError(f"{key}: {error}") from None
+        keys = f"{key}: positions", f"{key}: velocities"
+    else:
+        keys = "fluid.start.positions", "fluid.start.velocities"
+        if positions is None and given.positions is not None:
+            positions = _load("positions", given.positions)
+        if velocities is None and given.velocities is not None:
+            velocities = _load("velocities", given.velocities)
+    if positions is not None:
+        positions = _checked(case, keys[0], positions)
+        _inside(case, keys[0], positions)
+    if velocities is not None:
+        velocities = _checked(case, keys[1], velocities)
     return positions, velocities
 
 
@@ -74,20 +88,15 @@ def start(cpu: CPU, positions: Any = None, velocities: Any = None) -> None:
     cpu : CPU
         The fluid in memory; its case says how to draw what is not given.
     positions, velocities : array (n, d), optional
-        In cells, and in cells per unit of time, by particle id.
-
-    Raises
-    ------
-    CaseError
-        If an array has the wrong shape, is not finite, or has particles outside the walls.
+        In cells, and in cells per unit of time, by particle id, as `read_arrays` has checked them.
     """
     case, d = cpu.case, cpu.dimension
     random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_POSITION))))
     mass = cpu.masses()
     _put_masses(cpu, mass)
     for k in range(d):
-        given = None if positions is None else _checked(cpu, "positions", positions)[:, k]
-        _put(cpu, k, random.random(cpu.n) * cpu.box[k] if given is None else given)
+        r = random.random(cpu.n) * cpu.box[k] if positions is None else positions[:, k]
+        _put(cpu, k, r)
     random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_VELOCITY))))
     for k in range(d):
         if velocities is None:
@@ -95,7 +104,7 @@ def start(cpu: CPU, positions: Any = None, velocities: Any = None) -> None:
             v *= np.sqrt(case.fluid.kT / mass)
             v -= np.dot(mass, v) / mass.sum()
         else:
-            v = _checked(cpu, "velocities", velocities)[:, k]
+            v = velocities[:, k]
         _put(cpu, d + k, v)
     if velocities is None and case.box.shear_rate != 0.0:
         cpu.row(d)[...] += case.box.shear_rate * (cpu.row(1) - 0.5 * cpu.box[1])
@@ -122,22 +131,29 @@ def _put_masses(cpu: CPU, mass: Floats) -> None:
         virtual[j // virtual.shape[1], j % virtual.shape[1]] = m
 
 
-def _checked(cpu: CPU, name: str, values: Any) -> Floats:
-    array = np.asarray(values, float)
-    if array.shape != (cpu.n, cpu.dimension):
+def _checked(case: Case, key: str, values: Any) -> Floats:
+    """Numbers for each particle."""
+    try:
+        array = np.asarray(values, float)
+    except (TypeError, ValueError):
+        raise CaseError(f"{key}: expected an array of numbers") from None
+    shape = case.particles, case.box.dimension
+    if array.shape != shape:
         raise CaseError(
-            f"fluid.start.{name}: shape {array.shape}: expected {(cpu.n, cpu.dimension)}, "
-            "one row for each of the fluid's particles"
+            f"{key}: shape {array.shape}: expected {shape}, one row for each of the fluid's "
+            "particles"
         )
     if not np.isfinite(array).all():
         row = int(np.argwhere(~np.isfinite(array))[0][0])
-        raise CaseError(f"fluid.start.{name}: row {row} is not finite")
-    if name == "positions":
-        for k in range(cpu.dimension):
-            outside = (array[:, k] < 0) | (array[:, k] > cpu.box[k])
-            if cpu.closed[k] and outside.any():
-                row = int(np.argmax(outside))
-                raise CaseError(
-                    f"fluid.start.positions: row {row} = {array[row].tolist()} lies in a wall"
-                )
+        raise CaseError(f"{key}: row {row} is not finite")
     return array
+
+
+def _inside(case: Case, key: str, positions: Floats) -> None:
+    """Nobody in a wall."""
+    for wall in case.walls:
+        k = AXES.index(wall.axis)
+        outside = (positions[:, k] < 0) | (positions[:, k] > case.box.size[k])
+        if outside.any():
+            row = int(np.argmax(outside))
+            raise CaseError(f"{key}: row {row} = {positions[row].tolist()} lies in a wall")

@@ -9,5 +9,5 @@ from mesokit.component import component, param
 class Species:
     """Particles of one mass in a mixture."""
 
-    mass: float = param(doc="mass of each particle", unit="m", gt=0)
+    mass: float = param(doc="mass of each particle", unit="m", ge=1e-3, le=1e3)
     density: float = param(doc="particles of this kind per cell", unit="1/a^d", gt=0)

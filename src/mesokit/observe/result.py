@@ -54,8 +54,13 @@ class Comparison:
 
     @property
     def percent(self) -> float:
-        """(measured - expected) in percent of what is expected, nan if that is 0."""
-        return 100 * (self.measured / self.expected - 1) if self.expected else math.nan
+        """(measured - expected) in percent of the size of what is expected, nan if that is 0.
+
+        >>> round(Comparison("stress", -1.1, 0.1, -1.0).percent, 6)
+        -10.0
+        """
+        difference = self.measured - self.expected
+        return 100 * difference / abs(self.expected) if self.expected else math.nan
 
     def __str__(self) -> str:
         text = f"{self.what}: {with_error(self.measured, self.error)} {self.unit}".rstrip()

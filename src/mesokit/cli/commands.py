@@ -1,0 +1,66 @@
+"""The group of commands, and the options that several of them take."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from mesokit import __version__
+from mesokit.errors import CaseError
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+
+@click.group(
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    epilog="Completion of commands and options: put "
+    'eval "$(_MESOKIT_COMPLETE=bash_source mesokit)" into ~/.bashrc (or zsh_source, fish_source).',
+)
+@click.version_option(__version__, message="mesokit %(version)s")
+def cli() -> None:
+    """Mesoscale fluid simulation, from a case file to a figure with the theory on it.
+
+    Start with: mesokit new poiseuille, then mesokit run poiseuille.toml
+    """
+
+
+CASE = click.Path(dir_okay=False, path_type=Path)
+RUN = click.Path(file_okay=False, path_type=Path)
+
+
+def _settings(context: click.Context, option: click.Parameter, values: Sequence[str]) -> Any:
+    for text in values:
+        if "=" not in text:
+            raise CaseError(f"--set {text}: expected key=value, such as fluid.density=5")
+    return {key.strip(): value.strip() for key, _, value in (t.partition("=") for t in values)}
+
+
+SET = click.option(
+    "--set", "settings", multiple=True, callback=_settings, metavar="KEY=VALUE",
+    help="Replace a value of the case, such as fluid.density=5. May be repeated.",
+)  # fmt: skip
+THREADS = click.option("--threads", type=click.IntRange(1), help="Threads (all cores unless said).")
+
+
+def read(path: Path, settings: dict[str, str]) -> Case:
+    """The case in a file, with values replaced."""
+    from mesokit.case import Case
+
+    case = Case.from_toml(path, settings)
+    for problem in case.missing_files():
+        raise CaseError(f"{path}: {problem}")
+    return case
+
+
+@contextlib.contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Put the name of the case file before what is wrong in it."""
+    try:
+        yield
+    except CaseError as error:
+        raise CaseError(f"{path}: {error}") from None

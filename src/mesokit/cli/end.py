@@ -1,0 +1,47 @@
+"""How every command ends: at most one line on standard error, and a status."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+
+import click
+
+from mesokit.cli import cases, runs  # noqa: F401  they register their commands
+from mesokit.cli.commands import cli
+from mesokit.cli.words import reason
+from mesokit.errors import MesokitError, RunError
+
+
+def status_of(arguments: Sequence[str] | None) -> int:
+    """Run a command and say what went wrong; the exit status."""
+    try:
+        status = cli.main(arguments, prog_name="mesokit", standalone_mode=False)
+        return status if isinstance(status, int) else 0
+    except click.exceptions.Abort:
+        raise KeyboardInterrupt from None
+    except click.exceptions.NoArgsIsHelpError as error:
+        click.echo(error.format_message())
+        return 2
+    except click.UsageError as error:
+        command = error.ctx.command_path if error.ctx else "mesokit"
+        return _failed(f"{error.format_message()} (try {command} --help)", 2)
+    except click.ClickException as error:
+        return _failed(error.format_message(), 2)
+    except RunError as error:
+        return _failed(str(error), 1)
+    except MesokitError as error:
+        return _failed(str(error), 2)
+    except BrokenPipeError:  # the reader of our output has left, such as `| head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except OSError as error:
+        return _failed(reason(error), 2)
+    except MemoryError:
+        return _failed("not enough memory for this case (mesokit check tells what it needs)", 1)
+
+
+def _failed(message: str, status: int) -> int:
+    click.echo(f"mesokit: error: {' '.join(message.split())}", err=True)
+    return status

@@ -1,0 +1,169 @@
+"""Commands on runs: run, resume, plot, info."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+
+from mesokit.cli.commands import CASE, RUN, SET, THREADS, cli, naming, read
+from mesokit.cli.words import reason
+from mesokit.errors import CaseError, RunError
+
+
+@cli.command()
+@click.argument("case", type=CASE)
+@SET
+@THREADS
+@click.option("--seed", type=click.IntRange(0), help="Replace run.seed.")
+@click.option("--output", type=RUN, help="Folder of the run (the name of CASE unless said).")
+@click.option("--overwrite", is_flag=True, help="Replace an earlier run in that folder.")
+@click.option("--quiet", is_flag=True, help="No progress, no summary; errors only.")
+def run(
+    case: Path, settings: dict[str, str], threads: int | None, seed: int | None,
+    output: Path | None, overwrite: bool, quiet: bool,
+) -> None:  # fmt: skip
+    """Run CASE. Ctrl-C stops it at a checkpoint; mesokit resume goes on."""
+    from mesokit.derived import derive
+    from mesokit.progress import Reporter
+
+    if seed is not None:
+        settings = {**settings, "run.seed": str(seed)}
+    full = read(case, settings)
+    output = output or Path(case.stem)
+    _claim(output, overwrite)
+    if not quiet:
+        for warning in derive(full, threads).warnings:
+            click.echo(f"warning: {warning}", err=True)
+    from mesokit.simulation import Simulation
+
+    with naming(case):
+        simulation = Simulation(full, threads=threads)
+    _clear(output)  # only now: a case that cannot start must not cost an earlier run
+    simulation.write_to(output)
+    with _run_errors(output):
+        simulation.run(progress=Reporter(quiet))
+    if not quiet:
+        _show_results(output)
+
+
+@cli.command()
+@click.argument("run", type=RUN)
+@THREADS
+@click.option("--quiet", is_flag=True, help="No progress, no summary; errors only.")
+def resume(run: Path, threads: int | None, quiet: bool) -> None:
+    """Go on with RUN from its last checkpoint, to the same bits as if it had never stopped."""
+    from mesokit.progress import Reporter
+
+    _require_run(run)
+    from mesokit.io.run_directory import RunDirectory
+    from mesokit.simulation import Simulation
+
+    with _run_errors(run):
+        simulation = Simulation.resume(run, threads=threads)
+        if not (quiet or RunDirectory(run).checkpoint_file.exists()):
+            click.echo(f"{run}: no checkpoint yet; starting from step 0", err=True)
+        simulation.run(progress=Reporter(quiet))
+    if not quiet:
+        _show_results(run)
+
+
+@cli.command()
+@click.argument("run", type=RUN)
+def plot(run: Path) -> None:
+    """Draw the pictures of RUN again."""
+    import mesokit
+
+    _require_run(run)
+    for picture in mesokit.open(run).plot():
+        click.echo(picture)
+
+
+@cli.command()
+@click.argument("run", type=RUN)
+def info(run: Path) -> None:
+    """Show what is in the files of RUN."""
+    import mesokit
+
+    _require_run(run)
+    click.echo(mesokit.open(run))
+
+
+def _claim(output: Path, overwrite: bool) -> None:
+    """Refuse a folder that holds something, unless it is an earlier run to be replaced."""
+    if output.exists() and not output.is_dir():
+        raise CaseError(f"--output {output}: is a file; choose another folder")
+    there = sorted(output.iterdir()) if output.is_dir() else []
+    own = _files_of_run(output)
+    if not there or (overwrite and set(there) <= set(own)):
+        return
+    others = [path.name for path in there if path not in own]
+    if others:
+        raise CaseError(
+            f"--output {output}: holds other files ({others[0]}); choose another folder"
+        )
+    raise CaseError(
+        f"--output {output}: holds an earlier run; mesokit resume goes on with it, "
+        "--overwrite replaces it"
+    )
+
+
+def _files_of_run(output: Path) -> list[Path]:
+    """What an earlier run has written into a folder; the case, which makes it a run, is last."""
+    from mesokit.case import Case
+    from mesokit.io.run_directory import RunDirectory
+
+    run = RunDirectory(output)
+    if not run.case_file.is_file():
+        return []
+    figures: list[Path] = []
+    with contextlib.suppress(CaseError):
+        figures = [run.figure_file(o.label) for o in Case.from_toml(run.case_file).observe]
+    files = [run.data_file, run.checkpoint_file, run.log_file, run.provenance_file]
+    return [*figures, *output.glob(".*.tmp"), run.trajectory_folder, *files, run.case_file]
+
+
+def _clear(output: Path) -> None:
+    """Remove the files of an earlier run."""
+    for path in _files_of_run(output):
+        if path.is_dir():
+            shutil.rmtree(path)
+        else:
+            path.unlink(missing_ok=True)
+
+
+@contextlib.contextmanager
+def _run_errors(output: Path) -> Iterator[None]:
+    """A full disk while running is a failure of the run, not of the command."""
+    try:
+        yield
+    except KeyboardInterrupt as stop:
+        if not str(stop):  # stopped so hard that nothing is known
+            raise
+        click.echo(f"mesokit: {stop}; go on with: mesokit resume {output}", err=True)
+        raise SystemExit(130) from None
+    except OSError as error:
+        raise RunError(reason(error)) from None
+
+
+def _require_run(run: Path) -> None:
+    from mesokit.io.run_directory import RunDirectory
+
+    try:
+        RunDirectory.existing(run)
+    except RunError as error:  # the command is wrong, not the run
+        raise CaseError(str(error)) from None
+
+
+def _show_results(output: Path) -> None:
+    import mesokit
+
+    done = mesokit.open(output)
+    for result in done.results.values():
+        for comparison in result.comparisons:
+            click.echo(f"{result.name}: {comparison}")
+    for picture in sorted(output.glob("*.png")):
+        click.echo(f"picture: {picture}")

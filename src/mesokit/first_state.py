@@ -1,0 +1,38 @@
+"""The state that a case starts from; `check` and `run` refuse the same here."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from mesokit.io import checkpoint
+from mesokit.io.run_directory import RunDirectory
+from mesokit.mpcd.initial import read_arrays
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+
+def first_state(case: Case, positions: Any = None, velocities: Any = None) -> tuple[Any, Any]:
+    """Positions and velocities (n, d) to start from: given, or those that the case names.
+
+    None stands for what is to be drawn. Raises CaseError for arrays that do not fit the case, and
+    for files and runs that cannot be read.
+    """
+    return read_arrays(case, positions, velocities, _last_state)
+
+
+def _last_state(path: str) -> tuple[Any, Any]:
+    """Positions and velocities, by particle id, of the last checkpoint of an earlier run."""
+    from mesokit.case import Case
+    from mesokit.execute.cpu import CPU
+
+    directory = RunDirectory.existing(path)
+    arrays, _ = checkpoint.read(directory.checkpoint_file)
+    fluid = CPU(Case.from_toml(directory.case_file))
+    fluid.restore(part(arrays, "fluid/"))
+    return fluid.positions(), fluid.velocities()
+
+
+def part(arrays: dict[str, Any], start: str) -> dict[str, Any]:
+    """The arrays whose names start so, without it."""
+    return {key[len(start) :]: v for key, v in arrays.items() if key.startswith(start)}
