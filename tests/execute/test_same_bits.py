@@ -1,5 +1,9 @@
 """The same case gives the same bits: for any threads, and however the steps are divided."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from laboratory import make_case, make_fluid
@@ -97,3 +101,20 @@ def test_nothing_is_ever_outside(case):
         assert (r >= 0).all() and (r <= fluid.box).all()
         for k, shut in enumerate(closed[: fluid.dimension]):
             assert not shut or (fluid.images()[:, k] == 0).all()
+
+
+def test_the_start_does_not_depend_on_the_threads_of_blas():
+    """Large enough that OpenBLAS would share out a scalar product."""
+    script = (
+        "import hashlib, mesokit as m\n"
+        "case = m.Case(run=m.Run(steps=1), box=m.Box([40, 40]), fluid=m.Fluid(density=10))\n"
+        "fluid = m.Simulation(case).fluid\n"
+        "print(hashlib.sha256(fluid.velocities().tobytes()).hexdigest())\n"
+    )
+    seen = set()
+    for threads in ("1", "2"):
+        env = os.environ | {"OPENBLAS_NUM_THREADS": threads, "OMP_NUM_THREADS": threads}
+        command = [sys.executable, "-c", script]
+        done = subprocess.run(command, env=env, capture_output=True, text=True, check=True)
+        seen.add(done.stdout)
+    assert len(seen) == 1

@@ -142,13 +142,25 @@ def bounce_strip(physics, strip, count, hits, impulse, scales, like):
 
 
 @scalar
-def bin_strip(physics, box, counter, grid, strip, cell, ident, image, terms_rows, scales, like):
-    """Particles that left a sheared box come back into it; then cells, and terms of their sums."""
+def slide_strip(box, grid, strip, image, like):
+    """Bring particles that left a sheared box back into it; nothing in other boxes."""
     d = len(like)
     for i in range(LANES):
         r, v = load(strip, i, 0, like), load(strip, i, d, like)
         r, v, crossed = slide(box, r, v, grid.shift)
+        store(strip, i, 0, r + v)
         count_images(image, i, crossed)
+
+
+@scalar
+def bin_strip(physics, counter, grid, strip, cell, ident, terms_rows, scales, like):
+    """Cell of each particle, and what it adds to the sums of that cell.
+
+    Rules that draw velocities anew put them in the place of the old ones.
+    """
+    d = len(like)
+    for i in range(LANES):
+        r, v = load(strip, i, 0, like), load(strip, i, d, like)
         m = mass_of(physics.masses, strip, i, 2 * d)
         kept, own = contribute(physics.rule, counter, (ident[i], 0), m, v, in_cell(r, grid))
         cell[i] = cell_index(r, grid)

@@ -18,6 +18,7 @@ from mesokit.execute.stages import (
     collide_strip,
     fill_strip,
     gather_strip,
+    slide_strip,
     stream_strip,
 )
 from mesokit.geometry.protocol import exposed, side
@@ -103,9 +104,11 @@ def sweep(
                 fill_strip(physics, counter, grid, strip, number, rates, like)
                 if what & MEASURE_WALLS:
                     wall_momentum(physics, strip, lanes, impulse, scales[0], -1.0, like)
-            bin_strip(physics, box, counter, grid, strip, here, who, boxes, quanta, scales, like)
-            if measured and real:
-                momentum_flux(physics, box, grid, strip, lanes, tensor[0, s], like)
+            if real:
+                slide_strip(box, grid, strip, boxes, like)
+                if measured:
+                    momentum_flux(physics, box, grid, strip, lanes, tensor[0, s], like)
+            bin_strip(physics, counter, grid, strip, here, who, quanta, scales, like)
             if exposed(physics.solid) and not real:
                 for i in range(lanes):
                     if side(physics.solid, load(strip, i, 0, like)) == 2:

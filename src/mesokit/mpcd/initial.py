@@ -102,7 +102,7 @@ def start(cpu: CPU, positions: Any = None, velocities: Any = None) -> None:
         if velocities is None:
             v = random.standard_normal(cpu.n)
             v *= np.sqrt(case.fluid.kT / mass)
-            v -= np.dot(mass, v) / mass.sum()
+            v -= np.sum(mass * v) / mass.sum()  # np.dot would depend on the threads of BLAS
         else:
             v = velocities[:, k]
         _put(cpu, d + k, v)
