@@ -11,7 +11,7 @@ from mesokit.mpcd.thermostat.maxwell_boltzmann import Canonical, part, propose
 from mesokit.mpcd.thermostat.protocol import draw, guess
 from mesokit.random import CELL, Counter, words
 
-CANONICAL = Canonical(1.0)
+CANONICAL = Canonical(1.0, 1e-9)
 UNLIKELY = 1e-4
 PARTS = 4096
 

@@ -8,6 +8,7 @@ from scipy import stats
 from mesokit import theory
 from mesokit.geometry import Plates
 from mesokit.mpcd.field import Uniform
+from mesokit.mpcd.species import Species
 from mesokit.mpcd.thermostat import RULES, MaxwellBoltzmann, NoThermostat
 
 SIZE = (14, 12, 16)
@@ -67,3 +68,37 @@ def ks_of_cells(number, energy, dimension):
         for n, e in zip(number[several], energy[several], strict=True)
     ]
     return stats.kstest(p, "uniform").pvalue
+
+
+@pytest.mark.parametrize("ratio", [300, 1000])
+def test_kinds_of_very_different_mass_share_one_temperature(ratio):
+    """2D, four particles per cell: energies of the light ones are the last digits of the sums.
+
+    The relative standard error of a kind's mean energy is 1/sqrt(samples particles), times 1.5 for
+    what samples 50 steps apart share.
+    """
+    kinds = (Species(mass=1, density=3), Species(mass=ratio, density=1))
+    fluid = make_fluid((12, 12), species=kinds, timestep=0.5, thermostat=MaxwellBoltzmann())
+    fluid.advance(500)
+    masses = fluid.masses()
+    sums = np.zeros(2)
+    for _ in range(60):
+        fluid.advance(50)
+        energy = 0.5 * masses * (fluid.velocities() ** 2).sum(axis=1)
+        sums += energy[masses < 2].mean(), energy[masses > 2].mean()
+    light, heavy = sums / 60
+    assert abs(light - 1) < 4 * 1.5 / np.sqrt(60 * 432)
+    assert abs(heavy - 1) < 4 * 1.5 / np.sqrt(60 * 144)
+
+
+def test_a_cold_start_is_warmed_without_overshooting():
+    """Relative speeds near the rounding of cell energies must not be stretched to the target."""
+    random = np.random.default_rng(0)
+    r = 20 * random.random((4000, 2))
+    v = np.array([0.7, 0.3]) + 1e-4 * random.standard_normal((4000, 2))
+    fluid = make_fluid((20, 20), thermostat=MaxwellBoltzmann(), positions=r, velocities=v)
+    for _ in range(6):
+        fluid.advance(1)
+        w = fluid.velocities() - fluid.velocities().mean(axis=0)
+        assert (w**2).mean() < 1.1
+    assert (w**2).mean() > 0.9

@@ -5,6 +5,7 @@ particles, 16 bits for the number and 48 for the energy: cells keep the width th
 a thermostat, which is what makes it cheap. A rule that conserves energy has a column of full width.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -15,8 +16,9 @@ from mesokit.scalar import dot, generic
 COUNT_SHIFT = 48
 ONE_PARTICLE = 1 << COUNT_SHIFT
 ENERGY_MASK = ONE_PARTICLE - 1
-MOST_PARTICLES = 1 << 16  # of one cell
-MOST_ENERGY = 2.0 ** (COUNT_SHIFT - 16)  # of one particle, in fixed-point units
+MOST_PARTICLES = 1 << 15  # of one cell, with a factor of 2 to spare
+MOST_DENSITY = 1000.0  # beyond which too few bits are left for the energy
+SPARE = 2.0**16  # how much larger than thermal the energy of a cell of the mean density may get
 
 
 class NotAsked(NamedTuple):
@@ -31,6 +33,11 @@ class WithCount(NamedTuple):
     """In the integer that counts the particles; fixed-point units per unit of energy."""
 
     scale: float
+
+
+def with_count(thermal: float, density: float) -> WithCount:
+    """As many bits as leave room for cells of `SPARE` times `density` thermal energies."""
+    return WithCount(2.0 ** math.floor(COUNT_SHIFT - math.log2(SPARE * thermal * density)))
 
 
 @generic

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
-from mesokit.execute.cell_energy import MOST_PARTICLES, WithCount
+from mesokit.execute.cell_energy import MOST_PARTICLES, ONE_PARTICLE, WithCount
 from mesokit.execute.clock import STAGES
 from mesokit.execute.layout import ROW
 from mesokit.execute.readings import Readings
@@ -94,32 +94,36 @@ class CPU(Readings):
             self.spare.view(np.int32), self.like,
         )  # fmt: skip
         self.sort_seconds += perf_counter() - start
-        self._check_speed()
-        self._check_crowd()
+        self._check_sums(int(np.diff(self.ends[-1], prepend=0).max()))
 
-    def _check_crowd(self) -> None:
-        """The sort left in `ends` where each cell's particles end."""
-        if self.n < MOST_PARTICLES or not isinstance(self.physics.energy, WithCount):
-            return
-        most = int(np.diff(self.ends[-1], prepend=0).max())
-        if most >= MOST_PARTICLES:
-            raise RunError(
-                f"step {self.step}: {most} particles in one cell, more than the {MOST_PARTICLES} "
-                "that a thermostat can count"
-            )
-
-    def _check_speed(self) -> None:
+    def _check_sums(self, crowd: int) -> None:
+        """That a cell of so many particles of the fastest kind cannot make its sums overflow."""
         totals = self._totals()
         fastest = totals[:, -1].max()
         if not (fastest < self.fastest and np.isfinite(totals).all()):
+            reason = (
+                "fluid.start: give slower particles"
+                if self.step == 0
+                else "the fluid heats up: add a thermostat, or lower the force"
+            )
             raise RunError(
                 f"step {self.step}: a particle moves at {fastest:g}, beyond the {self.fastest:g} "
-                "that cell sums can hold; the fluid heats up: add a thermostat, or lower the force"
+                f"that cell sums can hold; {reason}"
+            )
+        heaviest, energy = max(self.masses_of_kinds), self.physics.energy
+        full = crowd * heaviest * fastest * self.units["momentum"] > 2.0**61
+        if isinstance(energy, WithCount):
+            full |= crowd > MOST_PARTICLES
+            full |= crowd * heaviest * fastest**2 * energy.scale > ONE_PARTICLE
+        if full:
+            raise RunError(
+                f"step {self.step}: {crowd} particles in one cell, some as fast as {fastest:g}: "
+                "more than cell sums can hold"
             )
 
     def state(self) -> dict[str, NDArray]:
         """Everything that the next step depends on. Raises RunError if sums have overflowed."""
-        self._check_speed()
+        self._check_sums(1)
         return {
             "data": self.data[: self.real_blocks * self.rows * ROW].copy(),
             "ident": self.ident[: self.n].copy(),

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
-from mesokit.execute.cell_energy import MOST_ENERGY, Column, NotAsked, WithCount
+from mesokit.execute.cell_energy import MOST_DENSITY, Column, NotAsked, WithCount, with_count
 from mesokit.execute.layout import (
     BLOCK,
     LANES,
@@ -29,9 +29,9 @@ from mesokit.geometry.none import Nothing
 if TYPE_CHECKING:
     from mesokit.case import Case
 
-# Whole numbers of this many per thermal unit: 2^-42 of a thermal momentum, 2^-39 of kT, and 2^-20
-# of kT where the energy shares an integer with the count.
-MOMENTUM_BITS, MASS_BITS, ENERGY_BITS, WITH_COUNT_BITS = 42, 44, 39, 20
+# Whole numbers of this many per thermal unit: 2^-42 of a thermal momentum, 2^-39 of kT.
+MOMENTUM_BITS, MASS_BITS, ENERGY_BITS = 42, 44, 39
+FLOOR = 100.0  # of the rounding of a cell's energy: what a thermostat takes for no energy
 SORT_DISTANCE_SQUARED = 0.5  # particles are sorted again after straying less than a cell
 
 Floats = NDArray[np.float64]
@@ -69,14 +69,17 @@ class Memory:
         self.units = units = units_of(case)
         self.fastest = 2.0**49 / units["momentum"] / heaviest
         energy: NotAsked | Column | WithCount = NotAsked()
-        if fluid.collision.needs_energy:
+        unit = 1.0 / units["energy"]
+        sparse = uniform and fluid.density <= MOST_DENSITY
+        if fluid.collision.needs_energy or (fluid.thermostat.needs_energy and not sparse):
             energy = Column()
         elif fluid.thermostat.needs_energy:
-            energy = WithCount(units["energy"] * 2.0 ** (WITH_COUNT_BITS - ENERGY_BITS))
-            self.fastest = min(self.fastest, math.sqrt(MOST_ENERGY / energy.scale / heaviest))
+            energy = with_count(2.0**ENERGY_BITS * unit, max(fluid.density, 1.0))
+            unit = 1.0 / energy.scale
+        noise = unit * math.sqrt(self.n / box.volume + 1.0)
         self.physics = Physics(
             fluid.collision.kernel(d, fluid.kT),
-            fluid.thermostat.kernel(fluid.kT),
+            fluid.thermostat.kernel(fluid.kT, FLOOR * noise),
             fluid.force.kernel(box.size),
             wall.kernel(box.size) if wall else Nothing(),
             (heaviest,) if uniform else (),

@@ -93,6 +93,11 @@ def offset(case: Case) -> float:
 
 def temperature_note(case: Case) -> str:
     """How far a thermostat is known to miss kT, "" below 0.1 %."""
+    rules = case.fluid.thermostat.rule, case.fluid.collision.rule
+    if len({kind.mass for kind in case.fluid.species}) > 1:
+        for rule in {"rescale", "srd+a"}.intersection(rules):
+            return f"approximate: {rule} holds the kinds of a mixture at different temperatures"
+        return ""
     percent = 100 * offset(case)
     if abs(percent) <= 0.1:
         return ""

@@ -7,8 +7,8 @@ from mesokit.random import unit_open
 from mesokit.scalar import added_scaled, dot, mul_add, scalar, scaled
 
 ONE_PLACE = 1e-8  # of the mass: particles within 1e-4 cells of one another are in one place
-SPREAD = 1e-4  # the same within 1e-2 cells
-SLENDER = 1e-4  # det / trace^3 that is safely above LINE
+SPREAD = 1e-3  # the same within 3e-2 cells
+SLENDER = 1e-3  # det / trace^3 that is safely above LINE
 LINE = 1e-7  # det / trace^3 of an inertia tensor below which the particles lie on a line
 
 
@@ -78,7 +78,7 @@ def angular_velocity(n, mass, q, angular_momentum):
 def spread_out(n, mass, q):
     """Whether rounded sums can tell how these particles rotate, as the energy of it needs.
 
-    Not if all lie within a hundredth of a cell, or three and more almost on a line.
+    Not if all lie within some hundredths of a cell, or three and more almost on a line.
     """
     a, b, c = q[1] + q[2], q[0] + q[2], q[0] + q[1]
     d, e, f = -q[3], -q[4], -q[5]

@@ -118,7 +118,8 @@ def _(rule, thermostat, variate, chance, n, mass, momentum, energy, sums):
     before = relative - 0.5 * omega * spun
     after = relative - 0.5 * omega_rotated * rotated_turn
     free = freedom(rule, n)
-    s = root_of_ratio(target(thermostat, variate, free, before), after, free)
+    wanted = target(thermostat, variate, free, before)
+    s = root_of_ratio(wanted, after, free, 1e-9 * wanted)
     apart = n > 1.5 and inertia > SPREAD * mass
     collides = apart and before > 0.0 and after > LEAST_SHARE * before
     cos, sin = (s * rule.cos, s * sin) if collides else (1.0, 0.0)
@@ -154,7 +155,8 @@ def _(rule, thermostat, variate, chance, n, mass, momentum, energy, sums):
     before = relative - 0.5 * dot(omega, moment_of_momentum)
     after = relative - 0.5 * dot(omega_rotated, rotated_moment)
     free = freedom(rule, n)
-    s = root_of_ratio(target(thermostat, variate, free, before), after, free)
+    wanted = target(thermostat, variate, free, before)
+    s = root_of_ratio(wanted, after, free, 1e-9 * wanted)
     apart = n > 1.5 and spread_out(n, mass, moment)
     collides = apart and before > 0.0 and after > LEAST_SHARE * before
     cos = s * rule.cos if collides else 1.0

@@ -28,15 +28,16 @@ class MaxwellBoltzmann:
 
     needs_energy: ClassVar[bool] = True
 
-    def kernel(self, kT: float) -> Canonical:
-        """Parameters for the scalar functions below."""
-        return Canonical(kT)
+    def kernel(self, kT: float, floor: float) -> Canonical:
+        """Parameters for the scalar functions below; an energy below the floor is noise."""
+        return Canonical(kT, floor)
 
 
 class Canonical(NamedTuple):
     """Thermal energy of the canonical distribution."""
 
     kT: float
+    floor: float
 
 
 @scalar
@@ -101,4 +102,4 @@ def _(thermostat, variate, freedom, energy):
 @stretch.register(Canonical)
 def _(thermostat, variate, freedom, energy):
     wanted = target(thermostat, variate, freedom, energy)
-    return (root_of_ratio(wanted, energy, freedom),)
+    return (root_of_ratio(wanted, energy, freedom, thermostat.floor),)

@@ -16,8 +16,8 @@ class NoThermostat:
 
     needs_energy: ClassVar[bool] = False
 
-    def kernel(self, kT: float) -> Free:
-        """Parameters for the scalar functions below."""
+    def kernel(self, kT: float, floor: float) -> Free:
+        """Parameters for the scalar functions below; an energy below the floor is noise."""
         return Free(kT)
 
 

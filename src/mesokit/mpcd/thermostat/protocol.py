@@ -35,10 +35,11 @@ def stretch(thermostat, variate, freedom, energy):
 
 
 @scalar
-def root_of_ratio(wanted, present, freedom):
+def root_of_ratio(wanted, present, freedom, floor):
     """sqrt(wanted / present), and 1 where there is nothing to scale.
 
-    The present energy is a sum of rounded numbers: below a billionth of the target it is noise.
+    The present energy is a sum of rounded numbers: below the floor it is noise, which must not be
+    stretched to the target.
     """
-    ratio = wanted / max(present, 1e-9 * wanted)
+    ratio = wanted / max(present, floor)
     return math.sqrt(ratio) if freedom > 0.5 and wanted > 0.0 else 1.0

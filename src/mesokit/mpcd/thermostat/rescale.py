@@ -19,15 +19,16 @@ class Rescale:
 
     needs_energy: ClassVar[bool] = True
 
-    def kernel(self, kT: float) -> Isokinetic:
-        """Parameters for the scalar functions below."""
-        return Isokinetic(kT)
+    def kernel(self, kT: float, floor: float) -> Isokinetic:
+        """Parameters for the scalar functions below; an energy below the floor is noise."""
+        return Isokinetic(kT, floor)
 
 
 class Isokinetic(NamedTuple):
     """Thermal energy to set."""
 
     kT: float
+    floor: float
 
 
 @draw.register(Isokinetic)
@@ -48,4 +49,4 @@ def _(thermostat, variate, freedom, energy):
 @stretch.register(Isokinetic)
 def _(thermostat, variate, freedom, energy):
     wanted = target(thermostat, variate, freedom, energy)
-    return (root_of_ratio(wanted, energy, freedom),)
+    return (root_of_ratio(wanted, energy, freedom, thermostat.floor),)
