@@ -22,7 +22,7 @@ from mesokit.mpcd.collision.rotation import (
     turn,
 )
 from mesokit.mpcd.thermostat.protocol import root_of_ratio, target
-from mesokit.scalar import added, added_scaled, dot, scaled
+from mesokit.scalar import added, added_scaled, chosen, dot, scaled
 
 ONE = np.uint64(1)
 
@@ -97,8 +97,9 @@ def _(rule, n):
 # Below, w are the rotated velocities relative to the mean, Omega their rigid rotation and omega
 # that of the cell before the collision. Particles leave with u + omega x r' + s (w - Omega x r'),
 # r' relative to the centre of mass; s makes up for the energy of the two rotations. Where hardly
-# any energy is left for s to scale (two particles whose w is all rotation) the cell does not
-# collide: rounding would be all that is scaled, and the energy would not be conserved.
+# any energy is left for s to scale (two particles whose w is all rotation) nothing is rotated:
+# rounding would be all that is scaled, and the energy would not be conserved. A thermostat acts in
+# such cells too.
 LEAST_SHARE = 1e-2
 
 
@@ -117,13 +118,13 @@ def _(rule, thermostat, variate, chance, n, mass, momentum, energy, sums):
     omega_rotated = angular_speed(n, mass, inertia, rotated_turn)
     before = relative - 0.5 * omega * spun
     after = relative - 0.5 * omega_rotated * rotated_turn
-    free = freedom(rule, n)
-    wanted = target(thermostat, variate, free, before)
-    s = root_of_ratio(wanted, after, free, 1e-9 * wanted)
     apart = n > 1.5 and inertia > SPREAD * mass
     collides = apart and before > 0.0 and after > LEAST_SHARE * before
-    cos, sin = (s * rule.cos, s * sin) if collides else (1.0, 0.0)
-    omega = omega - s * omega_rotated if collides else 0.0
+    free = freedom(rule, n)
+    wanted = target(thermostat, variate, free, before)
+    s = root_of_ratio(wanted, after if collides else before, free, 1e-9 * wanted)
+    cos, sin = (s * rule.cos, s * sin) if collides else (s, 0.0)
+    omega = omega - s * (omega_rotated if collides else omega)
     return (
         cos,
         sin,
@@ -154,15 +155,15 @@ def _(rule, thermostat, variate, chance, n, mass, momentum, energy, sums):
     relative = 0.5 * (energy - mass * dot(u, u))
     before = relative - 0.5 * dot(omega, moment_of_momentum)
     after = relative - 0.5 * dot(omega_rotated, rotated_moment)
-    free = freedom(rule, n)
-    wanted = target(thermostat, variate, free, before)
-    s = root_of_ratio(wanted, after, free, 1e-9 * wanted)
     apart = n > 1.5 and spread_out(n, mass, moment)
     collides = apart and before > 0.0 and after > LEAST_SHARE * before
-    cos = s * rule.cos if collides else 1.0
+    free = freedom(rule, n)
+    wanted = target(thermostat, variate, free, before)
+    s = root_of_ratio(wanted, after if collides else before, free, 1e-9 * wanted)
+    cos = s * rule.cos if collides else s
     sin = s * rule.sin if collides else 0.0
     along = s * (1.0 - rule.cos) if collides else 0.0
-    spin = scaled(1.0 if collides else 0.0, added_scaled(omega, -s, omega_rotated))
+    spin = added_scaled(omega, -s, chosen(collides, omega_rotated, omega))
     rest = added_scaled(u, -1.0, turn(u, axis, cos, sin, along))
     return axis + (cos, sin, along) + spin + added(rest, cross(r, spin))
 
