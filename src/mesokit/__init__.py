@@ -16,7 +16,21 @@ if TYPE_CHECKING:
     from mesokit.case import Case
     from mesokit.derived import Derived, derive
     from mesokit.errors import CaseError, CheckpointError, MesokitError, RunError
-    from mesokit.geometry import Plates, Surface
+    from mesokit.geometry import (
+        Array,
+        Capsule,
+        CosineChannel,
+        Cuboid,
+        Cylinder,
+        Disk,
+        HalfSpace,
+        Intersection,
+        Plates,
+        Rectangle,
+        Sphere,
+        Surface,
+        Union,
+    )
     from mesokit.io.open import RunFiles
     from mesokit.io.open import open_run as open
     from mesokit.io.trajectory import Trajectory
@@ -44,13 +58,28 @@ if TYPE_CHECKING:
     )
     from mesokit.run import Run
     from mesokit.simulation import Simulation
+    from mesokit.solids import Solids
 
 _PLACES = {  # module: the public names in it
     "mesokit.box": ("Box",),
     "mesokit.case": ("Case",),
     "mesokit.derived": ("Derived", "derive"),
     "mesokit.errors": ("CaseError", "CheckpointError", "MesokitError", "RunError"),
-    "mesokit.geometry": ("Plates", "Surface"),
+    "mesokit.geometry": (
+        "Array",
+        "Capsule",
+        "CosineChannel",
+        "Cuboid",
+        "Cylinder",
+        "Disk",
+        "HalfSpace",
+        "Intersection",
+        "Plates",
+        "Rectangle",
+        "Sphere",
+        "Surface",
+        "Union",
+    ),
     "mesokit.io.open": ("RunFiles",),
     "mesokit.io.trajectory": ("Trajectory",),
     "mesokit.mpcd.collision": ("AT", "ATPlusA", "SRD", "SRDPlusA"),
@@ -77,6 +106,7 @@ _PLACES = {  # module: the public names in it
     ),
     "mesokit.run": ("Run",),
     "mesokit.simulation": ("Simulation",),
+    "mesokit.solids": ("Solids",),
 }
 _HOME = {name: (module, name) for module, names in _PLACES.items() for name in names}
 _HOME["open"] = ("mesokit.io.open", "open_run")
@@ -85,16 +115,24 @@ __all__ = [
     "AT",
     "SRD",
     "ATPlusA",
+    "Array",
     "Box",
+    "Capsule",
     "Case",
     "CaseError",
     "CheckpointError",
     "Comparison",
     "Conservation",
+    "CosineChannel",
+    "Cuboid",
+    "Cylinder",
     "DensityField",
     "DensityProfile",
     "Derived",
+    "Disk",
     "Fluid",
+    "HalfSpace",
+    "Intersection",
     "LongitudinalModes",
     "MaxwellBoltzmann",
     "MeanSquareDisplacement",
@@ -102,6 +140,7 @@ __all__ = [
     "NoForce",
     "NoThermostat",
     "Plates",
+    "Rectangle",
     "Rescale",
     "Result",
     "Run",
@@ -110,7 +149,9 @@ __all__ = [
     "SRDPlusA",
     "Simulation",
     "Sinusoidal",
+    "Solids",
     "Species",
+    "Sphere",
     "Start",
     "Stress",
     "Surface",
@@ -118,6 +159,7 @@ __all__ = [
     "Trajectory",
     "TransverseModes",
     "Uniform",
+    "Union",
     "VelocityAutocorrelation",
     "VelocityField",
     "VelocityProfile",

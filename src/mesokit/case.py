@@ -21,6 +21,7 @@ from mesokit.io.trajectory import Trajectory
 from mesokit.mpcd.fluid import Fluid
 from mesokit.observe import AnyObservable
 from mesokit.run import Run
+from mesokit.solids import free_volume
 
 KEYS = {"walls": "wall"}  # field -> key in the file, where they differ: one [[wall]] each
 
@@ -53,9 +54,10 @@ class Case:
 
     @property
     def particles(self) -> int:
-        """Number of particles: density times cells, for each species to the nearest whole one."""
+        """Number of particles: density times the volume that walls leave, whole for each species."""
         kinds = [kind.density for kind in self.fluid.species] or [self.fluid.density]
-        return sum(round(density * self.box.volume) for density in kinds)
+        volume = free_volume(self)
+        return sum(round(density * volume) for density in kinds)
 
     @classmethod
     def from_toml(cls, path: str | Path, overrides: Mapping[str, Any] | None = None) -> Case:

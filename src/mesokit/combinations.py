@@ -8,9 +8,10 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from mesokit.box import AXES
-from mesokit.component import show
+from mesokit.component import one_of, show, tag_of
 from mesokit.errors import CaseError
-from mesokit.geometry import Surface
+from mesokit.geometry import SHAPES, Surface
+from mesokit.solids import solids_of
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -86,7 +87,12 @@ def vectors(case: Case) -> Iterator[str]:
 
 def axes(case: Case) -> Iterator[str]:
     """No z in 2D."""
-    named = [(f"wall[#{i + 1}].axis", wall.axis) for i, wall in enumerate(case.walls)]
+    named = [
+        (f"wall[#{i + 1}].{key}", getattr(wall, key))
+        for i, wall in enumerate(case.walls)
+        for key in ("axis", "across")
+        if isinstance(getattr(wall, key, None), str)
+    ]
     force = case.fluid.force
     if force.rule == "sinusoidal":
         named += [("fluid.force.flow", force.flow), ("fluid.force.gradient", force.gradient)]
@@ -96,23 +102,81 @@ def axes(case: Case) -> Iterator[str]:
 
 
 def walls(case: Case) -> Iterator[str]:
-    """One slit, whose plates move along themselves."""
-    if len(case.walls) > 1:
-        yield f"wall[#2]: expected one [[wall]], not {len(case.walls)}"
+    """Shapes of this dimension; plates once for each axis; one rule for virtual particles."""
+    seen: dict[str, int] = {}
+    d = case.box.dimension
+    for i, wall in enumerate(case.walls):
+        key = f"wall[#{i + 1}]"
+        if d not in wall.dimensions:
+            known = [tag_of(s)[1] for s in SHAPES if d in s.dimensions]  # type: ignore[index]
+            yield f"{key}.shape = {show(wall.shape)}: not in {d}D; expected {one_of(known)}"
+        if wall.shape == "plates":
+            if wall.axis in seen:
+                yield f"{key}.axis = {show(wall.axis)}: wall[#{seen[wall.axis]}] closes it already"
+            seen[wall.axis] = i + 1
+        if wall.virtual != case.walls[0].virtual:
+            yield (
+                f"{key}.virtual = {show(wall.virtual)}: expected {show(case.walls[0].virtual)} as "
+                "for wall[#1]; all walls have one rule"
+            )
     masses = {kind.mass for kind in case.fluid.species}
     if len(masses) > 1 and any(wall.virtual == "top-up" for wall in case.walls):
         yield "wall[#1].virtual = 'top-up': not with species of different mass; use 'extrapolate'"
-    for key, surface, axis in _surfaces(case):
-        velocity = surface.velocity
-        if velocity is None:
-            continue
-        if velocity[AXES.index(axis)] != 0:
+
+
+def moving_surfaces(case: Case) -> Iterator[str]:
+    """Surfaces that move along themselves."""
+    for key, surface, wall in _surfaces(case):
+        if wall.shape == "plates":
+            yield from _moving_plate(key, surface, wall.axis)
+        elif surface.rule == "slip" and surface.moves:
+            name = "velocity" if any(surface.velocity or ()) else "rotation"
+            yield f"{key}.{name}: a slip surface drags nothing; leave it out"
+        if isinstance(surface.rotation, tuple) and (
+            case.box.dimension == 2 or len(surface.rotation) != 3
+        ):
+            what = "one number in 2D" if case.box.dimension == 2 else "a number or three"
+            yield f"{key}.rotation = {show(surface.rotation)}: expected {what}"
+    if any(surface.moves for _, surface, _ in _surfaces(case)):
+        across = solids_of(case).motion_across()
+        for i, wall in enumerate(case.walls):
+            if wall.shape != "plates" and across.get(i, 0.0) > 1e-6:
+                yield (
+                    f"wall[#{i + 1}].surface: its surface would move across itself, at "
+                    f"{across[i]:.3g}; expected a motion along the surface, such as the rotation "
+                    "of something round"
+                )
+
+
+def _moving_plate(key: str, surface: Surface, axis: Any) -> Iterator[str]:
+    velocity = surface.velocity
+    if surface.rotation is not None:
+        yield f"{key}.rotation = {show(surface.rotation)}: a plate does not turn"
+    if velocity is None:
+        return
+    if velocity[AXES.index(axis)] != 0:
+        yield (
+            f"{key}.velocity = {show(velocity)}: a plate across {axis} moves only along "
+            f"itself; expected 0 for {axis}"
+        )
+    if surface.rule == "slip" and any(velocity):
+        yield f"{key}.velocity = {show(velocity)}: a slip plate drags nothing; leave it out"
+
+
+def room(case: Case) -> Iterator[str]:
+    """Solids that leave room, and fit the periodic box."""
+    if all(wall.shape == "plates" for wall in case.walls):
+        return
+    solids = solids_of(case)
+    for i, axis in enumerate(case.box.axes):
+        gap = solids.misfit(i)
+        if gap > 1e-6:
             yield (
-                f"{key}.velocity = {show(velocity)}: a plate across {axis} moves only along "
-                f"itself; expected 0 for {axis}"
+                f"wall: the solids do not fit the periodic box along {axis}: at its two ends they "
+                f"differ by {gap:.2g} cells; close it with plates, or repeat the shape"
             )
-        if surface.rule == "slip" and any(velocity):
-            yield f"{key}.velocity = {show(velocity)}: a slip plate drags nothing; leave it out"
+    if solids.free_volume < 1:
+        yield f"wall: the solids leave {solids.free_volume:.3g} cells to the fluid"
 
 
 def collision(case: Case) -> Iterator[str]:
@@ -145,7 +209,7 @@ def force(case: Case) -> Iterator[str]:
         return
     if rule.flow == rule.gradient:
         yield f"fluid.force.gradient = {show(rule.gradient)}: expected another axis than flow"
-    if any(wall.axis == rule.flow for wall in case.walls):
+    if rule.flow in _closed(case):
         yield f"fluid.force.flow = {show(rule.flow)}: expected an axis that no wall closes"
 
 
@@ -155,8 +219,10 @@ def shear(case: Case) -> Iterator[str]:
     if rate == 0:
         return
     key = f"box.shear_rate = {show(rate)}"
-    for wall in case.walls:
-        if wall.axis in ("x", "y"):
+    for i, wall in enumerate(case.walls):
+        if wall.shape != "plates" or len(case.walls) > 1 or wall.diffuse:
+            yield f"{key}: not with wall[#{i + 1}].shape = {show(wall.shape)}; only with one slit"
+        elif wall.axis in ("x", "y"):
             yield f"{key}: not with walls across {wall.axis}; move a plate to shear a slit"
     if rule.rule == "sinusoidal":
         yield f"{key}: not with a sinusoidal force"
@@ -201,20 +267,29 @@ def trajectory(case: Case) -> Iterator[str]:
 
 
 RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
-    size, mean_free_path, axes, vectors, walls, collision, force, shear, start, names, bins,
+    axes, vectors, walls, room, moving_surfaces, size, mean_free_path, collision, force, shear, start, names, bins,
     trajectory,
 )  # fmt: skip
 
 
+def _closed(case: Case) -> set[str]:
+    """Axes that plates close."""
+    return {wall.axis for wall in case.walls if wall.shape == "plates"}
+
+
 def _surfaces(case: Case) -> Iterator[tuple[str, Surface, Any]]:
     for i, wall in enumerate(case.walls):
-        yield f"wall[#{i + 1}].lower", wall.lower, wall.axis
-        yield f"wall[#{i + 1}].upper", wall.upper, wall.axis
+        for name in ("lower", "upper") if wall.shape == "plates" else ("surface",):
+            yield f"wall[#{i + 1}].{name}", getattr(wall, name), wall
 
 
 def _vectors(case: Case) -> Iterator[tuple[str, tuple[float, ...]]]:
     if case.fluid.force.rule == "uniform":
         yield "fluid.force.acceleration", case.fluid.force.acceleration
+    for i, wall in enumerate(case.walls):
+        if wall.shape != "plates" and case.box.dimension in wall.dimensions:
+            for key, vector in wall.vectors().items():
+                yield f"wall[#{i + 1}].{key}", vector
     for key, surface, _ in _surfaces(case):
         if surface.velocity is not None:
             yield f"{key}.velocity", surface.velocity

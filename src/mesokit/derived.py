@@ -247,7 +247,7 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
                     else f"fluid.force.acceleration: nothing holds the fluid along {axis}: without "
                     "walls it speeds up for ever"
                 )
-            elif push and case.walls[0].axis == axis:
+            elif push and AXES.index(axis) in setting.closed_axes(case):
                 drop = fluid.mass * abs(push) * case.box.size[across] / fluid.kT
                 if drop > 0.1:
                     yield (

@@ -24,6 +24,9 @@ VIRTUAL_VELOCITY = np.uint64(6)
 CELL_VIRTUAL = np.uint64(7)
 INITIAL_POSITION = np.uint64(8)
 INITIAL_VELOCITY = np.uint64(9)
+BODY_POSITION = np.uint64(10)  # of virtual particles in solids of any shape, and their number
+BODY_VELOCITY = np.uint64(11)
+DIFFUSE_WALL = np.uint64(12)
 
 _LOW = np.uint64(0xFFFFFFFF)
 _SHIFT = np.uint64(32)

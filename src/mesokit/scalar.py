@@ -25,13 +25,18 @@ def scalar(function: Callable) -> Any:
     return njit(forceinline=True, error_model="numpy")(function)
 
 
+def seldom(function: Callable) -> Any:
+    """As `scalar`, for what few particles need: compiled once and called, not inlined."""
+    return njit(error_model="numpy", nogil=True, _nrt=False)(function)
+
+
 def by_type(choose: Callable) -> Any:
     """A function of which `choose`, given the types of the arguments, gives the code to compile."""
     return _overloaded(choose, choose)
 
 
 def _overloaded(name: Callable, choose: Callable) -> Any:
-    options = {"forceinline": True, "error_model": "numpy"}
+    options = {"forceinline": True, "error_model": "numpy", "_nrt": False}
     overload(name, strict=False, jit_options=options)(choose)
     return name
 
@@ -172,3 +177,15 @@ def dot(a, b):
     for k in range(1, len(a)):
         total = mul_add(a[k], b[k], total)
     return total
+
+
+@by_type
+def outer(a, b):
+    """Vector product: a tuple of one number for vectors of two, of three for vectors of three."""
+    if len(a) == 2:
+        return lambda a, b: (a[0] * b[1] - a[1] * b[0],)
+    return lambda a, b: (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )

@@ -1,6 +1,7 @@
 """Flights between plates: hits where they are, nothing outside, momentum and time accounted for."""
 
 from decimal import Decimal, localcontext
+from typing import NamedTuple
 
 import numpy as np
 from hypothesis import assume, example, given, settings
@@ -8,9 +9,10 @@ from hypothesis import strategies as st
 from numba import njit
 
 from mesokit.box import Box, fold, peculiar
+from mesokit.execute.bounce import bounce
 from mesokit.geometry import Plates, Surface
 from mesokit.geometry.protocol import first_hit, touches
-from mesokit.mpcd.streaming import bounce
+from mesokit.random import Counter
 
 WIDTH, LENGTH = 3, 5
 
@@ -20,9 +22,25 @@ height = st.floats(0, WIDTH)
 timestep = st.floats(1e-3, 2)
 walls = st.sampled_from(["no-slip", "slip"])
 
-flies = njit(lambda solid, r, v, a, time: bounce(solid, r, v, a, time))
+SCALE = 2.0**44
+Step = NamedTuple("Step", [("solid", tuple), ("timestep", float), ("kT", float)])
+
+
+@njit
+def flown(solid, r, v, a, time, impulse):
+    return bounce(Step(solid, time, 1.0), Counter(1, 1), 0, 1.0, r, v, a, impulse, SCALE)
+
+
+def flies(solid, r, v, a, time):
+    """Position and velocity after the flight, and what the lower and the upper plate took."""
+    impulse = np.zeros(6, np.int64)
+    r, v = flown(solid, r, v, a, time, impulse)
+    taken = impulse.reshape(2, 3)[:, :2] / SCALE
+    return r, v, taken[0], taken[1]
+
+
 finds = njit(lambda solid, r, v, a, time: first_hit(solid, r, v, a, time))
-sees = njit(lambda solid, r, v, a, time: touches(solid, r, v, a, time))
+sees = njit(lambda solid, r, v, a, time: touches(solid, (), r, v, a, time))
 folds = njit(lambda box, r, v, shift: fold(box, r, v, shift))
 relative = njit(lambda box, r, v: peculiar(box, r, v))
 

@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 from mesokit.errors import RunError
 from mesokit.execute.cell_energy import MOST_PARTICLES, ONE_PARTICLE, WithCount
 from mesokit.execute.clock import STAGES
+from mesokit.execute.flags import MEASURE_STRESS, MEASURE_WALLS
 from mesokit.execute.layout import ROW
 from mesokit.execute.readings import Readings
 from mesokit.execute.sort import sort
 from mesokit.execute.step import FINISH, SOLVE, SWEEP, advance
-from mesokit.execute.sweep import MEASURE_STRESS, MEASURE_WALLS
+
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -74,7 +75,7 @@ class CPU(Readings):
             advance, self.clock, steps, self.step, self.case.run.seed, self.case.fluid.grid_shift,
             tuple(float(shut) for shut in self.closed), what,
             (self.case.fluid.density,) if self.virtual == "top-up" else (),
-            (1.0,) if self.virtual == "extrapolate" else (),
+            (1.0,) if self.virtual == "extrapolate" else (), self.guests,
             self.physics, self.box_kernel, self.grid, self.particles, self.cell_arrays,
             self.number_of_cells, self.sweep_scratch, self.cell_scratch, self.like, self.c,
             self.terms, self.scales,

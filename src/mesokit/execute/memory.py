@@ -23,11 +23,14 @@ from mesokit.execute.layout import (
     sums_length,
     zeros,
 )
+from mesokit.execute.invite import charted, guests_of
 from mesokit.execute.stages import Grid, Physics
 from mesokit.geometry.none import Nothing
+from mesokit.solids import free_volume, is_slit, solids_of
 
 if TYPE_CHECKING:
     from mesokit.case import Case
+    from mesokit.execute.guests import Guests
 
 # Whole numbers of this many per thermal unit: 2^-42 of a thermal momentum, 2^-39 of kT.
 MOMENTUM_BITS, MASS_BITS, ENERGY_BITS = 42, 44, 39
@@ -47,23 +50,30 @@ class Memory:
         self.box = np.array(box.size, float)
         self.step, self.timestep = 0, fluid.timestep
         self.measures = frozenset(measures)
-        wall = case.walls[0] if case.walls else None
-        self.closed = tuple(wall is not None and wall.axis == axis for axis in box.axes)
+        self.slit = is_slit(case)
+        self.solids = solids_of(case) if case.walls else None
+        self.closed = self.solids.room.closed if self.solids else (False,) * d
+        bodies = self.solids.bodies if self.solids else []
         self.virtual = "none"
-        if wall is not None and "no-slip" in (wall.lower.rule, wall.upper.rule):
-            self.virtual = wall.virtual
+        if any(body.surface.rule != "slip" for body in bodies):
+            self.virtual = case.walls[0].virtual
 
         kinds = [(kind.mass, kind.density) for kind in fluid.species]
         kinds = kinds or [(fluid.mass, fluid.density)]
         heaviest = max(mass for mass, _ in kinds)
-        self.counts = [round(density * box.volume) for _, density in kinds]
+        self.counts = [round(density * free_volume(case)) for _, density in kinds]
         self.n = sum(self.counts)
         if self.n == 0:
             raise RunError(f"fluid.density = {fluid.density:g}: no particle in the box")
         layer = math.prod(s for s, shut in zip(box.size, self.closed, strict=True) if not shut)
         self.n_virtual = (
-            round(fluid.density * layer) if self.virtual in ("fill", "extrapolate") else 0
+            round(fluid.density * layer)
+            if self.slit and self.virtual in ("fill", "extrapolate")
+            else 0
         )
+
+        self.cells = tuple(size + shut for size, shut in zip(box.size, self.closed, strict=True))
+        self.number_of_cells = math.prod(self.cells)
 
         uniform = len({mass for mass, _ in kinds}) == 1
         self.units = units = units_of(case)
@@ -81,7 +91,7 @@ class Memory:
             fluid.collision.kernel(d, fluid.kT),
             fluid.thermostat.kernel(fluid.kT, FLOOR * noise),
             fluid.force.kernel(box.size),
-            wall.kernel(box.size) if wall else Nothing(),
+            self._solid(),
             (heaviest,) if uniform else (),
             energy,
             fluid.timestep,
@@ -98,14 +108,21 @@ class Memory:
         self.coefficient_count = fluid.collision.coefficient_count(d, fluid.thermostat.needs_energy)
         self.c = (0.0,) * self.coefficient_count
 
-        self.cells = tuple(size + shut for size, shut in zip(box.size, self.closed, strict=True))
-        self.number_of_cells = math.prod(self.cells)
         steps = 2.0 * SORT_DISTANCE_SQUARED * fluid.mass / (fluid.kT * fluid.timestep**2)
         self.sort_every = int(min(max(steps, 10), 100))
         self._allocate(uniform)
         self.box_kernel = box.kernel(self.closed, 0.0)
         zero, cells = (0.0,) * d, tuple(float(n) for n in self.cells)
         self.grid = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
+
+    def _solid(self) -> tuple:
+        """Parameters of the solids; plates alone have a kernel of their own."""
+        if self.solids is None:
+            return Nothing()
+        if self.slit:
+            return self.case.walls[0].kernel(self.case.box.size)
+        bodies, self._clear = charted(self.case, self.solids, self.cells)
+        return bodies
 
     def _allocate(self, uniform: bool) -> None:
         d, threads = self.dimension, self.threads
@@ -125,11 +142,20 @@ class Memory:
         self.sums = zeros((threads, (spare_cell + 1) * sums_length(len(self.terms))), np.int64)
         most = max(self.coefficient_count, 2 * d)
         parts = self.strips[0] if "stress" in self.measures else 1
-        self.impulse = zeros((threads, 2 * d), np.int64)
+        surfaces = 2 if self.slit else len(self.solids.bodies) if self.solids else 0
+        self.impulse = zeros((threads, surfaces * (d + (1 if d == 2 else 3))), np.int64)
         self.wall_rates = zeros((2, d))
+        self.guests: Guests | tuple[()] = ()
+        if self.solids and not self.slit and self.virtual != "none":
+            masses = np.repeat(self.masses_of_kinds, self.counts)
+            self.guests = guests_of(
+                self.case, self.solids, self.cells, threads, self.rows, masses
+            )
+            self.wall_rates = self.guests.rates
         self.tensor = zeros((2, parts, 2 * d * d))
         self.sweep_scratch = (
             zeros((threads, most * SCRATCH_ROW)),
+            zeros((threads, SCRATCH_ROW), np.float32),
             zeros((threads, LANES), np.int64),
             zeros((threads, (len(self.terms) + 1) * SCRATCH_ROW), np.int64),
             self.impulse,
@@ -182,18 +208,26 @@ def units_of(case: Case) -> dict[str, float]:
     speed = max(
         math.sqrt(fluid.kT / min(masses)),
         abs(box.shear_rate) * box.size[1] / 16.0,
-        *(
-            abs(u) / 16.0
-            for wall in case.walls
-            for surface in (wall.lower, wall.upper)
-            for u in surface.velocity or ()
-        ),
+        _fastest_surface(case) / 16.0,
     )
     return {
         "momentum": 2.0 ** (MOMENTUM_BITS - math.ceil(math.log2(heaviest * speed))),
         "mass": 2.0 ** (MASS_BITS - math.ceil(math.log2(heaviest))),
         "energy": 2.0 ** (ENERGY_BITS - math.ceil(math.log2(heaviest * speed * speed))),
     }
+
+
+def _fastest_surface(case: Case) -> float:
+    """A bound of the speed of all surfaces."""
+    bodies = solids_of(case).bodies if case.walls else []
+    return max(
+        (
+            math.hypot(*(body.surface.velocity or ()))
+            + math.hypot(*body.rotation) * math.hypot(*case.box.size)
+            for body in bodies
+        ),
+        default=0.0,
+    )
 
 
 def _on_grid(mass: float, scale: float) -> float:

@@ -131,8 +131,12 @@ class Readings(Memory):
 
     @property
     def wall_impulse(self) -> Floats:
-        """Momentum (2, d) that the lower and upper plate took since the last call."""
-        taken = self.impulse.sum(axis=0).astype(float).reshape(2, -1) / self.units["momentum"]
+        """What surfaces took since the last call: momentum (d), then angular momentum (1 or 3).
+
+        A row for each: the lower and upper plate of a slit, or the bodies in order.
+        """
+        columns = self.dimension + (1 if self.dimension == 2 else 3)
+        taken = self.impulse.sum(axis=0).astype(float).reshape(-1, columns) / self.units["momentum"]
         self.impulse[:] = 0
         self.wall_steps = 0
         return taken

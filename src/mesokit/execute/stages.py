@@ -1,22 +1,25 @@
 """The stages of a step, each a loop over the lanes of one strip of particles."""
 
-import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.box import slide
+from mesokit.execute.bounce import bounce
 from mesokit.execute.cell_energy import tally
+from mesokit.execute.chart import clear_place
 from mesokit.execute.layout import LANES, QUAD, SCRATCH_ROW, sums_length
 from mesokit.execute.records import gather, scatter_add
 from mesokit.execute.rows import add_to, count_images, load, mass_of, note, recall, store
 from mesokit.execute.sums import terms_of
-from mesokit.geometry.protocol import closes, exposed, touches
+from mesokit.geometry.bodies import Bodies
+from mesokit.geometry.none import Nothing
+from mesokit.geometry.protocol import exposed, free, touches
 from mesokit.mpcd.collision.protocol import collide, contribute
-from mesokit.mpcd.streaming import bounce, fall, halfway, vector
-from mesokit.random import VIRTUAL_POSITION, VIRTUAL_VELOCITY, normals, unit_open, words
-from mesokit.scalar import added, chosen, first, mul_add, optional, scalar, scaled
+from mesokit.mpcd.streaming import fall, halfway, vector
+from mesokit.pointer import short
+from mesokit.scalar import by_type, chosen, mul_add, optional, scalar
 
 
 class Physics(NamedTuple):
@@ -30,6 +33,12 @@ class Physics(NamedTuple):
     energy: tuple  # how cells learn their kinetic energy
     timestep: float
     kT: float
+
+
+def kind_of_solid(physics: Any) -> type:
+    """The class of the solid, from the numba type of `Physics`."""
+    solid = physics.types[physics.fields.index("solid")]
+    return solid.instance_class  # type: ignore[no-any-return]
 
 
 class Grid(NamedTuple):
@@ -78,14 +87,44 @@ def collided(physics, grid, gathered, i, r, v, c):
 
 
 @scalar
-def fly(physics, strip, i, r, v, hits):
+def locate_strip(grid, strip, cell, like):
+    """Find the cells anew, where those of the step before are no longer known."""
+    for i in range(LANES):
+        cell[i] = cell_index(load(strip, i, 0, like), grid)
+
+
+@by_type
+def look_around_strip(solid, grid, known, strip, cell, clear, like):
+    """What the cell of each particle, if it is known, says of the distance that it may fly."""
+    return _look_around if solid.instance_class is Bodies else lambda *_: None
+
+
+def _look_around(solid, grid, known, strip, cell, clear, like):
+    if not known:
+        locate_strip(grid, strip, cell, like)
+    table = solid.clear + 4 * clear_place(solid, grid, 0)
+    for i in range(LANES):
+        clear[i] = short(table, np.int64(cell[i]))
+
+
+@by_type
+def clear_of(solid, clear, i):
+    """Square of the distance that lane i may fly in any direction: (d,) if it is in tables."""
+    if solid.instance_class is Bodies:
+        return lambda solid, clear, i: (clear[i],)
+    return lambda solid, clear, i: ()
+
+
+@scalar
+def fly(physics, strip, i, r, v, clear, hits):
     """Store position and velocity a timestep later; a particle that may hit a surface stays behind.
 
     The latter is marked in `hits`, and 1 is the answer.
     """
     a = halfway(physics.field, r, v, physics.timestep)
     there = fall(r, v, a, physics.timestep)
-    hit = np.int64(touches(physics.solid, r, v, vector(a, r), physics.timestep))
+    around = clear_of(physics.solid, clear, i)
+    hit = np.int64(touches(physics.solid, around, r, v, vector(a, r), physics.timestep))
     if exposed(physics.solid):
         hits[i] = hit
     store(strip, i, 0, chosen(hit != 0, r + v, there[0] + there[1]))
@@ -102,43 +141,46 @@ def collide_strip(physics, grid, strip, gathered, like, c):
 
 
 @scalar
-def stream_strip(physics, strip, hits, like):
+def stream_strip(physics, strip, clear, hits, like):
     """Positions and velocities a timestep later; whether particles stayed behind is the answer."""
     d = len(like)
     any_hit = np.int64(0)
     for i in range(LANES):
         r, v = load(strip, i, 0, like), load(strip, i, d, like)
-        any_hit |= fly(physics, strip, i, r, v, hits)
+        any_hit |= fly(physics, strip, i, r, v, clear, hits)
     return any_hit
 
 
 @scalar
-def collide_and_stream_strip(physics, grid, strip, gathered, hits, like, c):
+def collide_and_stream_strip(physics, grid, strip, gathered, clear, hits, like, c):
     """The two above in one loop."""
     d = len(like)
     any_hit = np.int64(0)
     for i in range(LANES):
         r, v = load(strip, i, 0, like), load(strip, i, d, like)
         v = collided(physics, grid, gathered, i, r, v, c)
-        any_hit |= fly(physics, strip, i, r, v, hits)
+        any_hit |= fly(physics, strip, i, r, v, clear, hits)
     return any_hit
 
 
-@scalar
-def bounce_strip(physics, strip, count, hits, impulse, scales, like):
+@by_type
+def bounce_strip(physics, counter, strip, count, ident, hits, impulse, scales, like):
     """Flight of the marked particles, with reflections; what surfaces take goes to impulse."""
+    return _bounce_strip if kind_of_solid(physics) is not Nothing else lambda *_: None
+
+
+def _bounce_strip(physics, counter, strip, count, ident, hits, impulse, scales, like):
     d = len(like)
-    dt = physics.timestep
     for i in range(count):
         if hits[i] != 0:
             r, v = load(strip, i, 0, like), load(strip, i, d, like)
-            a = vector(halfway(physics.field, r, v, dt), like)
-            r, v, lower, upper = bounce(physics.solid, r, v, a, dt)
+            a = vector(halfway(physics.field, r, v, physics.timestep), like)
+            if free(physics.solid, r, v, a, physics.timestep):
+                r, v = fall(r, v, a, physics.timestep)
+            else:
+                m = mass_of(physics.masses, strip, i, 2 * d)
+                r, v = bounce(physics, counter, ident[i], m, r, v, a, impulse, scales[0])
             store(strip, i, 0, r + v)
-            m = mass_of(physics.masses, strip, i, 2 * d)
-            for k in range(d):
-                impulse[k] += np.int64(np.rint(m * lower[k] * scales[0]))
-                impulse[d + k] += np.int64(np.rint(m * upper[k] * scales[0]))
 
 
 @scalar
@@ -181,26 +223,3 @@ def add_strip(cell, terms_rows, sums, count, terms, tallied):
         row = terms_rows[len(terms) * SCRATCH_ROW :]
         sums[start] += optional(recall(row, i, tallied), 1)
         add_to(sums, start + np.uint64(1), recall(terms_rows, i, terms))
-
-
-@scalar
-def fill_strip(physics, counter, grid, strip, number, rates, like):
-    """Virtual particles: a thermal gas of the fluid's density in the solid part of cut cells.
-
-    Together the two layers of cut cells of a slit hold one layer of cells of solid, whatever the
-    shift; each particle has a place in that layer, drawn anew at each step, and so belongs to the
-    lower or the upper plate.
-    """
-    d = len(like)
-    lower, upper = like, like
-    for k in range(d):
-        lower = tuple_setitem(lower, k, rates[0, k])
-        upper = tuple_setitem(upper, k, rates[1, k])
-    for i in range(LANES):
-        a, b, c, _ = words(counter, VIRTUAL_POSITION, number + i, 0)
-        place = first((unit_open(a), unit_open(b), unit_open(c)), like)
-        r, u = closes(physics.solid, place, grid.shift, lower, upper)
-        a, b, c, e = words(counter, VIRTUAL_VELOCITY, number + i, 0)
-        m = mass_of(physics.masses, strip, i, 2 * d)
-        v = added(u, scaled(math.sqrt(physics.kT / m), normals(like, a, b, c, e)))
-        store(strip, i, 0, r + v)

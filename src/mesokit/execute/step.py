@@ -6,8 +6,10 @@ from mesokit.box import at_time
 from mesokit.execute.cache import kernel
 from mesokit.execute.cells import solve
 from mesokit.execute.clock import lap
+from mesokit.execute.flags import COLLIDE, MEASURE_STRESS, MEASURE_WALLS, STREAM
+from mesokit.execute.guests import fill_guests, recoil, top_up_guests
 from mesokit.execute.stages import Grid
-from mesokit.execute.sweep import COLLIDE, MEASURE_STRESS, MEASURE_WALLS, STREAM, sweep
+from mesokit.execute.sweep import sweep
 from mesokit.execute.team import wait
 from mesokit.execute.top_up import top_up
 from mesokit.execute.wall_flow import follow
@@ -30,7 +32,7 @@ def cells_at(shift, old, closed):
 @kernel
 def advance(
     thread, threads, gate, clock, steps, done, seed, strength, closed, what, density, wanted,
-    physics, box, grid, particles, cells, number, scratch, cell_scratch, like, c, terms, scales,
+    guests, physics, box, grid, particles, cells, number, scratch, cell_scratch, like, c, terms, scales,
 ):  # fmt: skip
     """Run some steps; velocities are those after the collision of the last when it returns.
 
@@ -40,6 +42,8 @@ def advance(
 
     lap(clock, thread, -1)
     walls = what & MEASURE_WALLS
+    rows, impulse = particles[7], scratch[4][thread]
+    gathered, quanta = scratch[0][thread], scratch[3][thread]
     for n in range(steps):
         counter = Counter(seed, done + n + 1)
         box = at_time(box, (done + n + 1) * physics.timestep)
@@ -51,10 +55,19 @@ def advance(
             thread, threads, flags, physics, box, counter, grid, new, particles, cells, scratch,
             like, c, terms, scales,
         )  # fmt: skip
+        fill_guests(
+            guests, density, thread, threads, what, physics, counter, new, rows, cells[1][thread],
+            gathered, quanta, impulse, like, terms, scales,
+        )  # fmt: skip
         wait(gate, threads)
-        if thread == 0:
-            follow(wanted, physics, new, cells[1], scratch[5], like, terms, scales)
-            top_up(density, physics, counter, new, cells, number, like, scales)
+        follow(
+            wanted, guests, thread, threads, physics, new, cells[1], scratch[6], like, terms, scales
+        )
+        top_up(density, guests, thread, physics, counter, new, cells, number, like, scales)
+        top_up_guests(
+            guests, density, thread, threads, what, physics, counter, new, rows, cells[1], gathered,
+            quanta, impulse, like, terms, scales,
+        )  # fmt: skip
         if len(density) + len(wanted) > 0:
             wait(gate, threads)
         lap(clock, thread, SWEEP)
@@ -64,6 +77,9 @@ def advance(
         )
         wait(gate, threads)
         lap(clock, thread, SOLVE)
+        recoil(
+            guests, thread, what, physics, new, rows, cells[0], gathered, impulse, like, c, scales
+        )
         grid = new
     if steps == 0:
         return

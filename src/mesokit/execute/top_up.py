@@ -17,16 +17,18 @@ from mesokit.scalar import added, by_type, first, optional, scaled
 
 
 @by_type
-def top_up(density, physics, counter, grid, cells, number, like, scales):
-    """Do so if `density` is (density,); nothing if it is ()."""
-    return _add_missing if len(density) == 1 else lambda *_: None
+def top_up(density, guests, thread, physics, counter, grid, cells, number, like, scales):
+    """Do so if `density` is (density,) and there are no guests, who see to it themselves."""
+    return _add_missing if len(density) == 1 and len(guests) == 0 else lambda *_: None
 
 
-def _add_missing(density, physics, counter, grid, cells, number, like, scales):
+def _add_missing(density, guests, thread, physics, counter, grid, cells, number, like, scales):
     """Add virtual particles to the sums of cut cells that hold fewer than the mean density.
 
     A fractional density is met on average. Places are uniform in the solid part of the cell.
     """
+    if thread != 0:
+        return
     sums = cells[1]
     width = sums_length(len(scales))
     axis = across(physics.solid)

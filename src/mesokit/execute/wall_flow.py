@@ -8,6 +8,7 @@ the rate of the profile known they can move like that; the plate is then where i
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
+from mesokit.execute.guests import follow_pieces
 from mesokit.execute.layout import sums_length
 from mesokit.execute.rows import fetch
 from mesokit.execute.sums import nothing_found, read_sums
@@ -18,13 +19,21 @@ MEMORY = 1.0 / 32.0  # weight of one step; the mean must not follow the noise of
 
 
 @by_type
-def follow(wanted, physics, grid, sums, rates, like, terms, scales):
-    """Update the rates (2, d) of the lower and upper plate, if `wanted` is not ()."""
-    return _update if len(wanted) == 1 else lambda *_: None
+def follow(wanted, guests, thread, threads, physics, grid, sums, rates, like, terms, scales):
+    """Update the rates (2, d) of the lower and upper plate, or those of guests; if wanted."""
+    if len(wanted) == 0:
+        return lambda *_: None
+    return _update if len(guests) == 0 else _update_pieces
 
 
-def _update(wanted, physics, grid, sums, rates, like, terms, scales):
+def _update_pieces(wanted, guests, thread, threads, physics, grid, sums, rates, like, terms, scales):
+    follow_pieces(guests, thread, threads, physics, grid, sums, like, terms, scales)
+
+
+def _update(wanted, guests, thread, threads, physics, grid, sums, rates, like, terms, scales):
     """From the cells next to the cut ones, which hold no virtual particles, at this step."""
+    if thread != 0:
+        return
     solid = physics.solid
     axis = across(solid)
     layers, s = int(grid.cells[axis]), grid.shift[axis]

@@ -2,42 +2,69 @@
 
 from __future__ import annotations
 
-import math
-from typing import Literal, NamedTuple
+from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.box import AXES, Axis
 from mesokit.component import component, param, tag
+from mesokit.geometry.flight import time_to_fall
 from mesokit.geometry.protocol import (
     across,
     closes,
     confine,
     exposed,
     first_hit,
+    free,
+    happens,
+    homed,
+    lever,
     reflect,
+    settled,
     side,
+    surface_of,
     touches,
 )
+from mesokit.geometry.region import Room, half_space
+from mesokit.geometry.shape import VIRTUAL, Body, Piece, Virtual
 from mesokit.geometry.surface import Surface
-from mesokit.scalar import added_scaled, mul_add, scalar, scaled
+from mesokit.scalar import added_scaled, mul_add, scaled
 
 
 @component
 class Plates:
     """Two plates at the ends of one axis of the box; the other axes stay periodic."""
 
+    dimensions: ClassVar[tuple[int, ...]] = (2, 3)
     shape: Literal["plates"] = tag("plates")
     axis: Axis = param(doc="axis that the plates close")
     lower: Surface = param(Surface(), doc="the plate at 0")
     upper: Surface = param(Surface(), doc="the plate at the far end")
-    virtual: Literal["extrapolate", "fill", "top-up", "none"] = param(
-        "extrapolate",
-        doc="virtual particles in the cells that a no-slip plate cuts: 'fill' the solid part with "
-        "a gas at the plate's velocity, 'extrapolate' the fluid's velocity into that gas, 'top-up' "
-        "each cell to the mean density, or 'none'",
+    virtual: Virtual = param("extrapolate", doc=VIRTUAL)
+
+    name: str | None = param(
+        None, doc="name in the results (plates and number unless said)", min_length=1
     )
+
+    @property
+    def diffuse(self) -> bool:
+        """Whether a plate sends particles out at random."""
+        return "diffuse" in (self.lower.rule, self.upper.rule)
+
+    def bodies(self, room: Room, label: str) -> list[Body]:
+        """The solids behind the plates, for a case that has other walls as well."""
+        axis, found, rest = AXES.index(self.axis), [], (0.0, 0.0, 0.0)
+        for end, surface in (("lower", self.lower), ("upper", self.upper)):
+            up = 1.0 if end == "lower" else -1.0
+            place = tuple(
+                (0.0 if up > 0 else length) if k == axis else 0.5 * length
+                for k, length in enumerate(room.size)
+            )
+            normal = tuple(up * (k == axis) for k in range(room.dimension))
+            pieces = [Piece(term, place) for term in half_space(place, normal)]
+            found.append(Body(f"{self.name or label}-{end}", surface, self.virtual, pieces, rest))
+        return found
 
     def kernel(self, size: tuple[int, ...]) -> Slit:
         """Parameters for the scalar functions below."""
@@ -100,25 +127,8 @@ def _(solid):
     return 2
 
 
-@scalar
-def time_to_fall(height, v, a, time):
-    """When a particle at a height >= 0 above a plate reaches it; more than `time` if it does not.
-
-    Of the two roots of height + v t + a t^2 / 2 = 0 it is the one with a downward velocity, in the
-    form without cancellation.
-    """
-    square = v * v - 2.0 * a * height
-    down = math.sqrt(max(square, 0.0))
-    late = 2.0 * time + 1.0
-    if square < 0.0 or down == 0.0:
-        return late
-    if v < 0.0:
-        return 2.0 * height / (down - v)
-    return -(v + down) / a if a < 0.0 else late
-
-
 @touches.register(SlitX, SlitY, SlitZ)
-def _(solid, r, v, a, time):
+def _(solid, clear, r, v, a, time):
     k = across(solid)
     h, end = r[k], mul_add(v[k], time, r[k])
     bend = 0.5 * time * time * abs(a[k])  # no parabola is further from its straight line
@@ -133,20 +143,50 @@ def _(solid, r, v, a, time):
     return (below, 0) if below < above else (above, 1)
 
 
+@free.register(SlitX, SlitY, SlitZ)
+def _(solid, r, v, a, time):
+    return False  # `first_hit` is as quick
+
+
+@homed.register(SlitX, SlitY, SlitZ)
+def _(solid, r):
+    return r
+
+
+@happens.register(SlitX, SlitY, SlitZ)
+def _(solid, contact):
+    return True
+
+
+@surface_of.register(SlitX, SlitY, SlitZ)
+def _(solid, contact):
+    return contact
+
+
+@lever.register(SlitX, SlitY, SlitZ)
+def _(solid, contact, r):
+    return scaled(0.0, r)
+
+
 @reflect.register(SlitX, SlitY, SlitZ)
-def _(solid, surface, v):
+def _(solid, contact, r, v, chance):
     k = across(solid)
-    u = solid.lower_velocity if surface == 0 else solid.upper_velocity
-    slips = solid.lower_slips if surface == 0 else solid.upper_slips
+    u = solid.lower_velocity if contact == 0 else solid.upper_velocity
+    slips = solid.lower_slips if contact == 0 else solid.upper_slips
     back = added_scaled(scaled(2.0, u), -1.0, v)
     mirrored = tuple_setitem(v, k, -v[k])
     return mirrored if slips > 0.5 else back
 
 
 @confine.register(SlitX, SlitY, SlitZ)
-def _(solid, r):
+def _(solid, contact, r):
     k = across(solid)
     return tuple_setitem(r, k, min(max(r[k], 0.0), solid.width))
+
+
+@settled.register(SlitX, SlitY, SlitZ)
+def _(solid, r):
+    return confine(solid, 0, r), True
 
 
 @exposed.register(SlitX, SlitY, SlitZ)

@@ -4,7 +4,21 @@ The first argument is the solid's NamedTuple of parameters; its class picks the 
 flight starts at r with velocity v inside the fluid and has the constant acceleration a.
 """
 
+from typing import NamedTuple
+
+import numpy as np
+
 from mesokit.scalar import generic
+
+
+class Chance(NamedTuple):
+    """What a random reflection depends on: the random stream, particle, hit, and kT over mass."""
+
+    seed: np.uint64
+    step: np.uint64
+    number: int
+    hit: int
+    kT_over_m: float
 
 
 @generic
@@ -14,32 +28,71 @@ def across(solid):
 
 
 @generic
-def touches(solid, r, v, a, time):
-    """Whether the flight may touch the solid within the time (a cheap test for every particle)."""
+def exposed(solid):
+    """Whether there is a surface at all (a literal, so that the compiler drops what it guards)."""
+    raise NotImplementedError
+
+
+@generic
+def touches(solid, clear, r, v, a, time):
+    """Whether the flight may touch the solid within the time (a cheap test for every particle).
+
+    `clear` is (square of the distance that is clear around r,) for solids in tables, else ().
+    """
+    raise NotImplementedError
+
+
+@generic
+def free(solid, r, v, a, time):
+    """Whether the flight surely misses the solid (a closer look than `touches`)."""
+    raise NotImplementedError
+
+
+@generic
+def homed(solid, r):
+    """The image of r from which `first_hit` and the others below can tell."""
     raise NotImplementedError
 
 
 @generic
 def first_hit(solid, r, v, a, time):
-    """Time of the first hit (more than `time` if there is none) and the surface that is hit."""
+    """Time of the first hit (more than `time` if there is none), and the contact: what is hit."""
     raise NotImplementedError
 
 
 @generic
-def reflect(solid, surface, v):
+def happens(solid, contact):
+    """Whether a contact is one, or only the end of what could be seen ahead."""
+    raise NotImplementedError
+
+
+@generic
+def surface_of(solid, contact):
+    """Number of the surface that is hit: momentum is kept for each."""
+    raise NotImplementedError
+
+
+@generic
+def lever(solid, contact, r):
+    """r relative to the place about which torques on that surface are taken."""
+    raise NotImplementedError
+
+
+@generic
+def confine(solid, contact, r):
+    """The nearest place in the fluid: takes off what rounding put beyond the surface."""
+    raise NotImplementedError
+
+
+@generic
+def reflect(solid, contact, r, v, chance):
     """Velocity after the hit."""
     raise NotImplementedError
 
 
 @generic
-def confine(solid, r):
-    """The nearest place in the fluid: takes off what rounding put beyond a surface."""
-    raise NotImplementedError
-
-
-@generic
-def exposed(solid):
-    """Whether there is a surface at all (a literal, so that the compiler drops what it guards)."""
+def settled(solid, r):
+    """A place in the fluid within rounding of r, and whether there is one."""
     raise NotImplementedError
 
 

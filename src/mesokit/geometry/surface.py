@@ -11,13 +11,21 @@ from mesokit.component import component, param
 
 @component
 class Surface:
-    """A wall surface, at rest or moving along itself."""
+    """A wall surface, at rest, moving along itself, or turning."""
 
-    rule: Literal["no-slip", "slip"] = param(
-        "no-slip", doc="'no-slip' bounces particles back, 'slip' reflects them like a mirror"
+    rule: Literal["no-slip", "slip", "diffuse"] = param(
+        "no-slip",
+        doc="'no-slip' bounces particles back, 'slip' reflects them like a mirror, 'diffuse' sends "
+        "them out with the wall's temperature",
     )
     velocity: tuple[float, ...] | None = param(
         None, doc="one number for each axis, along the wall (at rest unless said)", unit="a/time"
+    )
+    rotation: float | tuple[float, ...] | None = param(
+        None,
+        doc="rate of rotation, in radians: a number, about z in 2D or about the shape's own axis, "
+        "or a vector in 3D",
+        unit="1/time",
     )
 
     @field_validator("velocity")
@@ -26,3 +34,9 @@ class Surface:
         if velocity is not None and len(velocity) not in (2, 3):
             raise ValueError("expected one number for each axis")
         return velocity
+
+    @property
+    def moves(self) -> bool:
+        """Whether it drags the fluid along."""
+        turning = self.rotation if isinstance(self.rotation, tuple) else (self.rotation or 0.0,)
+        return any(self.velocity or ()) or any(turning)

@@ -187,7 +187,7 @@ def _element(parent: Any, name: str, clock: Any) -> Any:
 
 def _box(group: Any, case: Case, frames: int) -> Any:
     box = group.create_group("box")
-    closed = {wall.axis for wall in case.walls}
+    closed = {wall.axis for wall in case.walls if wall.shape == "plates"}
     boundary = ["none" if axis in closed else "periodic" for axis in ("x", "y", "z")]
     box.attrs["dimension"] = 3
     box.attrs["boundary"] = np.array(boundary, dtype=h5py.string_dtype("ascii"))

@@ -12,7 +12,10 @@ from numpy.typing import NDArray
 from mesokit.box import AXES
 from mesokit.component import component, param
 from mesokit.errors import CaseError, MesokitError
+from mesokit.geometry.contact import MARGIN
 from mesokit.random import INITIAL_POSITION, INITIAL_VELOCITY
+
+from mesokit.solids import solids_of
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -94,9 +97,10 @@ def start(cpu: CPU, positions: Any = None, velocities: Any = None) -> None:
     random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_POSITION))))
     mass = cpu.masses()
     _put_masses(cpu, mass)
+    if positions is None:
+        positions = _uniform(cpu, random)
     for k in range(d):
-        r = random.random(cpu.n) * cpu.box[k] if positions is None else positions[:, k]
-        _put(cpu, k, r)
+        _put(cpu, k, positions[:, k])
     random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_VELOCITY))))
     for k in range(d):
         if velocities is None:
@@ -109,6 +113,18 @@ def start(cpu: CPU, positions: Any = None, velocities: Any = None) -> None:
     if velocities is None and case.box.shear_rate != 0.0:
         cpu.row(d)[...] += case.box.shear_rate * (cpu.row(1) - 0.5 * cpu.box[1])
     cpu.sort()
+
+
+def _uniform(cpu: CPU, random: np.random.Generator) -> Floats:
+    """Places (n, d) uniform in the fluid: those that lie in a solid are drawn again."""
+    places = random.random((cpu.n, cpu.dimension)) * cpu.box
+    if cpu.solids is None or cpu.slit:
+        return places
+    left = np.arange(cpu.n)
+    while len(left):
+        left = left[cpu.solids.distance(places[left]) < MARGIN]
+        places[left] = random.random((len(left), cpu.dimension)) * cpu.box
+    return places
 
 
 def _put(cpu: CPU, row: int, values: Floats) -> None:
@@ -151,9 +167,9 @@ def _checked(case: Case, key: str, values: Any) -> Floats:
 
 def _inside(case: Case, key: str, positions: Floats) -> None:
     """Nobody in a wall."""
-    for wall in case.walls:
-        k = AXES.index(wall.axis)
-        outside = (positions[:, k] < 0) | (positions[:, k] > case.box.size[k])
-        if outside.any():
-            row = int(np.argmax(outside))
-            raise CaseError(f"{key}: row {row} = {positions[row].tolist()} lies in a wall")
+    if not case.walls:
+        return
+    outside = solids_of(case).distance(positions) < 0
+    if outside.any():
+        row = int(np.argmax(outside))
+        raise CaseError(f"{key}: row {row} = {positions[row].tolist()} lies in a wall")

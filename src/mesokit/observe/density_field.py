@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from mesokit.box import AXES
 from mesokit.component import component, tag
 from mesokit.observe import setting
 from mesokit.observe.field import Array, Field, FieldAccumulator
 from mesokit.observe.result import Result
+from mesokit.solids import solids_of
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -40,8 +40,15 @@ class DensityFieldAccumulator(FieldAccumulator):
 
     def result(self) -> Result:
         """The map; uniform unless a force presses the fluid to a plate."""
-        towards = {AXES.index(wall.axis) for wall in self.case.walls}
-        pressed = any(setting.acceleration(self.case)[axis] for axis in towards)
+        if setting.obstructed(self.case):
+            share = solids_of(self.case).open_share(self.axes, self.bins)
+            expected = np.where(share > 0, self.case.fluid.density * share, np.nan)
+            pressed = setting.driven(self.case)
+        else:
+            expected = np.full(self.bins, self.case.fluid.density)
+            pressed = any(
+                setting.acceleration(self.case)[axis] for axis in setting.closed_axes(self.case)
+            )
         return Result(
             quantity="density-field",
             name=self.name,
@@ -50,7 +57,7 @@ class DensityFieldAccumulator(FieldAccumulator):
             error=self.blocks.error()[0],
             label="density",
             units={"value": "1/cell"} | dict.fromkeys(self.coordinates, "a"),
-            expected=None if pressed else np.full(self.bins, self.case.fluid.density),
+            expected=None if pressed else expected,
             theory="uniform",
             samples=self.blocks.count,
             extra={"bins_per_cell": self.observable.bins_per_cell},

@@ -39,7 +39,7 @@ class Modes(Observable):
         d = case.box.dimension
         if self.waves:
             return np.array(self.waves, np.int64)
-        closed = {AXES.index(wall.axis) for wall in case.walls}
+        closed = setting.closed_axes(case)
         unit = np.eye(d, dtype=np.int64)
         shortest = [(axis, n) for n in (1, 2, 3) for axis in range(d) if axis not in closed]
         return np.array([n * unit[axis] for axis, n in shortest if 2 * n <= case.box.size[axis]])
@@ -52,10 +52,10 @@ class Modes(Observable):
         for wave in self.waves:
             if len(wave) != d or not any(wave):
                 raise CaseError(f"waves = {list(wave)}: expected {d} whole numbers, not all 0")
-            for wall in case.walls:
-                if wave[AXES.index(wall.axis)]:
+            for axis in setting.closed_axes(case):
+                if wave[axis]:
                     raise CaseError(
-                        f"waves = {list(wave)}: expected 0 along {wall.axis}, which a wall closes"
+                        f"waves = {list(wave)}: expected 0 along {AXES[axis]}, which a wall closes"
                     )
 
 

@@ -44,7 +44,7 @@ class ProfileAccumulator:
         self.bins = int(case.box.size[self.axis]) * observable.bins_per_cell
         self.edges = np.linspace(0.0, case.box.size[self.axis], self.bins + 1)
         self.centres = (self.edges[1:] + self.edges[:-1]) / 2
-        self.periodic = not any(wall.axis == observable.axis for wall in case.walls)
+        self.periodic = self.axis not in setting.closed_axes(case)
         self.blocks = Blocks((width, self.bins))
 
     def observe(self, fluid: RunningFluid) -> None:

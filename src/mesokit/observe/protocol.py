@@ -25,8 +25,9 @@ class RunningFluid(Protocol):
     number, mass (*bins), momentum (d, *bins) and sum of m v^2 (*bins) in equal bins over the
     whole box along `axes`. `modes` gives sum m e^(-i k r) (K,) and sum m v e^(-i k r) (K, d).
     `stress` holds "kinetic" and "collisional" (d, d) of the last step if an observer due at it
-    declares `measures = ("stress",)`. `wall_impulse` (2, d) is the momentum given to the lower
-    and the upper plate during the last `wall_steps` steps, for `measures = ("walls",)`.
+    declares `measures = ("stress",)`. `wall_impulse` (surfaces, d + 1 or d + 3) is the momentum and
+    angular momentum given to the lower and the upper plate of a slit, or to each body, during the
+    last `wall_steps` steps, for `measures = ("walls",)`.
     """
 
     n: int

@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.box import AXES
 from mesokit.errors import CaseError
+from mesokit.solids import is_slit, solids_of
 
 if TYPE_CHECKING:
     from mesokit.case import Case
+    from mesokit.geometry import Plates
 
 Array = NDArray[np.floating[Any]]
 # third-order Gauss points: exact bin averages of the parabolas that flows are made of
@@ -136,8 +138,23 @@ def with_start(case: Case, error: float, expected: float) -> float:
 
 def driven(case: Case) -> bool:
     """Whether anything makes the fluid flow."""
-    moving = [s for wall in case.walls for s in (wall.lower, wall.upper) if any(s.velocity or ())]
+    moving = case.walls and any(body.surface.moves for body in solids_of(case).bodies)
     return bool(case.box.shear_rate or case.fluid.force.rule != "none" or moving)
+
+
+def slit(case: Case) -> Plates | None:
+    """The two plates of a slit, if these are all walls."""
+    return case.walls[0] if is_slit(case) else None
+
+
+def closed_axes(case: Case) -> set[int]:
+    """Axes that plates close."""
+    return {AXES.index(wall.axis) for wall in case.walls if wall.shape == "plates"}
+
+
+def obstructed(case: Case) -> bool:
+    """Whether there are solids other than the plates of a slit."""
+    return bool(case.walls) and not is_slit(case)
 
 
 def axis_index(case: Case, axis: str, key: str = "axis") -> int:
@@ -150,7 +167,7 @@ def axis_index(case: Case, axis: str, key: str = "axis") -> int:
 
 def quiet_axes(case: Case) -> tuple[int, ...]:
     """Axes that no wall closes and along which nothing flows."""
-    closed = {AXES.index(wall.axis) for wall in case.walls}
+    closed = closed_axes(case)
     return tuple(
         axis
         for axis in range(case.box.dimension)
@@ -186,10 +203,11 @@ def bin_average(function: Callable[[Array], Array], edges: Array) -> Array:
 
 def flow(case: Case, component: int) -> Flow:
     """The steady flow along axis number `component`."""
-    box = case.box
-    smooth = all(s.rule == "slip" for wall in case.walls for s in (wall.lower, wall.upper))
-    if case.walls and not (box.shear_rate and smooth):
-        return _slit(case, component)
+    box, plates = case.box, slit(case)
+    if plates is None and case.walls:
+        return Flow("round solids", 1, None) if driven(case) else Flow("rest", 1, np.zeros_like)
+    if plates and not (box.shear_rate and plates.lower.rule == plates.upper.rule == "slip"):
+        return _slit(case, plates, component)
     if box.shear_rate:
         if case.fluid.force.rule != "none":
             return Flow("driven shear", 1, None)
@@ -223,8 +241,7 @@ def surface_velocity(surface: object, component: int) -> float:
     return float(velocity[component]) if velocity else 0.0
 
 
-def _slit(case: Case, component: int) -> Flow:
-    wall = case.walls[0]
+def _slit(case: Case, wall: Plates, component: int) -> Flow:
     across = AXES.index(wall.axis)
     if case.box.shear_rate:  # no-slip plates across the vorticity hold it back
         return Flow("sheared slit", across, None)

@@ -110,7 +110,8 @@ class VelocityProfileAccumulator(ProfileAccumulator):
 
     def plates(self) -> tuple[float, float]:
         """Velocities of the lower and the upper plate."""
-        wall = self.case.walls[0]
+        wall = setting.slit(self.case)
+        assert wall is not None  # only such flows are fitted so
         lower, upper = (
             setting.surface_velocity(s, self.component) for s in (wall.lower, wall.upper)
         )

@@ -33,8 +33,11 @@ class WallStress(Observable):
 
     def check(self, case: Case) -> None:
         """Raise CaseError without walls, or for a second one: it sees what the first left."""
-        if not case.walls:
-            raise CaseError("wall-stress needs a [[wall]]")
+        if setting.slit(case) is None:
+            raise CaseError(
+                "wall-stress needs one [[wall]] of shape 'plates', and no other; "
+                "for other walls observe 'forces'"
+            )
         if any(wall.virtual == "top-up" for wall in case.walls):
             raise CaseError("wall-stress is not counted with virtual = 'top-up'; use 'extrapolate'")
         if sum(other.quantity == self.quantity for other in case.observe) > 1:
@@ -59,7 +62,8 @@ class WallStressAccumulator:
         """Take one sample."""
         steps = fluid.wall_steps  # before the impulse, whose reading starts the count anew
         if steps:
-            self.blocks.add(fluid.wall_impulse / (steps * self.case.fluid.timestep * self.area))
+            taken = fluid.wall_impulse[:, : self.case.box.dimension]
+            self.blocks.add(taken / (steps * self.case.fluid.timestep * self.area))
 
     def state(self) -> State:
         """All it has to remember."""

@@ -14,6 +14,11 @@ class NoForce:
 
     rule: Literal["none"] = tag("none")
 
+    @property
+    def largest(self) -> float:
+        """Largest size of the acceleration."""
+        return 0.0
+
     def kernel(self, size: tuple[int, ...]) -> Zero:
         """Parameters for the scalar function below."""
         return Zero()

@@ -23,6 +23,11 @@ class Sinusoidal:
     gradient: Axis = param("y", doc="axis along which it varies")
     waves: int = param(1, doc="number of waves in the box", ge=1)
 
+    @property
+    def largest(self) -> float:
+        """Largest size of the acceleration."""
+        return abs(self.amplitude)
+
     def kernel(self, size: tuple[int, ...]) -> Wave:
         """Parameters for the scalar function below."""
         flow, gradient = AXES.index(self.flow), AXES.index(self.gradient)

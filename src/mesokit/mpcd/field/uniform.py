@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal, NamedTuple
 
 from mesokit.component import component, param, tag
@@ -16,6 +17,11 @@ class Uniform:
     acceleration: tuple[float, ...] = param(
         doc="one number for each axis", unit="a/time^2", min_length=2, max_length=3
     )
+
+    @property
+    def largest(self) -> float:
+        """Largest size of the acceleration."""
+        return math.hypot(*self.acceleration)
 
     def kernel(self, size: tuple[int, ...]) -> Everywhere:
         """Parameters for the scalar function below."""

@@ -1,0 +1,69 @@
+"""The flight of a particle that may hit a surface, from hit to hit."""
+
+import numpy as np
+
+from mesokit.geometry.protocol import (
+    Chance,
+    confine,
+    first_hit,
+    happens,
+    homed,
+    lever,
+    reflect,
+    settled,
+    surface_of,
+)
+from mesokit.mpcd.streaming import fall
+from mesokit.scalar import added, added_scaled, outer, scalar, scaled, seldom
+
+MOST_HITS = 256  # within one timestep, pieces of a long flight included
+
+
+@scalar
+def take(impulse, surface, r, p, scale):
+    """Add the momentum p, taken at r relative to the pivot, to what a surface took."""
+    given = p + outer(r, p)
+    start = surface * len(given)
+    for k in range(len(given)):
+        impulse[start + k] += np.int64(np.rint(given[k] * scale))
+
+
+@seldom
+def bounce(physics, counter, number, m, r, v, a, impulse, scale):
+    """Position and velocity a timestep later, with reflections; surfaces take the momentum lost.
+
+    A particle that rounding leaves in a solid, or that still flies after MOST_HITS, stays where it
+    was, with the velocity that its hits left it: no particle is ever in a solid.
+    """
+    solid, time = physics.solid, physics.timestep
+    start = homed(solid, r)
+    away = added_scaled(r, -1.0, start)
+    x, u, flying, touched = start, v, True, False
+    for n in range(MOST_HITS):
+        hit, contact = first_hit(solid, x, u, a, time)
+        if hit > time:
+            flying = False
+            break
+        x, u = fall(x, u, a, hit)
+        time -= hit
+        if happens(solid, contact):
+            touched = True
+            x = confine(solid, contact, x)
+            chance = Chance(counter.seed, counter.step, number, n, physics.kT / m)
+            left = reflect(solid, contact, x, u, chance)
+            lost = scaled(m, added_scaled(u, -1.0, left))
+            take(impulse, surface_of(solid, contact), lever(solid, contact, x), lost, scale)
+            u = left
+        at_home = homed(solid, x)
+        away = added(away, added_scaled(x, -1.0, at_home))
+        x = at_home
+    if touched:
+        x, u = fall(x, u, a, time)
+    else:  # the same bits as for a particle that was seen to be far from all solids
+        x, u = fall(r, v, a, physics.timestep)
+        away = scaled(0.0, r)
+    at_home = homed(solid, x)
+    place, good = settled(solid, at_home)
+    if flying or not good:
+        return r, u
+    return added(added(x, away), added_scaled(place, -1.0, at_home)), u

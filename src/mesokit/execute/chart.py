@@ -1,0 +1,122 @@
+"""Tables of what is near, for each offset of the grid of cells from the box.
+
+A cell of the grid lies anywhere: its shift is drawn at each step. Tables are made for OFFSETS
+intervals of the shift along each axis, and hold for every shift of the interval.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from mesokit.execute import survey
+from mesokit.geometry.bodies import Bodies
+from mesokit.geometry.contact import MARGIN
+from mesokit.scalar import by_type, scalar
+from mesokit.solids import Solids
+
+OFFSETS = 4  # along each axis
+PIECES = 5  # along each axis, by which a cell is searched for a surface
+EVERYWHERE = 1e30
+
+
+@by_type
+def offset_of(solid, grid):
+    """Number of the interval that holds the origin of the grid, for solids in tables."""
+    if solid.instance_class is Bodies:
+        return _offset
+    return lambda solid, grid: 0
+
+
+def _offset(solid, grid):
+    number = 0
+    for k in range(len(grid.origin)):
+        number = number * OFFSETS + int(np.floor(grid.origin[k] * OFFSETS)) % OFFSETS
+    return number
+
+
+@scalar
+def clear_place(solid, grid, cell):
+    """Where the table of clear distances has that of a cell."""
+    cells = 1
+    for k in range(len(grid.cells)):
+        cells *= int(grid.cells[k])
+    return offset_of(solid, grid) * (cells + 1) + cell
+
+
+def origins(closed: tuple[bool, ...]) -> Iterator[tuple[float, ...]]:
+    """The middle of each interval: from 0 to 1 along a closed axis, from -1/2 to 1/2 elsewhere."""
+    along = [
+        [((q if shut or q < OFFSETS // 2 else q - OFFSETS) + 0.5) / OFFSETS for q in range(OFFSETS)]
+        for shut in closed
+    ]
+    return itertools.product(*along)
+
+
+def centres(cells: tuple[int, ...], origin: tuple[float, ...]) -> Any:
+    """Middles of all cells of a grid (cells, d), x varying fastest."""
+    grids = [np.arange(n) + 0.5 - x for n, x in zip(cells, origin, strict=True)]
+    mesh = np.meshgrid(*reversed(grids), indexing="ij")
+    return np.stack([axis.ravel() for axis in reversed(mesh)], axis=-1)
+
+
+def clear_distances(solids: Solids, cells: tuple[int, ...], bend: float) -> Any:
+    """Square of the distance that any particle of each cell may fly (offsets, cells + 1).
+
+    No flight is farther than `bend` from the straight way to its end.
+    """
+    d, rows = solids.dimension, []
+    corner = (0.5 + 0.5 / OFFSETS) * math.sqrt(d)
+    for origin in origins(solids.room.closed):
+        clear = solids.distance(centres(cells, origin)) - corner - bend - MARGIN
+        rows.append([*np.maximum(clear, 0.0) ** 2, EVERYWHERE])
+    return np.array(rows, np.float32)
+
+
+def cut_cells(solids: Solids, cells: tuple[int, ...]) -> tuple[Any, Any, Any]:
+    """Cells that may hold both fluid and solid: where those of each offset start, and their lower
+    corners in the grid (entries, d), as whole numbers."""
+    starts, numbers, corners = [0], [], []
+    half = 0.5 + 0.5 / OFFSETS
+    for origin in origins(solids.room.closed):
+        middle = centres(cells, origin)
+        near = np.flatnonzero(np.abs(solids.distance(middle)) <= half * math.sqrt(len(cells)))
+        found = np.zeros(len(near), np.int64)
+        survey.cut(solids.kernel, solids.like, middle[near], half, PIECES, found)
+        chosen = near[found > 0]
+        numbers.append(chosen)
+        corners.append(np.rint(middle[chosen] + np.array(origin) - 0.5))
+        starts.append(starts[-1] + len(chosen))
+    return (
+        np.array(starts, np.int64),
+        np.concatenate(numbers).astype(np.int64),
+        np.concatenate(corners).astype(float),
+    )
+
+
+def surface_pieces(solids: Solids) -> tuple[Any, Any, Any, Any, Any]:
+    """A piece of surface in each cell of the box that has one, whose body follows the fluid.
+
+    Number of the piece in each cell or -1, then for each piece its place, its normal, the place to
+    look for fluid, which is so far that its cell is free of solid, and its term.
+    """
+    d, size = solids.dimension, solids.size
+    middle = centres(size, (0.0,) * d)
+    terms = np.zeros(len(middle), np.int64)
+    distance, normal = np.zeros(len(middle)), np.zeros(middle.shape)
+    survey.who_is_near(solids.kernel, solids.like, middle, terms, distance, normal)
+    follows = np.array([body.virtual == "extrapolate" for body in solids.bodies])
+    sticks = np.array([body.surface.rule != "slip" for body in solids.bodies])
+    near = (terms >= 0) & (np.abs(distance) <= 0.5 * math.sqrt(d))
+    near &= (follows & sticks)[solids.body_of_term[terms]]
+    where = np.flatnonzero(near)
+    pieces = np.full(len(middle), -1, np.int32)
+    pieces[where] = np.arange(len(where))
+    outward = normal[where]
+    feet = middle[where] - distance[where, None] * outward
+    probes = feet + ((1.0 + 0.5 / OFFSETS) * math.sqrt(d) + 2 * MARGIN) * outward
+    return pieces, feet, outward, probes, terms[where]

@@ -1,0 +1,55 @@
+"""The tables and the memory of solids and their virtual particles, made when a case is built."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mesokit.execute.chart import clear_distances, cut_cells, surface_pieces
+from mesokit.execute.guests import KINDS, Guests
+from mesokit.execute.layout import BLOCK, ROW, blocks_for, zeros
+from mesokit.geometry.bodies import Bodies
+from mesokit.pointer import address
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+    from mesokit.solids import Solids
+
+
+def charted(case: Case, solids: Solids, cells: tuple[int, ...]) -> tuple[Bodies, Any]:
+    """The solids with the distances that are clear around each cell, and that table."""
+    bend = 0.125 * case.fluid.force.largest * case.fluid.timestep**2
+    clear = clear_distances(solids, cells, bend)
+    return solids.kernel._replace(clear=address(clear)), clear
+
+
+def guests_of(
+    case: Case, solids: Solids, cells: tuple[int, ...], threads: int, rows: int, masses: Any
+) -> Guests:
+    """Virtual particles of the bodies; `masses` are those of the fluid's particles."""
+    density, d = case.fluid.density, case.box.dimension
+    starts, numbers, corners = cut_cells(solids, cells)
+    pieces, feet, outward, probes, terms = surface_pieces(solids)
+    most = int(np.diff(starts).max(initial=0)) * (int(density) + 2)
+    blocks = blocks_for(most // threads + 1)
+    kinds = masses[(np.arange(KINDS) * 7919) % len(masses)]
+    return Guests(
+        density=density,
+        first_number=len(masses),
+        starts=starts,
+        cells=numbers,
+        corners=corners,
+        pieces=pieces,
+        feet=feet,
+        outward=outward,
+        probes=probes,
+        terms=terms,
+        rates=np.zeros((len(terms), d)),
+        masses=kinds,
+        data=zeros((threads, blocks * rows * ROW)),
+        cell=zeros((threads, blocks * BLOCK), np.int32),
+        number=zeros((threads, blocks * BLOCK), np.int32),
+        term=zeros((threads, blocks * BLOCK), np.int32),
+        filled=np.zeros(threads, np.int64),
+    )

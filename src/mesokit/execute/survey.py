@@ -1,0 +1,155 @@
+"""What is near which cell: the tables that spare particles the search for solids.
+
+Loops over cells and terms, run once when a case is built. Points come as rows of an array.
+"""
+
+import math
+
+import numpy as np
+from numba.cpython.unsafe.tuple import tuple_setitem
+
+from mesokit.execute.cache import kernel
+from mesokit.geometry.bodies import REACH, in_box, nearest, part_normal, term_clearance
+from mesokit.scalar import scalar, scaled, seldom
+
+
+@scalar
+def point(points, i, like):
+    """Row i as a tuple."""
+    for k in range(len(like)):
+        like = tuple_setitem(like, k, points[i, k])
+    return like
+
+
+@scalar
+def centre_of(cell, solid, like):
+    """Middle of a unit cell of the box; x varies fastest."""
+    for k in range(len(like)):
+        length = int(solid.size[k])
+        like = tuple_setitem(like, k, cell % length + 0.5)
+        cell //= length
+    return like
+
+
+@kernel
+def near_cells(solid, like, starts, near, least):
+    """Count, or list once `near` has room, the terms near each cell, and its least clearance."""
+    reach = 0.5 * math.sqrt(float(len(like))) + REACH
+    cells, terms = len(starts) - 1, solid.terms
+    for cell in range(cells):
+        r, found, closest = centre_of(cell, solid, like), 0, math.inf
+        for term in range(terms):
+            c, _ = term_clearance(solid, term, r)
+            closest = min(closest, c)
+            if c <= reach:
+                if len(near) > 0:
+                    near[starts[cell] + found] = term
+                found += 1
+        least[cell] = closest
+        if len(near) == 0:
+            starts[cell + 1] = starts[cell] + found
+
+
+@kernel
+def clearances(solid, least, like, points, out):
+    """A lower bound of the distance of each point from the solid, exact within REACH."""
+    for i in range(len(points)):
+        out[i] = bound(solid, least, in_box(solid, point(points, i, like)), like)
+
+
+@seldom
+def bound(solid, least, r, like):
+    """Clearance of r, in the box; far from all solids, what the middle of its cell lets it have."""
+    c, _, _ = nearest(solid, r)
+    if c < REACH:
+        return c
+    cell, stride, away = 0, 1, 0.0
+    for k in range(len(like)):
+        length = int(solid.size[k])
+        i = min(max(int(np.floor(r[k])), 0), length - 1)
+        cell += i * stride
+        stride *= length
+        away += (r[k] - i - 0.5) ** 2
+    return max(c, least[cell] - math.sqrt(away))
+
+
+@kernel
+def who_is_near(solid, like, points, terms, clearance, normals):
+    """Nearest term (-1: none within reach), clearance and normal at each point."""
+    for i in range(len(points)):
+        r = in_box(solid, point(points, i, like))
+        c, part, term = nearest(solid, r)
+        terms[i], clearance[i] = term, c
+        n = part_normal(solid, part, r) if term >= 0 else scaled(0.0, like)
+        for k in range(len(like)):
+            normals[i, k] = n[k]
+
+
+@kernel
+def cut(solid, like, points, half, pieces, out):
+    """Whether cubes of half a side `half` about the points hold both fluid and solid, as far as
+    pieces of them, so many along each axis, can tell; 1 if they may, else 0."""
+    d = len(like)
+    small = half / pieces
+    corner = small * math.sqrt(float(d))
+    for i in range(len(points)):
+        c, _, _ = nearest(solid, in_box(solid, point(points, i, like)))
+        whole = half * math.sqrt(float(d))
+        if abs(c) > whole:
+            out[i] = 0
+            continue
+        fluid, inside = False, False
+        for number in range(pieces**d):
+            r, rest = point(points, i, like), number
+            for k in range(d):
+                step = 2.0 * (rest % pieces) + 1.0 - pieces
+                r = tuple_setitem(r, k, r[k] + small * step)
+                rest //= pieces
+            c, _, _ = nearest(solid, in_box(solid, r))
+            fluid |= c > -corner
+            inside |= c < corner
+        out[i] = 1 if fluid and inside else 0
+
+
+@kernel
+def open_volume(solid, like, points, side, out):
+    """Part of cubes about the points that is fluid: a cube cut by a plane, at the nearest surface."""
+    for i in range(len(points)):
+        r = in_box(solid, point(points, i, like))
+        c, part, term = nearest(solid, r)
+        if term < 0:
+            out[i] = 1.0
+            continue
+        n = part_normal(solid, part, r)
+        out[i] = share_beyond(c / side, n)
+
+
+@seldom
+def share_beyond(c, n):
+    """Part of a unit cube on the outer side of a plane with normal n at distance -c of its middle.
+
+    The distribution of a sum of uniform numbers of widths |n_k| (Irwin and Hall), cut at c.
+    """
+    d = len(n)
+    total, product, live = 0.0, 1.0, 0
+    for k in range(d):
+        if abs(n[k]) > 1e-6:
+            total += abs(n[k])
+            product *= abs(n[k])
+            live += 1
+    x = c + 0.5 * total
+    if x <= 0.0:
+        return 0.0
+    if x >= total:
+        return 1.0
+    volume = 0.0
+    for corner in range(1 << d):
+        shift, sign, counts = 0.0, 1.0, True
+        for k in range(d):
+            if (corner >> k) & 1:
+                counts = counts and abs(n[k]) > 1e-6
+                shift += abs(n[k])
+                sign = -sign
+        if counts and x > shift:
+            volume += sign * (x - shift) ** live
+    return volume / (math.gamma(live + 1.0) * product)

@@ -1,0 +1,142 @@
+"""Solids of any shape, as the step asks for them: hits, reflections, places in the fluid."""
+
+import math
+
+from mesokit.elementary import log
+from mesokit.geometry.bodies import (
+    DIFFUSE,
+    NOBODY,
+    RULE,
+    SLIP,
+    Bodies,
+    from_pivot,
+    in_box,
+    nearest,
+    part_clearance,
+    part_normal,
+    surface_number,
+    surface_velocity,
+)
+from mesokit.geometry.flight import first_meeting
+from mesokit.geometry.primitive.numbers import length
+from mesokit.geometry.protocol import (
+    confine,
+    exposed,
+    first_hit,
+    free,
+    happens,
+    homed,
+    lever,
+    reflect,
+    settled,
+    surface_of,
+    touches,
+)
+from mesokit.pointer import whole
+from mesokit.random import DIFFUSE_WALL, Counter, normals, unit_open, words
+from mesokit.scalar import added_scaled, dot, scaled, seldom
+
+MARGIN = 1e-9  # cells: particles are kept so far from surfaces, beyond the rounding of coordinates
+
+
+@exposed.register(Bodies)
+def _(solid):
+    return True
+
+
+@touches.register(Bodies)
+def _(solid, clear, r, v, a, time):
+    ahead = added_scaled(scaled(time, v), 0.5 * time * time, a)
+    return dot(ahead, ahead) >= clear[0]
+
+
+@free.register(Bodies)
+def _(solid, r, v, a, time):
+    return out_of_reach(solid, r, v, a, time)
+
+
+@seldom
+def out_of_reach(solid, r, v, a, time):
+    """Whether the way is shorter than the clearance."""
+    path = (length(v) + 0.5 * length(a) * time) * time
+    clear, _, _ = nearest(solid, in_box(solid, r))
+    return clear > path + MARGIN
+
+
+@homed.register(Bodies)
+def _(solid, r):
+    return in_box(solid, r)
+
+
+@first_hit.register(Bodies)
+def _(solid, r, v, a, time):
+    hit, part, term = first_meeting(solid, r, v, a, time)
+    return hit, (part, term)
+
+
+@happens.register(Bodies)
+def _(solid, contact):
+    return contact[1] != NOBODY
+
+
+@surface_of.register(Bodies)
+def _(solid, contact):
+    return whole(solid.body, contact[1])
+
+
+@lever.register(Bodies)
+def _(solid, contact, r):
+    return from_pivot(solid, contact[1], r)
+
+
+@confine.register(Bodies)
+def _(solid, contact, r):
+    part = contact[0]
+    lacking = MARGIN - part_clearance(solid, part, r)
+    return added_scaled(r, max(lacking, 0.0), part_normal(solid, part, r))
+
+
+@reflect.register(Bodies)
+def _(solid, contact, r, v, chance):
+    return rebound(solid, contact[0], contact[1], r, v, chance)
+
+
+@seldom
+def rebound(solid, part, term, r, v, chance):
+    """Velocity after a hit: bounced back, mirrored, or drawn anew at the temperature of the wall.
+
+    In the frame of the surface. A thermal wall sends particles out with a Maxwellian flux: normal
+    velocities with density u exp(-m u^2 / 2 kT) (Lebowitz and Spohn 1978).
+    """
+    u, n = surface_velocity(solid, term, r), part_normal(solid, part, r)
+    rule = surface_number(solid, term, RULE)
+    coming = added_scaled(v, -1.0, u)
+    if rule == SLIP:
+        return added_scaled(v, -2.0 * dot(n, coming), n)
+    if rule == DIFFUSE:
+        counter = Counter(chance.seed, chance.step)
+        a, b, c, d = words(counter, DIFFUSE_WALL, chance.number, 2 * chance.hit)
+        along = normals(r, a, b, c, d)
+        a, _, _, _ = words(counter, DIFFUSE_WALL, chance.number, 2 * chance.hit + 1)
+        away = math.sqrt(-2.0 * log(unit_open(a)))
+        drawn = added_scaled(along, away - dot(n, along), n)
+        return added_scaled(u, math.sqrt(chance.kT_over_m), drawn)
+    return added_scaled(u, -1.0, coming)
+
+
+@settled.register(Bodies)
+def _(solid, r):
+    return put_back(solid, r)
+
+
+@seldom
+def put_back(solid, r):
+    """r, moved off the surface by the margin if it is nearer; whether it is then in the fluid."""
+    for _ in range(8):
+        c, part, _ = nearest(solid, r)
+        if c >= 0.5 * MARGIN:
+            return r, True
+        if c < -1e-6:
+            return r, False
+        r = in_box(solid, added_scaled(r, MARGIN - c, part_normal(solid, part, r)))
+    return r, False

@@ -1,0 +1,166 @@
+"""When a flight meets a solid: parabolas against parts, terms and all that is near.
+
+A flight starts at r, in the fluid or on a surface, with velocity v, and has the acceleration a.
+Half-spaces have a formula. Convex parts are approached by their tangent planes: no flight reaches
+the solid before it reaches the plane, so the time of the plane is safe, and the next plane, at the
+place reached, is nearer to the truth, quadratically as Newton's method. Everything else is
+approached by steps no longer than the distance to it, and the crossing is then bracketed.
+"""
+
+import math
+
+from mesokit.geometry import primitive
+from mesokit.geometry.bodies import (
+    NOBODY,
+    REACH,
+    home_cell,
+    part_clearance,
+    part_normal,
+    term_clearance,
+)
+from mesokit.geometry.primitive.numbers import length
+from mesokit.pointer import real, whole
+from mesokit.scalar import added_scaled, dot, scalar, seldom
+
+ON_SURFACE = 1e-11  # cells: a flight that comes so close has arrived
+SHORT_STEP = 1e-3  # cells: what a march dares without looking
+MOST_TRIES = 100
+_CONVEX_KINDS = sum(1 << kind for kind, convex in enumerate(primitive.CONVEX) if convex)
+
+
+@scalar
+def time_to_fall(height, v, a, time):
+    """When a particle at a height >= 0 above a plate reaches it; more than `time` if it does not.
+
+    Of the two roots of height + v t + a t^2 / 2 = 0 it is the one with a downward velocity, in the
+    form without cancellation.
+    """
+    square = v * v - 2.0 * a * height
+    down = math.sqrt(max(square, 0.0))
+    late = 2.0 * time + 1.0
+    if square < 0.0 or down == 0.0:
+        return late
+    if v < 0.0:
+        return 2.0 * height / (down - v)
+    return -(v + down) / a if a < 0.0 else late
+
+
+@scalar
+def is_convex(kind):
+    """Whether primitives of that kind are convex."""
+    return (_CONVEX_KINDS >> kind) & 1 == 1
+
+
+@scalar
+def at(r, v, a, t):
+    """Place and velocity on the parabola."""
+    return added_scaled(added_scaled(r, t, v), 0.5 * t * t, a), added_scaled(v, t, a)
+
+
+@seldom
+def approach(solid, part, r, v, a, time):
+    """When the flight enters a convex part; more than `time` if it does not."""
+    late, t = 2.0 * time + 1.0, 0.0
+    x, u = r, v
+    for _ in range(MOST_TRIES):
+        c, n = part_clearance(solid, part, x), part_normal(solid, part, x)
+        if c <= ON_SURFACE and dot(n, u) < 0.0:
+            return t
+        t += time_to_fall(max(c, 0.0), dot(n, u), dot(n, a), time - t)
+        if t > time:
+            return late
+        x, u = at(r, v, a, t)
+    return t
+
+
+@seldom
+def march(solid, part, r, v, a, time):
+    """When the flight enters any part; more than `time` if it does not."""
+    late, t, pull = 2.0 * time + 1.0, 0.0, length(a)
+    x, _ = at(r, v, a, time)
+    if real(solid.signs, part) < 0.0 and is_convex(whole(solid.kinds, part)):
+        # Within a convex room a straight flight that ends inside stays inside.
+        if part_clearance(solid, part, x) >= 0.5 * pull * time * time:
+            return late
+    x, u = r, v
+    while t < time:
+        c = max(part_clearance(solid, part, x), SHORT_STEP)
+        ahead = min(t + c / (length(u) + pull * (time - t) + 1e-300), time)
+        x, u = at(r, v, a, ahead)
+        if part_clearance(solid, part, x) < 0.0:
+            return crossing(solid, part, r, v, a, t, ahead)
+        t = ahead
+    return late
+
+
+@seldom
+def crossing(solid, part, r, v, a, outside, inside):
+    """The last time found outside, when the flight crosses the surface between two times."""
+    for _ in range(MOST_TRIES):
+        middle = 0.5 * (outside + inside)
+        if middle <= outside or middle >= inside:
+            break
+        x, _ = at(r, v, a, middle)
+        c = part_clearance(solid, part, x)
+        if c < 0.0:
+            inside = middle
+        else:
+            outside = middle
+            if c < ON_SURFACE:
+                break
+    return outside
+
+
+@seldom
+def entry(solid, part, r, v, a, time):
+    """When the flight enters a part; more than `time` if it does not."""
+    if real(solid.signs, part) > 0.0 and is_convex(whole(solid.kinds, part)):
+        return approach(solid, part, r, v, a, time)
+    return march(solid, part, r, v, a, time)
+
+
+@seldom
+def meeting(solid, term, r, v, a, time):
+    """When the flight enters all parts of a term, and the part that it entered last.
+
+    From place to place: as long as it is outside of a part, nothing happens before it enters that.
+    """
+    first = whole(solid.first, term)
+    if whole(solid.first, term + 1) - first == 1:
+        return entry(solid, first, r, v, a, time), first
+    late, t = 2.0 * time + 1.0, 0.0
+    x, u = r, v
+    for _ in range(MOST_TRIES):
+        c, part = term_clearance(solid, term, x)
+        if c <= ON_SURFACE and dot(part_normal(solid, part, x), u) < 0.0:
+            return t, part
+        t += entry(solid, part, x, u, a, time - t)
+        if t > time:
+            return late, first
+        x, u = at(r, v, a, t)
+    return t, first
+
+
+@seldom
+def first_meeting(solid, r, v, a, time):
+    """The first hit of a flight that starts in the box: time, part and term.
+
+    A flight is followed no farther than REACH at a time: where it then is, the term is NOBODY.
+    The time is more than `time` if nothing is left to happen.
+    """
+    speed = length(v) + 0.5 * length(a) * time
+    path, late = speed * time, 2.0 * time + 1.0
+    part, term = 0, NOBODY
+    soonest = late
+    if path > REACH:
+        soonest = REACH / speed
+        path, time = REACH, soonest
+    cell = home_cell(solid, r)
+    for j in range(whole(solid.starts, cell), whole(solid.starts, cell + 1)):
+        candidate = whole(solid.near, j)
+        c, _ = term_clearance(solid, candidate, r)
+        if c <= path:
+            t, which = meeting(solid, candidate, r, v, a, time)
+            if t <= time and t < soonest:
+                soonest, part, term = t, which, candidate
+    return soonest, part, term

@@ -1,0 +1,53 @@
+"""Rectangle or cuboid: centre in p[0:3], half its sides in p[3:6], turned about z.
+
+Cosine and sine of the angle are in p[6] and p[7].
+"""
+
+import math
+
+from numba.cpython.unsafe.tuple import tuple_setitem
+
+from mesokit.geometry.primitive.numbers import offset, vector
+from mesokit.pointer import real
+from mesokit.scalar import scalar, scaled
+
+CONVEX = True
+
+
+@scalar
+def turned(p, a, sine):
+    """The vector a, turned by the angle whose sine is given."""
+    x = real(p, 6) * a[0] - sine * a[1]
+    y = sine * a[0] + real(p, 6) * a[1]
+    return tuple_setitem(tuple_setitem(a, 0, x), 1, y)
+
+
+@scalar
+def distance(p, samples, r):
+    """Signed distance of r."""
+    x, half = turned(p, offset(p, r), -real(p, 7)), vector(p, 3, r)
+    beyond, deepest = 0.0, -math.inf
+    for k in range(len(r)):
+        q = abs(x[k]) - half[k]
+        beyond += max(q, 0.0) ** 2
+        deepest = max(deepest, q)
+    return math.sqrt(beyond) if beyond > 0.0 else deepest
+
+
+@scalar
+def normal(p, samples, r):
+    """Unit normal into the fluid: of the nearest face or, beyond an edge, away from the edge."""
+    x, half = turned(p, offset(p, r), -real(p, 7)), vector(p, 3, r)
+    out, beyond = scaled(0.0, r), 0.0
+    deepest, face = -math.inf, 0
+    for k in range(len(r)):
+        q = abs(x[k]) - half[k]
+        out = tuple_setitem(out, k, math.copysign(max(q, 0.0), x[k]))
+        beyond += max(q, 0.0) ** 2
+        if q > deepest:
+            deepest, face = q, k
+    if beyond > 0.0:
+        out = scaled(1.0 / math.sqrt(beyond), out)
+    else:
+        out = tuple_setitem(scaled(0.0, r), face, math.copysign(1.0, x[face]))
+    return turned(p, out, real(p, 7))

@@ -1,0 +1,30 @@
+"""All places within a radius p[6] of the straight line from p[0:3] to p[0:3] + p[3:6].
+
+p[7] is one over the square of the line's length.
+"""
+
+from mesokit.geometry.primitive.numbers import length, offset, unit, vector
+from mesokit.pointer import real
+from mesokit.scalar import added_scaled, dot, scalar
+
+CONVEX = True
+
+
+@scalar
+def from_line(p, r):
+    """r relative to the nearest point of the line."""
+    away, span = offset(p, r), vector(p, 3, r)
+    along = min(max(dot(away, span) * real(p, 7), 0.0), 1.0)
+    return added_scaled(away, -along, span)
+
+
+@scalar
+def distance(p, samples, r):
+    """Signed distance of r."""
+    return length(from_line(p, r)) - real(p, 6)
+
+
+@scalar
+def normal(p, samples, r):
+    """Unit normal into the fluid at r, or next to it."""
+    return unit(from_line(p, r))

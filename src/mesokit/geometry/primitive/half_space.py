@@ -1,0 +1,18 @@
+"""Everything behind a plane: a point of it in p[0:3], the unit normal into the fluid in p[3:6]."""
+
+from mesokit.geometry.primitive.numbers import offset, vector
+from mesokit.scalar import dot, scalar
+
+CONVEX = True
+
+
+@scalar
+def distance(p, samples, r):
+    """Signed distance of r."""
+    return dot(offset(p, r), vector(p, 3, r))
+
+
+@scalar
+def normal(p, samples, r):
+    """Unit normal into the fluid."""
+    return vector(p, 3, r)

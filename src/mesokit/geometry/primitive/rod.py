@@ -1,0 +1,26 @@
+"""Cylinder without ends: a point of its axis in p[0:3], unit vector in p[3:6], radius in p[6]."""
+
+from mesokit.geometry.primitive.numbers import length, offset, unit, vector
+from mesokit.pointer import real
+from mesokit.scalar import added_scaled, dot, scalar
+
+CONVEX = True
+
+
+@scalar
+def from_axis(p, r):
+    """r relative to the nearest point of the axis."""
+    away, axis = offset(p, r), vector(p, 3, r)
+    return added_scaled(away, -dot(away, axis), axis)
+
+
+@scalar
+def distance(p, samples, r):
+    """Signed distance of r."""
+    return length(from_axis(p, r)) - real(p, 6)
+
+
+@scalar
+def normal(p, samples, r):
+    """Unit normal into the fluid at r, or next to it."""
+    return unit(from_axis(p, r))

@@ -1,0 +1,84 @@
+"""A signed distance given on a grid, linear between its points.
+
+p[0:3] is the first point, p[3] the spacing, p[4:7] the points along each axis, p[7] where they
+start among the samples (the last axis varies fastest), p[8] the steepest gradient, p[9:12] is 1
+along an axis on which the grid repeats itself, 0 where beyond it there is only fluid.
+"""
+
+
+import numpy as np
+from numba.cpython.unsafe.tuple import tuple_setitem
+
+from mesokit.geometry.primitive.numbers import length, unit
+from mesokit.pointer import real
+from mesokit.scalar import added_scaled, scalar, scaled
+
+CONVEX = False
+
+
+@scalar
+def inside_grid(p, r):
+    """r in spacings from the first point, brought onto the grid, and how far it was off."""
+    x, off = r, scaled(0.0, r)
+    for k in range(len(r)):
+        count = real(p, 4 + k)
+        q = (r[k] - real(p, k)) / real(p, 3)
+        if real(p, 9 + k) > 0.5:
+            q -= count * np.floor(q / count)
+        else:
+            near = min(max(q, 0.0), count - 1.0)
+            off = tuple_setitem(off, k, (q - near) * real(p, 3))
+            q = near
+        x = tuple_setitem(x, k, q)
+    return x, off
+
+
+@scalar
+def corner(p, samples, base, which):
+    """The sample at a corner of a cell of the grid: bit k of `which` is the step along axis k."""
+    place = 0
+    for k in range(len(base)):
+        count = int(real(p, 4 + k))
+        i = int(base[k]) + ((which >> k) & 1)
+        i = (i - count if real(p, 9 + k) > 0.5 else count - 1) if i >= count else i
+        place = place * count + i
+    return real(samples, int(real(p, 7)) + place)
+
+
+@scalar
+def interpolated(p, samples, x):
+    """Value between the samples, and its gradient per spacing."""
+    base, part, gradient = x, x, scaled(0.0, x)
+    for k in range(len(x)):
+        base = tuple_setitem(base, k, np.floor(x[k]))
+        part = tuple_setitem(part, k, x[k] - np.floor(x[k]))
+    value = 0.0
+    for which in range(1 << len(x)):
+        sample, weight = corner(p, samples, base, which), 1.0
+        for k in range(len(x)):
+            weight *= part[k] if (which >> k) & 1 else 1.0 - part[k]
+        value += weight * sample
+        for j in range(len(x)):
+            share = 1.0 if (which >> j) & 1 else -1.0
+            for k in range(len(x)):
+                if k != j:
+                    share *= part[k] if (which >> k) & 1 else 1.0 - part[k]
+            gradient = tuple_setitem(gradient, j, gradient[j] + share * sample)
+    return value, gradient
+
+
+@scalar
+def distance(p, samples, r):
+    """No more than the distance of r, and of its sign."""
+    x, off = inside_grid(p, r)
+    value, _ = interpolated(p, samples, x)
+    beyond = length(off)
+    return max(value / real(p, 8) - beyond, beyond) if beyond > 0.0 else value / real(p, 8)
+
+
+@scalar
+def normal(p, samples, r):
+    """Unit normal into the fluid: the direction in which the distance rises."""
+    x, off = inside_grid(p, r)
+    _, gradient = interpolated(p, samples, x)
+    return unit(added_scaled(gradient, 1.0, off))

@@ -1,0 +1,170 @@
+"""Solids as unions of intersections of primitives and their complements: the algebra of shapes.
+
+    >>> region = ball((1.0, 1.0), 0.5)
+    >>> [[part.sign for part in term] for term in complement(union([region, region]))]
+    [[-1.0, -1.0]]
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.geometry.primitive import KINDS, WIDTH
+
+IMAGED = ("ball", "rod", "capsule", "brick", "sampled")
+Vector = Sequence[float]
+
+
+class Room(NamedTuple):
+    """The box, and which of its axes plates close."""
+
+    size: tuple[int, ...]
+    closed: tuple[bool, ...]
+
+    @property
+    def dimension(self) -> int:
+        """2 or 3."""
+        return len(self.size)
+
+
+class Part(NamedTuple):
+    """A primitive (sign 1) or its complement (sign -1): its kind, its parameters, its samples."""
+
+    kind: str
+    numbers: tuple[float, ...]
+    sign: float = 1.0
+    samples: NDArray[np.float64] | None = None
+
+    def moved(self, by: Vector) -> Part:
+        """The same elsewhere."""
+        place = tuple(x + dx for x, dx in zip(self.numbers[:3], _three(by), strict=True))
+        return self._replace(numbers=place + self.numbers[3:])
+
+    @property
+    def code(self) -> int:
+        """Its number at run time."""
+        return KINDS[self.kind]
+
+
+Term = tuple[Part, ...]
+Region = tuple[Term, ...]
+
+
+def union(regions: Iterable[Region]) -> Region:
+    """What is in any of the regions."""
+    return tuple(term for region in regions for term in region)
+
+
+def intersection(regions: Iterable[Region]) -> Region:
+    """What is in all of the regions."""
+    return tuple(tuple(itertools.chain(*terms)) for terms in itertools.product(*regions))
+
+
+def complement(region: Region) -> Region:
+    """What is not in the region."""
+    return tuple(
+        tuple(part._replace(sign=-part.sign) for part in parts)
+        for parts in itertools.product(*region)
+    )
+
+
+def moved(region: Region, by: Vector) -> Region:
+    """The same elsewhere."""
+    return tuple(tuple(part.moved(by) for part in term) for term in region)
+
+
+def images(region: Region, room: Room) -> list[tuple[Term, Vector]]:
+    """The terms and their images beyond each end of the box that is open, with their displacement.
+
+    Half-spaces and waves have none: they go on for ever, and fit the box as they are or not at all.
+    """
+    steps = [
+        (0.0,) if shut else (0.0, -float(length), float(length))
+        for length, shut in zip(room.size, room.closed, strict=True)
+    ]
+    found: dict[Any, tuple[Term, Vector]] = {}
+    for term in region:
+        bounded = any(part.kind in IMAGED and part.sign > 0 for part in term)
+        for by in itertools.product(*steps) if bounded else [(0.0,) * room.dimension]:
+            image = tuple(part.moved(by) for part in term)
+            found.setdefault(tuple((p.kind, p.numbers, p.sign) for p in image), (image, by))
+    return list(found.values())
+
+
+def half_space(point: Vector, normal: Vector) -> Region:
+    """Everything behind the plane through a point, whose normal looks into the fluid."""
+    size = math.hypot(*normal)
+    return _one("half_space", _three(point) + _three([x / size for x in normal]))
+
+
+def ball(centre: Vector, radius: float) -> Region:
+    """A disk or a sphere."""
+    return _one("ball", (*_three(centre), 0.0, 0.0, 0.0, radius))
+
+
+def rod(point: Vector, axis: Vector, radius: float) -> Region:
+    """A cylinder without ends."""
+    size = math.hypot(*axis)
+    return _one("rod", (*_three(point), *_three([x / size for x in axis]), radius))
+
+
+def capsule(start: Vector, end: Vector, radius: float) -> Region:
+    """All within a radius of a straight line."""
+    span = [b - a for a, b in zip(start, end, strict=True)]
+    square = math.fsum(x * x for x in span)
+    return _one("capsule", (*_three(start), *_three(span), radius, 1.0 / square))
+
+
+def brick(centre: Vector, size: Vector, degrees: float = 0.0) -> Region:
+    """A rectangle or cuboid, turned about z."""
+    half, angle = _three([0.5 * x for x in size]), math.radians(degrees)
+    return _one("brick", (*_three(centre), *half, math.cos(angle), math.sin(angle)))
+
+
+def wave(
+    place: Vector, along: int, across: int, amplitude: float, per_length: float, above: bool
+) -> Region:
+    """One side of a cosine with a crest at a place; the fluid lies above it or below."""
+    side = 1.0 if above else -1.0
+    return _one(
+        "wave", (*_three(place), float(along), float(across), amplitude, per_length, side)
+    )
+
+
+def sampled(
+    values: NDArray[np.float64], origin: Vector, spacing: float, repeats: Sequence[bool]
+) -> Region:
+    """A signed distance on a grid, linear between its points."""
+    shape, steep = _three(values.shape, 1.0), _steepest(values, spacing, repeats)
+    ends = _three([float(again) for again in repeats])
+    numbers = (*_three(origin), spacing, *shape, 0.0, steep, *ends)
+    return ((Part("sampled", numbers, samples=np.ascontiguousarray(values, float)),),)
+
+
+def _steepest(values: NDArray[np.float64], spacing: float, repeats: Sequence[bool]) -> float:
+    """A bound of the gradient of the interpolation, at least 1."""
+    total = np.zeros(values.shape)
+    for axis, again in enumerate(repeats):
+        steps = np.abs(np.roll(values, -1, axis) - values)
+        if not again:
+            last = [slice(None)] * values.ndim
+            last[axis] = slice(-1, None)
+            steps[tuple(last)] = 0.0
+        total += steps.max() ** 2
+    return max(1.0, math.sqrt(float(total.max())) / spacing)
+
+
+def _one(kind: str, numbers: Vector) -> Region:
+    padded = tuple(float(x) for x in numbers) + (0.0,) * (WIDTH - len(numbers))
+    return ((Part(kind, padded),),)
+
+
+def _three(values: Any, missing: float = 0.0) -> tuple[float, ...]:
+    numbers = tuple(float(x) for x in values)
+    return numbers + (missing,) * (3 - len(numbers))

@@ -1,0 +1,99 @@
+"""What all shapes of solids share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
+
+from mesokit.component import component, param
+from mesokit.geometry.region import Region, Term, complement, images
+from mesokit.geometry.surface import Surface
+
+if TYPE_CHECKING:
+    from mesokit.geometry.region import Room
+
+Virtual = Literal["extrapolate", "fill", "top-up", "none"]
+VIRTUAL = (
+    "virtual particles in the cells that the surface cuts: 'fill' the solid part with a gas at the "
+    "surface's velocity, 'extrapolate' the fluid's velocity into that gas, 'top-up' each cell to "
+    "the mean density, or 'none' (a slip surface has none)"
+)
+
+
+class Piece(NamedTuple):
+    """A term of a body, and the place about which it turns and its torque is taken."""
+
+    term: Term
+    pivot: tuple[float, ...]
+
+
+def pieces_of(region: Region, pivot: Sequence[float], room: Room) -> list[Piece]:
+    """The terms of a region and their periodic images, of which each has its own pivot."""
+    return [
+        Piece(term, tuple(x + dx for x, dx in zip(pivot, by, strict=True)))
+        for term, by in images(region, room)
+    ]
+
+
+class Body(NamedTuple):
+    """What has one surface and one force on it; the rate of rotation is a vector of three."""
+
+    name: str
+    surface: Surface
+    virtual: str
+    pieces: list[Piece]
+    rotation: tuple[float, ...]
+
+
+@component
+class Shape:
+    """A solid: where it is, what its surface does, and on which side of it the fluid is."""
+
+    dimensions: ClassVar[tuple[int, ...]] = (2, 3)
+    fluid: Literal["outside", "inside"] = param(
+        "outside", doc="side of the surface on which the fluid is", kw_only=True
+    )
+    surface: Surface = param(Surface(), doc="what its surface does", kw_only=True)
+    virtual: Virtual = param("extrapolate", doc=VIRTUAL, kw_only=True)
+    name: str | None = param(
+        None, doc="name in the results (shape and number unless said)", kw_only=True, min_length=1
+    )
+
+    def sided(self, within: Region, room: Room) -> Region:
+        """The solid, given what lies within the surface."""
+        return complement(within) if self.fluid == "inside" else within
+
+    def body(self, room: Room) -> Region:
+        """What lies within the surface."""
+        raise NotImplementedError
+
+    def pivot(self, room: Room) -> tuple[float, ...]:
+        """The place about which it turns and torques are taken."""
+        raise NotImplementedError
+
+    def pieces(self, room: Room) -> list[Piece]:
+        """The solid in this box, in pieces, with what its images put into the box."""
+        if self.fluid == "outside":
+            return pieces_of(self.body(room), self.pivot(room), room)
+        everywhere = tuple(term for term, _ in images(self.body(room), room))
+        return [Piece(term, self.pivot(room)) for term in complement(everywhere)]
+
+    def bodies(self, room: Room, label: str) -> list[Body]:
+        """What it is made of: a body for each surface, named after it or `label`."""
+        name = self.name or label
+        return [Body(name, self.surface, self.virtual, self.pieces(room), self.turning(room))]
+
+    def turning(self, room: Room) -> tuple[float, ...]:
+        """Its rate of rotation, as a vector of three."""
+        rate = self.surface.rotation
+        if isinstance(rate, tuple):
+            return rate
+        return tuple((rate or 0.0) * x for x in self.axis_of_rotation(room))
+
+    def axis_of_rotation(self, room: Room) -> tuple[float, ...]:
+        """Unit vector about which a rotation given as a number turns."""
+        return (0.0, 0.0, 1.0)
+
+    def vectors(self) -> dict[str, Any]:
+        """Its parameters that have one number for each axis, by key."""
+        return {}

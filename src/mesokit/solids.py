@@ -1,0 +1,262 @@
+"""The solids of a case, assembled: what is where, how much fluid there is room for.
+
+One object serves everything: the start, the step, the observables and the pictures.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.execute import survey
+from mesokit.geometry.bodies import DIFFUSE, NO_SLIP, NOBODY, SLIP, Bodies
+from mesokit.geometry.primitive import WIDTH
+from mesokit.geometry.region import Room
+from mesokit.geometry.shape import Body, Piece
+from mesokit.pointer import address
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from mesokit.box import Box
+    from mesokit.case import Case
+    from mesokit.geometry import Wall
+
+Floats = NDArray[np.float64]
+FINE = 8  # parts of a cell, along each axis, by which volumes are summed
+_RULES = {"no-slip": NO_SLIP, "slip": SLIP, "diffuse": DIFFUSE}
+
+
+def is_slit(case: Case) -> bool:
+    """Whether the only walls are two plates, for which the step has a shorter way."""
+    return len(case.walls) == 1 and case.walls[0].shape == "plates" and not case.walls[0].diffuse
+
+
+def solids_of(case: Case) -> Solids:
+    """The solids of a case; kept, for they take a moment to survey."""
+    return _kept(case.walls, case.box)
+
+
+@functools.lru_cache(maxsize=8)
+def _kept(walls: tuple[Wall, ...], box: Box) -> Solids:
+    return Solids(walls, box)
+
+
+def free_volume(case: Case) -> float:
+    """Volume that the walls of a case leave to the fluid, in cells."""
+    slit = all(wall.shape == "plates" for wall in case.walls)
+    return float(case.box.volume) if slit else solids_of(case).free_volume
+
+
+class Solids:
+    """The solids of a case, in tables.
+
+    Parameters
+    ----------
+    walls : sequence of shapes
+        As in a case.
+    box : Box
+        As in a case.
+
+    Attributes
+    ----------
+    bodies : list of Body
+        What has a surface and a force of its own.
+    free_volume : float
+        Volume of the fluid, in cells.
+
+    Examples
+    --------
+    >>> import mesokit
+    >>> solids = Solids([mesokit.Disk(centre=[5, 5], radius=2)], mesokit.Box([10, 10]))
+    >>> solids.distance([[5.0, 5.0], [5.0, 7.5]]).tolist()
+    [-2.0, 0.5]
+    >>> round(solids.free_volume, 2)
+    87.43
+    """
+
+    def __init__(self, walls: Sequence[Wall], box: Box) -> None:
+        self.size, self.dimension = box.size, box.dimension
+        shut = {wall.axis for wall in walls if wall.shape == "plates"}
+        self.room = Room(box.size, tuple(axis in shut for axis in box.axes))
+        self.bodies: list[Body] = []
+        self._tables: list[NDArray[Any]] = []
+        numbers: dict[str, int] = {}
+        self.walls: list[int] = []  # of which wall each body is
+        for index, wall in enumerate(walls):
+            number = numbers[wall.shape] = numbers.get(wall.shape, 0) + 1
+            made = wall.bodies(self.room, f"{wall.shape}-{number}")
+            self.bodies += made
+            self.walls += [index] * len(made)
+        self.like = (0.0,) * self.dimension
+        pieces = [(piece, row) for row, body in enumerate(self.bodies) for piece in body.pieces]
+        self.kernel = self._kernel(pieces)
+        cells = math.prod(self.size)
+        self.least, nothing = np.zeros(cells), np.zeros(0, np.int32)
+        starts = np.zeros(cells + 1, np.int32)
+        survey.near_cells(self.kernel, self.like, starts, nothing, self.least)
+        near = np.zeros(max(starts[-1], 1), np.int32)
+        survey.near_cells(self.kernel, self.like, starts, near, self.least)
+        self.kernel = self.kernel._replace(starts=self._keep(starts), near=self._keep(near))
+
+    def _keep(self, table: Any, kind: Any = np.int32) -> int:
+        """Keep a table as long as this object lives; its address."""
+        table = np.ascontiguousarray(table, kind)
+        self._tables.append(table)
+        return address(table)
+
+    def _kernel(self, pieces: list[tuple[Piece, int]]) -> Bodies:
+        """Parameters for compiled code, still without its tables."""
+        parts = [part for piece, _ in pieces for part in piece.term]
+        numbers = np.array([part.numbers for part in parts]).reshape(-1, WIDTH)
+        samples, total = [np.zeros(1)], 1
+        for i, part in enumerate(parts):
+            if part.samples is not None:
+                numbers[i, 7] = total
+                samples.append(part.samples.ravel())
+                total += part.samples.size
+        pivots = np.zeros((len(pieces), 3))
+        for i, (piece, _) in enumerate(pieces):
+            pivots[i, : self.dimension] = piece.pivot
+        inverse = tuple(
+            0.0 if shut else 1.0 / length
+            for shut, length in zip(self.room.closed, self.size, strict=True)
+        )
+        self.body_of_term = np.array([row for _, row in pieces], np.int32)
+        self.pivots = pivots
+        surfaces = [self._surface(body) for body in self.bodies]
+        return Bodies(
+            size=tuple(float(length) for length in self.size),
+            inverse=inverse,
+            kinds=self._keep([part.code for part in parts]),
+            signs=self._keep([part.sign for part in parts], float),
+            numbers=self._keep(numbers, float),
+            samples=self._keep(np.concatenate(samples), float),
+            first=self._keep(np.cumsum([0, *(len(piece.term) for piece, _ in pieces)])),
+            body=self._keep(self.body_of_term),
+            pivot=self._keep(pivots, float),
+            surfaces=self._keep(surfaces, float),
+            starts=0,
+            near=0,
+            clear=0,
+            terms=len(pieces),
+        )
+
+    def _surface(self, body: Body) -> list[float]:
+        velocity = list(body.surface.velocity or ()) + [0.0] * 3
+        fills = body.surface.rule != "slip" and body.virtual != "none"
+        return [_RULES[body.surface.rule], *velocity[:3], *body.rotation, float(fills)]
+
+    @property
+    def names(self) -> list[str]:
+        """Of the bodies."""
+        return [body.name for body in self.bodies]
+
+    def distance(self, points: Any) -> Floats:
+        """Signed distance (n,) of points (n, d) from the nearest surface, positive in the fluid.
+
+        Exact near surfaces; elsewhere, and inside of solids made of several, a lower bound of its
+        size.
+        """
+        points = np.ascontiguousarray(points, float).reshape(-1, self.dimension)
+        out = np.zeros(len(points))
+        survey.clearances(self.kernel, self.least, self.like, points, out)
+        return out
+
+    def nearest(self, points: Any) -> tuple[NDArray[np.int64], Floats, Floats]:
+        """Body (-1: none within a cell), distance (n,) and normal (n, d) at points (n, d)."""
+        points = np.ascontiguousarray(points, float).reshape(-1, self.dimension)
+        terms = np.zeros(len(points), np.int64)
+        distance, normal = np.zeros(len(points)), np.zeros(points.shape)
+        survey.who_is_near(self.kernel, self.like, points, terms, distance, normal)
+        return np.where(terms == NOBODY, NOBODY, self.body_of_term[terms]), distance, normal
+
+    @functools.cached_property
+    def open_cells(self) -> Floats:
+        """Part of each cell of the box that is fluid, one axis after the other."""
+        centres = np.stack(np.meshgrid(*(np.arange(n) + 0.5 for n in self.size), indexing="ij"), -1)
+        clear = self.distance(centres).reshape(self.size)
+        share = (clear > 0).astype(float)
+        mixed = np.argwhere(np.abs(clear) < 0.5 * math.sqrt(self.dimension))
+        share[tuple(mixed.T)] = self._open(mixed + 0.5, 1.0)
+        return share
+
+    def open_share(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Floats:
+        """Part of each bin that is fluid: equal bins over the whole box along some axes."""
+        other = tuple(k for k in range(self.dimension) if k not in axes)
+        per_cell = [n // self.size[k] for k, n in zip(axes, bins, strict=True)]
+        if max(per_cell) == 1:
+            return np.transpose(self.open_cells.mean(axis=other), np.argsort(np.argsort(axes)))
+        pieces = [1] * self.dimension
+        for k, n in zip(axes, per_cell, strict=True):
+            pieces[k] = n
+        fine = [FINE // math.gcd(FINE, n) * n if n <= FINE else n for n in pieces]
+        whole = self._fine(tuple(fine))
+        shape = [m for k, n in enumerate(self.size) for m in (n * pieces[k], fine[k] // pieces[k])]
+        share = whole.reshape(shape).mean(axis=tuple(range(1, 2 * self.dimension, 2)))
+        return np.transpose(share.mean(axis=other), np.argsort(np.argsort(axes)))
+
+    def _fine(self, parts: tuple[int, ...]) -> Floats:
+        """Part of each of so many boxes along each axis of a cell that is fluid."""
+        grids = [(np.arange(n * m) + 0.5) / m for n, m in zip(self.size, parts, strict=True)]
+        points = np.stack(np.meshgrid(*grids, indexing="ij"), -1)
+        side = max(1.0 / m for m in parts)
+        clear = self.distance(points).reshape(points.shape[:-1])
+        return np.clip(0.5 + clear / side, 0.0, 1.0)
+
+    def _open(self, centres: Floats, side: float) -> Floats:
+        """Part of cubes of this side that is fluid, from FINE^d cubes in each."""
+        steps = ((np.arange(FINE) + 0.5) / FINE - 0.5) * side
+        grid = np.stack(np.meshgrid(*[steps] * self.dimension, indexing="ij"), -1)
+        grid = grid.reshape(-1, self.dimension)
+        share = np.zeros(len(centres))
+        for first in range(0, len(centres), 4096):
+            some = centres[first : first + 4096]
+            points = (some[:, None] + grid).reshape(-1, self.dimension)
+            out = np.zeros(len(points))
+            survey.open_volume(self.kernel, self.like, points, side / FINE, out)
+            share[first : first + 4096] = out.reshape(len(some), -1).mean(axis=1)
+        return share
+
+    @functools.cached_property
+    def free_volume(self) -> float:
+        """Volume of the fluid, in cells."""
+        return float(self.open_cells.sum())
+
+    def misfit(self, axis: int) -> float:
+        """Largest difference of the clearances at the two ends of an axis, where there is fluid."""
+        if self.room.closed[axis]:
+            return 0.0
+        grids = [(np.arange(4 * n) + 0.5) / 4 for n in self.size]
+        grids[axis] = np.zeros(1)
+        start = np.stack(np.meshgrid(*grids, indexing="ij"), -1).reshape(-1, self.dimension)
+        end = start.copy()
+        end[:, axis] = np.nextafter(self.size[axis], 0.0)
+        a, b = self.distance(start), self.distance(end)
+        return float(np.abs(np.clip(a, 0, 1) - np.clip(b, 0, 1)).max())
+
+    def motion_across(self) -> dict[int, float]:
+        """How fast the surface of each moving wall would move across itself, by its number."""
+        grids = np.meshgrid(*(np.arange(n) + 0.5 for n in self.size), indexing="ij")
+        centres = np.stack(grids, -1).reshape(-1, self.dimension)
+        terms = np.zeros(len(centres), np.int64)
+        distance, normal = np.zeros(len(centres)), np.zeros(centres.shape)
+        survey.who_is_near(self.kernel, self.like, centres, terms, distance, normal)
+        found: dict[int, float] = {}
+        for term in np.unique(terms[terms >= 0]):
+            body = self.bodies[self.body_of_term[term]]
+            at = terms == term
+            arm = centres[at] - distance[at, None] * normal[at]
+            arm -= self.pivots[term, : self.dimension]
+            full = np.zeros((len(arm), 3))
+            full[:, : self.dimension] = arm
+            u = np.cross(body.rotation, full)[:, : self.dimension]
+            u += np.array(body.surface.velocity or (0.0,) * self.dimension)
+            across = float(np.abs((u * normal[at]).sum(axis=1)).max())
+            wall = self.walls[self.body_of_term[term]]
+            found[wall] = max(found.get(wall, 0.0), across)
+        return found
