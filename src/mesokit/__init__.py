@@ -43,7 +43,9 @@ if TYPE_CHECKING:
         WallStress,
     )
     from mesokit.run import Run
+    from mesokit.si import SI, convert
     from mesokit.simulation import Simulation
+    from mesokit.units import OtherFluid, Units, Water
 
 _PLACES = {  # module: the public names in it
     "mesokit.box": ("Box",),
@@ -76,13 +78,16 @@ _PLACES = {  # module: the public names in it
         "WallStress",
     ),
     "mesokit.run": ("Run",),
+    "mesokit.si": ("SI", "convert"),
     "mesokit.simulation": ("Simulation",),
+    "mesokit.units": ("OtherFluid", "Units", "Water"),
 }
 _HOME = {name: (module, name) for module, names in _PLACES.items() for name in names}
 _HOME["open"] = ("mesokit.io.open", "open_run")
 
 __all__ = [
     "AT",
+    "SI",
     "SRD",
     "ATPlusA",
     "Box",
@@ -101,6 +106,7 @@ __all__ = [
     "MesokitError",
     "NoForce",
     "NoThermostat",
+    "OtherFluid",
     "Plates",
     "Rescale",
     "Result",
@@ -118,10 +124,13 @@ __all__ = [
     "Trajectory",
     "TransverseModes",
     "Uniform",
+    "Units",
     "VelocityAutocorrelation",
     "VelocityField",
     "VelocityProfile",
     "WallStress",
+    "Water",
+    "convert",
     "derive",
     "open",
     "theory",

@@ -21,6 +21,7 @@ from mesokit.io.trajectory import Trajectory
 from mesokit.mpcd.fluid import Fluid
 from mesokit.observe import AnyObservable
 from mesokit.run import Run
+from mesokit.units import Units
 
 KEYS = {"walls": "wall"}  # field -> key in the file, where they differ: one [[wall]] each
 
@@ -46,6 +47,7 @@ class Case:
     walls: tuple[Wall, ...] = param((), doc="walls; key `[[wall]]` in a file")
     observe: tuple[AnyObservable, ...] = param((), doc="what is measured; key `[[observe]]`")
     trajectory: Trajectory | None = param(None, doc="particles to write (none unless said)")
+    units: Units | None = param(None, doc="what the units are in SI (reduced units unless said)")
     title: str = param("", doc="for the figures")
 
     def __post_init__(self) -> None:

@@ -36,8 +36,8 @@ COMPRESSED = 0.9  # thermal noise hardly compresses
 class Derived:
     """What follows from a case. Lengths in cells; None where there is no formula.
 
-    `flow_speed` is the largest velocity that theory expects of the steady flow, `reynolds` that
-    times the size across the flow over the viscosity, `mach` that over the speed of sound;
+    `flow_speed` is the largest velocity that theory expects of the steady flow, `flow_size` the
+    size across it, `reynolds` both over the viscosity, `mach` the speed over that of sound;
     `steady_time` is the time in which the flow comes within 1/e of its steady state. `seconds`
     and `memory` (bytes) of the run are estimates, `assumed` says of what.
     """
@@ -47,6 +47,7 @@ class Derived:
     transport: theory.Transport | None
     flow: str
     flow_speed: float | None
+    flow_size: float
     reynolds: float | None
     mach: float | None
     steady_time: float | None
@@ -89,6 +90,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         transport=transport,
         flow=flow,
         flow_speed=speed,
+        flow_size=length,
         reynolds=speed * length / nu if speed is not None and nu else None,
         mach=speed / transport.sound_speed if speed is not None and transport else None,
         steady_time=_steady_time(case, across, nu) if nu and speed and builds_up else None,

@@ -106,6 +106,10 @@ def _show_check(case: Case, numbers: Derived) -> None:
     if numbers.trajectory:
         rows.append(("trajectory", size_text(numbers.trajectory), "estimate"))
     show_table(rows)
+    if case.units is not None:
+        from mesokit.si import convert
+
+        click.echo(convert(case))
     for warning in numbers.warnings:
         click.echo(f"warning: {warning}")
 

@@ -16,13 +16,14 @@ from mesokit.io.run_directory import RunDirectory
 if TYPE_CHECKING:
     from mesokit.case import Case
     from mesokit.observe.result import Result
+    from mesokit.si import SI
 
 
 class RunFiles:
     """What a run has written, read when asked for.
 
-    `files["velocity-profile"]` is a result; `case`, `provenance`, `results` and `trajectory` are
-    the rest. Raises RunError where a file is missing or damaged.
+    `files["velocity-profile"]` is a result; `case`, `provenance`, `results`, `trajectory` and `si`
+    are the rest. Raises RunError where a file is missing or damaged.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -45,6 +46,13 @@ class RunFiles:
     def results(self) -> dict[str, Result]:
         """Results by name. Raises RunError if the run has not ended."""
         return h5md.read_results(self._data())
+
+    @cached_property
+    def si(self) -> SI:
+        """What the numbers are in SI units. Raises CaseError for a case without `units`."""
+        from mesokit.si import convert
+
+        return convert(self.case)
 
     @cached_property
     def trajectory(self) -> TrajectoryReader | None:
@@ -87,6 +95,8 @@ class RunFiles:
 
     def __repr__(self) -> str:
         lines = [f"mesokit run {self.path}", f"  {self.case.title or 'untitled'}"]
+        if self.case.units is not None:
+            lines.append("  " + str(self.si).replace("\n", "\n  "))
         if not self.directory.data_file.exists():
             return "\n".join([*lines, f"  {self._state()}"])
         lines += ["  " + repr(result).replace("\n", "\n  ") for result in self.results.values()]
