@@ -65,7 +65,6 @@ def sweep(
     step n + 1 after STREAM, with their cells and cell sums.
     """
     data, cell, ident, image, count, strips, first_virtual, rows, spare_cell = particles
-
     coefficients, sums = cells
     gathered, hits, quanta, impulse, tensor, rates = scratch
     gathered, hits = gathered[thread], hits[thread]
@@ -100,14 +99,14 @@ def sweep(
         if behind:
             bounce_strip(physics, strip, lanes, hits, impulse, scales, like)
         if what & STREAM:
-            if not real:
-                fill_strip(physics, counter, grid, strip, number, rates, like)
-                if what & MEASURE_WALLS:
-                    wall_momentum(physics, strip, lanes, impulse, scales[0], -1.0, like)
             if real:
                 slide_strip(box, grid, strip, boxes, like)
                 if measured:
                     momentum_flux(physics, box, grid, strip, lanes, tensor[0, s], like)
+            else:
+                fill_strip(physics, counter, grid, strip, number, rates, like)
+                if what & MEASURE_WALLS:
+                    wall_momentum(physics, strip, lanes, impulse, scales[0], -1.0, like)
             bin_strip(physics, counter, grid, strip, here, who, quanta, scales, like)
             if exposed(physics.solid) and not real:
                 for i in range(lanes):
