@@ -176,8 +176,11 @@ def test_wrong_start_arrays(
 @pytest.mark.parametrize(
     ("settings", "words"),
     [
-        (["fluid.density=11"], "(640, 2): expected (704, 2)"),
-        (["box.size=[8, 8, 2]"], "(640, 2): expected (1280, 3)"),
+        (["fluid.density=11"], "(mass, number) [[1, 640]], this case [[1, 704]]"),
+        (["fluid.mass=2"], "(mass, number) [[1, 640]], this case [[2, 640]]"),
+        (["fluid.species=[{mass=1, density=5}, {mass=1, density=5}]"], "[[1, 320], [1, 320]]"),
+        (["box.size=[16, 4]"], "that run has a box of [8, 8], this case [16, 4]"),
+        (["box.size=[4, 4, 4]"], "that run has a box of [8, 8], this case [4, 4, 4]"),
         (["fluid.start.run=.."], "holds no run"),
         (["fluid.start.run=nowhere"], "no such folder"),
         (["fluid.start.run=unstarted"], "no such checkpoint"),
