@@ -115,8 +115,14 @@ def _show_check(case: Case, numbers: Derived) -> None:
 
 
 def _show_theory(given: dict[str, Any]) -> None:
+    from mesokit.component import build
+    from mesokit.mpcd.fluid import Fluid
     from mesokit.theory import origins, transport
 
+    try:
+        build(Fluid, {key: given[key] for key in ("density", "timestep", "kT", "mass")})
+    except CaseError as error:
+        raise CaseError(f"--{error}") from None
     given["dimension"] = int(given["dimension"])
     needs_angle = given["rule"].startswith("srd") and given["angle_distribution"] == "fixed"
     if given["angle"] is None and needs_angle:
