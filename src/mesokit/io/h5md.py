@@ -107,10 +107,7 @@ def opened(path: str | Path) -> Iterator[Any]:
     except (OSError, KeyError, ValueError, TypeError, RuntimeError) as error:
         if getattr(error, "errno", None):  # not the file but the system, such as a full disk
             raise
-        raise RunError(
-            f"{path}: damaged: it is not a whole HDF5 file; mesokit resume {Path(path).parent} "
-            "writes it again if the checkpoint is whole"
-        ) from None
+        raise RunError(f"{path}: damaged: it is not a whole HDF5 file") from None
 
 
 def _header(file: Any, case: Case, provenance: Mapping[str, Any]) -> None:
