@@ -281,7 +281,7 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
 
 def _run_warnings(case: Case, numbers: Derived) -> Iterator[str]:
     run = case.run
-    flowing = [a for k, a in enumerate(case.box.axes) if setting.flow(case, k).kind != "rest"]
+    flowing = setting.flowing_axes(case)
     if not case.observe and case.trajectory is None:
         yield "no [[observe]] and no [trajectory]: the run will leave nothing but its last state"
     for i, observable in enumerate(case.observe):
@@ -291,7 +291,7 @@ def _run_warnings(case: Case, numbers: Derived) -> Iterator[str]:
                 f"{observable.label} takes no sample"
             )
         seen = getattr(observable, "component", None)
-        if observable.quantity == "velocity-profile" and flowing and seen not in flowing:
+        if seen is not None and flowing and seen not in flowing:
             yield (
                 f"observe[#{i + 1}].component = {seen!r}: nothing flows along {seen}; "
                 f"the flow is along {' and '.join(flowing)}"
