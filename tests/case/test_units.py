@@ -32,6 +32,7 @@ from mesokit import (
 )
 from mesokit.cli import main
 from mesokit.observe import setting
+from mesokit.si import QUANTITIES
 from mesokit.units import BOLTZMANN
 
 MATCHED = {"reynolds": "Reynolds", "peclet": "colloid Peclet", "mach": "Mach",
@@ -258,6 +259,48 @@ def test_refuses_a_depth_in_3d_fluids_without_theory_and_cases_without_units() -
         Case(run=Run(1), box=box, fluid=fluid, units=Units(1e-6, "reynolds"))
     with pytest.raises(CaseError, match=r"^units: missing"):
         convert(Case(run=Run(1), box=box))
+
+
+KEYS = ["cell", "match", "depth", "fluid", "fluid.substance", "fluid.temperature", "fluid.density"]
+
+
+@settings(deadline=None)
+@given(
+    st.sampled_from(KEYS),
+    st.floats() | st.integers() | st.booleans() | st.text(max_size=5) | st.sampled_from(
+        [*MATCHED, "water", "other", {"substance": "water"}, 273.15, 1e-10, 1e3, {}, []]
+    ),
+)  # fmt: skip
+def test_any_value_is_a_case_or_one_line(
+    tmp_path_factory: pytest.TempPathFactory, key: str, value: object
+) -> None:
+    path = tmp_path_factory.getbasetemp() / "units.toml"
+    path.write_text(slit().to_toml())
+    try:
+        case = Case.from_toml(path, {f"units.{key}": value})
+    except CaseError as error:
+        assert len(str(error).splitlines()) == 1 and "units.toml: units" in str(error)
+    else:
+        assert all(math.isfinite(getattr(convert(case), name)) for name in QUANTITIES)
+
+
+@pytest.mark.parametrize("match", ["reynolds", "peclet", "mach", "thermal"])
+@pytest.mark.parametrize("cell", [1e-10, 1e3])
+@pytest.mark.parametrize("density", [1e-3, 1e5])
+@pytest.mark.parametrize("viscosity", [1e-8, 1e8])
+@pytest.mark.parametrize("temperature", [0.1, 1e5])
+def test_the_limits_are_finite(
+    match: str, cell: float, density: float, viscosity: float, temperature: float
+) -> None:
+    fluid = OtherFluid(density, viscosity, temperature, diffusion=1e-25, sound_speed=0.1)
+    for kT in (1e-6, 1e6):
+        units = Units(cell, match, fluid)  # type: ignore[arg-type]
+        timestep = 1e-6 if kT > 1 else 0.1
+        case = Case(
+            run=Run(1), box=Box([4, 4, 4]), fluid=Fluid(kT=kT, timestep=timestep), units=units
+        )
+        si = convert(case)
+        assert all(0 < getattr(si, name) < math.inf for name in QUANTITIES)
 
 
 def ends(*arguments: object) -> None:
