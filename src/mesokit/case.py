@@ -21,7 +21,11 @@ from mesokit.io.trajectory import Trajectory
 from mesokit.mpcd.fluid import Fluid
 from mesokit.observe import AnyObservable
 from mesokit.run import Run
+<<<<<<< HEAD
 from mesokit.solids import free_volume
+=======
+from mesokit.units import Units
+>>>>>>> 21ccb1a2129dea98203d6c98ef26b35dbbc60f9f
 
 KEYS = {"walls": "wall"}  # field -> key in the file, where they differ: one [[wall]] each
 
@@ -47,6 +51,7 @@ class Case:
     walls: tuple[Wall, ...] = param((), doc="walls; key `[[wall]]` in a file")
     observe: tuple[AnyObservable, ...] = param((), doc="what is measured; key `[[observe]]`")
     trajectory: Trajectory | None = param(None, doc="particles to write (none unless said)")
+    units: Units | None = param(None, doc="what the units are in SI (reduced units unless said)")
     title: str = param("", doc="for the figures")
 
     def __post_init__(self) -> None:

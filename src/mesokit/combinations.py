@@ -11,7 +11,9 @@ from mesokit.box import AXES
 from mesokit.component import one_of, show, tag_of
 from mesokit.errors import CaseError
 from mesokit.geometry import SHAPES, Surface
+from mesokit.observe import setting
 from mesokit.solids import solids_of
+from mesokit.units import MATCHES
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -266,9 +268,28 @@ def trajectory(case: Case) -> Iterator[str]:
         yield f"trajectory.fields = {show(given.fields)}: expected each field once"
 
 
+def units(case: Case) -> Iterator[str]:
+    """Units in SI that the case and the real fluid can be matched by."""
+    given = case.units
+    if given is None:
+        return
+    if case.box.dimension == 3 and given.depth is not None:
+        yield f"units.depth = {show(given.depth)}: only in 2D; a 3D box has its own; leave it out"
+    if case.box.dimension == 2 and given.match == "peclet":
+        yield (
+            "units.match = 'peclet': only in 3D; the diffusion of a disc in a 2D fluid depends on "
+            "the box (Stokes' paradox); use 'reynolds' or 'thermal'"
+        )
+    caveat, matched = setting.caveat(case), MATCHES[given.match]
+    if caveat and not {"dynamic_viscosity", "sound_speed"}.isdisjoint(matched):
+        yield f"units.match = {show(given.match)}: {caveat}; only 'thermal' does without"
+    if any(math.isnan(getattr(given.fluid.properties(), name)) for name in matched):
+        yield f"units.fluid.sound_speed: missing; units.match = {show(given.match)} needs it"
+
+
 RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
-    axes, vectors, walls, room, moving_surfaces, size, mean_free_path, collision, force, shear, start, names, bins,
-    trajectory,
+    axes, vectors, walls, room, moving_surfaces, size, mean_free_path, collision, force, shear,
+    start, names, bins, trajectory, units,
 )  # fmt: skip
 
 

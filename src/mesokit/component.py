@@ -3,7 +3,7 @@
 A component is at once the Python object, the section of the case file, the stored metadata and
 the row of the documentation. Write plain type hints: numbers are taken strictly (no strings, no
 booleans; a whole float passes as an int), lists and arrays become tuples, unions of components
-are told apart by their tag (`rule`, `shape` or `quantity`), unknown keys are refused.
+are told apart by their tag (such as `rule` or `quantity`), unknown keys are refused.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from pydantic_core import PydanticCustomError
 from mesokit.errors import CaseError
 
 T = TypeVar("T")
-TAGS = ("rule", "shape", "quantity")
+TAGS = ("rule", "shape", "quantity", "substance")
 
 
 def param(default: Any = ..., *, doc: str, unit: str = "", **limits: Any) -> Any:
@@ -36,7 +36,7 @@ def param(default: Any = ..., *, doc: str, unit: str = "", **limits: Any) -> Any
 
 
 def tag(value: str) -> Any:
-    """The field `rule`, `shape` or `quantity` whose value names the component in a case file."""
+    """The field, one of TAGS, whose value names the component in a case file."""
     return Field(value, description="name of the component", kw_only=True)
 
 

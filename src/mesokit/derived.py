@@ -36,8 +36,8 @@ COMPRESSED = 0.9  # thermal noise hardly compresses
 class Derived:
     """What follows from a case. Lengths in cells; None where there is no formula.
 
-    `flow_speed` is the largest velocity that theory expects of the steady flow, `reynolds` that
-    times the size across the flow over the viscosity, `mach` that over the speed of sound;
+    `flow_speed` is the largest velocity that theory expects of the steady flow, `flow_size` the
+    size across it, `reynolds` both over the viscosity, `mach` the speed over that of sound;
     `steady_time` is the time in which the flow comes within 1/e of its steady state. `seconds`
     and `memory` (bytes) of the run are estimates, `assumed` says of what.
     """
@@ -47,6 +47,7 @@ class Derived:
     transport: theory.Transport | None
     flow: str
     flow_speed: float | None
+    flow_size: float
     reynolds: float | None
     mach: float | None
     steady_time: float | None
@@ -89,6 +90,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         transport=transport,
         flow=flow,
         flow_speed=speed,
+        flow_size=length,
         reynolds=speed * length / nu if speed is not None and nu else None,
         mach=speed / transport.sound_speed if speed is not None and transport else None,
         steady_time=_steady_time(case, across, nu) if nu and speed and builds_up else None,
@@ -279,7 +281,7 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
 
 def _run_warnings(case: Case, numbers: Derived) -> Iterator[str]:
     run = case.run
-    flowing = [a for k, a in enumerate(case.box.axes) if setting.flow(case, k).kind != "rest"]
+    flowing = setting.flowing_axes(case)
     if not case.observe and case.trajectory is None:
         yield "no [[observe]] and no [trajectory]: the run will leave nothing but its last state"
     for i, observable in enumerate(case.observe):
@@ -289,7 +291,7 @@ def _run_warnings(case: Case, numbers: Derived) -> Iterator[str]:
                 f"{observable.label} takes no sample"
             )
         seen = getattr(observable, "component", None)
-        if observable.quantity == "velocity-profile" and flowing and seen not in flowing:
+        if seen is not None and flowing and seen not in flowing:
             yield (
                 f"observe[#{i + 1}].component = {seen!r}: nothing flows along {seen}; "
                 f"the flow is along {' and '.join(flowing)}"

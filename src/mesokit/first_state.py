@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from mesokit.component import show
+from mesokit.errors import CaseError
 from mesokit.io import checkpoint
 from mesokit.io.run_directory import RunDirectory
 from mesokit.mpcd.initial import read_arrays
@@ -21,16 +23,34 @@ def first_state(case: Case, positions: Any = None, velocities: Any = None) -> tu
     return read_arrays(case, positions, velocities, _last_state)
 
 
-def _last_state(path: str) -> tuple[Any, Any]:
-    """Positions and velocities, by particle id, of the last checkpoint of an earlier run."""
+def _last_state(case: Case, path: str) -> tuple[Any, Any]:
+    """Positions and velocities, by particle id, of the last checkpoint of an earlier run.
+
+    Raises CaseError unless that run has the box and the species of the case.
+    """
     from mesokit.case import Case
     from mesokit.execute.cpu import CPU
 
     directory = RunDirectory.existing(path)
+    earlier = Case.from_toml(directory.case_file)
+    for what, there, here in (
+        ("a box of", list(earlier.box.size), list(case.box.size)),
+        ("particles of (mass, number)", _kinds(earlier), _kinds(case)),
+    ):
+        if there != here:
+            raise CaseError(f"that run has {what} {show(there)}, this case {show(here)}")
     arrays, _ = checkpoint.read(directory.checkpoint_file)
-    fluid = CPU(Case.from_toml(directory.case_file))
+    fluid = CPU(earlier)
     fluid.restore(part(arrays, "fluid/"))
     return fluid.positions(), fluid.velocities()
+
+
+def _kinds(case: Case) -> list[tuple[float, int]]:
+    """Mass and number of each kind of particles."""
+    fluid = case.fluid
+    return [(kind.mass, round(kind.density * case.box.volume)) for kind in fluid.species] or [
+        (fluid.mass, case.particles)
+    ]
 
 
 def part(arrays: dict[str, Any], start: str) -> dict[str, Any]:

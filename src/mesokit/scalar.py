@@ -1,5 +1,6 @@
 """How physics is written: plain scalar functions, compiled once for every way of execution."""
 
+import functools
 import inspect
 from collections.abc import Callable
 from typing import Any
@@ -45,7 +46,9 @@ def generic(stub: Callable) -> Any:
     """A scalar function with one implementation per parameter type, as `functools.singledispatch`.
 
     The first argument is a `NamedTuple` of parameters; its class picks the implementation when the
-    calling kernel is compiled, so that a kernel for one rule holds no trace of the others.
+    calling kernel is compiled, so that a kernel for one rule holds no trace of the others. Called
+    from plain Python it is compiled for its arguments; a class that is not registered is a
+    TypeError. The stub has a docstring and no body.
 
     Examples
     --------
@@ -54,19 +57,27 @@ def generic(stub: Callable) -> Any:
     >>> class Disk(NamedTuple):
     ...     radius: float
     >>> @generic
-    ... def inside(shape, r): ...
+    ... def inside(shape, r):
+    ...     '''Whether r lies inside the shape.'''
     >>> @inside.register(Disk)
     ... def _(shape, r):
     ...     return r < shape.radius
     >>> njit(lambda shape, r: inside(shape, r))(Disk(2.0), 1.0)
     True
+    >>> inside(Disk(2.0), 3.0)
+    False
     """
     table: dict[type, Callable] = {}
 
     def choose(*arguments: Any) -> Callable | None:
         return table.get(getattr(arguments[0], "instance_class", None))  # type: ignore[arg-type]
 
-    _overloaded(stub, choose)
+    @functools.wraps(stub)
+    def dispatch(*arguments: Any) -> Any:
+        kind = type(arguments[0])
+        if kind not in table:
+            raise TypeError(f"{stub.__name__}: nothing is registered for {kind.__name__}")
+        return _compiled(table[kind])(*arguments)
 
     def register(*parameters: type) -> Callable:
         def decorate(implementation: Callable) -> Callable:
@@ -78,8 +89,11 @@ def generic(stub: Callable) -> Any:
         return decorate
 
     names = inspect.signature(stub).parameters.keys()
-    stub.register = register  # type: ignore[attr-defined]
-    return stub
+    dispatch.register = register  # type: ignore[attr-defined]
+    return _overloaded(dispatch, choose)
+
+
+_compiled = functools.cache(scalar)
 
 
 @intrinsic

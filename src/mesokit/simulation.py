@@ -7,6 +7,7 @@ import numbers
 import os
 import signal
 import threading
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from time import perf_counter
@@ -18,6 +19,7 @@ from mesokit.errors import CaseError, CheckpointError, RunError
 from mesokit.execute.cpu import CPU
 from mesokit.first_state import first_state, part
 from mesokit.io import checkpoint, h5md
+from mesokit.io.frames import require_frames
 from mesokit.io.run_directory import RunDirectory, now, provenance
 from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.mpcd.initial import start
@@ -95,7 +97,8 @@ class Simulation:
     def resume(cls, output: str | Path, threads: int | None = None) -> Simulation:
         """Go on with the run in a folder, from its last checkpoint (or the start, if none).
 
-        Raises RunError, CheckpointError if there is none or it is damaged.
+        Raises RunError, CheckpointError if there is none or it is damaged. A damaged record of
+        where the run comes from is a warning, and begun anew.
         """
         directory = RunDirectory.existing(output)
         if directory.data_file.exists() and not directory.checkpoint_file.exists():
@@ -113,9 +116,9 @@ class Simulation:
         else:
             start(self.fluid, *first_state(self.case))
         if self.writer is not None:
-            self._require_frames(directory, self.writer)
+            require_frames(directory, self.case, self.step)
             self.writer.resume(self.step)
-        record = directory.read_provenance() or provenance(self.case, self.threads)
+        record = self._earlier_record(directory) or provenance(self.case, self.threads)
         resumed = [*record.get("resumed", []), now()]
         self._save_provenance(record | {"resumed": resumed, "failed": None})
         return self
@@ -280,26 +283,13 @@ class Simulation:
         except (KeyError, ValueError, IndexError) as error:
             raise CheckpointError(f"{path}: does not fit this case: {error}") from None
 
-    def _require_frames(self, directory: RunDirectory, writer: TrajectoryWriter) -> None:
-        """Raise RunError unless all frames up to this step are in segments or the data file."""
-        warmup, every = self.case.run.warmup, writer.trajectory.every
-        place, there = directory.trajectory_folder, writer.steps()
-        if not len(there) and directory.data_file.exists():
-            place = directory.data_file
-            try:
-                there = h5md.frame_steps(place)
-            except RunError:
-                raise RunError(
-                    f"{place}: damaged, and only it held the frames of the trajectory; put a copy "
-                    f"in its place, or run anew: {directory.again}"
-                ) from None
-        wanted = range(warmup + every, self.step + 1, every)
-        lost = sorted(set(wanted) - set(there.tolist()))
-        if lost:
-            raise RunError(
-                f"{place}: {len(lost)} of {len(wanted)} frames are missing, the first that of step "
-                f"{lost[0]}; put the files back, or run anew: {directory.again}"
-            )
+    @staticmethod
+    def _earlier_record(directory: RunDirectory) -> dict[str, Any]:
+        try:
+            return directory.read_provenance()
+        except RunError as error:
+            warnings.warn(f"{error}; going on with a fresh record", stacklevel=3)
+            return {}
 
     def _note_failure(self, reason: str) -> None:
         if self.directory is not None:

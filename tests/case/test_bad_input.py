@@ -141,6 +141,19 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
                            ("fluid.start.positions", "none.npy", "no such file")),
     "two starts": ({"density = 5": 'start = { run = "a", positions = "b.npy" }'},
                    ("fluid.start.run", "positions")),
+    "units without a length": ({"[[wall]]": '[units]\nmatch = "reynolds"\n[[wall]]'},
+                               ("units.cell: missing",)),
+    "units without a match": ({"[[wall]]": "[units]\ncell = 1e-6\n[[wall]]"},
+                              ("units.match: missing",)),
+    "units of Schmidt": ({"[[wall]]": '[units]\ncell = 1e-6\nmatch = "schmidt"\n[[wall]]'},
+                         ("units.match = 'schmidt'", "'thermal'")),
+    "units of Brownian motion in 2D":
+        ({"[[wall]]": '[units]\ncell = 1e-6\nmatch = "peclet"\n[[wall]]'},
+         ("units.match = 'peclet'", "3D")),
+    "water in degrees Celsius":
+        ({"[[wall]]": '[units]\ncell = 1e-6\nmatch = "reynolds"\n'
+          'fluid = { substance = "water", temperature = 25 }\n[[wall]]'},
+         ("units.fluid.temperature = 25", "273.15")),
     "large subset": ({"[[wall]]": "[trajectory]\nevery = 5\nsubset = 2000\n[[wall]]"},
                      ("trajectory.subset = 2000", "1000")),
     "field twice": ({"[[wall]]": '[trajectory]\nevery = 5\nfields = ["id", "id"]\n[[wall]]'},

@@ -23,6 +23,7 @@ from mesokit import (
     MaxwellBoltzmann,
     NoForce,
     NoThermostat,
+    OtherFluid,
     Plates,
     Rescale,
     Run,
@@ -33,7 +34,9 @@ from mesokit import (
     Surface,
     Trajectory,
     Uniform,
+    Units,
     VelocityProfile,
+    Water,
 )
 from mesokit.cli import TEMPLATES
 from mesokit.component import is_component
@@ -98,6 +101,11 @@ def cases(draw: st.DrawFn) -> Case:
             for n in names
         ),
         trajectory=draw(st.none() | st.builds(Trajectory, every=st.integers(1, 100))),
+        units=draw(st.none() | st.builds(
+            Units, cell=st.floats(1e-9, 1), match=st.just("thermal"),
+            fluid=st.sampled_from([Water(), Water(300), OtherFluid(1.2, 1.8e-5, 293)]),
+            depth=st.none() | st.floats(1e-9, 1) if dimension == 2 else st.none(),
+        )),
     )  # fmt: skip
 
 

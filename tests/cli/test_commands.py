@@ -198,6 +198,11 @@ def test_commands_on_a_run_need_one(command: str, capsys: Captured) -> None:
     ("options", "words"),
     [
         (["--density", "-1"], "--density"),
+        (["--density", "nan"], "--density = nan: expected a finite number"),
+        (["--timestep", "1e9"], "--timestep = 1000000000: expected a number of at most 1000"),
+        (["--timestep", "1e-7"], "--timestep = 1e-07: expected a number of at least 1e-06"),
+        (["--kT", "1e7"], "--kT = 10000000: expected a number of at most 1e+06"),
+        (["--mass", "0"], "--mass = 0: expected a number of at least 0.001"),
         (["--angle", "400"], "--angle"),
         (["--rule", "at", "--angle", "90"], "--angle"),
         (["--angle-distribution", "uniform"], "--angle-distribution = 'uniform'"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import resource
 import shutil
@@ -26,6 +27,7 @@ every = 2
 [trajectory]
 every = 5
 """
+ANEW = "mesokit run run/case.toml --output run --overwrite"
 SOURCE = str(Path(__file__).parents[2] / "src")
 
 
@@ -122,7 +124,62 @@ def test_damaged_results(
 ) -> None:
     results = folder / "run" / "run.h5"
     results.write_bytes(damage(results.read_bytes()))
-    assert "run.h5: damaged" in refusal(capsys, command, "run")
+    message = refusal(capsys, command, "run")
+    assert "run.h5: damaged" in message
+    assert message.endswith(f"put a copy in its place, or run anew: {ANEW}\n")
+
+
+@pytest.mark.parametrize("command", ["info", "plot"])
+def test_what_to_do_about_damaged_results(
+    command: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Without a trajectory, all that is needed is in the checkpoint."""
+    shutil.rmtree("run")
+    Path("plain.toml").write_text(CASE.partition("[trajectory]")[0])
+    main_ends(["run", "plain.toml", "--output", "run", "--quiet"])
+    results = folder / "run" / "run.h5"
+    results.write_bytes(b"")
+    assert refusal(capsys, command, "run").endswith("; mesokit resume run writes it again\n")
+    main_ends(["resume", "run", "--quiet"])
+    main_ends([command, "run"])
+    results.write_bytes(b"")
+    (folder / "run" / "checkpoint.npz").unlink()
+    assert refusal(capsys, command, "run").endswith(f"or run anew: {ANEW}\n")
+
+
+@pytest.mark.parametrize("command", ["info", "plot"])
+def test_what_to_do_about_lost_results(
+    command: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "run" / "run.h5").unlink()
+    if command == "info":
+        main_ends(["info", "run"])
+        message = capsys.readouterr().out
+    else:
+        message = refusal(capsys, command, "run")
+    assert "mesokit resume" not in message
+    assert "cannot go on: its last checkpoint is at step 20 of 20, but " in message
+    assert "run/trajectory: 4 of 4 frames are missing" in message
+    assert f"run anew: {ANEW}" in message
+    main_ends(ANEW.split()[1:] + ["--quiet"])
+
+
+@pytest.mark.parametrize("damage", [truncated, flipped, empty])
+def test_a_damaged_record_does_not_block(
+    damage, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    record = folder / "run" / "provenance.json"
+    record.write_bytes(damage(record.read_bytes()))
+    (folder / "run" / "run.h5").rename("run.h5")
+    main_ends(["info", "run"])
+    Path("run.h5").rename(folder / "run" / "run.h5")
+    main_ends(["resume", "run", "--quiet"])
+    said = capsys.readouterr().err
+    assert said.startswith("warning: run/provenance.json: cannot be read")
+    assert said.endswith("; going on with a fresh record\n")
+    assert len(json.loads(record.read_text())["resumed"]) == 1
+    main_ends(["resume", "run", "--quiet"])
+    assert capsys.readouterr().err == ""
 
 
 @pytest.mark.parametrize("damage", [truncated, flipped_anywhere, empty])
@@ -176,8 +233,11 @@ def test_wrong_start_arrays(
 @pytest.mark.parametrize(
     ("settings", "words"),
     [
-        (["fluid.density=11"], "(640, 2): expected (704, 2)"),
-        (["box.size=[8, 8, 2]"], "(640, 2): expected (1280, 3)"),
+        (["fluid.density=11"], "(mass, number) [[1, 640]], this case [[1, 704]]"),
+        (["fluid.mass=2"], "(mass, number) [[1, 640]], this case [[2, 640]]"),
+        (["fluid.species=[{mass=1, density=5}, {mass=1, density=5}]"], "[[1, 320], [1, 320]]"),
+        (["box.size=[16, 4]"], "that run has a box of [8, 8], this case [16, 4]"),
+        (["box.size=[4, 4, 4]"], "that run has a box of [8, 8], this case [4, 4, 4]"),
         (["fluid.start.run=.."], "holds no run"),
         (["fluid.start.run=nowhere"], "no such folder"),
         (["fluid.start.run=unstarted"], "no such checkpoint"),
@@ -221,10 +281,12 @@ def test_folder_that_cannot_be_made(folder: Path, capsys: pytest.CaptureFixture[
     assert contents(folder) == before
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
-def test_folder_without_permission(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_folder_that_the_system_refuses(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Without permission; root may write everywhere but under /proc."""
     (folder / "locked").mkdir(mode=0o500)
-    assert "locked" in refusal(capsys, "run", "case.toml", "--output", "locked/run")
+    place = "/proc/run" if os.geteuid() == 0 else "locked/run"
+    message = refusal(capsys, "run", "case.toml", "--output", place)
+    assert f"{place}: cannot make the folder: " in message
 
 
 def test_full_disk(folder: Path) -> None:

@@ -266,3 +266,27 @@ def test_axes_that_are_not_there(make_case):
             make_case(observe=[wrong])
     with pytest.raises(CaseError, match="two different axes"):
         make_case(observe=[VelocityField(axes=("x", "x"))])
+
+
+SHEARED = {"shear_rate": 0.1}
+ALONG_Z = {"walls": [Plates("y")], "force": Uniform((0, 0, 0.1))}
+DRAGGED = {"walls": [Plates("x", upper=Surface(velocity=(0, 0, 0.1)))]}
+CARRIED = {"walls": [Plates("y", *[Surface(velocity=(0, 0, 0.1))] * 2)]}
+SLIPPERY = {"walls": [Plates("y", *[Surface(rule="slip")] * 2)], "force": Uniform((0, 0, 0.1))}
+OBLIQUE = {"walls": [Plates("y")], "force": Uniform((0.1, 0, 0.1))}
+SINE = {"force": Sinusoidal(amplitude=0.1, flow="y", gradient="x")}
+
+
+@pytest.mark.parametrize(
+    ("axis", "parts", "seen"),
+    [
+        ("y", SHEARED, "x"), ("y", ALONG_Z, "z"), ("x", DRAGGED, "z"), ("y", CARRIED, "z"),
+        ("y", SLIPPERY, "z"), ("x", SINE, "y"), ("y", OBLIQUE, "x"), ("y", {}, "x"), ("x", {}, "y"),
+    ],
+)  # fmt: skip
+def test_the_velocity_is_that_of_the_flow_unless_said(make_case, axis, parts, seen):
+    case = make_case((6, 6, 6), thermostat=MaxwellBoltzmann(), **parts)
+    result = VelocityProfile(axis=axis).accumulator(case).result()
+    assert (result.label, result.extra["component"]) == (f"velocity v_{seen}", seen)
+    said = VelocityProfile(axis=axis, component="x").accumulator(case).result()
+    assert said.label == "velocity v_x"

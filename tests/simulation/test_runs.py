@@ -114,9 +114,56 @@ def test_wrong_arrays_are_refused(case, arrays):
             Simulation(case, **bad)
 
 
-def test_arrays_of_no_numbers_are_refused(case):
-    with pytest.raises(CaseError, match=r"fluid\.start\.positions: expected an array of numbers"):
-        Simulation(case, positions=[["a", "b"]])
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda a: [["a", "b"]], ", not of str"),
+        (lambda a: a.astype(str), ", not of str"),
+        (lambda a: a.astype(complex), ", not of complex128"),
+        (lambda a: a > 0, ", not of bool"),
+        (lambda a: a.astype(object), ", not of object"),
+        (lambda a: a.astype("datetime64[s]"), ", not of datetime64"),
+        (lambda a: np.ma.masked_less(a, 0.5), " without a mask"),
+        (lambda a: [[1, 2], [3]], ""),
+        (lambda a: {"x": a}, ", not of object"),
+    ],
+)
+@pytest.mark.parametrize("name", ["positions", "velocities"])
+def test_arrays_of_no_numbers_are_refused(case, arrays, name, change, words):
+    match = rf"^fluid\.start\.{name}: expected an array of numbers{words}"
+    with pytest.raises(CaseError, match=match):
+        Simulation(case, **{name: change(arrays[0])})
+
+
+@pytest.mark.parametrize("kind", ["float32", "int16", "uint8", "longdouble"])
+def test_arrays_of_any_real_numbers_are_taken(case, arrays, kind):
+    velocities = np.abs(arrays[1]).astype(kind)
+    simulation = Simulation(case, velocities=velocities, threads=1)
+    np.testing.assert_array_equal(simulation.fluid.velocities(), velocities.astype(float))
+
+
+def test_positions_too_far_away_for_counting_boxes_are_refused(case, arrays):
+    r = arrays[0].copy()
+    r[5, 0] = -12 * (2**30 - 1)
+    simulation = Simulation(case, positions=r, threads=1)
+    assert simulation.fluid.images()[5].tolist() == [1 - 2**30, 0]
+    for far in (12.0 * 2**30, -1e300):
+        r[5, 0] = far
+        with pytest.raises(CaseError, match=r"positions: row 5 = .* 2\^30 boxes away or more"):
+            Simulation(case, positions=r)
+
+
+def test_no_array_is_silently_ignored(case, arrays, uninterrupted, tmp_path):
+    np.save(tmp_path / "v.npy", arrays[1])
+    for start in (Start(run=str(uninterrupted.directory.path)), Start(velocities=str(tmp_path))):
+        other = replaced(case, fluid=dataclasses.replace(case.fluid, start=start))
+        with pytest.raises(CaseError, match=r"^fluid\.start\..*: not with an array of velocities"):
+            Simulation(other, velocities=arrays[1])
+    start = Start(velocities=str(tmp_path / "v.npy"))
+    other = replaced(case, fluid=dataclasses.replace(case.fluid, start=start))
+    simulation = Simulation(other, positions=arrays[0], threads=1)
+    np.testing.assert_allclose(simulation.fluid.positions(), arrays[0], atol=1e-14)
+    np.testing.assert_array_equal(simulation.fluid.velocities(), arrays[1])
 
 
 def test_a_case_may_be_the_path_of_its_file(case, case_file):

@@ -106,13 +106,23 @@ def _show_check(case: Case, numbers: Derived) -> None:
     if numbers.trajectory:
         rows.append(("trajectory", size_text(numbers.trajectory), "estimate"))
     show_table(rows)
+    if case.units is not None:
+        from mesokit.si import convert
+
+        click.echo(convert(case))
     for warning in numbers.warnings:
         click.echo(f"warning: {warning}")
 
 
 def _show_theory(given: dict[str, Any]) -> None:
+    from mesokit.component import build
+    from mesokit.mpcd.fluid import Fluid
     from mesokit.theory import origins, transport
 
+    try:
+        build(Fluid, {key: given[key] for key in ("density", "timestep", "kT", "mass")})
+    except CaseError as error:
+        raise CaseError(f"--{error}") from None
     given["dimension"] = int(given["dimension"])
     needs_angle = given["rule"].startswith("srd") and given["angle_distribution"] == "fixed"
     if given["angle"] is None and needs_angle:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import shutil
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -63,7 +64,10 @@ def resume(run: Path, threads: int | None, quiet: bool) -> None:
     from mesokit.simulation import Simulation
 
     with _run_errors(run):
-        simulation = Simulation.resume(run, threads=threads)
+        with warnings.catch_warnings(record=True) as said:
+            simulation = Simulation.resume(run, threads=threads)
+        for warning in said:
+            click.echo(f"warning: {warning.message}", err=True)
         if not (quiet or RunDirectory(run).checkpoint_file.exists()):
             click.echo(f"{run}: no checkpoint yet; starting from step 0", err=True)
         simulation.run(progress=Reporter(quiet))

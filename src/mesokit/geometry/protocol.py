@@ -24,13 +24,11 @@ class Chance(NamedTuple):
 @generic
 def across(solid):
     """The axis that plates close, as a literal."""
-    raise NotImplementedError
 
 
 @generic
 def exposed(solid):
     """Whether there is a surface at all (a literal, so that the compiler drops what it guards)."""
-    raise NotImplementedError
 
 
 @generic
@@ -39,61 +37,51 @@ def touches(solid, clear, r, v, a, time):
 
     `clear` is (square of the distance that is clear around r,) for solids in tables, else ().
     """
-    raise NotImplementedError
 
 
 @generic
 def free(solid, r, v, a, time):
     """Whether the flight surely misses the solid (a closer look than `touches`)."""
-    raise NotImplementedError
 
 
 @generic
 def homed(solid, r):
     """The image of r from which `first_hit` and the others below can tell."""
-    raise NotImplementedError
 
 
 @generic
 def first_hit(solid, r, v, a, time):
     """Time of the first hit (more than `time` if there is none), and the contact: what is hit."""
-    raise NotImplementedError
 
 
 @generic
 def happens(solid, contact):
     """Whether a contact is one, or only the end of what could be seen ahead."""
-    raise NotImplementedError
 
 
 @generic
 def surface_of(solid, contact):
     """Number of the surface that is hit: momentum is kept for each."""
-    raise NotImplementedError
 
 
 @generic
 def lever(solid, contact, r):
     """r relative to the place about which torques on that surface are taken."""
-    raise NotImplementedError
 
 
 @generic
 def confine(solid, contact, r):
     """The nearest place in the fluid: takes off what rounding put beyond the surface."""
-    raise NotImplementedError
 
 
 @generic
 def reflect(solid, contact, r, v, chance):
     """Velocity after the hit."""
-    raise NotImplementedError
 
 
 @generic
 def settled(solid, r):
     """A place in the fluid within rounding of r, and whether there is one."""
-    raise NotImplementedError
 
 
 @generic
@@ -103,10 +91,8 @@ def closes(solid, place, shift, lower_rate, upper_rate):
     The rates are those at which the fluid's velocity rises with the distance from surfaces 0 and 1;
     within the solid it goes on falling.
     """
-    raise NotImplementedError
 
 
 @generic
 def side(solid, r):
     """The surface behind which a virtual particle at r lies: 0 or 1, or 2 where it must not act."""
-    raise NotImplementedError

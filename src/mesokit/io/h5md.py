@@ -1,7 +1,7 @@
 """The data file of a run: H5MD 1.1 (de Buyl, Colberg and Hofling, CPC 185, 1546 (2014)).
 
 /h5md        version, author, creator
-/parameters  case (TOML) and provenance (JSON)
+/parameters  case (TOML) and provenance (JSON); units: what a reduced unit is in SI, if known
 /particles   fluid: box, position, velocity, image with step, time and value; id, mass, species
 /observables time series, one row for each frame of the trajectory if there is one
 /results     what each observable measured: value, error, expected, fit, x, comparisons
@@ -107,10 +107,7 @@ def opened(path: str | Path) -> Iterator[Any]:
     except (OSError, KeyError, ValueError, TypeError, RuntimeError) as error:
         if getattr(error, "errno", None):  # not the file but the system, such as a full disk
             raise
-        raise RunError(
-            f"{path}: damaged: it is not a whole HDF5 file; mesokit resume {Path(path).parent} "
-            "writes it again if the checkpoint is whole"
-        ) from None
+        raise RunError(f"{path}: damaged: it is not a whole HDF5 file") from None
 
 
 def _header(file: Any, case: Case, provenance: Mapping[str, Any]) -> None:
@@ -123,6 +120,9 @@ def _header(file: Any, case: Case, provenance: Mapping[str, Any]) -> None:
     parameters = file.create_group("parameters")
     parameters["case"] = case.to_toml()
     parameters["provenance"] = json.dumps(provenance)
+    if provenance.get("units"):
+        scales = {k: v for k, v in provenance["units"].items() if k != "numbers"}
+        parameters.create_group("units").attrs.update(scales)
 
 
 def _kept(file: Any, path: str | Path) -> bool:

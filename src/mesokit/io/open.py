@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,18 +13,20 @@ from numpy.typing import NDArray
 
 from mesokit.errors import RunError
 from mesokit.io import checkpoint, h5md
+from mesokit.io.frames import require_frames
 from mesokit.io.run_directory import RunDirectory
 
 if TYPE_CHECKING:
     from mesokit.case import Case
     from mesokit.observe.result import Result
+    from mesokit.si import SI
 
 
 class RunFiles:
     """What a run has written, read when asked for.
 
-    `files["velocity-profile"]` is a result; `case`, `provenance`, `results` and `trajectory` are
-    the rest. Raises RunError where a file is missing or damaged.
+    `files["velocity-profile"]` is a result; `case`, `provenance`, `results`, `trajectory` and `si`
+    are the rest. Raises RunError where a file is missing or damaged.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -44,12 +48,21 @@ class RunFiles:
     @cached_property
     def results(self) -> dict[str, Result]:
         """Results by name. Raises RunError if the run has not ended."""
-        return h5md.read_results(self._data())
+        with self._advising():
+            return h5md.read_results(self._data())
+
+    @cached_property
+    def si(self) -> SI:
+        """What the numbers are in SI units. Raises CaseError for a case without `units`."""
+        from mesokit.si import convert
+
+        return convert(self.case)
 
     @cached_property
     def trajectory(self) -> TrajectoryReader | None:
         """Frames, None if the case asked for none. Raises RunError if the run has not ended."""
-        reader = TrajectoryReader(self._data())
+        with self._advising():
+            reader = TrajectoryReader(self._data())
         return reader if reader.fields else None
 
     def __getitem__(self, name: str) -> Result:
@@ -69,15 +82,38 @@ class RunFiles:
             raise RunError(f"{self.path}: the run {self._state()}")
         return self.directory.data_file
 
+    @contextlib.contextmanager
+    def _advising(self) -> Iterator[None]:
+        """Say what brings back a damaged data file."""
+        try:
+            yield
+        except RunError as error:
+            if not self.directory.data_file.exists():  # that error has said it
+                raise
+            raise RunError(f"{error}; {self._advice()}") from None
+
+    def _advice(self) -> str:
+        try:
+            _, meta = checkpoint.read(self.directory.checkpoint_file)
+            require_frames(self.directory, self.case, meta["step"])
+        except RunError:
+            return f"put a copy in its place, or run anew: {self.directory.again}"
+        return f"mesokit resume {self.path} writes it again"
+
     def _state(self) -> str:
         """How far a run has come that has no results yet."""
-        failed, file = self.provenance.get("failed"), self.directory.checkpoint_file
+        failed, file = None, self.directory.checkpoint_file
+        with contextlib.suppress(RunError):  # to go on, a damaged record does not matter
+            failed = self.provenance.get("failed")
         last = self.case.run.warmup + self.case.run.steps
         reached = "it has no checkpoint yet"
         if file.exists():
-            reached = (
-                f"its last checkpoint is at step {checkpoint.read_meta(file)['step']} of {last}"
-            )
+            step = checkpoint.read_meta(file)["step"]
+            reached = f"its last checkpoint is at step {step} of {last}"
+            try:
+                require_frames(self.directory, self.case, step)
+            except RunError as error:
+                return f"cannot go on: {reached}, but {error}"
         if failed:
             return f"failed: {failed} ({reached})"
         return (
@@ -87,6 +123,8 @@ class RunFiles:
 
     def __repr__(self) -> str:
         lines = [f"mesokit run {self.path}", f"  {self.case.title or 'untitled'}"]
+        if self.case.units is not None:
+            lines.append("  " + str(self.si).replace("\n", "\n  "))
         if not self.directory.data_file.exists():
             return "\n".join([*lines, f"  {self._state()}"])
         lines += ["  " + repr(result).replace("\n", "\n  ") for result in self.results.values()]

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from mesokit.errors import RunError
 from mesokit.io import checkpoint
 from mesokit.io.atomic import write_text
+from mesokit.si import convert
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -113,12 +114,14 @@ class RunDirectory:
 def provenance(case: Case, threads: int) -> dict[str, Any]:
     """Where the numbers of a run come from, as it starts: case, versions, host, time.
 
+    `units` says what a reduced unit is in SI, None if the case does not.
     `ended` and `failed` (why) are None and `timings` empty until someone fills them in.
     """
     text = case.to_toml()
     return {
         "case": text,
         "case_digest": checkpoint.digest(text),
+        "units": None if case.units is None else convert(case).record(),
         "seed": case.run.seed,
         "versions": {"python": platform.python_version()} | _versions(),
         "host": platform.node(),

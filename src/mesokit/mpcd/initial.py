@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from mesokit.execute.cpu import CPU
 
 Floats = NDArray[np.float64]
+LastState = Callable[["Case", str], tuple[Any, Any]]
+MOST_IMAGES = 2**30  # boxes away from the primary one: image counts are 32-bit
 
 
 @component
@@ -39,18 +41,20 @@ class Start:
 
 
 def read_arrays(
-    case: Case, positions: Any, velocities: Any, last_state: Callable[[str], tuple[Any, Any]]
+    case: Case, positions: Any, velocities: Any, last_state: LastState
 ) -> tuple[Any, Any]:
     """The arrays to start from: those given, or those that the case names; None where none.
 
-    `last_state` gives positions and velocities of an earlier run. Raises CaseError if an array has
-    the wrong shape, is not finite, or has particles outside the walls.
+    `last_state` gives positions and velocities of an earlier run that suits the case. Raises
+    CaseError if an array is given twice, holds no real numbers, has the wrong shape, is not finite,
+    or has particles outside the walls or too far away.
     """
     given = case.fluid.start
+    _once(given, positions=positions, velocities=velocities)
     if given.run is not None:
         key = f"fluid.start.run = {given.run!r}"
         try:
-            positions, velocities = last_state(given.run)
+            positions, velocities = last_state(case, given.run)
         except MesokitError as error:
             raise CaseError(f"{key}: {error}") from None
         keys = f"{key}: positions", f"{key}: velocities"
@@ -63,9 +67,19 @@ def read_arrays(
     if positions is not None:
         positions = _checked(case, keys[0], positions)
         _inside(case, keys[0], positions)
+        _near(case, keys[0], positions)
     if velocities is not None:
         velocities = _checked(case, keys[1], velocities)
     return positions, velocities
+
+
+def _once(given: Start, **arrays: Any) -> None:
+    """No array beside a file or run that says the same."""
+    for name, array in arrays.items():
+        for key in ("run", name):
+            said = getattr(given, key)
+            if array is not None and said is not None:
+                raise CaseError(f"fluid.start.{key} = {said!r}: not with an array of {name} beside")
 
 
 def _load(name: str, path: str) -> Any:
@@ -149,10 +163,15 @@ def _put_masses(cpu: CPU, mass: Floats) -> None:
 
 def _checked(case: Case, key: str, values: Any) -> Floats:
     """Numbers for each particle."""
+    if np.ma.isMaskedArray(values):
+        raise CaseError(f"{key}: expected an array of numbers without a mask")
     try:
-        array = np.asarray(values, float)
+        array = np.asarray(values)
     except (TypeError, ValueError):
         raise CaseError(f"{key}: expected an array of numbers") from None
+    if array.dtype.kind not in "iuf":
+        raise CaseError(f"{key}: expected an array of numbers, not of {array.dtype.name}")
+    array = array.astype(float)
     shape = case.particles, case.box.dimension
     if array.shape != shape:
         raise CaseError(
@@ -173,3 +192,14 @@ def _inside(case: Case, key: str, positions: Floats) -> None:
     if outside.any():
         row = int(np.argmax(outside))
         raise CaseError(f"{key}: row {row} = {positions[row].tolist()} lies in a wall")
+
+
+def _near(case: Case, key: str, positions: Floats) -> None:
+    """Nobody so far away that the boxes between cannot be counted."""
+    far = np.abs(positions / case.box.size) >= MOST_IMAGES
+    if far.any():
+        row = int(np.argmax(far.any(axis=1)))
+        raise CaseError(
+            f"{key}: row {row} = {positions[row].tolist()} is 2^30 boxes away or more; expected "
+            "positions nearer to the box"
+        )

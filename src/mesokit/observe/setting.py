@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
-from mesokit.box import AXES
+from mesokit.box import AXES, Axis
 from mesokit.errors import CaseError
 from mesokit.solids import is_slit, solids_of
 
@@ -233,6 +233,16 @@ def flow(case: Case, component: int) -> Flow:
     if acceleration(case)[component]:
         return Flow("accelerating", 1, None)
     return Flow("rest", 1, np.zeros_like)
+
+
+def flowing_axes(case: Case) -> list[Axis]:
+    """Axes along which the steady flow goes, or may go where there is no theory of it."""
+    found = []
+    for i, axis in enumerate(case.box.axes):
+        _, across, profile = flow(case, i)
+        if profile is None or np.any(profile(np.linspace(0, case.box.size[across], 201))):
+            found.append(axis)
+    return found
 
 
 def surface_velocity(surface: object, component: int) -> float:

@@ -24,16 +24,25 @@ ENOUGH = 100  # relaxation times of a flow, for an error bar
 class VelocityProfile(Profile):
     """Mean velocity in slices across an axis: momentum over mass.
 
-    Fits leave out the cell next to each plate, where the no-slip rule is only approximate.
+    Without `component` it is the velocity along the axis of the flow; where nothing or more than
+    one thing flows, along x, or along y in slices across x. Fits leave out the cell next to each
+    plate, where the no-slip rule is only approximate.
     """
 
     quantity: Literal["velocity-profile"] = tag("velocity-profile")
-    component: Axis = param("x", doc="axis of the velocity")
+    component: Axis | None = param(None, doc="axis of the velocity (that of the flow unless said)")
 
     def check(self, case: Case) -> None:
         """Raise CaseError for an axis that the box has not."""
         super(VelocityProfile, self).check(case)  # noqa: UP008  # the decorator makes a new class
-        setting.axis_index(case, self.component, "component")
+        setting.axis_index(case, self.seen(case), "component")
+
+    def seen(self, case: Case) -> Axis:
+        """The axis of the velocity in this case."""
+        if self.component is not None:
+            return self.component
+        flowing = setting.flowing_axes(case)
+        return flowing[0] if len(flowing) == 1 else "y" if self.axis == "x" else "x"
 
     def accumulator(self, case: Case) -> VelocityProfileAccumulator:
         """An empty memory for it."""
@@ -45,8 +54,8 @@ class VelocityProfileAccumulator(ProfileAccumulator):
 
     def __init__(self, observable: VelocityProfile, case: Case) -> None:
         super().__init__(observable, case, width=2)
-        self.component = setting.axis_index(case, observable.component, "component")
-        self.letter = observable.component
+        self.letter = observable.seen(case)
+        self.component = setting.axis_index(case, self.letter, "component")
 
     def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
         """Momentum along the component, and mass."""
@@ -79,7 +88,7 @@ class VelocityProfileAccumulator(ProfileAccumulator):
             theory=flow.kind,
             comparisons=tuple(comparisons),
             samples=self.blocks.count,
-            extra={"bins_per_cell": self.observable.bins_per_cell},
+            extra={"bins_per_cell": self.observable.bins_per_cell, "component": self.letter},
         )
 
     def powers(self, degree: int) -> Array:

@@ -36,6 +36,12 @@ from mesokit.theory.velocity_autocorrelation import (
     vacf_molecular_chaos,
     vacf_tail,
 )
+from mesokit.theory.water import (
+    water_density,
+    water_diffusion,
+    water_sound_speed,
+    water_viscosity,
+)
 
 __all__ = [
     "Origin",
@@ -69,4 +75,8 @@ __all__ = [
     "vacf_molecular_chaos",
     "vacf_tail",
     "viscosity_renormalised",
+    "water_density",
+    "water_diffusion",
+    "water_sound_speed",
+    "water_viscosity",
 ]

@@ -14,13 +14,11 @@ def contribute(rule, counter, who, m, v, r):
 
     `who` is the index and the draw of its random words: no two particles of a step share them.
     """
-    raise NotImplementedError
 
 
 @generic
 def freedom(rule, n):
     """Degrees of freedom that n particles have beside the conserved ones of their cell."""
-    raise NotImplementedError
 
 
 @generic
@@ -30,10 +28,8 @@ def coefficients(rule, thermostat, variate, chance, n, mass, momentum, energy, s
     n particles of total `mass` and `momentum`, `energy` the sum of m v^2, `sums` the rule's own,
     `variate` the thermostat's random number, `chance` two random words.
     """
-    raise NotImplementedError
 
 
 @generic
 def collide(rule, c, v, r):
     """Velocity after the collision, from the coefficients c of the cell."""
-    raise NotImplementedError

@@ -11,4 +11,3 @@ from mesokit.scalar import generic
 @generic
 def acceleration(field, r):
     """Acceleration of a particle at r, or () for none."""
-    raise NotImplementedError

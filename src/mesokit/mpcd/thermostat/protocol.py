@@ -13,25 +13,21 @@ from mesokit.scalar import generic, scalar
 @generic
 def guess(thermostat, chance, freedom):
     """A random number for `target` from two random words, and whether it may surely be used."""
-    raise NotImplementedError
 
 
 @generic
 def draw(thermostat, counter, cell, freedom, attempt):
     """The same with a test that decides, where `guess` was not sure; if refused, try the next."""
-    raise NotImplementedError
 
 
 @generic
 def target(thermostat, variate, freedom, energy):
     """Kinetic energy to reach, from the present one."""
-    raise NotImplementedError
 
 
 @generic
 def stretch(thermostat, variate, freedom, energy):
     """Factor for the velocities that takes their energy to the target: (factor,) or ()."""
-    raise NotImplementedError
 
 
 @scalar

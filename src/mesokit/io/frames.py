@@ -1,0 +1,40 @@
+"""Whether the frames that a run should have by now are all there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mesokit.errors import RunError
+from mesokit.io import h5md
+from mesokit.io.run_directory import RunDirectory
+from mesokit.io.trajectory import TrajectoryWriter
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+
+def require_frames(directory: RunDirectory, case: Case, step: int) -> None:
+    """Raise RunError unless all frames up to a step are in segments or the data file.
+
+    The error says what to do.
+    """
+    if case.trajectory is None:
+        return
+    place, every = directory.trajectory_folder, case.trajectory.every
+    there = TrajectoryWriter(case.trajectory, place, case.particles).steps()
+    if not len(there) and directory.data_file.exists():
+        place = directory.data_file
+        try:
+            there = h5md.frame_steps(place)
+        except RunError:
+            raise RunError(
+                f"{place}: damaged, and only it held the frames of the trajectory; put a copy "
+                f"in its place, or run anew: {directory.again}"
+            ) from None
+    wanted = range(case.run.warmup + every, step + 1, every)
+    lost = sorted(set(wanted) - set(there.tolist()))
+    if lost:
+        raise RunError(
+            f"{place}: {len(lost)} of {len(wanted)} frames are missing, the first that of step "
+            f"{lost[0]}; put the files back, or run anew: {directory.again}"
+        )
