@@ -59,11 +59,8 @@ if TYPE_CHECKING:
     from mesokit.run import Run
     from mesokit.si import SI, convert
     from mesokit.simulation import Simulation
-<<<<<<< HEAD
     from mesokit.solids import Solids
-=======
     from mesokit.units import OtherFluid, Units, Water
->>>>>>> 21ccb1a2129dea98203d6c98ef26b35dbbc60f9f
 
 _PLACES = {  # module: the public names in it
     "mesokit.box": ("Box",),
@@ -112,11 +109,8 @@ _PLACES = {  # module: the public names in it
     "mesokit.run": ("Run",),
     "mesokit.si": ("SI", "convert"),
     "mesokit.simulation": ("Simulation",),
-<<<<<<< HEAD
     "mesokit.solids": ("Solids",),
-=======
     "mesokit.units": ("OtherFluid", "Units", "Water"),
->>>>>>> 21ccb1a2129dea98203d6c98ef26b35dbbc60f9f
 }
 _HOME = {name: (module, name) for module, names in _PLACES.items() for name in names}
 _HOME["open"] = ("mesokit.io.open", "open_run")
@@ -171,11 +165,8 @@ __all__ = [
     "Trajectory",
     "TransverseModes",
     "Uniform",
-<<<<<<< HEAD
     "Union",
-=======
     "Units",
->>>>>>> 21ccb1a2129dea98203d6c98ef26b35dbbc60f9f
     "VelocityAutocorrelation",
     "VelocityField",
     "VelocityProfile",

@@ -21,11 +21,8 @@ from mesokit.io.trajectory import Trajectory
 from mesokit.mpcd.fluid import Fluid
 from mesokit.observe import AnyObservable
 from mesokit.run import Run
-<<<<<<< HEAD
 from mesokit.solids import free_volume
-=======
 from mesokit.units import Units
->>>>>>> 21ccb1a2129dea98203d6c98ef26b35dbbc60f9f
 
 KEYS = {"walls": "wall"}  # field -> key in the file, where they differ: one [[wall]] each
 

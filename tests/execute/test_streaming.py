@@ -23,7 +23,12 @@ timestep = st.floats(1e-3, 2)
 walls = st.sampled_from(["no-slip", "slip"])
 
 SCALE = 2.0**44
-Step = NamedTuple("Step", [("solid", tuple), ("timestep", float), ("kT", float)])
+
+
+class Step(NamedTuple):
+    solid: tuple
+    timestep: float
+    kT: float
 
 
 @njit

@@ -18,7 +18,6 @@ from mesokit.execute.readings import Readings
 from mesokit.execute.sort import sort
 from mesokit.execute.step import FINISH, SOLVE, SWEEP, advance
 
-
 if TYPE_CHECKING:
     from mesokit.case import Case
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from mesokit.errors import RunError
 from mesokit.execute.cell_energy import MOST_DENSITY, Column, NotAsked, WithCount, with_count
+from mesokit.execute.invite import charted, guests_of
 from mesokit.execute.layout import (
     BLOCK,
     LANES,
@@ -23,7 +24,6 @@ from mesokit.execute.layout import (
     sums_length,
     zeros,
 )
-from mesokit.execute.invite import charted, guests_of
 from mesokit.execute.stages import Grid, Physics
 from mesokit.geometry.none import Nothing
 from mesokit.solids import free_volume, is_slit, solids_of
@@ -148,9 +148,7 @@ class Memory:
         self.guests: Guests | tuple[()] = ()
         if self.solids and not self.slit and self.virtual != "none":
             masses = np.repeat(self.masses_of_kinds, self.counts)
-            self.guests = guests_of(
-                self.case, self.solids, self.cells, threads, self.rows, masses
-            )
+            self.guests = guests_of(self.case, self.solids, self.cells, threads, self.rows, masses)
             self.wall_rates = self.guests.rates
         self.tensor = zeros((2, parts, 2 * d * d))
         self.sweep_scratch = (

@@ -26,7 +26,6 @@ from mesokit.execute.stages import (
 from mesokit.scalar import added, scalar
 
 
-
 @scalar
 def momentum_flux(physics, box, grid, strip, count, tensor, like):
     """Sums of m c c (c relative to the imposed flow) and of m v r (r relative to the cell)."""
@@ -69,9 +68,7 @@ def sweep(
             gather_strip(here, coefficients, gathered, c)
         behind = np.int64(0)
         if what & COLLIDE and what & STREAM and not measured:
-            behind = collide_and_stream_strip(
-                physics, old, strip, gathered, clear, hits, like, c
-            )
+            behind = collide_and_stream_strip(physics, old, strip, gathered, clear, hits, like, c)
         else:
             if what & COLLIDE:
                 collide_strip(physics, old, strip, gathered, like, c)

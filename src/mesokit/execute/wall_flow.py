@@ -26,7 +26,9 @@ def follow(wanted, guests, thread, threads, physics, grid, sums, rates, like, te
     return _update if len(guests) == 0 else _update_pieces
 
 
-def _update_pieces(wanted, guests, thread, threads, physics, grid, sums, rates, like, terms, scales):
+def _update_pieces(
+    wanted, guests, thread, threads, physics, grid, sums, rates, like, terms, scales
+):
     follow_pieces(guests, thread, threads, physics, grid, sums, like, terms, scales)
 
 

@@ -27,7 +27,9 @@ class Intersection(Shape):
     """Everything that is in all of its parts, with one surface."""
 
     shape: Literal["intersection"] = tag("intersection")
-    parts: tuple[Simple, ...] = param(doc="shapes, of which each says where its fluid is", min_length=1)
+    parts: tuple[Simple, ...] = param(
+        doc="shapes, of which each says where its fluid is", min_length=1
+    )
 
     def __post_init__(self) -> None:
         require_plain(self.parts, "intersection")

@@ -1,8 +1,8 @@
 """Solids as unions of intersections of primitives and their complements: the algebra of shapes.
 
-    >>> region = ball((1.0, 1.0), 0.5)
-    >>> [[part.sign for part in term] for term in complement(union([region, region]))]
-    [[-1.0, -1.0]]
+>>> region = ball((1.0, 1.0), 0.5)
+>>> [[part.sign for part in term] for term in complement(union([region, region]))]
+[[-1.0, -1.0]]
 """
 
 from __future__ import annotations
@@ -132,9 +132,7 @@ def wave(
 ) -> Region:
     """One side of a cosine with a crest at a place; the fluid lies above it or below."""
     side = 1.0 if above else -1.0
-    return _one(
-        "wave", (*_three(place), float(along), float(across), amplitude, per_length, side)
-    )
+    return _one("wave", (*_three(place), float(along), float(across), amplitude, per_length, side))
 
 
 def sampled(

@@ -28,7 +28,9 @@ class Union(Shape):
     """Everything that is in any of its parts, with one surface."""
 
     shape: Literal["union"] = tag("union")
-    parts: tuple[Whole, ...] = param(doc="shapes, of which each says where its fluid is", min_length=1)
+    parts: tuple[Whole, ...] = param(
+        doc="shapes, of which each says where its fluid is", min_length=1
+    )
 
     def __post_init__(self) -> None:
         require_plain(self.parts, "union")

@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.box import AXES
 from mesokit.component import component, param
 from mesokit.errors import CaseError, MesokitError
 from mesokit.geometry.contact import MARGIN
 from mesokit.random import INITIAL_POSITION, INITIAL_VELOCITY
-
 from mesokit.solids import solids_of
 
 if TYPE_CHECKING:

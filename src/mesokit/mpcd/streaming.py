@@ -3,6 +3,7 @@
 from mesokit.mpcd.field.protocol import acceleration
 from mesokit.scalar import added_scaled, by_type, scalar, scaled
 
+
 @by_type
 def fall(r, v, a, time):
     """Position and velocity after a time of constant acceleration a, which may be ()."""

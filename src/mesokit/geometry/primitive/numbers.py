@@ -4,7 +4,7 @@ import math
 
 from numba.cpython.unsafe.tuple import tuple_setitem
 
-from mesokit.pointer import real
+from mesokit.pointer import real  # noqa: F401  the text of functions below uses it
 from mesokit.scalar import dot, elementwise, scalar, scaled
 
 

@@ -5,7 +5,6 @@ start among the samples (the last axis varies fastest), p[8] the steepest gradie
 along an axis on which the grid repeats itself, 0 where beyond it there is only fluid.
 """
 
-
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
