@@ -144,6 +144,7 @@ class Solids:
             near=0,
             clear=0,
             terms=len(pieces),
+            stride=0.0,
         )
 
     def _surface(self, body: Body) -> list[float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,11 +18,16 @@ if TYPE_CHECKING:
     from mesokit.solids import Solids
 
 
+MANY_SIGMA = 4.5  # of the Maxwell distribution: one particle in 20,000 is faster
+
+
 def charted(case: Case, solids: Solids, cells: tuple[int, ...]) -> tuple[Bodies, Any]:
     """The solids with the distances that are clear around each cell, and that table."""
     bend = 0.125 * case.fluid.force.largest * case.fluid.timestep**2
     clear = clear_distances(solids, cells, bend)
-    return solids.kernel._replace(clear=address(clear)), clear
+    lightest = min((kind.mass for kind in case.fluid.species), default=case.fluid.mass)
+    stride = MANY_SIGMA * math.sqrt(case.fluid.kT / lightest) * case.fluid.timestep + bend
+    return solids.kernel._replace(clear=address(clear), stride=stride), clear
 
 
 def guests_of(

@@ -1,5 +1,6 @@
 """The stages of a step, each a loop over the lanes of one strip of particles."""
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,7 +9,7 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from mesokit.box import slide
 from mesokit.execute.bounce import bounce
 from mesokit.execute.cell_energy import tally
-from mesokit.execute.chart import clear_place
+from mesokit.execute.chart import EVERYWHERE, clear_place
 from mesokit.execute.layout import LANES, QUAD, SCRATCH_ROW, sums_length
 from mesokit.execute.records import gather, scatter_add
 from mesokit.execute.rows import add_to, count_images, load, mass_of, note, recall, store
@@ -94,17 +95,30 @@ def locate_strip(grid, strip, cell, like):
 
 
 @by_type
-def look_around_strip(solid, grid, known, strip, cell, clear, like):
-    """What the cell of each particle, if it is known, says of the distance that it may fly."""
+def look_around_strip(solid, grid, known, strip, s, cell, calm, clear, like):
+    """How far each particle of strip s may fly; its cell is known after a collision."""
     return _look_around if solid.instance_class is Bodies else lambda *_: None
 
 
-def _look_around(solid, grid, known, strip, cell, clear, like):
-    if not known:
-        locate_strip(grid, strip, cell, like)
-    table = solid.clear + 4 * clear_place(solid, grid, 0)
-    for i in range(LANES):
-        clear[i] = short(table, np.int64(cell[i]))
+def _look_around(solid, grid, known, strip, s, cell, calm, clear, like):
+    """What its cell says or, far from all solids, the stride that few go beyond.
+
+    `calm` is the distance that is surely clear around every particle of a strip: each step takes
+    off a stride, until it is found anew.
+    """
+    if calm[s] < solid.stride:
+        if not known:
+            locate_strip(grid, strip, cell, like)
+        table = solid.clear + 4 * clear_place(solid, grid, 0)
+        least = np.float32(EVERYWHERE)
+        for i in range(LANES):
+            clear[i] = short(table, np.int64(cell[i]))
+            least = min(least, clear[i])
+        calm[s] = math.sqrt(least)
+    if calm[s] >= solid.stride:
+        calm[s] -= solid.stride
+        for i in range(LANES):
+            clear[i] = np.float32(solid.stride * solid.stride)
 
 
 @by_type
