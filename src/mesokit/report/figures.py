@@ -22,6 +22,7 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "temperature-profile": profile.draw,
     "velocity-field": field.draw_velocity,
     "density-field": field.draw_density,
+    "flow-frames": field.draw_frames,
     "mean-square-displacement": correlation.draw_displacement,
     "velocity-autocorrelation": correlation.draw_memory,
     "transverse-modes": correlation.draw_modes,
