@@ -59,6 +59,7 @@ class Canvas:
                 section.draw(ax, view)
                 ax.set(xlim=(view.low[0], view.high[0]), ylim=(view.low[1], view.high[1]))
                 ax.set_aspect("equal")
+                ax.locator_params(nbins=6, steps=[1, 2, 5, 10])
                 if number + place.columns >= len(panels):
                     ax.set_xlabel(labelled(f"${flows[0].axes[0]}$", "a"))
                 else:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from mesokit.errors import RunError
 
 Pixels = NDArray[np.uint8]
-QUALITY = 8  # of 10: letters stay sharp
+QUALITY = 7  # of 10: letters stay sharp
 
 
 def mp4(path: Path, pictures: Iterator[Pixels], fps: float) -> None:
@@ -51,8 +51,9 @@ def gif(path: Path, pictures: Iterator[Pixels], fps: float) -> None:
     from PIL import Image
 
     images = map(Image.fromarray, pictures)
+    shown = max(2, round(100 / fps)) * 10  # ms; a GIF counts in hundredths of a second
     next(images).save(
-        path, format="GIF", save_all=True, append_images=images, duration=1000 / fps, loop=0
+        path, format="GIF", save_all=True, append_images=images, duration=shown, loop=0
     )
 
 

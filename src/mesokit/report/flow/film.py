@@ -106,6 +106,7 @@ def animate(
     progress.start(len(frames), case.particles, "drawing")
     try:
         with replacing(path) as temporary:
+            temporary.touch()  # a folder that cannot be written to says so before long work
             ENCODERS[ending](temporary, _pictures(drawn, source, frames, progress), float(fps))
     finally:
         progress.finish()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.component import one_of, show
+from mesokit.component import show
 from mesokit.errors import CaseError, RunError
 from mesokit.report.flow.data import Flow
 
@@ -76,7 +76,7 @@ def _check(case: Case, axes: Axes | None) -> None:
         return
     known = case.box.axes
     if len(axes) != 2 or axes[0] == axes[1] or not set(axes) <= set(known):
-        raise CaseError(f"axes = {show(axes)}: expected two of {one_of(known)}")
+        raise CaseError(f"axes = {show(axes)}: expected two of {', '.join(known)}")
 
 
 def choose(found: Sequence[Source], needs: str, kind: str, in_time: bool) -> Source:

@@ -1,4 +1,4 @@
-"""Vorticity across the plane of the picture as colours, white where nothing turns."""
+"""Vorticity across the plane of the picture: white where nothing turns, lines for either sign."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ from mesokit.report.style import labelled
 
 NEEDS = "velocity"
 TITLE = "vorticity"
+LEVEL = 0.4  # of the largest: where the lines run
+SMOOTH = 1.5  # bins
 
 
 def vorticity(flow: Flow) -> Array:
@@ -53,5 +55,25 @@ def scale(flow: Flow, reach: float) -> Scale:
 
 
 def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
-    """Draw it."""
-    heat_map(ax, flow, vorticity(flow), region, scale(flow, reach))
+    """Draw it. In grey the lines tell the signs apart: dashed around negative vorticity.
+
+    They are those of a map smoothed over some bins, which noise would tear.
+    """
+    values = vorticity(flow)
+    heat_map(ax, flow, values, region, scale(flow, reach))
+    dx, dy = spacing(flow, values)
+    x, y = (np.arange(values.shape[0]) + 0.5) * dx, (np.arange(values.shape[1]) + 0.5) * dy
+    level, smooth = LEVEL * reach, _smooth(values, flow.periodic)
+    if (abs(smooth) > level).any():
+        lines = {"colors": "black", "linewidths": 0.8, "linestyles": ["--", "-"]}
+        ax.contour(x, y, smooth.T, [-level, level], **lines)
+
+
+def _smooth(values: Array, periodic: tuple[bool, bool]) -> Array:
+    from scipy.ndimage import gaussian_filter
+
+    filled = np.isfinite(values)
+    mode = ["wrap" if goes_on else "nearest" for goes_on in periodic]
+    weight = gaussian_filter(filled.astype(float), SMOOTH, mode=mode)
+    sums = gaussian_filter(np.where(filled, values, 0.0), SMOOTH, mode=mode)
+    return np.where(filled, sums / np.maximum(weight, 1e-9), np.nan)
