@@ -14,10 +14,11 @@ from mesokit.io import h5md
 from mesokit.io.open import TrajectoryReader
 from mesokit.io.trajectory import Trajectory, TrajectoryWriter
 from mesokit.report import save_figure
-from mesokit.report.flow import KINDS, picture, solids
+from mesokit.report.flow import KINDS, picture, solids, speed
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.quiver import arrows
 from mesokit.report.flow.region import Region, region_of
+from mesokit.report.flow.setting import Setting
 from mesokit.report.flow.source import sources
 from mesokit.report.flow.vorticity import vorticity
 
@@ -127,6 +128,25 @@ class TestNumbers:
         inside = ((positions >= low) & (positions <= high)).all(axis=1)
         np.testing.assert_array_equal(np.stack([x, y], axis=1), positions[inside])
         assert 0 < inside.sum() < len(positions)
+
+    def test_flow_goes_on_across_the_ends_of_the_box_that_nothing_closes(self, make_case):
+        plates, sheared = {"walls": [Plates(axis="y")]}, {"shear_rate": 0.1}
+        for rest, expected in (
+            ({}, (True, True)),
+            (plates, (True, False)),
+            (sheared, (True, False)),
+        ):
+            assert Setting.of(make_case(SIZE, **rest), ("x", "y")).periodic == expected
+        assert Setting.of(make_case((4, 4, 4), **plates), ("z", "x")).periodic == (True, True)
+
+    def test_bins_inside_a_solid_stay_white(self):
+        flow = exact((12, 10), lambda x, y: (np.where(abs(x - 6) < 2, np.nan, 1.0), 0 * y))
+        from matplotlib.figure import Figure
+
+        ax = Figure().subplots()
+        speed.draw(ax, flow, Region((0.0, 0.0), (12.0, 10.0)), 1.0)
+        shown = np.ma.getmaskarray(np.ma.masked_invalid(ax.images[0].get_array()))
+        np.testing.assert_array_equal(shown, np.isnan(flow.speed).T)
 
     def test_colours_span_both_signs_of_vorticity_alike(self, rotation):
         case, results = rotation

@@ -49,32 +49,38 @@ class Canvas:
         stamp: bool = False,
     ) -> None:
         self.panels, self.reaches, self.region = panels, reaches, region
-        view = section.view(region)
         scales = [p.scale(f, r) for p, f, r in zip(panels, flows, reaches, strict=True)]
-        place = layout(view.extent, [scale is not None for scale in scales], stamp)
+        self.view = section.view(region)
+        self.place = layout(self.view.extent, [scale is not None for scale in scales], stamp)
         with mpl.rc_context(LOOK):
-            self.figure = ShownFigure(figsize=place.size)
-            self.axes = [self._add(box) for box in place.panels]
+            self.figure = ShownFigure(figsize=self.place.size)
+            self.axes = [self._add(box) for box in self.place.panels]
             for number, (ax, scale) in enumerate(zip(self.axes, scales, strict=True)):
-                section.draw(ax, view)
-                ax.set(xlim=(view.low[0], view.high[0]), ylim=(view.low[1], view.high[1]))
-                ax.set_aspect("equal")
-                ax.locator_params(nbins=6, steps=[1, 2, 5, 10])
-                if number + place.columns >= len(panels):
-                    ax.set_xlabel(labelled(f"${flows[0].axes[0]}$", "a"))
-                else:
-                    ax.tick_params(labelbottom=False)
-                if number % place.columns == 0:
-                    ax.set_ylabel(labelled(f"${flows[0].axes[1]}$", "a"))
-                else:
-                    ax.tick_params(labelleft=False)
-                if len(panels) > 1:
-                    title = f"({'abcd'[number]}) {panels[number].TITLE}"
-                    ax.set_title(title, loc="left", fontsize=10)
+                section.draw(ax, self.view)
+                self._frame(ax, number, flows[0].axes)
                 if scale is not None:
-                    self._bar(place.bars[number], scale, place.flat)
-        self.stamp = self.figure.text(0.5, 1 - 0.06 / place.size[1], "", ha="center", va="top")
+                    self._bar(self.place.bars[number], scale)
+            top = 1 - 0.06 / self.place.size[1]
+            self.stamp = self.figure.text(0.5, top, "", ha="center", va="top")
         self.still = [set(ax.get_children()) for ax in self.axes]
+
+    def _frame(self, ax: Any, number: int, names: tuple[str, str]) -> None:
+        """Limits, labels at the left and lower edge of the figure, and a title among several."""
+        ax.set_xlim(self.view.low[0], self.view.high[0])
+        ax.set_ylim(self.view.low[1], self.view.high[1])
+        ax.set_aspect("equal")
+        ax.locator_params(nbins=6, steps=[1, 2, 5, 10])
+        if number + self.place.columns >= len(self.panels):
+            ax.set_xlabel(labelled(f"${names[0]}$", "a"))
+        else:
+            ax.tick_params(labelbottom=False)
+        if number % self.place.columns == 0:
+            ax.set_ylabel(labelled(f"${names[1]}$", "a"))
+        else:
+            ax.tick_params(labelleft=False)
+        if len(self.panels) > 1:
+            title = f"({'abcd'[number]}) {self.panels[number].TITLE}"
+            ax.set_title(title, loc="left", fontsize=10)
 
     def _add(self, box: Box) -> Any:
         width, height = self.figure.get_size_inches()
@@ -82,9 +88,9 @@ class Canvas:
             (box.left / width, box.bottom / height, box.width / width, box.height / height)
         )
 
-    def _bar(self, box: Box, scale: Scale, flat: bool) -> None:
+    def _bar(self, box: Box, scale: Scale) -> None:
         ax = self._add(box)
-        if not flat:
+        if not self.place.flat:
             self.figure.colorbar(scale.mappable(), cax=ax, label=scale.label)
             ax.locator_params(nbins=6)
             return
