@@ -77,7 +77,7 @@ class TestNumbers:
     def test_arrows_are_the_velocity_where_they_stand(self, cells):
         flow = exact((12 * cells, 10 * cells), lambda x, y: (-SPIN * y, SPIN * x))
         x, y, velocity = arrows(flow, Region((0.0, 0.0), (12.0, 10.0)))
-        assert 20 <= len(x) <= 28
+        assert 20 <= len(x) <= 32
         np.testing.assert_allclose(velocity[..., 0], np.broadcast_to(-SPIN * y, (len(x), len(y))))
         np.testing.assert_allclose(velocity[..., 1].T, np.broadcast_to(SPIN * x, (len(y), len(x))))
 

@@ -69,7 +69,9 @@ class Canvas:
         ax.set_xlim(self.view.low[0], self.view.high[0])
         ax.set_ylim(self.view.low[1], self.view.high[1])
         ax.set_aspect("equal")
-        ax.locator_params(nbins=6, steps=[1, 2, 5, 10])
+        box = self.place.panels[number]
+        for axis, room in (("x", box.width / 0.45), ("y", box.height / 0.3)):
+            ax.locator_params(axis=axis, nbins=min(6, max(1, int(room))), steps=[1, 2, 5, 10])
         if number + self.place.columns >= len(self.panels):
             ax.set_xlabel(labelled(f"${names[0]}$", "a"))
         else:

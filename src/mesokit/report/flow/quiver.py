@@ -15,13 +15,14 @@ from mesokit.report.style import symbols
 
 NEEDS = "velocity"
 TITLE = "velocity"
-ARROWS, FEWEST = 28, 8  # along the longer side of a picture, and at least along the shorter
+ARROWS, FEWEST = 32, 8  # at most along the longer side, and about at least along the shorter
+THICK, THICKEST = 0.07, 0.013  # of the distance between arrows; inches
 
 
 def arrows(flow: Flow, region: Region) -> tuple[Array, Array, Array]:
     """Places x (nx,) and y (ny,) of the arrows and velocities (nx, ny, 2).
 
-    Each arrow is the mean over some bins, as many as leave ARROWS along the longer side.
+    Each arrow is the mean over some bins, as many as leave at most ARROWS along the longer side.
     """
     velocity = flow.velocity
     assert velocity is not None
@@ -61,12 +62,14 @@ def scale(flow: Flow, reach: float) -> None:
 def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
     """Draw it: the longest arrow ends where the next one starts."""
     x, y, velocity = arrows(flow, region)
+    number, (width, height) = max(len(x), len(y)), _inches(ax)
+    thick = min(THICKEST, THICK * max(width, height) / number)
     drawn = ax.quiver(
         x, y, velocity[..., 0].T, velocity[..., 1].T, angles="xy", scale_units="xy",
-        scale=reach * ARROWS / max(region.extent), pivot="mid", color="black", units="inches",
-        width=0.012, headwidth=4.5, headlength=5, headaxislength=4.5, minlength=0.5,
+        scale=reach * number / max(region.extent), pivot="mid", color="black", units="inches",
+        width=thick, headwidth=4.5, headlength=5, headaxislength=4.5, minlength=0.5,
     )  # fmt: skip
-    known, (width, height) = _round(reach), _inches(ax)
+    known = _round(reach)
     above = 0.14 if width > KEY_BESIDE else 0.36
     ax.quiverkey(
         drawn, 0.97, 1 + above / height, known, f"{known:g} {symbols('a/tau')}", labelpos="W",
