@@ -31,6 +31,13 @@ class FlowFrames(Field):
 
     What films and pictures of a part of a run are made of. A frame also has where some particles
     were at the first sample of its window. The last frame may be of a window cut short.
+
+    >>> from mesokit import Box, Run, Simulation
+    >>> simulation = Simulation(run=Run(steps=50), box=Box([8, 6]), observe=[FlowFrames(window=20)])
+    >>> simulation.run()
+    >>> frames = simulation["flow-frames"]
+    >>> frames.value.shape, list(frames.x["component"])
+    ((3, 8, 6, 3), ['density', 'velocity_x', 'velocity_y'])
     """
 
     quantity: Literal["flow-frames"] = tag("flow-frames")

@@ -79,6 +79,13 @@ def animate(
 
     Raises CaseError for an ending or a choice that there is not, RunError where the run kept no
     frames or the file cannot be written. Whatever goes wrong, an old file stays as it was.
+
+    >>> import tempfile
+    >>> from mesokit import Box, FlowFrames, Run, Simulation
+    >>> simulation = Simulation(run=Run(steps=40), box=Box([8, 8]), observe=[FlowFrames(window=20)])
+    >>> simulation.run()
+    >>> simulation.animate(Path(tempfile.mkdtemp()) / "film.gif", "quiver").frames
+    2
     """
     path = Path(path)
     ending = path.suffix.lower()

@@ -39,6 +39,13 @@ def picture(
 
     Raises CaseError for a kind, region, window, axes or place that there is not, RunError where
     the run kept nothing to draw.
+
+    >>> from mesokit import Box, FlowFrames, Run, Simulation
+    >>> simulation = Simulation(run=Run(steps=40), box=Box([8, 8]), observe=[FlowFrames(window=20)])
+    >>> simulation.run()
+    >>> figure = picture(simulation.case, simulation.results, kind="speed", region=((0, 4), (0, 8)))
+    >>> len(figure.axes)  # the panel and its colour bar
+    2
     """
     panels = panels_of(kind)
     found = sources(case, results, trajectory, axes)
