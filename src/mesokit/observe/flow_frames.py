@@ -32,11 +32,11 @@ class FlowFrames(Field):
     What films and pictures of a part of a run are made of. A frame also has where some particles
     were at the first sample of its window. The last frame may be of a window cut short.
 
-    >>> from mesokit import Box, Run, Simulation
+    >>> from mesokit import Box, FlowFrames, Run, Simulation
     >>> simulation = Simulation(run=Run(steps=50), box=Box([8, 6]), observe=[FlowFrames(window=20)])
     >>> simulation.run()
     >>> frames = simulation["flow-frames"]
-    >>> frames.value.shape, list(frames.x["component"])
+    >>> frames.value.shape, frames.x["component"].tolist()
     ((3, 8, 6, 3), ['density', 'velocity_x', 'velocity_y'])
     """
 
