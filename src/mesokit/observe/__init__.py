@@ -7,6 +7,7 @@ from typing import get_args
 from mesokit.observe.conservation import Conservation
 from mesokit.observe.density_field import DensityField
 from mesokit.observe.density_profile import DensityProfile
+from mesokit.observe.flow_frames import FlowFrames
 from mesokit.observe.longitudinal_modes import LongitudinalModes
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
 from mesokit.observe.protocol import Accumulator, Observable, RunningFluid
@@ -26,6 +27,7 @@ AnyObservable = (
     | TemperatureProfile
     | VelocityField
     | DensityField
+    | FlowFrames
     | MeanSquareDisplacement
     | VelocityAutocorrelation
     | TransverseModes
@@ -43,6 +45,7 @@ __all__ = [
     "Conservation",
     "DensityField",
     "DensityProfile",
+    "FlowFrames",
     "LongitudinalModes",
     "MeanSquareDisplacement",
     "Observable",
