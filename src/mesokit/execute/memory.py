@@ -154,7 +154,7 @@ class Memory:
         self.tensor = zeros((2, parts, 2 * d * d))
         self.sweep_scratch = (
             zeros((threads, most * SCRATCH_ROW)),
-            zeros((threads, SCRATCH_ROW), np.float32),
+            zeros((threads, SCRATCH_ROW), np.int32),
             self.calm,
             zeros((threads, LANES), np.int64),
             zeros((threads, (len(self.terms) + 1) * SCRATCH_ROW), np.int64),
