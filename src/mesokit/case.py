@@ -56,7 +56,7 @@ class Case:
 
     @property
     def particles(self) -> int:
-        """Number of particles: density times the volume that walls leave, whole for each species."""
+        """Number of particles: density times the volume that walls leave, for each species."""
         kinds = [kind.density for kind in self.fluid.species] or [self.fluid.density]
         volume = free_volume(self)
         return sum(round(density * volume) for density in kinds)

@@ -13,7 +13,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.execute import survey
-from mesokit.geometry.bodies import DIFFUSE, NO_SLIP, NOBODY, SLIP, Bodies
+from mesokit.geometry.bodies import (
+    BODY,
+    DIFFUSE,
+    FIRST,
+    KINDS,
+    NEAR,
+    NO_SLIP,
+    NOBODY,
+    NUMBERS,
+    PIVOT,
+    SAMPLES,
+    SIGNS,
+    SIZE,
+    SLIP,
+    STARTS,
+    SURFACES,
+    Bodies,
+)
+from mesokit.geometry.plates import Plates
 from mesokit.geometry.primitive import WIDTH
 from mesokit.geometry.region import Room
 from mesokit.geometry.shape import Body, Piece
@@ -31,9 +49,10 @@ FINE = 8  # parts of a cell, along each axis, by which volumes are summed
 _RULES = {"no-slip": NO_SLIP, "slip": SLIP, "diffuse": DIFFUSE}
 
 
-def is_slit(case: Case) -> bool:
-    """Whether the only walls are two plates, for which the step has a shorter way."""
-    return len(case.walls) == 1 and case.walls[0].shape == "plates" and not case.walls[0].diffuse
+def slit_of(case: Case) -> Plates | None:
+    """The two plates, if these are all walls: the step has a shorter way for them."""
+    wall = case.walls[0] if len(case.walls) == 1 else None
+    return wall if isinstance(wall, Plates) and not wall.diffuse else None
 
 
 def solids_of(case: Case) -> Solids:
@@ -98,10 +117,10 @@ class Solids:
         cells = math.prod(self.size)
         self.least, nothing = np.zeros(cells), np.zeros(0, np.int32)
         starts = np.zeros(cells + 1, np.int32)
-        survey.near_cells(self.kernel, self.like, starts, nothing, self.least)
+        survey.near_cells(self.kernel, len(pieces), self.like, starts, nothing, self.least)
         near = np.zeros(max(starts[-1], 1), np.int32)
-        survey.near_cells(self.kernel, self.like, starts, near, self.least)
-        self.kernel = self.kernel._replace(starts=self._keep(starts), near=self._keep(near))
+        survey.near_cells(self.kernel, len(pieces), self.like, starts, near, self.least)
+        self._places[STARTS], self._places[NEAR] = self._keep(starts), self._keep(near)
 
     def _keep(self, table: Any, kind: Any = np.int32) -> int:
         """Keep a table as long as this object lives; its address."""
@@ -129,23 +148,22 @@ class Solids:
         self.body_of_term = np.array([row for _, row in pieces], np.int32)
         self.pivots = pivots
         surfaces = [self._surface(body) for body in self.bodies]
-        return Bodies(
-            size=tuple(float(length) for length in self.size),
-            inverse=inverse,
-            kinds=self._keep([part.code for part in parts]),
-            signs=self._keep([part.sign for part in parts], float),
-            numbers=self._keep(numbers, float),
-            samples=self._keep(np.concatenate(samples), float),
-            first=self._keep(np.cumsum([0, *(len(piece.term) for piece, _ in pieces)])),
-            body=self._keep(self.body_of_term),
-            pivot=self._keep(pivots, float),
-            surfaces=self._keep(surfaces, float),
-            starts=0,
-            near=0,
-            clear=0,
-            terms=len(pieces),
-            stride=0.0,
-        )
+        tables = {
+            KINDS: self._keep([part.code for part in parts]),
+            SIGNS: self._keep([part.sign for part in parts], float),
+            NUMBERS: self._keep(numbers, float),
+            SAMPLES: self._keep(np.concatenate(samples), float),
+            FIRST: self._keep(np.cumsum([0, *(len(piece.term) for piece, _ in pieces)])),
+            BODY: self._keep(self.body_of_term),
+            PIVOT: self._keep(pivots, float),
+            SURFACES: self._keep(surfaces, float),
+        }
+        self._places = np.zeros(SIZE + 3, np.int64)
+        for number, place in tables.items():
+            self._places[number] = place
+        self._places[SIZE : SIZE + self.dimension] = self.size
+        size = tuple(float(length) for length in self.size)
+        return Bodies(size, inverse, tables=address(self._places), clear=0, stride=0.0)
 
     def _surface(self, body: Body) -> list[float]:
         velocity = list(body.surface.velocity or ()) + [0.0] * 3
@@ -209,7 +227,7 @@ class Solids:
         clear = self.distance(points).reshape(points.shape[:-1])
         return np.clip(0.5 + clear / side, 0.0, 1.0)
 
-    def open_part(self, centres: Floats, side: float) -> Floats:
+    def open_part(self, centres: NDArray[Any], side: float) -> Floats:
         """Part of cubes of this side that is fluid, from FINE^d cubes in each."""
         steps = ((np.arange(FINE) + 0.5) / FINE - 0.5) * side
         grid = np.stack(np.meshgrid(*[steps] * self.dimension, indexing="ij"), -1)

@@ -9,8 +9,8 @@ import numpy as np
 
 from mesokit.execute.chart import clear_distances, cut_cells, cut_planes, surface_pieces
 from mesokit.execute.guests import KINDS, Guests
-from mesokit.execute.lumps import Lumps
 from mesokit.execute.layout import BLOCK, ROW, blocks_for, zeros
+from mesokit.execute.lumps import Lumps
 from mesokit.geometry.bodies import Bodies
 from mesokit.pointer import address
 

@@ -23,10 +23,10 @@ from mesokit.execute.flags import MEASURE_WALLS
 from mesokit.execute.layout import record_length, share, sums_length
 from mesokit.execute.rows import fetch
 from mesokit.execute.stages import in_cell
-from mesokit.geometry.bodies import from_pivot, in_box, surface_velocity
+from mesokit.geometry.bodies import BODY, from_pivot, in_box, surface_velocity
 from mesokit.geometry.cut_cube import share_and_depth
 from mesokit.mpcd.collision.protocol import collide, contribute
-from mesokit.pointer import whole
+from mesokit.pointer import whole, word
 from mesokit.random import BODY_NUMBER, BODY_VELOCITY, normal, normals, unit_open, words
 from mesokit.scalar import added, added_scaled, scalar, scaled, seldom
 
@@ -76,9 +76,9 @@ def chi_square(freedom, counter, entry):
     while done + 1 < freedom:
         a, b, c, e = words(counter, BODY_VELOCITY, entry, draw)
         draw += 1
-        for word in (a, b, c, e):
+        for chance in (a, b, c, e):
             if done + 1 < freedom:
-                product *= unit_open(word)
+                product *= unit_open(chance)
                 done += 2
         if product < 1e-200:
             total -= 2.0 * log(product)
@@ -126,7 +126,7 @@ def fill_lumps(
             middle = guests.corners[entry, k] + 0.5 - grid.origin[k]
             r = tuple_setitem(r, k, middle - (height + depth) * n[k])
         term = lumps.terms[entry]
-        u = surface_velocity(solid, term, in_box(solid, r))
+        u = surface_velocity(solid.tables, term, in_box(solid, r))
         piece = lumps.pieces[entry]
         if piece >= 0:
             for k in range(d):
@@ -181,5 +181,5 @@ def lumps_recoil(guests, thread, what, physics, grid, coefficients, impulse, lik
         after = collide(physics.rule, fetch(coefficients, record, c), kept, in_cell(r, grid))
         given = scaled(lumps.state[thread, i, 3 * d], added_scaled(after, -1.0, v))
         term = lumps.terms[entry]
-        lever = from_pivot(solid, term, in_box(solid, r))
-        take(impulse, whole(solid.body, term), lever, given, scales[0])
+        lever = from_pivot(solid.tables, term, in_box(solid, r))
+        take(impulse, whole(word(solid.tables, BODY), term), lever, given, scales[0])

@@ -39,7 +39,7 @@ class Physics(NamedTuple):
 def kind_of_solid(physics: Any) -> type:
     """The class of the solid, from the numba type of `Physics`."""
     solid = physics.types[physics.fields.index("solid")]
-    return solid.instance_class  # type: ignore[no-any-return]
+    return solid.instance_class
 
 
 class Grid(NamedTuple):

@@ -50,7 +50,7 @@ def sweep(
     Time levels: velocities of step n before COLLIDE, after it; positions and velocities of
     step n + 1 after STREAM, with their cells and cell sums.
     """
-    data, cell, ident, image, count, strips, first_virtual, rows, spare_cell = particles
+    data, cell, ident, image, count, strips, _, rows, _ = particles
     coefficients, sums = cells
     gathered, clear, calm, hits, quanta, impulse, tensor, rates = scratch
     gathered, clear, hits = gathered[thread], clear[thread], hits[thread]
@@ -63,9 +63,7 @@ def sweep(
         who = ident[s * LANES : (s + 1) * LANES]
         boxes = image[:, s * LANES : (s + 1) * LANES]
         if what & STREAM:
-            look_around_strip(
-                physics.solid, old, what & COLLIDE, strip, s, here, calm, clear, like
-            )
+            look_around_strip(physics.solid, old, what & COLLIDE, strip, s, here, calm, clear, like)
         if what & COLLIDE:
             gather_strip(here, coefficients, gathered, c)
         behind = np.int64(0)

@@ -15,6 +15,7 @@ from mesokit.observe import setting
 from mesokit.observe.estimate import of_mean
 from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
+from mesokit.solids import slit_of
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ class WallStress(Observable):
 
     def check(self, case: Case) -> None:
         """Raise CaseError without walls, or for a second one: it sees what the first left."""
-        if setting.slit(case) is None:
+        if slit_of(case) is None:
             raise CaseError(
                 "wall-stress needs one [[wall]] of shape 'plates', and no other; "
                 "for other walls observe 'forces'"
@@ -54,7 +55,9 @@ class WallStressAccumulator:
     def __init__(self, observable: WallStress, case: Case) -> None:
         observable.check(case)
         self.case, self.name = case, observable.label
-        self.axis = AXES.index(case.walls[0].axis)
+        plates = slit_of(case)
+        assert plates is not None
+        self.plates, self.axis = plates, AXES.index(plates.axis)
         self.area = np.prod(case.box.size) / case.box.size[self.axis]
         self.blocks = Blocks((2, case.box.dimension))
 
@@ -94,7 +97,7 @@ class WallStressAccumulator:
     def expected(self) -> Array:
         """(2, d): the force on the fluid, shared by the sticky plates, Couette drag, pressure."""
         case, d = self.case, self.case.box.dimension
-        wall, push = case.walls[0], setting.acceleration(case)
+        wall, push = self.plates, setting.acceleration(case)
         height, rho = float(case.box.size[self.axis]), setting.mass_density(case)
         sticky = np.array([s.rule == "no-slip" for s in (wall.lower, wall.upper)], float)
         coefficients = setting.transport(case)
