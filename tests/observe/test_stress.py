@@ -157,5 +157,5 @@ def test_one_wall_stress_is_enough(make_case):
 
 
 def test_wall_stress_needs_walls(make_case):
-    with pytest.raises(CaseError, match="needs a"):
+    with pytest.raises(CaseError, match="needs one"):
         make_case((4, 4), [WallStress()])

@@ -7,6 +7,8 @@ from typing import get_args
 from mesokit.observe.conservation import Conservation
 from mesokit.observe.density_field import DensityField
 from mesokit.observe.density_profile import DensityProfile
+from mesokit.observe.flow_rate import FlowRate
+from mesokit.observe.forces import Forces
 from mesokit.observe.longitudinal_modes import LongitudinalModes
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
 from mesokit.observe.protocol import Accumulator, Observable, RunningFluid
@@ -32,6 +34,8 @@ AnyObservable = (
     | LongitudinalModes
     | WallStress
     | Stress
+    | Forces
+    | FlowRate
 )
 OBSERVABLES: tuple[type, ...] = get_args(AnyObservable)
 
@@ -43,6 +47,8 @@ __all__ = [
     "Conservation",
     "DensityField",
     "DensityProfile",
+    "FlowRate",
+    "Forces",
     "LongitudinalModes",
     "MeanSquareDisplacement",
     "Observable",

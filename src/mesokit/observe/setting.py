@@ -125,6 +125,12 @@ def acceleration(case: Case) -> Array:
     return np.zeros(case.box.dimension)
 
 
+def push_axis(case: Case) -> int | None:
+    """Number of the only axis along which a uniform force drives the fluid, None for another."""
+    axes = np.flatnonzero(acceleration(case))
+    return int(axes[0]) if len(axes) == 1 else None
+
+
 def with_start(case: Case, error: float, expected: float) -> float:
     """The error of a number proportional to kT, in a fluid that keeps the energy it started with.
 
@@ -144,7 +150,8 @@ def driven(case: Case) -> bool:
 
 def slit(case: Case) -> Plates | None:
     """The two plates of a slit, if these are all walls."""
-    return case.walls[0] if is_slit(case) else None
+    only: Any = case.walls[0] if is_slit(case) else None
+    return only
 
 
 def closed_axes(case: Case) -> set[int]:

@@ -17,8 +17,8 @@ def hagen_poiseuille_velocity(
 
     Parameters: `r` any shape, in [0, radius]; `radius` R of the pipe in cells; `acceleration` g
     along it; `viscosity` nu, kinematic. Raises ValueError for a radius or viscosity not above 0.
-    Source: Landau and Lifshitz, Fluid Mechanics, eq. (17.9). Valid for laminar flow, radius well above a
-    cell, velocities well below the speed of sound.
+    Source: Landau and Lifshitz, Fluid Mechanics, eq. (17.9). Valid for laminar flow, radius well
+    above a cell, velocities well below the speed of sound.
 
     >>> hagen_poiseuille_velocity([0, 5, 10], 10, acceleration=0.01, viscosity=0.5).tolist()
     [0.5, 0.375, 0.0]
