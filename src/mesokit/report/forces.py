@@ -44,6 +44,7 @@ def _panel(ax: Any, result: Result, column: int) -> None:
     ax.set_xticks(
         place, bodies, rotation=40 if tilted else 0, ha="right" if tilted else "center", fontsize=9
     )
+    ax.set_xlabel("solid")
     ax.set_xlim(-0.6, len(bodies) - 0.4)
     ax.margins(y=0.15)
     kind = "force" if name[0] == "f" else "torque"
