@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 HERE = Path(__file__).parent
-sys.path[:0] = [str(HERE / "laws"), str(HERE / "observe")]  # laboratory.py, fake_fluid.py
+# laboratory.py, fake_fluid.py, flows.py
+sys.path[:0] = [str(HERE / "laws"), str(HERE / "observe"), str(HERE / "report")]
 
 
 @pytest.fixture

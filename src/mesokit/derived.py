@@ -290,6 +290,11 @@ def _run_warnings(case: Case, numbers: Derived) -> Iterator[str]:
                 f"observe[#{i + 1}].every = {observable.every}: more than run.steps = {run.steps}; "
                 f"{observable.label} takes no sample"
             )
+        elif observable.quantity == "flow-frames" and observable.window > run.steps:
+            yield (
+                f"observe[#{i + 1}].window = {observable.window}: more than run.steps = "
+                f"{run.steps}; there will be one frame, of a window cut short"
+            )
         seen = getattr(observable, "component", None)
         if seen is not None and flowing and seen not in flowing:
             yield (

@@ -1,4 +1,4 @@
-"""Progress of a run: a bar on a terminal, plain lines in a file, nothing if quiet."""
+"""Progress of a run or a film: a bar on a terminal, plain lines in a file, nothing if quiet."""
 
 from __future__ import annotations
 
@@ -52,6 +52,8 @@ class Reporter:
     >>> reporter.finish()
     """
 
+    noun = "step"
+
     def __init__(
         self, quiet: bool = False, stream: TextIO | None = None, seconds: float = 5.0
     ) -> None:
@@ -79,7 +81,7 @@ class Reporter:
         if self.stream.isatty():
             self._open_bar()
         else:
-            self._say(f"{phase}: {total_steps - step} steps of {particles} particles")
+            self._say(f"{phase}: {self.amount(total_steps - step)}")
 
     def compiling(self) -> None:
         """The first step of a new version takes long: say why, and leave it out of the rates."""
@@ -124,18 +126,23 @@ class Reporter:
             self.bar.stop()
             self.bar = self.task = None
         else:
-            self._say(f"{self.phase}: step {self.last} of {self.total} after {took}")
+            self._say(f"{self.phase}: {self.noun} {self.last} of {self.total} after {took}")
         self.phase = ""
 
     def words(self, step: int) -> str:
         """Rates and the time left."""
         rate = self.rate.steps_per_second
         if not rate:
-            return f"step {step}"
-        left = duration_text((self.total - step) / rate)
-        return (
-            f"{rate:.4g} steps/s, {rate * self.particles / 1e6:.3g} M particle-steps/s, {left} left"
-        )
+            return f"{self.noun} {step}"
+        return f"{self.speed(rate)}, {duration_text((self.total - step) / rate)} left"
+
+    def amount(self, steps: int) -> str:
+        """How much there is to do."""
+        return f"{steps} steps of {self.particles} particles"
+
+    def speed(self, rate: float) -> str:
+        """So many steps per second, in the units that users compare."""
+        return f"{rate:.4g} steps/s, {rate * self.particles / 1e6:.3g} M particle-steps/s"
 
     def _measure_anew(self, step: int) -> None:
         self.fresh, self.rate = False, Rate()
@@ -159,3 +166,17 @@ class Reporter:
         )
         self.task = self.bar.add_task(self.phase, total=self.total, completed=self.first, words="")
         self.bar.start()
+
+
+class FilmReporter(Reporter):
+    """Tell how the drawing of a film goes: its steps are frames."""
+
+    noun = "frame"
+
+    def amount(self, steps: int) -> str:
+        """How much there is to do."""
+        return f"{steps} frames"
+
+    def speed(self, rate: float) -> str:
+        """Frames per second."""
+        return f"{rate:.3g} frames/s"

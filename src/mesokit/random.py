@@ -27,6 +27,7 @@ INITIAL_VELOCITY = np.uint64(9)
 BODY_POSITION = np.uint64(10)  # of virtual particles in solids of any shape, and their number
 BODY_VELOCITY = np.uint64(11)
 DIFFUSE_WALL = np.uint64(12)
+BODY_NUMBER = np.uint64(13)
 
 _LOW = np.uint64(0xFFFFFFFF)
 _SHIFT = np.uint64(32)

@@ -28,6 +28,7 @@ from mesokit.progress import Reporter
 if TYPE_CHECKING:
     from mesokit.observe.protocol import Accumulator, Observable
     from mesokit.observe.result import Result
+    from mesokit.report.flow import Film
 
 CALL_SECONDS = 0.2  # of compiled code at a time, so that Ctrl-C and the progress bar are prompt
 COMPILE_SECONDS = 0.7  # a first call that takes longer is compiling, not loading
@@ -156,6 +157,18 @@ class Simulation:
     def results(self) -> dict[str, Result]:
         """What all observables say so far, by name."""
         return {name: accumulator.result() for name, accumulator in self.accumulators.items()}
+
+    def flow(self, kind: str = "four", **choices: Any) -> Any:
+        """A picture of the flow so far; `mesokit.report.flow.picture` says what may be chosen."""
+        from mesokit.report.flow import picture
+
+        return picture(self.case, self.results, None, kind, **choices)
+
+    def animate(self, path: str | Path, kind: str = "speed", **choices: Any) -> Film:
+        """Write a film of the flow so far (MP4 or GIF by its ending)."""
+        from mesokit.report.flow import animate
+
+        return animate(self.case, self.results, None, path, kind, **choices)
 
     # --- running --------------------------------------------------------------------------------
 

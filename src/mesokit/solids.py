@@ -144,6 +144,7 @@ class Solids:
             near=0,
             clear=0,
             terms=len(pieces),
+            stride=0.0,
         )
 
     def _surface(self, body: Body) -> list[float]:
@@ -182,7 +183,7 @@ class Solids:
         clear = self.distance(centres).reshape(self.size)
         share = (clear > 0).astype(float)
         mixed = np.argwhere(np.abs(clear) < 0.5 * math.sqrt(self.dimension))
-        share[tuple(mixed.T)] = self._open(mixed + 0.5, 1.0)
+        share[tuple(mixed.T)] = self.open_part(mixed + 0.5, 1.0)
         return share
 
     def open_share(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Floats:
@@ -208,7 +209,7 @@ class Solids:
         clear = self.distance(points).reshape(points.shape[:-1])
         return np.clip(0.5 + clear / side, 0.0, 1.0)
 
-    def _open(self, centres: Floats, side: float) -> Floats:
+    def open_part(self, centres: Floats, side: float) -> Floats:
         """Part of cubes of this side that is fluid, from FINE^d cubes in each."""
         steps = ((np.arange(FINE) + 0.5) / FINE - 0.5) * side
         grid = np.stack(np.meshgrid(*[steps] * self.dimension, indexing="ij"), -1)

@@ -239,7 +239,7 @@ class TestOverrides:
                 "x",
                 "wall.axis: expected the number 1 or a unique name after wall, as in wall.1.axis",
             ),
-            ("observe.stress.every", "1", "observe.stress: expected a number from 1 to 5"),
+            ("observe.stress.every", "1", "observe.stress: expected a number from 1 to 6"),
             ("", "1", "key path"),
         ],
     )

@@ -117,6 +117,7 @@ class TestCheck:
             ({"fluid.force.acceleration": "[0, 0.1]"}, "presses the fluid"),
             ({"run.warmup": "10"}, "run.warmup = 10"),
             ({"run.steps": "5"}, "takes no sample"),
+            ({"run.steps": "500"}, "one frame, of a window cut short"),
             ({"observe": "[]"}, "no [[observe]]"),
             ({"trajectory": "{ every = 1 }", "run.steps": "10_000_000"}, "trajectory takes about"),
             ({"box.size": "[200_000, 1_000]", "observe": "[]"}, "memory"),

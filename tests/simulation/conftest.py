@@ -56,6 +56,11 @@ every = 5
 quantity = "transverse-modes"
 every = 4
 
+[[observe]]
+quantity = "flow-frames"
+window = 30
+particles = 50
+
 [trajectory]
 every = 25
 fields = ["position", "velocity", "image"]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from mesokit import __version__
-from mesokit.errors import CaseError
+from mesokit.errors import CaseError, RunError
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -64,3 +64,13 @@ def naming(path: Path) -> Iterator[None]:
         yield
     except CaseError as error:
         raise CaseError(f"{path}: {error}") from None
+
+
+def require_run(run: Path) -> None:
+    """Raise CaseError, as the command is wrong, if there is no run in the folder."""
+    from mesokit.io.run_directory import RunDirectory
+
+    try:
+        RunDirectory.existing(run)
+    except RunError as error:
+        raise CaseError(str(error)) from None

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import click
 
-from mesokit.cli import cases, runs  # noqa: F401  they register their commands
+from mesokit.cli import cases, pictures, runs  # noqa: F401  they register their commands
 from mesokit.cli.commands import cli
 from mesokit.cli.words import reason
 from mesokit.errors import MesokitError, RunError

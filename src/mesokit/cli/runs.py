@@ -1,4 +1,4 @@
-"""Commands on runs: run, resume, plot, info."""
+"""Commands on runs: run, resume, info."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 
 import click
 
-from mesokit.cli.commands import CASE, RUN, SET, THREADS, cli, naming, read
+from mesokit.cli.commands import CASE, RUN, SET, THREADS, cli, naming, read, require_run
 from mesokit.cli.words import reason
 from mesokit.errors import CaseError, RunError
 
@@ -59,7 +59,7 @@ def resume(run: Path, threads: int | None, quiet: bool) -> None:
     """Go on with RUN from its last checkpoint, to the same bits as if it had never stopped."""
     from mesokit.progress import Reporter
 
-    _require_run(run)
+    require_run(run)
     from mesokit.io.run_directory import RunDirectory
     from mesokit.simulation import Simulation
 
@@ -77,22 +77,11 @@ def resume(run: Path, threads: int | None, quiet: bool) -> None:
 
 @cli.command()
 @click.argument("run", type=RUN)
-def plot(run: Path) -> None:
-    """Draw the pictures of RUN again."""
-    import mesokit
-
-    _require_run(run)
-    for picture in mesokit.open(run).plot():
-        click.echo(picture)
-
-
-@cli.command()
-@click.argument("run", type=RUN)
 def info(run: Path) -> None:
     """Show what is in the files of RUN."""
     import mesokit
 
-    _require_run(run)
+    require_run(run)
     click.echo(mesokit.open(run))
 
 
@@ -119,6 +108,7 @@ def _files_of_run(output: Path) -> list[Path]:
     """What an earlier run has written into a folder; the case, which makes it a run, is last."""
     from mesokit.case import Case
     from mesokit.io.run_directory import RunDirectory
+    from mesokit.report.flow import KINDS
 
     run = RunDirectory(output)
     if not run.case_file.is_file():
@@ -126,6 +116,7 @@ def _files_of_run(output: Path) -> list[Path]:
     figures: list[Path] = []
     with contextlib.suppress(CaseError):
         figures = [run.figure_file(o.label) for o in Case.from_toml(run.case_file).observe]
+    figures += [run.flow_file(kind, end) for kind in KINDS for end in (".png", ".mp4")]
     files = [run.data_file, run.checkpoint_file, run.log_file, run.provenance_file]
     return [*figures, *output.glob(".*.tmp"), run.trajectory_folder, *files, run.case_file]
 
@@ -151,15 +142,6 @@ def _run_errors(output: Path) -> Iterator[None]:
         raise SystemExit(130) from None
     except OSError as error:
         raise RunError(reason(error)) from None
-
-
-def _require_run(run: Path) -> None:
-    from mesokit.io.run_directory import RunDirectory
-
-    try:
-        RunDirectory.existing(run)
-    except RunError as error:  # the command is wrong, not the run
-        raise CaseError(str(error)) from None
 
 
 def _show_results(output: Path) -> None:

@@ -55,6 +55,16 @@ def untangled(energy, total):
     """Number of particles, and sum of m v^2 if it is kept with it, from that integer."""
 
 
+@generic
+def many_energy_term(energy, m_v_squared):
+    """What several particles of this sum of m v^2 add to a column of their own, or ()."""
+
+
+@generic
+def many_tally(energy, number, m_v_squared):
+    """What so many particles add to the integer that counts."""
+
+
 @energy_term.register(NotAsked, WithCount)
 def _(energy, m, v):
     return ()
@@ -84,3 +94,23 @@ def _(energy, total):
 def _(energy, total):
     number = np.int64(np.uint64(total) >> np.uint64(COUNT_SHIFT))
     return number, float(total & np.int64(ENERGY_MASK)) * (1.0 / energy.scale)
+
+
+@many_energy_term.register(NotAsked, WithCount)
+def _(energy, m_v_squared):
+    return ()
+
+
+@many_energy_term.register(Column)
+def _(energy, m_v_squared):
+    return (m_v_squared,)
+
+
+@many_tally.register(NotAsked, Column)
+def _(energy, number, m_v_squared):
+    return np.int64(number)
+
+
+@many_tally.register(WithCount)
+def _(energy, number, m_v_squared):
+    return np.int64(number) * ONE_PARTICLE + fixed(m_v_squared, energy.scale) - ROUNDER_BITS

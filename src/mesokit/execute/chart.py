@@ -98,10 +98,10 @@ def cut_cells(solids: Solids, cells: tuple[int, ...]) -> tuple[Any, Any, Any]:
     )
 
 
-def surface_pieces(solids: Solids) -> tuple[Any, Any, Any, Any, Any]:
+def surface_pieces(solids: Solids) -> tuple[Any, Any, Any, Any]:
     """A piece of surface in each cell of the box that has one, whose body follows the fluid.
 
-    Number of the piece in each cell or -1, then for each piece its place, its normal, the place to
+    Number of the piece in each cell or -1, then for each piece its normal, the place to
     look for fluid, which is so far that its cell is free of solid, and its term.
     """
     d, size = solids.dimension, solids.size
@@ -119,4 +119,34 @@ def surface_pieces(solids: Solids) -> tuple[Any, Any, Any, Any, Any]:
     outward = normal[where]
     feet = middle[where] - distance[where, None] * outward
     probes = feet + ((1.0 + 0.5 / OFFSETS) * math.sqrt(d) + 2 * MARGIN) * outward
-    return pieces, feet, outward, probes, terms[where]
+    return pieces, outward, probes, terms[where]
+
+
+def cut_planes(solids: Solids, corners: Any, starts: Any) -> tuple[Any, Any, Any, Any]:
+    """For each cut cell the normal and height of the plane that cuts it, its term, and the cell of
+    the box in which the surface lies that is nearest to its middle."""
+    middles = np.empty(corners.shape)
+    for number, origin in enumerate(origins(solids.room.closed)):
+        some = slice(starts[number], starts[number + 1])
+        middles[some] = corners[some] + 0.5 - np.array(origin)
+    share = solids.open_part(middles, 1.0)
+    normals, heights = np.zeros(middles.shape), np.zeros(len(middles))
+    terms, feet = np.zeros(len(middles), np.int64), np.zeros(middles.shape)
+    survey.planes(solids.kernel, solids.like, middles, share, normals, heights, terms, feet)
+    # a cube that is all fluid or all solid stays so, whatever its shift within the interval
+    heights[share >= 1.0] = 2.0
+    heights[share <= 0.0] = -2.0
+    slippery = np.array([body.surface.rule == "slip" for body in solids.bodies])
+    heights[slippery[solids.body_of_term[terms]]] = 2.0  # no virtual particles there
+    return normals, heights, terms, cell_numbers(solids, feet)
+
+
+def cell_numbers(solids: Solids, points: Any) -> Any:
+    """Number of the cell of the box that holds each point, which may be in an image."""
+    number, stride = np.zeros(len(points), np.int64), 1
+    for k, length in enumerate(solids.size):
+        cell = np.floor(points[:, k]).astype(np.int64)
+        cell = np.clip(cell, 0, length - 1) if solids.room.closed[k] else cell % length
+        number += stride * cell
+        stride *= length
+    return number

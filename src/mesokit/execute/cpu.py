@@ -93,6 +93,7 @@ class CPU(Readings):
             self.strips[0], self.rows, self.order, self.ends, self.spare,
             self.spare.view(np.int32), self.like,
         )  # fmt: skip
+        self.calm[:] = 0.0  # other particles are in the strips now
         self.sort_seconds += perf_counter() - start
         self._check_sums(int(np.diff(self.ends[-1], prepend=0).max()))
 
@@ -145,6 +146,7 @@ class CPU(Readings):
         self.impulse[0] = state["impulse"]
         self.wall_steps = int(state["wall_steps"])
         self.wall_rates[:] = state["wall_rates"]
+        self.calm[:] = 0.0
         self.box_kernel = self.case.box.kernel(self.closed, self.time)
 
     @property

@@ -18,6 +18,7 @@ from mesokit.execute.cell_energy import tally, untangled
 from mesokit.execute.chart import clear_place, offset_of
 from mesokit.execute.flags import MEASURE_WALLS
 from mesokit.execute.layout import LANES, ROW, share, strip_of, sums_length
+from mesokit.execute.lumps import Lumps, fill_lumps, lumps_recoil
 from mesokit.execute.rows import load, mass_of, store
 from mesokit.execute.stages import add_strip, bin_strip, cell_index, collide_strip, gather_strip
 from mesokit.execute.sums import nothing_found, read_sums
@@ -46,8 +47,7 @@ class Guests(NamedTuple):
 
     density: particles per cell; first_number: their numbers follow those of the fluid's. starts (offsets + 1,), cells, corners (entries, d): cut cells for
     each offset of the grid, and their lower corners in the grid. pieces: number of the piece of
-    surface in each cell of the box, or -1. feet, outward, probes (pieces, d): its place, normal,
-    and where to look for fluid; terms (pieces,). rates (pieces, d): slopes of the velocity.
+    surface in each cell of the box, or -1. outward, probes (pieces, d): its normal, and where to look for fluid; terms (pieces,). rates (pieces, d): slopes of the velocity.
     masses: those of mixtures. data, cell, number, term (threads, ...) and filled (threads,): the
     virtual particles of this step.
     """
@@ -58,7 +58,6 @@ class Guests(NamedTuple):
     cells: Any
     corners: Any
     pieces: Any
-    feet: Any
     outward: Any
     probes: Any
     terms: Any
@@ -69,6 +68,7 @@ class Guests(NamedTuple):
     number: Any
     term: Any
     filled: Any
+    lumps: Any  # Lumps, or () where they come one by one
 
 
 @by_type
@@ -76,7 +76,22 @@ def fill_guests(guests, tops_up, thread, threads, *rest):
     """Fill all cut cells, unless there are none, or they are to be topped up."""
     if len(guests) == 0 or len(tops_up) == 1:
         return lambda *_: None
-    return _fill
+    return _fill_lumps if lumps_of(guests) else _fill
+
+
+def lumps_of(guests: Any) -> bool:
+    """Whether the virtual particles of a cell come as lumps, from the numba type of `Guests`."""
+    lumps = guests.types[guests.fields.index("lumps")]
+    return getattr(lumps, "instance_class", None) is Lumps
+
+
+def _fill_lumps(
+    guests, tops_up, thread, threads, what, physics, counter, grid, rows, sums, gathered, quanta,
+    impulse, like, terms, scales,
+):  # fmt: skip
+    fill_lumps(
+        guests, thread, threads, what, physics, counter, grid, sums, impulse, like, terms, scales
+    )
 
 
 def _fill(
@@ -121,7 +136,7 @@ def settle(guests, thread, physics, r, number, count, rows, like):
     if clear >= 0.0 or surface_number(solid, term, FILLS) < 0.5:
         return False
     foot = in_box(solid, added_scaled(x, -clear, part_normal(solid, part, x)))
-    u = surface_velocity(solid, term, added_scaled(x, -clear, part_normal(solid, part, x)))
+    u = surface_velocity(solid, term, x)
     piece = guests.pieces[home_cell(solid, foot)]
     if piece >= 0:
         for k in range(len(like)):
@@ -175,7 +190,15 @@ def momentum(guests, thread, physics, s, strip, lanes, impulse, scale, sign, lik
 @by_type
 def recoil(guests, thread, what, *rest):
     """What bodies take by the collision of the virtual particles in them."""
-    return _recoil if len(guests) > 0 else lambda *_: None
+    if len(guests) == 0:
+        return lambda *_: None
+    return _lumps_recoil if lumps_of(guests) else _recoil
+
+
+def _lumps_recoil(
+    guests, thread, what, physics, grid, rows, coefficients, gathered, impulse, like, c, scales
+):
+    lumps_recoil(guests, thread, what, physics, grid, coefficients, impulse, like, c, scales)
 
 
 def _recoil(
@@ -236,10 +259,9 @@ def follow_pieces(guests, thread, threads, physics, grid, sums, like, terms, sca
     solid, width = physics.solid, sums_length(len(terms))
     begin, end = share(len(guests.terms), thread, threads)
     for e in range(begin, end):
-        probe, foot, n = like, like, like
+        probe, n = like, like
         for k in range(len(like)):
             probe = tuple_setitem(probe, k, guests.probes[e, k])
-            foot = tuple_setitem(foot, k, guests.feet[e, k])
             n = tuple_setitem(n, k, guests.outward[e, k])
         cell = cell_index(probe, grid)
         if short(solid.clear, clear_place(solid, grid, cell)) <= 0.0:
@@ -259,7 +281,7 @@ def follow_pieces(guests, thread, threads, physics, grid, sums, like, terms, sca
             corner = np.floor(probe[k] + grid.origin[k]) - grid.origin[k]
             middle = tuple_setitem(middle, k, corner + 0.5)
         height, _ = term_clearance(solid, guests.terms[e], middle)
-        u = surface_velocity(solid, guests.terms[e], foot)
+        u = surface_velocity(solid, guests.terms[e], middle)
         rise = scaled(1.0 / height, added_scaled(scaled(1.0 / mass, momentum), -1.0, u))
         rise = added_scaled(rise, -dot(rise, n), n)
         for k in range(len(like)):

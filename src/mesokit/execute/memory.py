@@ -145,6 +145,7 @@ class Memory:
         surfaces = 2 if self.slit else len(self.solids.bodies) if self.solids else 0
         self.impulse = zeros((threads, surfaces * (d + (1 if d == 2 else 3))), np.int64)
         self.wall_rates = zeros((2, d))
+        self.calm = zeros(self.strips[0])
         self.guests: Guests | tuple[()] = ()
         if self.solids and not self.slit and self.virtual != "none":
             masses = np.repeat(self.masses_of_kinds, self.counts)
@@ -153,7 +154,8 @@ class Memory:
         self.tensor = zeros((2, parts, 2 * d * d))
         self.sweep_scratch = (
             zeros((threads, most * SCRATCH_ROW)),
-            zeros((threads, SCRATCH_ROW), np.float32),
+            zeros((threads, SCRATCH_ROW), np.int32),
+            self.calm,
             zeros((threads, LANES), np.int64),
             zeros((threads, (len(self.terms) + 1) * SCRATCH_ROW), np.int64),
             self.impulse,

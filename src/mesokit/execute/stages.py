@@ -1,5 +1,6 @@
 """The stages of a step, each a loop over the lanes of one strip of particles."""
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ from mesokit.geometry.none import Nothing
 from mesokit.geometry.protocol import exposed, free, touches
 from mesokit.mpcd.collision.protocol import collide, contribute
 from mesokit.mpcd.streaming import fall, halfway, vector
-from mesokit.pointer import short
+from mesokit.pointer import whole
 from mesokit.scalar import by_type, chosen, mul_add, optional, scalar
 
 
@@ -94,24 +95,39 @@ def locate_strip(grid, strip, cell, like):
 
 
 @by_type
-def look_around_strip(solid, grid, known, strip, cell, clear, like):
-    """What the cell of each particle, if it is known, says of the distance that it may fly."""
+def look_around_strip(solid, grid, known, strip, s, cell, calm, clear, like):
+    """How far each particle of strip s may fly; its cell is known after a collision."""
     return _look_around if solid.instance_class is Bodies else lambda *_: None
 
 
-def _look_around(solid, grid, known, strip, cell, clear, like):
-    if not known:
-        locate_strip(grid, strip, cell, like)
-    table = solid.clear + 4 * clear_place(solid, grid, 0)
-    for i in range(LANES):
-        clear[i] = short(table, np.int64(cell[i]))
+def _look_around(solid, grid, known, strip, s, cell, calm, clear, like):
+    """What its cell says or, far from all solids, the stride that few go beyond.
+
+    `calm` is the distance that is surely clear around every particle of a strip: each step takes
+    off a stride, until it is found anew. `clear` holds the bits of float32 numbers: those of
+    positive numbers are in the same order, and the least of whole numbers is found faster.
+    """
+    if calm[s] < solid.stride:
+        if not known:
+            locate_strip(grid, strip, cell, like)
+        table = solid.clear + 4 * clear_place(solid, grid, 0)
+        for i in range(LANES):
+            clear[i] = np.int32(whole(table, np.int64(cell[i])))
+        least = np.int32(np.iinfo(np.int32).max)
+        for i in range(LANES):
+            least = min(least, clear[i])
+        calm[s] = math.sqrt(np.int32(least).view(np.float32))
+    if calm[s] >= solid.stride:
+        calm[s] -= solid.stride
+        for i in range(LANES):
+            clear[i] = np.float32(solid.stride * solid.stride).view(np.int32)
 
 
 @by_type
 def clear_of(solid, clear, i):
     """Square of the distance that lane i may fly in any direction: (d,) if it is in tables."""
     if solid.instance_class is Bodies:
-        return lambda solid, clear, i: (clear[i],)
+        return lambda solid, clear, i: (np.int32(clear[i]).view(np.float32),)
     return lambda solid, clear, i: ()
 
 

@@ -42,8 +42,8 @@ def advance(
 
     lap(clock, thread, -1)
     walls = what & MEASURE_WALLS
-    rows, impulse = particles[7], scratch[4][thread]
-    gathered, quanta = scratch[0][thread], scratch[3][thread]
+    rows, impulse = particles[7], scratch[5][thread]
+    gathered, quanta = scratch[0][thread], scratch[4][thread]
     for n in range(steps):
         counter = Counter(seed, done + n + 1)
         box = at_time(box, (done + n + 1) * physics.timestep)
@@ -61,7 +61,7 @@ def advance(
         )  # fmt: skip
         wait(gate, threads)
         follow(
-            wanted, guests, thread, threads, physics, new, cells[1], scratch[6], like, terms, scales
+            wanted, guests, thread, threads, physics, new, cells[1], scratch[7], like, terms, scales
         )
         top_up(density, guests, thread, physics, counter, new, cells, number, like, scales)
         top_up_guests(

@@ -9,6 +9,7 @@ import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.execute.cache import kernel
+from mesokit.geometry.cut_cube import share_beyond
 from mesokit.geometry.bodies import REACH, in_box, nearest, part_normal, term_clearance
 from mesokit.scalar import scalar, scaled, seldom
 
@@ -124,32 +125,22 @@ def open_volume(solid, like, points, side, out):
         out[i] = share_beyond(c / side, n)
 
 
-@seldom
-def share_beyond(c, n):
-    """Part of a unit cube on the outer side of a plane with normal n at distance -c of its middle.
-
-    The distribution of a sum of uniform numbers of widths |n_k| (Irwin and Hall), cut at c.
-    """
-    d = len(n)
-    total, product, live = 0.0, 1.0, 0
-    for k in range(d):
-        if abs(n[k]) > 1e-6:
-            total += abs(n[k])
-            product *= abs(n[k])
-            live += 1
-    x = c + 0.5 * total
-    if x <= 0.0:
-        return 0.0
-    if x >= total:
-        return 1.0
-    volume = 0.0
-    for corner in range(1 << d):
-        shift, sign, counts = 0.0, 1.0, True
-        for k in range(d):
-            if (corner >> k) & 1:
-                counts = counts and abs(n[k]) > 1e-6
-                shift += abs(n[k])
-                sign = -sign
-        if counts and x > shift:
-            volume += sign * (x - shift) ** live
-    return volume / (math.gamma(live + 1.0) * product)
+@kernel
+def planes(solid, like, points, open_share, normals, heights, terms, feet):
+    """The plane that cuts unit cubes about the points as the solid does: it has the normal of the
+    surface nearest to the middle, and leaves `open_share` of the cube to the fluid."""
+    for i in range(len(points)):
+        r = in_box(solid, point(points, i, like))
+        c, part, term = nearest(solid, r)
+        n = part_normal(solid, part, r)
+        low, high = -1.0, 1.0  # no corner of the cube is farther from its middle
+        for _ in range(50):
+            middle = 0.5 * (low + high)
+            if share_beyond(middle, n) < open_share[i]:
+                low = middle
+            else:
+                high = middle
+        heights[i], terms[i] = 0.5 * (low + high), term
+        for k in range(len(like)):
+            normals[i, k] = n[k]
+            feet[i, k] = r[k] - c * n[k]

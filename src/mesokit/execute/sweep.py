@@ -52,7 +52,7 @@ def sweep(
     """
     data, cell, ident, image, count, strips, first_virtual, rows, spare_cell = particles
     coefficients, sums = cells
-    gathered, clear, hits, quanta, impulse, tensor, rates = scratch
+    gathered, clear, calm, hits, quanta, impulse, tensor, rates = scratch
     gathered, clear, hits = gathered[thread], clear[thread], hits[thread]
     quanta, impulse = quanta[thread], impulse[thread]
     measured = what & MEASURE_STRESS
@@ -63,7 +63,9 @@ def sweep(
         who = ident[s * LANES : (s + 1) * LANES]
         boxes = image[:, s * LANES : (s + 1) * LANES]
         if what & STREAM:
-            look_around_strip(physics.solid, old, what & COLLIDE, strip, here, clear, like)
+            look_around_strip(
+                physics.solid, old, what & COLLIDE, strip, s, here, calm, clear, like
+            )
         if what & COLLIDE:
             gather_strip(here, coefficients, gathered, c)
         behind = np.int64(0)
@@ -77,6 +79,7 @@ def sweep(
             if what & STREAM:
                 behind = stream_strip(physics, strip, clear, hits, like)
         if behind:
+            calm[s] = 0.0
             bounce_strip(physics, counter, strip, lanes, who, hits, impulse, scales, like)
         if what & STREAM:
             slide_strip(box, grid, strip, boxes, like)

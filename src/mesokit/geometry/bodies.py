@@ -48,6 +48,7 @@ class Bodies(NamedTuple):
     near: int
     clear: int
     terms: int  # how many
+    stride: float  # what hardly a particle flies beyond in a timestep
 
 
 RULE, VELOCITY, ROTATION, FILLS, COLUMNS = 0, 1, 4, 7, 8  # of `surfaces`

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
 UNITS = {"position": "a", "velocity": "a/tau", "time": "tau"}
 CHUNK = 65536  # particles
+LARGE = 2**20  # numbers of one result, beyond which it is compressed
 _TABLE = ("what", "measured", "error", "expected", "unit", "note")
 
 
@@ -241,7 +242,9 @@ def _result(parent: Any, result: Result) -> None:
         _store(group["x"], name, axis)
     for name in ("value", "error", "expected", "fit"):
         if getattr(result, name) is not None:
-            group[name] = getattr(result, name)
+            array = getattr(result, name)
+            packed = {"compression": 4, "shuffle": True} if array.size > LARGE else {}
+            group.create_dataset(name, data=array, **packed)
     table = group.create_group("comparisons")
     for name in _TABLE:
         _store(table, name, np.array([getattr(c, name) for c in result.comparisons]))

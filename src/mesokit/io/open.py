@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from mesokit.case import Case
     from mesokit.observe.result import Result
     from mesokit.si import SI
+    from mesokit.report.flow import Film
 
 
 class RunFiles:
@@ -76,6 +77,24 @@ class RunFiles:
         from mesokit.report import save_all
 
         return save_all(self.results.values(), self.path if folder is None else folder)
+
+    def flow(self, kind: str = "four", **choices: Any) -> Any:
+        """A picture of the flow; `mesokit.report.flow.picture` says what may be chosen.
+
+        `files.flow("speed", region=((0, 20), (0, 10)), window=(50, 90))` is a Matplotlib figure.
+        """
+        from mesokit.report.flow import picture
+
+        return picture(self.case, self.results, self.trajectory, kind, **choices)
+
+    def animate(self, path: str | Path, kind: str = "speed", **choices: Any) -> Film:
+        """Write a film of the flow, MP4 or GIF by its ending; see `mesokit.report.flow.animate`.
+
+        `files.animate("film.mp4", "vorticity", window=(50, 90), fps=10)` writes the file.
+        """
+        from mesokit.report.flow import animate
+
+        return animate(self.case, self.results, self.trajectory, path, kind, **choices)
 
     def _data(self) -> Path:
         if not self.directory.data_file.exists():

@@ -64,6 +64,10 @@ class RunDirectory:
         """Figure of one result."""
         return self.path / f"{name}.png"
 
+    def flow_file(self, kind: str, ending: str) -> Path:
+        """Picture or film of the flow, where users name no other."""
+        return self.path / f"flow-{kind}{ending}"
+
     @classmethod
     def create(cls, path: str | Path, case: Case) -> RunDirectory:
         """Make the folder and write the resolved case.

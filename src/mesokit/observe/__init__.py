@@ -7,6 +7,7 @@ from typing import get_args
 from mesokit.observe.conservation import Conservation
 from mesokit.observe.density_field import DensityField
 from mesokit.observe.density_profile import DensityProfile
+from mesokit.observe.flow_frames import FlowFrames
 from mesokit.observe.flow_rate import FlowRate
 from mesokit.observe.forces import Forces
 from mesokit.observe.longitudinal_modes import LongitudinalModes
@@ -28,6 +29,7 @@ AnyObservable = (
     | TemperatureProfile
     | VelocityField
     | DensityField
+    | FlowFrames
     | MeanSquareDisplacement
     | VelocityAutocorrelation
     | TransverseModes
@@ -47,6 +49,7 @@ __all__ = [
     "Conservation",
     "DensityField",
     "DensityProfile",
+    "FlowFrames",
     "FlowRate",
     "Forces",
     "LongitudinalModes",

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from mesokit.observe.flow_frames import average
 from mesokit.observe.result import Result
 from mesokit.report.style import labelled
 
@@ -29,6 +30,11 @@ def draw_velocity(result: Result, figure: Any, ax: Any) -> None:
     )  # fmt: skip
     error = np.nanmedian(result.error) if np.isfinite(result.error).any() else np.nan
     ax.set_title(f"mean velocity; median standard error {error:.2g}", fontsize=10)
+
+
+def draw_frames(result: Result, figure: Any, ax: Any) -> None:
+    """The mean over all frames."""
+    draw_velocity(average(result), figure, ax)
 
 
 def draw_density(result: Result, figure: Any, ax: Any) -> None:

@@ -22,6 +22,7 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "temperature-profile": profile.draw,
     "velocity-field": field.draw_velocity,
     "density-field": field.draw_density,
+    "flow-frames": field.draw_frames,
     "mean-square-displacement": correlation.draw_displacement,
     "velocity-autocorrelation": correlation.draw_memory,
     "transverse-modes": correlation.draw_modes,
@@ -39,16 +40,15 @@ def plot(result: Result, ax: Any = None) -> Any:
     In given axes the main panel alone is drawn, without the comparisons.
     """
     import matplotlib as mpl
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
+
+    from mesokit.report.notebook import ShownFigure
 
     with mpl.rc_context(STYLE):
         if ax is not None:
             DRAW[result.quantity](result, ax.figure, ax)
             return ax.figure
         lines = 0.17 * len(result.comparisons)
-        figure = Figure(figsize=(WIDTH, HEIGHT + lines), layout="constrained")
-        FigureCanvasAgg(figure)
+        figure = ShownFigure(figsize=(WIDTH, HEIGHT + lines), layout="constrained")
         DRAW[result.quantity](result, figure, None)
         below(figure, result.comparisons)
         return figure
@@ -56,10 +56,14 @@ def plot(result: Result, ax: Any = None) -> Any:
 
 def save(result: Result, path: str | Path) -> Path:
     """Draw a result into a file (PNG, PDF, SVG by its ending). Raises RunError."""
+    return save_figure(plot(result), path)
+
+
+def save_figure(figure: Any, path: str | Path) -> Path:
+    """Write a figure into a file (PNG, PDF, SVG by its ending). Raises RunError."""
     import matplotlib as mpl
 
     path = Path(path)
-    figure = plot(result)
     kind = path.suffix[1:].lower() or "png"
     if kind not in figure.canvas.get_supported_filetypes():
         known = ", ".join(sorted(figure.canvas.get_supported_filetypes()))

@@ -1,0 +1,104 @@
+"""Commands that draw what a run has kept: plot, animate."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+
+from mesokit.cli.commands import RUN, cli, require_run
+from mesokit.errors import CaseError
+
+KIND = "quiver, streamlines, particles, density, speed, vorticity or four"
+FILE = click.Path(dir_okay=False, path_type=Path)
+
+
+def _ranges(context: click.Context, option: click.Parameter, text: str | None) -> Any:
+    """'0:20,5:10' as pairs of numbers."""
+    if text is None:
+        return None
+    try:
+        return tuple(
+            (float(low), float(high))
+            for low, _, high in (part.partition(":") for part in text.split(","))
+        )
+    except ValueError:
+        form = {"region": "x0:x1,y0:y1, in cells", "window": "t0:t1, two times"}[str(option.name)]
+        raise CaseError(f"--{option.name} {text}: expected {form}") from None
+
+
+def _window(context: click.Context, option: click.Parameter, text: str | None) -> Any:
+    ranges = _ranges(context, option, text)
+    if ranges is not None and len(ranges) != 1:
+        raise CaseError(f"--window {text}: expected t0:t1, two times")
+    return ranges and ranges[0]
+
+
+def _axes(context: click.Context, option: click.Parameter, text: str | None) -> Any:
+    return None if text is None else tuple(text.split(","))
+
+
+CHOICES: Sequence[Callable[[Any], Any]] = (
+    click.option("--region", callback=_ranges, metavar="X0:X1,Y0:Y1",
+                 help="Part of the box, in cells (all of it unless said)."),
+    click.option("--window", callback=_window, metavar="T0:T1",
+                 help="Part of the time since the start (all of it unless said)."),
+    click.option("--axes", callback=_axes, metavar="A,B",
+                 help="The two axes of the picture in 3D, such as x,z."),
+    click.option("--at", type=float, help="Place along the third axis where solids are shown."),
+)  # fmt: skip
+
+
+def _choices(command: Any) -> Any:
+    """The options that say what of the flow is drawn."""
+    for option in reversed(CHOICES):
+        command = option(command)
+    return command
+
+
+@cli.command()
+@click.argument("run", type=RUN)
+@click.option("--kind", help=f"Draw the flow: {KIND}.")
+@_choices
+@click.option("--output", type=FILE, help="PNG, PDF or SVG (RUN/flow-KIND.png unless said).")
+def plot(run: Path, kind: str | None, output: Path | None, **choices: Any) -> None:
+    """Draw the pictures of RUN again, or with --kind one of the flow."""
+    import mesokit
+
+    given = {"output": output} | choices
+    for option in () if kind else [name for name, value in given.items() if value is not None]:
+        raise CaseError(f"--{option}: only for a picture of the flow; add --kind ({KIND})")
+    require_run(run)
+    files = mesokit.open(run)
+    if kind is None:
+        for picture in files.plot():
+            click.echo(picture)
+        return
+    from mesokit.report import save_figure
+
+    figure = files.flow(kind, **choices)
+    click.echo(save_figure(figure, output or files.directory.flow_file(kind, ".png")))
+
+
+@cli.command()
+@click.argument("run", type=RUN)
+@click.option("--kind", default="speed", help=f"What is drawn: {KIND}.  [speed]")
+@_choices
+@click.option("--fps", default=15.0, help="Frames shown per second.  [15]")
+@click.option("--output", type=FILE, help="MP4 or GIF (RUN/flow-KIND.mp4 unless said).")
+@click.option("--quiet", is_flag=True, help="No progress; errors only.")
+def animate(
+    run: Path, kind: str, fps: float, output: Path | None, quiet: bool, **choices: Any
+) -> None:
+    """Make a film of the flow in RUN, from its flow-frames or its trajectory."""
+    import mesokit
+    from mesokit.progress import FilmReporter
+
+    require_run(run)
+    files = mesokit.open(run)
+    output = output or files.directory.flow_file(kind, ".mp4")
+    film = files.animate(output, kind, fps=fps, progress=FilmReporter(quiet), **choices)
+    if not quiet:
+        click.echo(film.path)

@@ -1,0 +1,7 @@
+"""Pictures and films of the flow: one file for each kind, and for each place numbers come from."""
+
+from mesokit.report.flow.film import Film, animate
+from mesokit.report.flow.kinds import KINDS
+from mesokit.report.flow.still import picture
+
+__all__ = ["KINDS", "Film", "animate", "picture"]

@@ -1,0 +1,115 @@
+"""Panels side by side: what stays, and what changes from one frame of a film to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import matplotlib as mpl
+
+from mesokit.report.flow.data import Flow
+from mesokit.report.flow.kinds import Panel
+from mesokit.report.flow.layout import Box, layout
+from mesokit.report.flow.region import Region
+from mesokit.report.flow.scale import Scale
+from mesokit.report.flow.solids import Section
+from mesokit.report.notebook import ShownFigure
+from mesokit.report.style import STYLE, labelled
+
+LOOK = STYLE | {
+    "xtick.direction": "out",
+    "ytick.direction": "out",
+    "xtick.top": False,
+    "ytick.right": False,
+    "axes.labelsize": 10,
+    "hatch.linewidth": 0.4,
+}
+
+
+class Canvas:
+    """A figure with axes, labels, colour bars and solids, into which flows are drawn.
+
+    Parameters
+    ----------
+    panels: what is drawn.
+    flows: one for each panel, of the grids and axes that will be drawn.
+    reaches: the largest number that each panel shows.
+    region: what is seen of the box.
+    section: through its solids.
+    stamp: whether a time is written above.
+    """
+
+    def __init__(
+        self,
+        panels: Sequence[Panel],
+        flows: Sequence[Flow],
+        reaches: Sequence[float],
+        region: Region,
+        section: Section,
+        stamp: bool = False,
+    ) -> None:
+        self.panels, self.reaches, self.region = panels, reaches, region
+        scales = [p.scale(f, r) for p, f, r in zip(panels, flows, reaches, strict=True)]
+        self.view = section.view(region)
+        self.place = layout(self.view.extent, [scale is not None for scale in scales], stamp)
+        with mpl.rc_context(LOOK):
+            self.figure = ShownFigure(figsize=self.place.size)
+            self.axes = [self._add(box) for box in self.place.panels]
+            for number, (ax, scale) in enumerate(zip(self.axes, scales, strict=True)):
+                section.draw(ax, self.view)
+                self._frame(ax, number, flows[0].axes)
+                if scale is not None:
+                    self._bar(self.place.bars[number], scale)
+            top = 1 - 0.06 / self.place.size[1]
+            self.stamp = self.figure.text(0.5, top, "", ha="center", va="top")
+        self.still = [set(ax.get_children()) for ax in self.axes]
+
+    def _frame(self, ax: Any, number: int, names: tuple[str, str]) -> None:
+        """Limits, labels at the left and lower edge of the figure, and a title among several."""
+        ax.set_xlim(self.view.low[0], self.view.high[0])
+        ax.set_ylim(self.view.low[1], self.view.high[1])
+        ax.set_aspect("equal")
+        box = self.place.panels[number]
+        for axis, room in (("x", box.width / 0.45), ("y", box.height / 0.3)):
+            ax.locator_params(axis=axis, nbins=min(6, max(1, int(room))), steps=[1, 2, 5, 10])
+        if number + self.place.columns >= len(self.panels):
+            ax.set_xlabel(labelled(f"${names[0]}$", "a"))
+        else:
+            ax.tick_params(labelbottom=False)
+        if number % self.place.columns == 0:
+            ax.set_ylabel(labelled(f"${names[1]}$", "a"))
+        else:
+            ax.tick_params(labelleft=False)
+        if len(self.panels) > 1:
+            title = f"({'abcd'[number]}) {self.panels[number].TITLE}"
+            ax.set_title(title, loc="left", fontsize=10)
+
+    def _add(self, box: Box) -> Any:
+        width, height = self.figure.get_size_inches()
+        return self.figure.add_axes(
+            (box.left / width, box.bottom / height, box.width / width, box.height / height)
+        )
+
+    def _bar(self, box: Box, scale: Scale) -> None:
+        ax = self._add(box)
+        if not self.place.flat:
+            self.figure.colorbar(scale.mappable(), cax=ax, label=scale.label)
+            ax.locator_params(nbins=6)
+            return
+        self.figure.colorbar(scale.mappable(), cax=ax, orientation="horizontal")
+        ax.xaxis.set_ticks_position("top")
+        ax.locator_params(nbins=5)
+        ax.tick_params(labelsize=8, pad=1, length=2)
+        ax.text(-0.03, 0.5, scale.label, transform=ax.transAxes, ha="right", va="center", size=9)
+
+    def show(self, flows: Sequence[Flow], stamp: str = "") -> None:
+        """Draw flows, one for each panel, in place of those before."""
+        self.stamp.set_text(stamp)
+        rows = zip(self.panels, self.axes, self.still, flows, self.reaches, strict=True)
+        with mpl.rc_context(LOOK):
+            for panel, ax, still, flow, reach in rows:
+                for artist in set(ax.get_children()) - still:
+                    artist.remove()
+                limits = ax.get_xlim(), ax.get_ylim()
+                panel.draw(ax, flow, self.region, reach)
+                ax.set(xlim=limits[0], ylim=limits[1])

@@ -1,0 +1,46 @@
+"""What a picture of the flow is drawn from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True)
+class Flow:
+    """Means over a time on a grid over two axes of the box, and particles at its end.
+
+    Parameters
+    ----------
+    axes: the two axes of the picture.
+    size: lengths of the box along them, in cells.
+    dimension: of the box.
+    periodic: whether the flow goes on unchanged beyond the end of each axis.
+    density: particles per cell (nx, ny), None if not known.
+    velocity: components along the two axes (nx, ny, 2), nan where there is no fluid, or None.
+    particles: positions (n, 2), or None.
+    """
+
+    axes: tuple[str, str]
+    size: tuple[float, float]
+    dimension: int
+    periodic: tuple[bool, bool] = (False, False)
+    density: Array | None = None
+    velocity: Array | None = None
+    particles: Array | None = None
+
+    @property
+    def speed(self) -> Array:
+        """Speed in the plane of the picture (nx, ny)."""
+        assert self.velocity is not None
+        return np.hypot(self.velocity[..., 0], self.velocity[..., 1])
+
+
+def spacing(flow: Flow, values: Array) -> tuple[float, float]:
+    """Lengths of a bin of `values` (nx, ny) along the two axes."""
+    return flow.size[0] / values.shape[0], flow.size[1] / values.shape[1]

@@ -1,0 +1,134 @@
+"""Films of the flow: one picture after another, with the same colours in all."""
+
+from __future__ import annotations
+
+import base64
+import numbers
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.component import show
+from mesokit.errors import CaseError
+from mesokit.io.atomic import replacing
+from mesokit.progress import FilmReporter, Reporter
+from mesokit.report.flow.encode import ENCODERS, Pixels
+from mesokit.report.flow.kinds import panels_of
+from mesokit.report.flow.region import Ranges, frames_in, region_of
+from mesokit.report.flow.solids import Section
+from mesokit.report.flow.source import Source, choose_one, sources
+from mesokit.report.style import symbols
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+    from mesokit.io.open import TrajectoryReader
+    from mesokit.observe.result import Result
+    from mesokit.report.flow.canvas import Canvas
+
+SCALED = 24  # frames that the colours are chosen from
+DPI = {".mp4": 160, ".gif": 100}
+FASTEST = 100.0  # frames per second
+
+
+@dataclass(frozen=True)
+class Film:
+    """A film that was written: its file, its frames, and how many of them are shown per second."""
+
+    path: Path
+    frames: int
+    fps: float
+
+    def __fspath__(self) -> str:
+        return os.fspath(self.path)
+
+    def _repr_html_(self) -> str:
+        """What a notebook asks for: the film itself."""
+        data = base64.b64encode(self.path.read_bytes()).decode()
+        if self.path.suffix.lower() == ".gif":
+            return f'<img src="data:image/gif;base64,{data}">'
+        return f'<video controls loop src="data:video/mp4;base64,{data}"></video>'
+
+
+def animate(
+    case: Case,
+    results: Mapping[str, Result],
+    trajectory: TrajectoryReader | None,
+    path: str | Path,
+    kind: str = "speed",
+    region: Ranges | None = None,
+    window: tuple[float, float] | None = None,
+    axes: tuple[str, str] | None = None,
+    at: float | None = None,
+    fps: float = 15.0,
+    progress: Reporter | None = None,
+) -> Film:
+    """Write a film with a picture for each frame of the observable flow-frames, or a trajectory.
+
+    Parameters
+    ----------
+    case, results, trajectory: of the run.
+    path: the file, which ends in .mp4 or .gif.
+    kind, region, window, axes, at: as for `picture`.
+    fps: frames shown per second.
+    progress: what tells how it goes (nothing does unless said).
+
+    Raises CaseError for an ending or a choice that there is not, RunError where the run kept no
+    frames or the file cannot be written. Whatever goes wrong, an old file stays as it was.
+
+    >>> import tempfile
+    >>> from mesokit import Box, FlowFrames, Run, Simulation
+    >>> simulation = Simulation(run=Run(steps=40), box=Box([8, 8]), observe=[FlowFrames(window=20)])
+    >>> simulation.run()
+    >>> simulation.animate(Path(tempfile.mkdtemp()) / "film.gif", "quiver").frames
+    2
+    """
+    path = Path(path)
+    ending = path.suffix.lower()
+    if ending not in ENCODERS:
+        raise CaseError(f"output = {show(str(path))}: expected a name that ends in .mp4 or .gif")
+    if not isinstance(fps, numbers.Real) or not 0 < fps <= FASTEST:
+        raise CaseError(f"fps = {show(fps)}: expected a number above 0, at most {FASTEST:g}")
+    panels = panels_of(kind)
+    found = sources(case, results, trajectory, axes)
+    source = choose_one(found, {panel.NEEDS for panel in panels}, kind)
+    frames = frames_in(source.time, window)
+    whole = np.intersect1d(frames, source.whole)
+    frames = whole if len(whole) else frames
+    section = Section(case, source.axes, at)
+    first = source.flow(frames[:1])
+    shown = region_of(region, first.axes, first.size)
+    from mesokit.report.flow.canvas import Canvas
+
+    some = frames[np.unique(np.linspace(0, len(frames) - 1, SCALED).astype(int))]
+    flows = [source.flow(np.array([frame])) for frame in some]
+    reaches = [max(panel.reach(flow, shown) for flow in flows) for panel in panels]
+    drawn = Canvas(panels, [first] * len(panels), reaches, shown, section, stamp=True)
+    drawn.figure.set_dpi(DPI[ending])
+    progress = progress or FilmReporter(quiet=True)
+    progress.start(len(frames), case.particles, "drawing")
+    try:
+        with replacing(path) as temporary:
+            temporary.touch()  # a folder that cannot be written to says so before long work
+            ENCODERS[ending](temporary, _pictures(drawn, source, frames, progress), float(fps))
+    finally:
+        progress.finish()
+    return Film(path, len(frames), float(fps))
+
+
+def _pictures(
+    drawn: Canvas, source: Source, frames: NDArray[np.int64], progress: Reporter
+) -> Iterator[Pixels]:
+    """The pictures of a film, one by one."""
+    canvas: Any = drawn.figure.canvas
+    for done, frame in enumerate(frames, start=1):
+        flow = source.flow(np.array([frame]))
+        stamp = f"$t = {source.time[frame]:.4g}$ {symbols('tau')}"
+        drawn.show([flow] * len(drawn.panels), stamp)
+        canvas.draw()
+        yield np.asarray(canvas.buffer_rgba())[..., :3]
+        progress.update(done)

@@ -1,0 +1,50 @@
+"""The kinds of pictures. A new one is a file here and a name in `KINDS`."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+from mesokit.component import nearest, one_of, show
+from mesokit.errors import CaseError
+from mesokit.report.flow import density, particles, quiver, speed, streamlines, vorticity
+from mesokit.report.flow.data import Flow
+from mesokit.report.flow.region import Region
+from mesokit.report.flow.scale import Scale
+
+
+class Panel(Protocol):
+    """How one panel is drawn: a module.
+
+    NEEDS: "velocity", "density" or "particles"; TITLE: its name where several are side by side.
+    """
+
+    NEEDS: str
+    TITLE: str
+
+    def reach(self, flow: Flow, region: Region) -> float:
+        """The largest number shown, so that all pictures of a film can have the same scale."""
+
+    def scale(self, flow: Flow, reach: float) -> Scale | None:
+        """Its colours, None without any."""
+
+    def draw(self, ax: Any, flow: Flow, region: Region, reach: float) -> None:
+        """Draw what changes from one picture of a film to the next."""
+
+
+KINDS: dict[str, tuple[Panel, ...]] = {
+    "quiver": (quiver,),
+    "streamlines": (streamlines,),
+    "particles": (particles,),
+    "density": (density,),
+    "speed": (speed,),
+    "vorticity": (vorticity,),
+    "four": (quiver, streamlines, particles, density),
+}
+
+
+def panels_of(kind: str) -> tuple[Panel, ...]:
+    """The panels of a kind of picture. Raises CaseError for an unknown one."""
+    if kind not in KINDS:
+        known = list(KINDS)
+        raise CaseError(f"kind = {show(kind)}: expected {one_of(known)}{nearest(str(kind), known)}")
+    return KINDS[kind]

@@ -1,0 +1,93 @@
+"""Velocity as arrows, with one of a known length above the picture."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from mesokit.report.flow.data import Array, Flow, spacing
+from mesokit.report.flow.layout import KEY_BESIDE
+from mesokit.report.flow.region import Region
+from mesokit.report.flow.scale import reach_of
+from mesokit.report.style import symbols
+
+NEEDS = "velocity"
+TITLE = "velocity"
+ARROWS, FEWEST = 32, 8  # at most along the longer side, and about at least along the shorter
+THICK, THICKEST = 0.07, 0.013  # of the distance between arrows; inches
+
+
+def arrows(flow: Flow, region: Region) -> tuple[Array, Array, Array]:
+    """Places x (nx,) and y (ny,) of the arrows and velocities (nx, ny, 2).
+
+    Each arrow is the mean over some bins, as many as leave at most ARROWS along the longer side.
+    """
+    velocity = flow.velocity
+    assert velocity is not None
+    (first, side, nx), (below, height, ny) = (
+        _blocks(bins, ARROWS * length / max(region.extent))
+        for bins, length in zip(region.bins(flow.size, velocity.shape), region.extent, strict=True)
+    )
+    used = velocity[first : first + side * nx, below : below + height * ny]
+    used = used.reshape(nx, side, ny, height, 2)
+    filled = np.isfinite(used)
+    with np.errstate(invalid="ignore"):
+        mean = np.where(filled, used, 0.0).sum(axis=(1, 3)) / filled.sum(axis=(1, 3))
+    dx, dy = spacing(flow, velocity)
+    x = (first + side * (np.arange(nx) + 0.5)) * dx
+    y = (below + height * (np.arange(ny) + 0.5)) * dy
+    return x, y, mean
+
+
+def _blocks(bins: slice, wanted: float) -> tuple[int, int, int]:
+    """First bin, bins of each arrow, and arrows; what is left over goes to both ends."""
+    number = bins.stop - bins.start
+    side = min(math.ceil(number / max(wanted, FEWEST)), number)
+    count = number // side
+    return bins.start + (number - count * side) // 2, side, count
+
+
+def reach(flow: Flow, region: Region) -> float:
+    """The length of the longest arrow."""
+    mean = arrows(flow, region)[2]
+    return reach_of(np.hypot(mean[..., 0], mean[..., 1]))
+
+
+def scale(flow: Flow, reach: float) -> None:
+    """No colours."""
+
+
+def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
+    """Draw it: the longest arrow ends where the next one starts."""
+    x, y, velocity = arrows(flow, region)
+    number, (width, height) = max(len(x), len(y)), _inches(ax)
+    thick = min(THICKEST, THICK * max(width, height) / number)
+    drawn = ax.quiver(
+        x, y, velocity[..., 0].T, velocity[..., 1].T, angles="xy", scale_units="xy",
+        scale=reach * number / max(region.extent), pivot="mid", color="black", units="inches",
+        width=thick, headwidth=4.5, headlength=5, headaxislength=4.5, minlength=0.5,
+    )  # fmt: skip
+    known = _round(reach)
+    above = 0.14 if width > KEY_BESIDE else 0.36
+    ax.quiverkey(
+        drawn, 0.97, 1 + above / height, known, f"{known:g} {symbols('a/tau')}", labelpos="W",
+        labelsep=0.08, fontproperties={"size": 9}, coordinates="axes",
+    )  # fmt: skip
+
+
+def _inches(ax: Any) -> tuple[float, float]:
+    """Width and height of the axes."""
+    width, height = ax.figure.get_size_inches()
+    return float(ax.get_position().width * width), float(ax.get_position().height * height)
+
+
+def _round(value: float) -> float:
+    """The largest of 1, 2 and 5 times a power of ten that is not above the value.
+
+    >>> _round(0.37), _round(0.06)
+    (0.2, 0.05)
+    """
+    power = 10.0 ** math.floor(math.log10(value))
+    return float(f"{next(f for f in (5, 2, 1) if f * power <= value * (1 + 1e-9)) * power:.0e}")

@@ -1,0 +1,101 @@
+"""The solids of a case, drawn over a picture as a section through them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mesokit.box import AXES
+from mesokit.component import show
+from mesokit.errors import CaseError
+from mesokit.report.flow.data import Array
+from mesokit.report.flow.region import Region
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+    from mesokit.solids import Solids
+
+POINTS = 600  # along the longer side of a picture
+BEYOND = 0.02, 0.08  # of the longer and the shorter side: the strip of a plate that is shown
+FILL, EDGE, HATCH = "0.85", "black", "////"
+
+
+def solids_of(case: Case) -> Solids | None:
+    """What says where the solids of a case are, None without any."""
+    from mesokit import solids
+
+    return solids.solids_of(case) if case.walls else None
+
+
+class Section:
+    """The plane of a picture: two axes of the box, and a place `at` along the third.
+
+    Raises CaseError for a place that the box has not.
+    """
+
+    def __init__(self, case: Case, axes: tuple[str, str], at: float | None = None) -> None:
+        self.case, self.solids = case, solids_of(case)
+        self.columns = [case.box.axes.index(axis) for axis in axes]
+        self.third = next((k for k in range(case.box.dimension) if k not in self.columns), None)
+        if self.third is None:
+            if at is not None:
+                raise CaseError(f"at = {show(at)}: a 2D box has no third axis; leave it out")
+            return
+        length = case.box.size[self.third]
+        self.at = length / 2 if at is None else at
+        if not 0 <= self.at <= length:
+            raise CaseError(
+                f"at = {show(at)}: expected a place along {AXES[self.third]}, from 0 to {length}"
+            )
+
+    def distance(self, x: Array, y: Array) -> Array:
+        """Signed distance from the nearest surface at points of the plane, negative in a solid."""
+        assert self.solids is not None
+        points = np.zeros((x.size, self.case.box.dimension))
+        points[:, self.columns] = np.stack([x.ravel(), y.ravel()], axis=1)
+        if self.third is not None:
+            points[:, self.third] = self.at
+        return np.asarray(self.solids.distance(points)).reshape(x.shape)
+
+    def closed(self) -> tuple[bool, bool]:
+        """Whether a solid closes the box along each axis: there is nothing else beyond its end."""
+        return self._closed(0), self._closed(1)
+
+    def _closed(self, axis: int) -> bool:
+        if self.solids is None:
+            return False
+        length = self.case.box.size[self.columns[1 - axis]]
+        along = np.linspace(0, length, 2 * length + 1)
+        beyond = np.full_like(along, -0.25)
+        x, y = (beyond, along) if axis == 0 else (along, beyond)
+        return bool((self.distance(x, y) < 0).all())
+
+    def view(self, region: Region) -> Region:
+        """The region, and a strip of each plate that it touches."""
+        strip = min(BEYOND[0] * max(region.extent), BEYOND[1] * min(region.extent))
+        low, high = list(region.low), list(region.high)
+        for axis, closed in enumerate(self.closed()):
+            if closed and low[axis] == 0:
+                low[axis] -= strip
+            if closed and high[axis] == self.case.box.size[self.columns[axis]]:
+                high[axis] += strip
+        return Region((low[0], low[1]), (high[0], high[1]))
+
+    def draw(self, ax: Any, view: Region) -> None:
+        """Fill and outline what is solid in the view."""
+        if self.solids is None:
+            return
+        step = max(view.extent) / POINTS
+        x, y = (
+            np.linspace(a, b, max(2, round((b - a) / step) + 1))
+            for a, b in zip(view.low, view.high, strict=True)
+        )
+        distance = self.distance(*np.meshgrid(x, y))
+        if not (distance < 0).any():
+            return
+        filled = ax.contourf(x, y, distance, [-np.inf, 0], colors=[FILL], hatches=[HATCH], zorder=4)
+        filled.set_edgecolor("0.55")
+        filled.set_linewidth(0)
+        if (distance > 0).any():
+            ax.contour(x, y, distance, [0], colors=EDGE, linewidths=1.2, zorder=5)

@@ -1,0 +1,113 @@
+"""Where the numbers of a picture come from, among all that a run has kept."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.component import show
+from mesokit.errors import CaseError, RunError
+from mesokit.report.flow.data import Flow
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+    from mesokit.io.open import TrajectoryReader
+    from mesokit.observe.result import Result
+
+Axes = tuple[str, str]
+WORDS = {"velocity": "velocities", "density": "densities", "particles": "positions of particles"}
+FRAMES = '[[observe]] quantity = "flow-frames"'
+REMEDY = {
+    "velocity": FRAMES,
+    "density": FRAMES,
+    "particles": f"{FRAMES} with particles > 0, or [trajectory]",
+}
+
+
+class Source(Protocol):
+    """Something that a run has kept and pictures can be drawn from.
+
+    gives: which of "velocity", "density" and "particles" it knows.
+    time: of its frames; empty if it only knows the mean over the run.
+    whole: the frames that average over as long a time as any.
+    """
+
+    axes: Axes
+    gives: frozenset[str]
+    time: NDArray[Any]
+    whole: NDArray[np.int64]
+
+    def flow(self, frames: NDArray[np.int64]) -> Flow:
+        """Means over some frames, and particles as they are in the last of them."""
+
+
+def sources(
+    case: Case,
+    results: Mapping[str, Result],
+    trajectory: TrajectoryReader | None,
+    axes: Axes | None = None,
+) -> list[Source]:
+    """What there is to draw over two axes (those of the first map unless said), best first.
+
+    Raises CaseError for axes that the box has not, or of which no map was kept.
+    """
+    from mesokit.report.flow.field_source import FieldSource
+    from mesokit.report.flow.frame_source import FrameSource
+    from mesokit.report.flow.trajectory_source import TrajectorySource
+
+    kept = [result for result in results.values() if result.samples]
+    found: list[Source] = []
+    found += [FrameSource(case, r) for r in kept if r.quantity == "flow-frames"]
+    found += [FieldSource(case, r) for r in kept if r.quantity == "velocity-field"]
+    found += [FieldSource(case, r) for r in kept if r.quantity == "density-field"]
+    _check(case, axes)
+    chosen = axes or (found[0].axes if found else ("x", "y"))
+    found = [source for source in found if source.axes == chosen]
+    if trajectory is not None and "position" in trajectory.fields and len(trajectory):
+        found.append(TrajectorySource(case, trajectory, chosen))
+    return found
+
+
+def _check(case: Case, axes: Axes | None) -> None:
+    if axes is None:
+        return
+    known = case.box.axes
+    if len(axes) != 2 or axes[0] == axes[1] or not set(axes) <= set(known):
+        raise CaseError(f"axes = {show(axes)}: expected two of {', '.join(known)}")
+
+
+def choose(found: Sequence[Source], needs: str, kind: str, in_time: bool) -> Source:
+    """The first source that knows what a panel needs, `in_time` one with frames.
+
+    Raises RunError that says what to add to the case.
+    """
+    fitting = [source for source in found if needs in source.gives]
+    timed = [source for source in fitting if len(source.time)]
+    if in_time and timed:
+        return timed[0]
+    if fitting and not in_time:
+        return fitting[0]
+    kept = "only their mean over the whole run" if fitting else "none of them"
+    raise RunError(
+        f"kind = {show(kind)}: it needs {WORDS[needs]}{' in time' * in_time}, and the run kept "
+        f"{kept}; add to the case and run it again: {REMEDY[needs]}"
+    )
+
+
+def choose_one(found: Sequence[Source], needs: set[str], kind: str) -> Source:
+    """The first source with frames that knows all that the panels of a film need.
+
+    Raises RunError that says what to add to the case.
+    """
+    for source in found:
+        if needs <= source.gives and len(source.time):
+            return source
+    for need in sorted(needs):
+        choose(found, need, kind, in_time=True)
+    raise RunError(
+        f"kind = {show(kind)}: its panels need frames at the same times; "
+        f"add to the case and run it again: {FRAMES} with particles > 0"
+    )

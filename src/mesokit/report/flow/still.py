@@ -1,0 +1,61 @@
+"""One picture of the flow."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from mesokit.report.flow.kinds import panels_of
+from mesokit.report.flow.region import Ranges, frames_in, region_of
+from mesokit.report.flow.solids import Section
+from mesokit.report.flow.source import choose, sources
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+    from mesokit.io.open import TrajectoryReader
+    from mesokit.observe.result import Result
+
+
+def picture(
+    case: Case,
+    results: Mapping[str, Result],
+    trajectory: TrajectoryReader | None = None,
+    kind: str = "four",
+    region: Ranges | None = None,
+    window: tuple[float, float] | None = None,
+    axes: tuple[str, str] | None = None,
+    at: float | None = None,
+) -> Any:
+    """A Matplotlib figure of the flow, averaged over a time.
+
+    Parameters
+    ----------
+    case, results, trajectory: of the run.
+    kind: "quiver", "streamlines", "particles", "density", "speed", "vorticity" or "four".
+    region: ((x0, x1), (y0, y1)) in cells, the whole box unless said.
+    window: (t0, t1), the times averaged over, all unless said.
+    axes: of the picture in 3D, those of the first map unless said; it averages along the third.
+    at: where along the third axis solids are shown, in the middle unless said.
+
+    Raises CaseError for a kind, region, window, axes or place that there is not, RunError where
+    the run kept nothing to draw.
+
+    >>> from mesokit import Box, FlowFrames, Run, Simulation
+    >>> simulation = Simulation(run=Run(steps=40), box=Box([8, 8]), observe=[FlowFrames(window=20)])
+    >>> simulation.run()
+    >>> figure = picture(simulation.case, simulation.results, kind="speed", region=((0, 4), (0, 8)))
+    >>> len(figure.axes)  # the panel and its colour bar
+    2
+    """
+    panels = panels_of(kind)
+    found = sources(case, results, trajectory, axes)
+    chosen = [choose(found, panel.NEEDS, kind, window is not None) for panel in panels]
+    section = Section(case, chosen[0].axes, at)
+    flows = [source.flow(frames_in(source.time, window)) for source in chosen]
+    shown = region_of(region, flows[0].axes, flows[0].size)
+    from mesokit.report.flow.canvas import Canvas
+
+    reaches = [panel.reach(flow, shown) for panel, flow in zip(panels, flows, strict=True)]
+    drawn = Canvas(panels, flows, reaches, shown, section)
+    drawn.show(flows)
+    return drawn.figure

@@ -1,0 +1,53 @@
+"""Pictures from the particles of a trajectory, in bins of one cell."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.report.flow.data import Flow
+from mesokit.report.flow.setting import Setting
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+    from mesokit.io.open import TrajectoryReader
+
+
+class TrajectorySource:
+    """The frames of a trajectory; its density is known if it holds all particles."""
+
+    def __init__(self, case: Case, reader: TrajectoryReader, axes: tuple[str, str]) -> None:
+        self.reader, self.axes, self.time = reader, axes, reader.time
+        self.setting = Setting.of(case, axes)
+        self.whole = np.arange(len(reader))
+        known = {"particles"}
+        if "velocity" in reader.fields:
+            known.add("velocity")
+        if len(reader.id) == case.particles:
+            known.add("density")
+        self.gives = frozenset(known)
+        self.bins = tuple(int(length) for length in self.setting.size)
+        self.bin_volume = case.box.volume / np.prod(self.bins)
+
+    def flow(self, frames: NDArray[np.int64]) -> Flow:
+        """Means over some frames: momentum over mass."""
+        columns, mass = self.setting.columns, self.reader.mass
+        sums = np.zeros((4, *self.bins))  # number, mass, momentum
+        for frame in frames:
+            read = self.reader[int(frame)]
+            place = read["position"][:, columns]
+            velocity = read["velocity"][:, columns] if "velocity" in read else 0 * place
+            bins = np.minimum(place.astype(int), np.array(self.bins) - 1)
+            index = np.ravel_multi_index((bins[:, 0], bins[:, 1]), self.bins)
+            each = (np.ones_like(mass), mass, mass * velocity[:, 0], mass * velocity[:, 1])
+            for total, weight in zip(sums, each, strict=True):
+                total += np.bincount(index, weight, total.size).reshape(self.bins)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mean = np.moveaxis(sums[2:] / sums[1], 0, -1)
+        return self.setting.flow(
+            density=sums[0] / (len(frames) * self.bin_volume) if "density" in self.gives else None,
+            velocity=mean if "velocity" in self.gives else None,
+            particles=place,
+        )

@@ -1,0 +1,23 @@
+"""Figures that a notebook shows. Import it where a figure is made: it loads Matplotlib."""
+
+from __future__ import annotations
+
+import io
+from typing import Any
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+
+class ShownFigure(Figure):
+    """A figure made without pyplot, which draws itself where a notebook asks for a picture."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        FigureCanvasAgg(self)
+
+    def _repr_png_(self) -> bytes:
+        """What a notebook asks for."""
+        data = io.BytesIO()
+        self.savefig(data, format="png", dpi=120)
+        return data.getvalue()
