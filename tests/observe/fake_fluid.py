@@ -6,18 +6,47 @@ from collections.abc import Callable
 
 import numpy as np
 
+from mesokit.errors import CaseError
+from mesokit.geometry import Disk, Plates, Sphere
+from mesokit.solids import solids_of
+
+
+def case_for(observable, make_case, size, **fluid):
+    """A case in which it can be measured: without walls, in a slit, or about a body."""
+    middle = [length / 2 for length in size]
+    body = Disk(centre=middle, radius=1) if len(size) == 2 else Sphere(centre=middle, radius=1)
+    for walls in ((), (Plates(axis="y"),), (body,)):
+        try:
+            return make_case(size, [observable], walls=walls, **fluid)
+        except CaseError as error:
+            refused = error
+    raise refused
+
+
+def taken(case, rng):
+    """Noise for what the surfaces take: momentum and angular momentum of each."""
+    columns = 3 if case.box.dimension == 2 else 6
+    return rng.normal(size=(len(solids_of(case).bodies) if case.walls else 2, columns))
+
 
 class FakeFluid:
-    """Independent particles, thermal about a given flow; velocities keep a share each step."""
+    """Independent particles, thermal about a given flow; velocities keep a share each step.
 
-    def __init__(self, case, seed=1, flow: Callable | None = None, kept=0.0, density=None):
+    `flow` is v_x(y), or with `field` the velocity (n, d) at places (n, d). Particles stay out of
+    the solids of the case if there is a `field`.
+    """
+
+    def __init__(
+        self, case, seed=1, flow: Callable | None = None, kept=0.0, density=None, field=None
+    ):
         self.case, self.rng, self.flow, self.kept = case, np.random.default_rng(seed), flow, kept
+        self.field = field
         self.box = np.array(case.box.size, float)
         self.dimension, self.n = len(self.box), case.particles
         self.step, self.timestep = 0, case.fluid.timestep
         self.m = np.full(self.n, case.fluid.mass)
         self.thermal = self._noise()
-        self.unwrapped = self.rng.random((self.n, self.dimension)) * self.box
+        self.unwrapped = self._places()
         self.density = density  # along y, drawn by rejection at every step
         self.stress = {}
         self.on_walls, self.wall_steps = np.zeros((2, self.dimension)), 0
@@ -36,6 +65,14 @@ class FakeFluid:
     def time(self):
         return self.step * self.timestep
 
+    def _places(self):
+        places = self.rng.random((2 * self.n, self.dimension)) * self.box
+        if self.field is not None and self.case.walls:
+            places = places[solids_of(self.case).distance(places) > 0]
+            while len(places) < self.n:
+                places = np.concatenate([places, places[: self.n // 2]])
+        return places[: self.n]
+
     def _noise(self):
         scale = np.sqrt(self.case.fluid.kT / self.m)[:, None]
         return scale * self.rng.normal(size=(self.n, self.dimension))
@@ -50,7 +87,7 @@ class FakeFluid:
     def jump(self, steps=1):
         """Forget everything: a new equilibrium state."""
         self.thermal = self._noise()
-        self.unwrapped = self.rng.random((self.n, self.dimension)) * self.box
+        self.unwrapped = self._places()
         self.step += steps
 
     def positions(self, ids=None, unwrapped=False):
@@ -63,6 +100,8 @@ class FakeFluid:
 
     def velocities(self, ids=None):
         v = self.thermal.copy()
+        if self.field is not None:
+            v += self.field(self.positions())
         if self.flow is not None:
             v[:, 0] += self.flow(self.positions()[:, 1])
         return v if ids is None else v[ids]

@@ -4,22 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid
+from fake_fluid import FakeFluid, case_for, taken
 
-from mesokit.errors import CaseError
-from mesokit.geometry import Plates
 from mesokit.mpcd.collision import AT
 from mesokit.mpcd.species import Species
 from mesokit.observe import OBSERVABLES
 from mesokit.observe.result import with_error
-
-
-def setting_for(observable, make_case, size, **fluid):
-    """A case in which it can be measured."""
-    try:
-        return make_case(size, [observable], **fluid)
-    except CaseError:
-        return make_case(size, [observable], walls=[Plates(axis="y")], **fluid)
 
 
 def sampled(accumulator, fluid, samples, rng):
@@ -27,7 +17,7 @@ def sampled(accumulator, fluid, samples, rng):
         fluid.advance(10)
         d = fluid.dimension
         fluid.stress = {n: rng.normal(size=(d, d)) for n in ("kinetic", "collisional")}
-        fluid.wall_impulse, fluid.wall_steps = rng.normal(size=(2, d)), 10
+        fluid.wall_impulse, fluid.wall_steps = taken(fluid.case, rng), 10
         accumulator.observe(fluid)
 
 
@@ -35,7 +25,7 @@ def sampled(accumulator, fluid, samples, rng):
 @pytest.mark.parametrize("kind", OBSERVABLES)
 def test_same_bits_after_a_stop(kind, size, make_case):
     observable = kind()
-    case = setting_for(observable, make_case, size)
+    case = case_for(observable, make_case, size)
     whole, first, second = (observable.accumulator(case) for _ in range(3))
     fluid, rng = FakeFluid(case), np.random.default_rng(1)
     twin, twin_rng = FakeFluid(case), np.random.default_rng(1)
@@ -56,7 +46,7 @@ def test_same_bits_after_a_stop(kind, size, make_case):
 @pytest.mark.parametrize("samples", [0, 1, 2, 5])
 def test_short_runs_have_results(kind, samples, make_case):
     observable = kind(name="mine")
-    case = setting_for(observable, make_case, (6, 6))
+    case = case_for(observable, make_case, (6, 6))
     accumulator = observable.accumulator(case)
     sampled(accumulator, FakeFluid(case), samples, np.random.default_rng(1))
     result = accumulator.result()
@@ -70,7 +60,7 @@ def test_short_runs_have_results(kind, samples, make_case):
 )
 def test_other_fluids(kind, fluid, make_case):
     observable = kind()
-    case = setting_for(observable, make_case, (6, 6, 6), **fluid)
+    case = case_for(observable, make_case, (6, 6, 6), **fluid)
     accumulator = observable.accumulator(case)
     sampled(accumulator, FakeFluid(case), 8, np.random.default_rng(1))
     assert accumulator.result().label

@@ -6,27 +6,23 @@ import io
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid
+from fake_fluid import FakeFluid, case_for, taken
 from rich.console import Console
 
-from mesokit.errors import CaseError, RunError
-from mesokit.geometry import Plates
+from mesokit.errors import RunError
 from mesokit.observe import OBSERVABLES, Comparison, Result
 from mesokit.report import plot, print_comparisons, save, save_all
 
 
 def result_of(kind, make_case, samples):
     observable = kind()
-    try:
-        case = make_case((4, 6, 4), observe=[observable])
-    except CaseError:
-        case = make_case((4, 6, 4), observe=[observable], walls=[Plates(axis="y")])
+    case = case_for(observable, make_case, (4, 6, 4))
     accumulator, fluid = observable.accumulator(case), FakeFluid(case)
     rng = np.random.default_rng(1)
     for _ in range(samples):
         fluid.advance(observable.every)
         fluid.stress = {n: rng.normal(size=(3, 3)) for n in ("kinetic", "collisional")}
-        fluid.wall_impulse, fluid.wall_steps = rng.normal(size=(2, 3)), 10
+        fluid.wall_impulse, fluid.wall_steps = taken(case, rng), 10
         accumulator.observe(fluid)
     return accumulator.result()
 

@@ -8,6 +8,8 @@ from mesokit.observe.conservation import Conservation
 from mesokit.observe.density_field import DensityField
 from mesokit.observe.density_profile import DensityProfile
 from mesokit.observe.flow_frames import FlowFrames
+from mesokit.observe.flow_rate import FlowRate
+from mesokit.observe.forces import Forces
 from mesokit.observe.longitudinal_modes import LongitudinalModes
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
 from mesokit.observe.protocol import Accumulator, Observable, RunningFluid
@@ -34,6 +36,8 @@ AnyObservable = (
     | LongitudinalModes
     | WallStress
     | Stress
+    | Forces
+    | FlowRate
 )
 OBSERVABLES: tuple[type, ...] = get_args(AnyObservable)
 
@@ -46,6 +50,8 @@ __all__ = [
     "DensityField",
     "DensityProfile",
     "FlowFrames",
+    "FlowRate",
+    "Forces",
     "LongitudinalModes",
     "MeanSquareDisplacement",
     "Observable",

@@ -125,6 +125,12 @@ def acceleration(case: Case) -> Array:
     return np.zeros(case.box.dimension)
 
 
+def push_axis(case: Case) -> int | None:
+    """Number of the only axis along which a uniform force drives the fluid, None for another."""
+    axes = np.flatnonzero(acceleration(case))
+    return int(axes[0]) if len(axes) == 1 else None
+
+
 def with_start(case: Case, error: float, expected: float) -> float:
     """The error of a number proportional to kT, in a fluid that keeps the energy it started with.
 

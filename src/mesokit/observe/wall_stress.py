@@ -15,6 +15,7 @@ from mesokit.observe import setting
 from mesokit.observe.estimate import of_mean
 from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
+from mesokit.observe.walls import require_counted
 from mesokit.solids import slit_of
 from mesokit.statistics import Blocks
 
@@ -39,10 +40,7 @@ class WallStress(Observable):
                 "wall-stress needs one [[wall]] of shape 'plates', and no other; "
                 "for other walls observe 'forces'"
             )
-        if any(wall.virtual == "top-up" for wall in case.walls):
-            raise CaseError("wall-stress is not counted with virtual = 'top-up'; use 'extrapolate'")
-        if sum(other.quantity == self.quantity for other in case.observe) > 1:
-            raise CaseError("expected one wall-stress: it measures both plates, every component")
+        require_counted(case, self.quantity)
 
     def accumulator(self, case: Case) -> WallStressAccumulator:
         """An empty memory for it."""
@@ -55,9 +53,8 @@ class WallStressAccumulator:
     def __init__(self, observable: WallStress, case: Case) -> None:
         observable.check(case)
         self.case, self.name = case, observable.label
-        plates = slit_of(case)
-        assert plates is not None
-        self.plates, self.axis = plates, AXES.index(plates.axis)
+        plates: Any = case.walls[0]
+        self.axis = AXES.index(plates.axis)
         self.area = np.prod(case.box.size) / case.box.size[self.axis]
         self.blocks = Blocks((2, case.box.dimension))
 
@@ -95,41 +92,8 @@ class WallStressAccumulator:
         )
 
     def expected(self) -> Array:
-        """(2, d): the force on the fluid, shared by the sticky plates, Couette drag, pressure."""
-        case, d = self.case, self.case.box.dimension
-        wall, push = self.plates, setting.acceleration(case)
-        height, rho = float(case.box.size[self.axis]), setting.mass_density(case)
-        sticky = np.array([s.rule == "no-slip" for s in (wall.lower, wall.upper)], float)
-        coefficients = setting.transport(case)
-        expected = np.zeros((2, d))
-        for axis in range(d):
-            if axis == self.axis:
-                expected[:, axis] = self.pressure(push[axis], height)
-                continue
-            if sticky.any():
-                expected[:, axis] = rho * push[axis] * height * sticky / sticky.sum()
-            lower, upper = (setting.surface_velocity(s, axis) for s in (wall.lower, wall.upper))
-            if sticky.all() and upper != lower:
-                eta = coefficients.dynamic_viscosity if coefficients else np.nan
-                drag = eta * (upper - lower) / height
-                expected[:, axis] += np.array([drag, -drag])
-        if case.fluid.force.rule == "sinusoidal" or case.box.shear_rate:
-            expected[:, [axis for axis in range(d) if axis != self.axis]] = np.nan
-        return expected
-
-    def pressure(self, weight: float, height: float) -> tuple[float, float]:
-        """Ideal gas, heavier at the bottom under a force towards a plate; nan where it heats."""
-        case = self.case
-        density, kT = case.fluid.density, case.fluid.kT
-        if not setting.isothermal(case) and setting.driven(case):
-            return np.nan, np.nan
-        if weight == 0:
-            return -density * kT, density * kT
-        if len({kind.mass for kind in case.fluid.species}) > 1:
-            return np.nan, np.nan
-        lost = setting.mass_density(case) * weight * height  # between the plates
-        upper = lost / -np.expm1(-case.fluid.mass * weight * height / kT)
-        return lost - upper, upper
+        """(2, d): see `balance`."""
+        return balance(self.case)
 
     def comparisons(self, expected: Array) -> list[Comparison]:
         """Each plate where the fluid pushes it, and the balance of both."""
@@ -166,3 +130,43 @@ class WallStressAccumulator:
                     )
                 )
         return found
+
+
+def balance(case: Case) -> Array:
+    """Force per area on both plates of a slit, (2, d): the force on the fluid, shared by the sticky
+    plates, Couette drag, pressure."""
+    wall: Any = case.walls[0]
+    push, d = setting.acceleration(case), case.box.dimension
+    across = AXES.index(wall.axis)
+    height, rho = float(case.box.size[across]), setting.mass_density(case)
+    sticky = np.array([1.0 * (s.rule == "no-slip") for s in (wall.lower, wall.upper)])
+    coefficients = setting.transport(case)
+    expected = np.zeros((2, d))
+    for axis in range(d):
+        if axis == across:
+            expected[:, axis] = _pressure(case, push[axis], height)
+            continue
+        if sticky.any():
+            expected[:, axis] = rho * push[axis] * height * sticky / sticky.sum()
+        lower, upper = (setting.surface_velocity(s, axis) for s in (wall.lower, wall.upper))
+        if sticky.all() and upper != lower:
+            eta = coefficients.dynamic_viscosity if coefficients else np.nan
+            drag = eta * (upper - lower) / height
+            expected[:, axis] += np.array([drag, -drag])
+    if case.fluid.force.rule == "sinusoidal" or case.box.shear_rate:
+        expected[:, [axis for axis in range(d) if axis != across]] = np.nan
+    return expected
+
+
+def _pressure(case: Case, weight: float, height: float) -> tuple[float, float]:
+    """Ideal gas, heavier at the bottom under a force towards a plate; nan where it heats."""
+    density, kT = case.fluid.density, case.fluid.kT
+    if not setting.isothermal(case) and setting.driven(case):
+        return np.nan, np.nan
+    if weight == 0:
+        return -density * kT, density * kT
+    if len({kind.mass for kind in case.fluid.species}) > 1:
+        return np.nan, np.nan
+    lost = setting.mass_density(case) * weight * height  # between the plates
+    upper = lost / -np.expm1(-case.fluid.mass * weight * height / kT)
+    return lost - upper, upper

@@ -12,7 +12,7 @@ from typing import Any
 from mesokit.errors import RunError
 from mesokit.io.atomic import replacing
 from mesokit.observe.result import Result
-from mesokit.report import correlation, field, profile, series, tensor
+from mesokit.report import correlation, field, forces, profile, series, tensor
 from mesokit.report.style import HEIGHT, STYLE, WIDTH, below
 
 DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
@@ -29,6 +29,8 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "longitudinal-modes": correlation.draw_modes,
     "wall-stress": tensor.draw,
     "stress": tensor.draw,
+    "forces": forces.draw,
+    "flow-rate": series.draw_flow,
 }
 
 

@@ -40,6 +40,31 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     figure.align_ylabels()
 
 
+def draw_flow(result: Result, figure: Any, ax: Any) -> None:
+    """Mean velocity in time, its average with the error as a band, and the theory."""
+    ax = figure.subplots() if ax is None else ax
+    time, mean, error = result.x["time"], result.extra["mean"], result.extra["mean_error"]
+    ax.plot(time, result.value, color=COLOURS[0], lw=0.8, label="measured")
+    label = r"mean, $\pm$ one standard error" if np.isfinite(error) else "mean"
+    ax.axhline(mean, color=COLOURS[1], ls="--", lw=1.3, label=label)
+    if np.isfinite(error):
+        ax.axhspan(mean - error, mean + error, color=COLOURS[1], alpha=0.25, lw=0)
+    if result.expected is not None and len(time):
+        ax.axhline(
+            result.expected[0], color="black", lw=1.5, label=f"theory: {_pretty(result.theory)}"
+        )
+    ax.set_xlabel(labelled("time $t$", result.units["time"]))
+    ax.set_ylabel(labelled(f"mean velocity along ${result.extra['axis']}$", result.units["value"]))
+    if len(time) > 1:
+        ax.set_xlim(time[0], time[-1])
+    ax.legend(loc="best")
+
+
+def _pretty(theory: str) -> str:
+    names = {"hagen-poiseuille": "Hagen-Poiseuille", "poiseuille": "Poiseuille, no slip"}
+    return names.get(theory, theory)
+
+
 def _one(result: Result, ax: Any, index: int, label: str) -> None:
     value, expected = result.value[:, index], result.expected
     ax.plot(result.x["time"], value, color=COLOURS[0], lw=0.8, label="measured")

@@ -12,6 +12,7 @@ from mesokit.statistics.fit import (
 )
 from mesokit.statistics.multiple_tau import Correlation, MultipleTau
 from mesokit.statistics.ratio import ratio
+from mesokit.statistics.time_series import TimeSeries
 
 __all__ = [
     "Blocks",
@@ -19,6 +20,7 @@ __all__ = [
     "Correlation",
     "Fit",
     "MultipleTau",
+    "TimeSeries",
     "blocking_error",
     "chi_square",
     "deviation",

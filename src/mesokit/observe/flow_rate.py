@@ -1,0 +1,169 @@
+"""Volume flux through the box, and the permeability that it means."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.box import AXES, Axis
+from mesokit.component import component, param, tag
+from mesokit.observe import recognise, setting
+from mesokit.observe.estimate import Estimate, of_mean
+from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
+from mesokit.observe.result import Comparison, Result
+from mesokit.statistics import Blocks, TimeSeries
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+FLUX = {2: "a^2/tau", 3: "a^3/tau"}  # by dimension
+
+
+@component
+class FlowRate(Observable):
+    """Mean velocity along an axis over the whole box, solids included, and the flow rate.
+
+    The superficial velocity U is the momentum of the fluid over its density and the volume of the
+    box; the flow rate is U times the cross-section of the box. Where a uniform force drives the
+    fluid along that axis, the permeability is nu U/g with the viscosity of theory.
+    """
+
+    quantity: Literal["flow-rate"] = tag("flow-rate")
+    axis: Axis | None = param(None, doc="axis of the flow (that of the force unless said)")
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for an axis that the box has not."""
+        if self.axis is not None:
+            setting.axis_index(case, self.axis)
+
+    def seen(self, case: Case) -> int:
+        """Number of the axis in this case."""
+        if self.axis is not None:
+            return AXES.index(self.axis)
+        pushed = setting.push_axis(case)
+        if pushed is not None:
+            return pushed
+        flowing = setting.flowing_axes(case)
+        return AXES.index(flowing[0]) if len(flowing) == 1 else 0
+
+    def accumulator(self, case: Case) -> FlowRateAccumulator:
+        """An empty memory for it."""
+        return FlowRateAccumulator(self, case)
+
+
+class FlowRateAccumulator:
+    """The superficial velocity: its average, and a time series that shows whether it is steady."""
+
+    def __init__(self, observable: FlowRate, case: Case) -> None:
+        observable.check(case)
+        self.observable, self.case, self.name = observable, case, observable.label
+        self.axis = observable.seen(case)
+        self.mass = setting.mass_density(case) * float(np.prod(case.box.size))
+        self.blocks, self.series = Blocks(), TimeSeries(1)
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        velocity = fluid.totals()[1][self.axis] / self.mass
+        self.blocks.add(velocity)
+        self.series.add(fluid.time, [velocity])
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks, series=self.series)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        self.series = TimeSeries.from_state(unpack(state, "series"))
+
+    def result(self) -> Result:
+        """The velocity in time, whose points are no means of their own: the error is nan."""
+        time, value = self.series.time(), self.series.values()[:, 0]
+        known, theory_name = self.expected()
+        found = self.comparisons(known, theory_name) if self.blocks.count else []
+        return Result(
+            quantity="flow-rate",
+            name=self.name,
+            x={"time": time},
+            value=value,
+            error=np.full(value.shape, np.nan),
+            label=f"mean velocity along {AXES[self.axis]}",
+            units={"value": "a/tau", "time": "tau"},
+            expected=None if np.isnan(known) else np.full(value.shape, known),
+            theory=theory_name,
+            comparisons=tuple(found),
+            samples=self.blocks.count,
+            extra={
+                "mean": float(self.blocks.mean()),
+                "mean_error": float(self.blocks.error()),
+                "axis": AXES[self.axis],
+            },
+        )
+
+    def comparisons(self, known: float, name: str) -> list[Comparison]:
+        """Mean velocity, flow rate, permeability."""
+        mean: Estimate = of_mean(self.blocks)
+        speed, error = float(mean.value), float(mean.error)
+        size, letter = np.array(self.case.box.size, float), AXES[self.axis]
+        area = float(np.prod(size) / size[self.axis])
+        note = setting.caveat(self.case) or name
+        found = [
+            Comparison(f"mean velocity along {letter}", speed, error, known, "a/tau", note),
+            Comparison(
+                f"flow rate along {letter}",
+                area * speed,
+                area * error,
+                area * known,
+                FLUX[len(size)],
+                note,
+            ),
+        ]
+        push, coefficients = setting.acceleration(self.case), setting.transport(self.case)
+        if setting.push_axis(self.case) == self.axis and coefficients is not None:
+            scale = coefficients.viscosity / float(push[self.axis])
+            found.append(
+                Comparison(
+                    f"permeability along {letter}",
+                    scale * speed,
+                    abs(scale) * error,
+                    scale * known,
+                    "a^2",
+                    "; ".join(filter(None, [name, "viscosity of theory"])),
+                )
+            )
+        return found
+
+    def expected(self) -> tuple[float, str]:
+        """The superficial velocity and what says so; nan where nothing is known."""
+        case, coefficients = self.case, setting.transport(self.case)
+        push = float(setting.acceleration(case)[self.axis])
+        if not setting.obstructed(case):
+            flow = setting.flow(case, self.axis)
+            edges = np.linspace(0.0, case.box.size[flow.across], 65)
+            bins = flow.bins(flow.across, edges)
+            return (np.nan, "") if bins is None else (float(bins.mean()), flow.kind)
+        if not setting.driven(case):
+            return 0.0, "rest"
+        if coefficients is None or not push or setting.push_axis(case) != self.axis:
+            return np.nan, ""
+        viscosity, pipe, lattice = (
+            coefficients.viscosity, recognise.pipe(case), recognise.lattice(case),
+        )  # fmt: skip
+        if pipe is not None and pipe.axis == self.axis:
+            rate = theory.hagen_poiseuille_flow_rate(pipe.radius, push, viscosity)
+            area = np.prod(case.box.size) / case.box.size[self.axis]
+            return float(rate / area), "hagen-poiseuille"
+        if lattice is None or self.axis not in lattice.across:
+            return np.nan, ""
+        try:
+            if len(lattice.across) == 2:
+                k = theory.square_array_permeability(lattice.concentration, lattice.pitch)
+                return k * push / viscosity, "square array, slow flow"
+            k = theory.cubic_array_permeability(lattice.concentration, lattice.pitch)
+            return k * push / viscosity, "cubic array, slow flow"
+        except ValueError:  # denser than the theory goes
+            return np.nan, ""

@@ -1,0 +1,259 @@
+"""Force and torque of the fluid on each solid."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.box import AXES, Axis
+from mesokit.component import component, param, tag
+from mesokit.errors import CaseError
+from mesokit.observe import recognise, setting
+from mesokit.observe.estimate import Estimate, of_mean
+from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
+from mesokit.observe.result import Array, Comparison, Result, with_error
+from mesokit.observe.wall_stress import PLATES, balance
+from mesokit.observe.walls import require_counted
+from mesokit.solids import free_volume, slit_of, solids_of
+from mesokit.statistics import Blocks, TimeSeries
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+FORCE, TORQUE = "m a/tau^2", "m a^2/tau^2"
+NUMBERS = 2**20  # of the time series, for all bodies together
+MOST_ROWS = 4096
+NAMED = 8  # bodies with comparisons of their own
+
+
+@component
+class Forces(Observable):
+    """Force and torque of the fluid on each solid: momentum and angular momentum per time.
+
+    Torques are about the place about which the solid turns (2D: about z). With a `length` D there
+    are drag and lift coefficients 2F/(rho U^2 D) (3D: 2F/(rho U^2 area)) and the Reynolds number
+    U D/nu. U is `speed`, or else the superficial velocity along the flow as it is measured
+    (momentum over the density and the whole box): where a force drives the fluid nobody knows it
+    before.
+    """
+
+    quantity: Literal["forces"] = tag("forces")
+    measures: ClassVar[tuple[str, ...]] = ("walls",)
+    length: float | None = param(
+        None, doc="length D of the coefficients (none unless said)", unit="a", gt=0
+    )
+    speed: float | None = param(
+        None, doc="speed U of the coefficients (mean of the fluid unless said)", unit="a/tau", gt=0
+    )
+    area: float | None = param(
+        None, doc="area of the coefficients in 3D (length^2 unless said)", unit="a^2", gt=0
+    )
+    flow: Axis | None = param(
+        None, doc="axis of the drag (that of the force on the fluid unless said)"
+    )
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError without walls, or for coefficients of something else."""
+        if not case.walls:
+            raise CaseError("forces needs a [[wall]]")
+        require_counted(case, self.quantity)
+        if self.length is None:
+            for key in ("speed", "area", "flow"):
+                if getattr(self, key) is not None:
+                    raise CaseError(f"{key}: no effect without length; give the length")
+            return
+        if self.area is not None and case.box.dimension == 2:
+            raise CaseError("area: only in 3D; leave it out")
+        if self.flow is not None:
+            setting.axis_index(case, self.flow, "flow")
+        elif setting.push_axis(case) is None:
+            raise CaseError("flow: missing; no force along one axis says which is that of the drag")
+
+    def accumulator(self, case: Case) -> ForcesAccumulator:
+        """An empty memory for it."""
+        return ForcesAccumulator(self, case)
+
+
+class ForcesAccumulator:
+    """Mean force and torque since the sample before, and the fluid's momentum."""
+
+    def __init__(self, observable: Forces, case: Case) -> None:
+        observable.check(case)
+        self.observable, self.case, self.name = observable, case, observable.label
+        self.dimension = d = case.box.dimension
+        slit = slit_of(case)
+        self.bodies = list(PLATES) if slit else solids_of(case).names
+        turns = ("tz",) if d == 2 else ("tx", "ty", "tz")
+        self.components = (*(f"f{axis}" for axis in AXES[:d]), *turns)
+        self.shape = len(self.bodies), len(self.components)
+        size = len(self.bodies) * len(self.components)
+        self.blocks = Blocks((size + d,))
+        self.series = TimeSeries(size, min(MOST_ROWS, 2 * max(NUMBERS // size // 2, 1)))
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        steps = fluid.wall_steps  # before the impulse, whose reading starts the count anew
+        if steps:
+            taken = fluid.wall_impulse.ravel() / (steps * self.case.fluid.timestep)
+            self.blocks.add(np.concatenate([taken, fluid.totals()[1]]))
+            self.series.add(fluid.time - 0.5 * steps * self.case.fluid.timestep, taken)
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks, series=self.series)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        self.series = TimeSeries.from_state(unpack(state, "series"))
+
+    def result(self) -> Result:
+        """Every component on every solid; the time series is in `extra`."""
+        size, expected = int(np.prod(self.shape)), self.expected()
+        units = {name: FORCE if name[0] == "f" else TORQUE for name in self.components}
+        return Result(
+            quantity="forces",
+            name=self.name,
+            x={"body": np.array(self.bodies), "component": np.array(self.components)},
+            value=self.blocks.mean()[:size].reshape(self.shape),
+            error=self.blocks.error()[:size].reshape(self.shape),
+            label="force and torque on each solid",
+            units={"value": ""} | units,
+            expected=expected,
+            theory="momentum balance",
+            comparisons=tuple(self.comparisons(expected)) if self.blocks.count else (),
+            samples=self.blocks.count,
+            extra={
+                "time": self.series.time(),
+                "series": self.series.values().reshape(-1, *self.shape),
+            },
+        )
+
+    def obstacles(self) -> list[int]:
+        """Numbers of the bodies that stand in the flow: all but plates."""
+        solids = solids_of(self.case)
+        return [i for i, wall in enumerate(solids.walls) if self.case.walls[wall].shape != "plates"]
+
+    def total(self) -> Array:
+        """(d,): the force on the fluid, all of which the solids take in a steady flow."""
+        case = self.case
+        if case.fluid.force.rule == "sinusoidal":
+            rest = np.zeros(self.dimension)
+            rest[AXES.index(case.fluid.force.flow)] = np.nan
+            return rest
+        return setting.acceleration(case) * setting.mass_density(case) * free_volume(case)
+
+    def expected(self) -> Array:
+        """What a balance or a theory says of each solid, nan elsewhere."""
+        case, d = self.case, self.dimension
+        expected = np.full(self.shape, np.nan)
+        wall, gap = slit_of(case), recognise.gap(case)
+        if wall is not None:
+            area = np.prod(case.box.size) / case.box.size[AXES.index(wall.axis)]
+            expected[:, :d] = area * balance(case)
+            expected[:, d:] = 0.0
+        elif len(self.bodies) == 1:
+            expected[0, :d] = self.total()
+        elif gap is not None and case.fluid.force.rule == "none":
+            expected[:, :] = 0.0
+            torques = self.torques(gap)
+            column = d if d == 2 else d + gap.axis
+            expected[gap.inner_body, column], expected[gap.outer_body, column] = torques
+        return expected
+
+    def torques(self, gap: recognise.Gap) -> tuple[float, float]:
+        """On the inner and the outer of two round surfaces, nan without theory."""
+        coefficients = setting.transport(self.case)
+        if coefficients is None:
+            return np.nan, np.nan
+        rho = setting.mass_density(self.case)
+        one_sided = 0.0
+        if not self.case.fluid.collision.rule.endswith("+a"):
+            one_sided = rho * coefficients.viscosity_collisional
+        length = self.case.box.size[gap.axis] if self.dimension == 3 else 1.0
+        inner, outer = theory.taylor_couette_torque(
+            gap.inner, gap.outer, gap.inner_rate, gap.outer_rate, coefficients.dynamic_viscosity,
+            one_sided,
+        )  # fmt: skip
+        return length * inner, length * outer
+
+    def comparisons(self, expected: Array) -> list[Comparison]:
+        """The balance of all forces, shares and torques of the solids, and their coefficients."""
+        mean, total = of_mean(self.blocks), self.total()
+        force = np.arange(np.prod(self.shape)).reshape(self.shape)  # places of the components
+        found = []
+        few = len(self.bodies) <= NAMED
+        for axis in map(int, np.flatnonzero(setting.acceleration(self.case))):
+            every = np.zeros(mean.value.shape)
+            every[force[:, axis]] = 1.0
+            value, error = mean.scalar(every @ mean.value, every)
+            note = "the force on the fluid; steady flow"
+            what = f"force on all solids along {AXES[axis]}"
+            found.append(Comparison(what, value, error, float(total[axis]), FORCE, note))
+            if few and len(self.bodies) > 1:
+                found += self.shares(mean, force[:, axis], axis, expected)
+        for body, column in np.argwhere(expected[:, self.dimension :] != 0) if few else ():
+            place = body, self.dimension + column
+            if np.isfinite(expected[place]):
+                one = np.zeros(mean.value.shape)
+                one[force[place]] = 1.0
+                value, error = mean.scalar(mean.value[force[place]], one)
+                note = setting.caveat(self.case) or "Taylor-Couette"
+                what = f"torque on {self.bodies[body]}"
+                found.append(Comparison(what, value, error, float(expected[place]), TORQUE, note))
+        if self.observable.length is not None:
+            found += self.coefficients(mean, force, few)
+        return found
+
+    def shares(
+        self, mean: Estimate, places: NDArray[np.intp], axis: int, expected: Array
+    ) -> list[Comparison]:
+        """What part of the force on the fluid each solid takes."""
+        total, found = self.total()[axis], []
+        for body, place in enumerate(places):
+            gradient = np.zeros(mean.value.shape)
+            gradient[place] = 100.0 / total
+            value, error = mean.scalar(gradient @ mean.value, gradient)
+            what = f"share of {self.bodies[body]} along {AXES[axis]}"
+            known = 100.0 * float(expected[body, axis] / total)
+            found.append(Comparison(what, value, error, known, "%", "of the force on the fluid"))
+        return found
+
+    def coefficients(self, mean: Estimate, force: NDArray[np.intp], few: bool) -> list[Comparison]:
+        """Reynolds number, drag and lift, with the error of the speed where that is measured."""
+        given, rho = self.observable, setting.mass_density(self.case)
+        assert given.length is not None
+        flow = setting.push_axis(self.case) if given.flow is None else AXES.index(given.flow)
+        assert flow is not None  # as `check` has seen
+        slope = np.zeros(mean.value.shape)  # of the speed
+        if given.speed is None:
+            slope[force.size + flow] = 1.0 / (rho * np.prod(self.case.box.size))
+            speed, error = mean.scalar(slope @ mean.value, slope)
+            note = f"U = {with_error(abs(speed), error)} a/tau, the mean superficial velocity"
+        else:
+            speed, note = given.speed, f"U = {given.speed:g} a/tau"
+        if speed == 0:
+            return []
+        transport, found = setting.transport(self.case), []
+        if transport is not None:
+            scale = given.length / transport.viscosity
+            value, error = mean.scalar(abs(speed) * scale, slope * scale)
+            found.append(Comparison("Reynolds number", value, error, note=note))
+        area = given.length if self.dimension == 2 else given.area or given.length**2
+        for body in self.obstacles() if few else ():
+            for axis in (flow, *(k for k in range(self.dimension) if k != flow)):
+                scale = 2.0 / (rho * speed**2 * area) * np.sign(speed)
+                place = force[body, axis]
+                value = scale * mean.value[place]
+                gradient = -2.0 * value / speed * slope
+                gradient[place] += scale
+                kind = "drag coefficient" if axis == flow else "lift coefficient"
+                where = f" along {AXES[axis]}" if self.dimension == 3 and axis != flow else ""
+                what = f"{kind} of {self.bodies[body]}{where}"
+                value, error = mean.scalar(value, gradient)
+                found.append(Comparison(what, value, error, note=note))
+        return found

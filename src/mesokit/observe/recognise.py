@@ -1,0 +1,123 @@
+"""Solids whose flow is known: a round pipe, a round gap, arrays of cylinders and of spheres."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from mesokit.box import AXES
+from mesokit.solids import solids_of
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+
+class Pipe(NamedTuple):
+    """A round pipe along axis number `axis`, through `centre`."""
+
+    axis: int
+    centre: tuple[float, ...]
+    radius: float
+
+
+class Gap(NamedTuple):
+    """Fluid between two round surfaces about one axis: 2, or that of two cylinders.
+
+    `inner_body` and `outer_body` are their numbers.
+    """
+
+    axis: int
+    centre: tuple[float, ...]
+    inner: float
+    outer: float
+    inner_rate: float
+    outer_rate: float
+    inner_body: int
+    outer_body: int
+
+
+class Lattice(NamedTuple):
+    """Disks, cylinders or spheres on a square or cubic lattice with the axes `across`."""
+
+    across: tuple[int, ...]
+    pitch: float
+    radius: float
+
+    @property
+    def concentration(self) -> float:
+        """Part of the volume that is solid."""
+        if len(self.across) == 2:
+            return math.pi * (self.radius / self.pitch) ** 2
+        return 4 * math.pi / 3 * (self.radius / self.pitch) ** 3
+
+
+def pipe(case: Case) -> Pipe | None:
+    """The round pipe at rest that is the only wall, along an axis of the box."""
+    if len(case.walls) != 1:
+        return None
+    (wall,) = case.walls
+    axis = _axis(wall, case)
+    if wall.shape != "cylinder" or wall.fluid == "outside" or axis is None or not _still(wall):
+        return None
+    return Pipe(axis, wall.centre, wall.radius)
+
+
+def gap(case: Case) -> Gap | None:
+    """The gap between two no-slip disks or cylinders with one axis, which may turn about it."""
+    if len(case.walls) != 2 or {wall.shape for wall in case.walls} not in ({"disk"}, {"cylinder"}):
+        return None
+    walls: Any = case.walls
+    first, second = walls
+    axis = _axis(first, case)
+    if axis is None or axis != _axis(second, case) or {first.fluid, second.fluid} != SIDES:
+        return None
+    inner, outer = (0, 1) if first.fluid == "outside" else (1, 0)
+    if not all(wall.surface.rule == "no-slip" and not any(wall.surface.velocity or ())
+               for wall in walls):  # fmt: skip
+        return None
+    off = [a - b for k, (a, b) in enumerate(zip(first.centre, second.centre, strict=True))
+           if k != axis]  # fmt: skip
+    rates = [body.rotation for body in solids_of(case).bodies]
+    crooked = any(rate[k] for rate in rates for k in range(3) if k != axis)
+    if any(off) or crooked or walls[inner].radius >= walls[outer].radius:
+        return None
+    return Gap(
+        axis, first.centre, walls[inner].radius, walls[outer].radius, rates[inner][axis],
+        rates[outer][axis], inner, outer,
+    )  # fmt: skip
+
+
+def lattice(case: Case) -> Lattice | None:
+    """The square array of disks or cylinders, or simple cubic one of spheres, at rest."""
+    if len(case.walls) != 1:
+        return None
+    wall: Any = case.walls[0]
+    one = wall.of if wall.shape == "array" else wall
+    repeat = wall.repeat if wall.shape == "array" else (1,) * case.box.dimension
+    if one.shape not in ("disk", "cylinder", "sphere") or not _still(wall):
+        return None
+    along = _axis(one, case)
+    if "inside" in (wall.fluid, one.fluid) or (one.shape == "cylinder" and along is None):
+        return None
+    across = tuple(k for k in range(case.box.dimension) if one.shape == "sphere" or k != along)
+    pitches = {case.box.size[k] / repeat[k] for k in across}
+    if len(pitches) != 1 or one.radius > min(pitches) / 2:
+        return None
+    return Lattice(across, pitches.pop(), one.radius)
+
+
+SIDES = {"inside", "outside"}
+
+
+def _axis(wall: Any, case: Case) -> int | None:
+    """Number of the axis of a disk (that would be z) or cylinder, None along no axis of the box."""
+    if wall.shape == "disk":
+        return 2
+    if wall.shape != "cylinder":
+        return None
+    found = [k for k in range(len(AXES)) if abs(wall.direction[k]) == 1]
+    return found[0] if found else None
+
+
+def _still(wall: Any) -> bool:
+    return wall.surface.rule == "no-slip" and not wall.surface.moves

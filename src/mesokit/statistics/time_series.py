@@ -1,0 +1,80 @@
+"""A time series in memory that never grows: averages over so many samples that it fits."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+class TimeSeries:
+    """Rows of numbers in time; neighbours are averaged in pairs whenever the memory is full.
+
+    Averages, unlike every other sample, keep fast motion from showing as slow.
+
+    Parameters
+    ----------
+    width: numbers in a row.
+    rows: largest number of rows kept, even.
+
+    Raises ValueError for an odd number of rows.
+
+    >>> series = TimeSeries(1, rows=4)
+    >>> for time in range(6):
+    ...     series.add(time, [2 * time])
+    >>> series.time(), series.values()[:, 0], series.stride
+    (array([0.5, 2.5, 4.5]), array([1., 5., 9.]), 2)
+    """
+
+    def __init__(self, width: int, rows: int = 4096) -> None:
+        if rows < 2 or rows % 2:
+            raise ValueError(f"rows must be even and at least 2, got {rows}")
+        self._rows = np.zeros((rows, 1 + width))  # time first
+        self._full = 0  # rows that are complete
+        self._partial = 0  # samples in the row being filled
+        self.stride = 1
+
+    def add(self, time: float, values: ArrayLike) -> None:
+        """Add one row; raises ValueError for another number of values."""
+        if self._full == len(self._rows):
+            self._full //= 2
+            self._rows[: self._full] = (self._rows[0::2] + self._rows[1::2]) / 2
+            self._rows[self._full :] = 0
+            self.stride *= 2
+        row = self._rows[self._full]
+        row[0] += time
+        row[1:] += values
+        self._partial += 1
+        if self._partial == self.stride:
+            row /= self.stride
+            self._full += 1
+            self._partial = 0
+
+    def time(self) -> NDArray[np.float64]:
+        """Mean time of each complete row, (n,)."""
+        return self._rows[: self._full, 0].copy()
+
+    def values(self) -> NDArray[np.float64]:
+        """The complete rows, oldest first, (n, width)."""
+        return self._rows[: self._full, 1:].copy()
+
+    def state(self) -> dict[str, NDArray[Any]]:
+        """Everything that `from_state` needs to go on with the same bits, as arrays."""
+        used = self._full + (self._partial > 0)
+        counts = [len(self._rows), self._full, self._partial, self.stride]
+        return {"rows": self._rows[:used].copy(), "counts": np.array(counts, np.int64)}
+
+    @classmethod
+    def from_state(cls, state: Mapping[str, NDArray[Any]]) -> "TimeSeries":
+        """Rebuild from `state()`; raises KeyError for a missing entry.
+
+        >>> series = TimeSeries(1)
+        >>> series.add(0.5, [3.0])
+        >>> TimeSeries.from_state(series.state()).values()
+        array([[3.]])
+        """
+        rows, full, partial, stride = (int(number) for number in state["counts"])
+        series = cls(state["rows"].shape[1] - 1, rows)
+        series._rows[: len(state["rows"])] = state["rows"]
+        series._full, series._partial, series.stride = full, partial, stride
+        return series
