@@ -29,10 +29,11 @@ SURFACES = [
     Surface(rotation=0.5),
     Surface("diffuse", rotation=-0.5),
 ]
+STILL = Surface()
 VIRTUAL = ["extrapolate", "fill", "top-up", "none"]
 
 
-def obstacles(dimension, surface=Surface(), virtual="extrapolate"):
+def obstacles(dimension, surface=STILL, virtual="extrapolate"):
     """Two solids in a channel, the first of which may turn."""
     still = Surface(surface.rule)
     if dimension == 2:
