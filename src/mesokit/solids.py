@@ -45,6 +45,8 @@ if TYPE_CHECKING:
     from mesokit.geometry import Wall
 
 Floats = NDArray[np.float64]
+THIN, NARROW = 1.5, 3.0  # cells
+Tight = tuple[tuple[float, ...], float]
 FINE = 8  # parts of a cell, along each axis, by which volumes are summed
 _RULES = {"no-slip": NO_SLIP, "slip": SLIP, "diffuse": DIFFUSE}
 
@@ -98,9 +100,7 @@ class Solids:
     87.43
     """
 
-    def __init__(
-        self, walls: Sequence[Wall], box: Box, *, without_plates: bool = False
-    ) -> None:
+    def __init__(self, walls: Sequence[Wall], box: Box, *, without_plates: bool = False) -> None:
         self._walls, self._box = walls, box
         self.size, self.dimension = box.size, box.dimension
         shut = {wall.axis for wall in walls if wall.shape == "plates"}
@@ -269,6 +269,27 @@ class Solids:
         end[:, axis] = np.nextafter(self.size[axis], 0.0)
         a, b = self.distance(start), self.distance(end)
         return float(np.abs(np.clip(a, 0, 1) - np.clip(b, 0, 1)).max())
+
+    def tight_places(self) -> tuple[Tight | None, Tight | None]:
+        """Where the solid is thinner than THIN cells, and a gap narrower than NARROW: the tightest
+        place of each, and its width; None where there is none."""
+        centres = np.stack(
+            np.meshgrid(*(np.arange(n) + 0.5 for n in self.size), indexing="ij"), -1
+        ).reshape(-1, self.dimension)
+        body, distance, normal = self.nearest(centres)
+        near = (body >= 0) & (np.abs(distance) < 0.5 * math.sqrt(self.dimension))
+        feet = centres[near] - distance[near, None] * normal[near]
+        found: list[Tight | None] = []
+        for side, limit in ((-1.0, THIN), (1.0, NARROW)):
+            tightest = None
+            for step in np.arange(0.25, limit, 0.25):
+                there = side * self.distance(feet + side * step * normal[near])
+                beyond = np.flatnonzero(there < -0.05)
+                if len(beyond):
+                    tightest = tuple(feet[beyond[0]] % self.size), float(step)
+                    break
+            found.append(tightest)
+        return found[0], found[1]
 
     def motion_across(self) -> dict[int, float]:
         """How fast the surface of each moving wall would move across itself, by its number."""
