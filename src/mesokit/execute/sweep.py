@@ -63,9 +63,7 @@ def sweep(
         who = ident[s * LANES : (s + 1) * LANES]
         boxes = image[:, s * LANES : (s + 1) * LANES]
         if what & STREAM:
-            look_around_strip(
-                physics.solid, old, what & COLLIDE, strip, s, here, calm, clear, like
-            )
+            look_around_strip(physics.solid, old, what & COLLIDE, strip, s, here, calm, clear, like)
         if what & COLLIDE:
             gather_strip(here, coefficients, gathered, c)
         behind = np.int64(0)
