@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.errors import CaseError
 from mesokit.execute import survey
 from mesokit.geometry.bodies import DIFFUSE, NO_SLIP, NOBODY, SLIP, Bodies
+from mesokit.geometry.from_file import FromFile
 from mesokit.geometry.primitive import WIDTH
 from mesokit.geometry.region import Room
 from mesokit.geometry.shape import Body, Piece
@@ -38,11 +40,13 @@ def is_slit(case: Case) -> bool:
 
 def solids_of(case: Case) -> Solids:
     """The solids of a case; kept, for they take a moment to survey."""
-    return _kept(case.walls, case.box)
+    digests = tuple(wall.digest for wall in case.walls if isinstance(wall, FromFile))
+    return _kept(case.walls, case.box, digests)
 
 
 @functools.lru_cache(maxsize=8)
-def _kept(walls: tuple[Wall, ...], box: Box) -> Solids:
+def _kept(walls: tuple[Wall, ...], box: Box, digests: tuple[str, ...]) -> Solids:
+    """Files may change, and walls that name them are then other walls."""
     return Solids(walls, box)
 
 
@@ -89,7 +93,10 @@ class Solids:
         self.walls: list[int] = []  # of which wall each body is
         for index, wall in enumerate(walls):
             number = numbers[wall.shape] = numbers.get(wall.shape, 0) + 1
-            made = wall.bodies(self.room, f"{wall.shape}-{number}")
+            try:
+                made = wall.bodies(self.room, f"{wall.shape}-{number}")
+            except CaseError as error:
+                raise CaseError(f"wall[#{index + 1}].{error}") from None
             self.bodies += made
             self.walls += [index] * len(made)
         self.like = (0.0,) * self.dimension
@@ -114,11 +121,15 @@ class Solids:
         parts = [part for piece, _ in pieces for part in piece.term]
         numbers = np.array([part.numbers for part in parts]).reshape(-1, WIDTH)
         samples, total = [np.zeros(1)], 1
+        begin: dict[int, int] = {}  # images share their samples
         for i, part in enumerate(parts):
-            if part.samples is not None:
-                numbers[i, 7] = total
+            if part.samples is None:
+                continue
+            if id(part.samples) not in begin:
+                begin[id(part.samples)] = total
                 samples.append(part.samples.ravel())
                 total += part.samples.size
+            numbers[i, 7] = begin[id(part.samples)]
         pivots = np.zeros((len(pieces), 3))
         for i, (piece, _) in enumerate(pieces):
             pivots[i, : self.dimension] = piece.pivot
