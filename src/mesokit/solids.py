@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.errors import CaseError
 from mesokit.execute import survey
 from mesokit.geometry.bodies import (
     BODY,
@@ -32,6 +33,7 @@ from mesokit.geometry.bodies import (
     SURFACES,
     Bodies,
 )
+from mesokit.geometry.from_file import FromFile
 from mesokit.geometry.plates import Plates
 from mesokit.geometry.primitive import WIDTH
 from mesokit.geometry.region import Room
@@ -60,11 +62,13 @@ def slit_of(case: Case) -> Plates | None:
 
 def solids_of(case: Case) -> Solids:
     """The solids of a case; kept, for they take a moment to survey."""
-    return _kept(case.walls, case.box)
+    digests = tuple(wall.digest for wall in case.walls if isinstance(wall, FromFile))
+    return _kept(case.walls, case.box, digests)
 
 
 @functools.lru_cache(maxsize=8)
-def _kept(walls: tuple[Wall, ...], box: Box) -> Solids:
+def _kept(walls: tuple[Wall, ...], box: Box, digests: tuple[str, ...]) -> Solids:
+    """Files may change, and walls that name them are then other walls."""
     return Solids(walls, box)
 
 
@@ -114,7 +118,10 @@ class Solids:
             number = numbers[wall.shape] = numbers.get(wall.shape, 0) + 1
             if without_plates and wall.shape == "plates":
                 continue
-            made = wall.bodies(self.room, f"{wall.shape}-{number}")
+            try:
+                made = wall.bodies(self.room, f"{wall.shape}-{number}")
+            except CaseError as error:
+                raise CaseError(f"wall[#{index + 1}].{error}") from None
             self.bodies += made
             self.walls += [index] * len(made)
         self.like = (0.0,) * self.dimension
@@ -126,9 +133,7 @@ class Solids:
     def reaching(self, away: float) -> Bodies:
         """Parameters for compiled code, with lists of the terms within `away` of each cell."""
         starts, nothing = np.zeros(len(self.least) + 1, np.int32), np.zeros(0, np.int32)
-        survey.near_cells(
-            self.kernel, self._terms, self.like, away, starts, nothing, self.least
-        )
+        survey.near_cells(self.kernel, self._terms, self.like, away, starts, nothing, self.least)
         near = np.zeros(max(starts[-1], 1), np.int32)
         survey.near_cells(self.kernel, self._terms, self.like, away, starts, near, self.least)
         places = self._places.copy()
@@ -146,11 +151,15 @@ class Solids:
         parts = [part for piece, _ in pieces for part in piece.term]
         numbers = np.array([part.numbers for part in parts]).reshape(-1, WIDTH)
         samples, total = [np.zeros(1)], 1
+        begin: dict[int, int] = {}  # images share their samples
         for i, part in enumerate(parts):
-            if part.samples is not None:
-                numbers[i, 7] = total
+            if part.samples is None:
+                continue
+            if id(part.samples) not in begin:
+                begin[id(part.samples)] = total
                 samples.append(part.samples.ravel())
                 total += part.samples.size
+            numbers[i, 7] = begin[id(part.samples)]
         pivots = np.zeros((len(pieces), 3))
         for i, (piece, _) in enumerate(pieces):
             pivots[i, : self.dimension] = piece.pivot

@@ -104,7 +104,8 @@ def depths(solid, like, away, points, terms, clearance, normals):
     for i in range(len(points)):
         r = in_box(solid, point(points, i, like))
         cell, least, part, term = home_cell(solid.tables, r), away, 0, -1
-        for j in range(whole(word(solid.tables, STARTS), cell), whole(word(solid.tables, STARTS), cell + 1)):
+        starts = word(solid.tables, STARTS)
+        for j in range(whole(starts, cell), whole(starts, cell + 1)):
             candidate = whole(word(solid.tables, NEAR), j)
             c, which = term_clearance(solid.tables, candidate, r)
             if c < least:
