@@ -185,7 +185,7 @@ class Solids:
             self._places[number] = place
         self._places[SIZE : SIZE + self.dimension] = self.size
         size = tuple(float(length) for length in self.size)
-        return Bodies(size, inverse, address(self._places), 0, 0.0, size, size)
+        return Bodies(size, inverse, address(self._places), 0, 0.0, 0, 1.0, size, size)
 
     def _surface(self, body: Body) -> list[float]:
         velocity = list(body.surface.velocity or ()) + [0.0] * 3
