@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 REACH = 4.0  # cells from the outline in which distances are kept
 BLUR = 1.0  # pixels by which edges are smoothed
-MARGIN = 6  # pixels of fluid around a picture that does not span the box
-FINE = 4  # points of the outline per pixel
+MARGIN = 2.0  # cells of fluid around a picture that does not span the box
+FINE = 8  # points of the outline per pixel
 LARGEST = 2**26  # pixels
 
 
@@ -72,8 +72,9 @@ class Picture(FromFile):
                 white.shape, size, room.size, room.closed, strict=True
             )
         ]
+        around = math.ceil(MARGIN / wide) + 4  # and what the blur reaches
         ends = [
-            0 if wraps or (shut and length >= whole) else MARGIN
+            0 if wraps or (shut and length >= whole) else around
             for wraps, shut, length, whole in zip(again, room.closed, size, room.size, strict=True)
         ]
         white = np.pad(white, [(n, n) for n in ends], constant_values=1.0)
