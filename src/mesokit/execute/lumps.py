@@ -17,7 +17,7 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from mesokit.elementary import log
 from mesokit.execute.bounce import take
 from mesokit.execute.cell_energy import asks, many_energy_term, many_tally
-from mesokit.execute.chart import OFFSETS, offset_of
+from mesokit.execute.chart import offset_of, offsets_along
 from mesokit.execute.fixed_point import ROUNDER_BITS, rounded
 from mesokit.execute.flags import MEASURE_WALLS
 from mesokit.execute.layout import record_length, share, sums_length
@@ -96,8 +96,9 @@ def height_now(guests, entry, offset, grid, like):
     n, height = like, guests.lumps.heights[entry]
     for k in range(len(like)):
         n = tuple_setitem(n, k, guests.lumps.normals[entry, k])
-        within = grid.origin[k] * OFFSETS
-        moved = (within - np.floor(within) - 0.5) / OFFSETS
+        many = offsets_along(like)
+        within = grid.origin[k] * many
+        moved = (within - np.floor(within) - 0.5) / many
         height -= n[k] * moved
     return height, n
 
