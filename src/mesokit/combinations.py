@@ -110,7 +110,7 @@ def walls(case: Case) -> Iterator[str]:
     for i, wall in enumerate(case.walls):
         key = f"wall[#{i + 1}]"
         if d not in wall.dimensions:
-            known = [tag_of(s)[1] for s in SHAPES if d in s.dimensions]  # type: ignore[index]
+            known = [_shape(s) for s in SHAPES if d in getattr(s, "dimensions", ())]
             yield f"{key}.shape = {show(wall.shape)}: not in {d}D; expected {one_of(known)}"
         if wall.shape == "plates":
             if wall.axis in seen:
@@ -124,6 +124,13 @@ def walls(case: Case) -> Iterator[str]:
     masses = {kind.mass for kind in case.fluid.species}
     if len(masses) > 1 and any(wall.virtual == "top-up" for wall in case.walls):
         yield "wall[#1].virtual = 'top-up': not with species of different mass; use 'extrapolate'"
+
+
+def _shape(cls: type) -> str:
+    """The name of a shape in a case file."""
+    found = tag_of(cls)
+    assert found is not None
+    return found[1]
 
 
 def moving_surfaces(case: Case) -> Iterator[str]:

@@ -44,4 +44,6 @@ whole = _reader(
     "int32 number `index` from an address, as int64.",
 )  # fmt: skip
 
+word = _reader(types.int64, ir.IntType(64), None, "int64 number `index` from an address.")
+
 assert np.dtype(np.intp).itemsize == 8

@@ -12,8 +12,29 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.errors import CaseError
 from mesokit.execute import survey
-from mesokit.geometry.bodies import DIFFUSE, NO_SLIP, NOBODY, REACH, SLIP, Bodies
+from mesokit.geometry.bodies import (
+    BODY,
+    DIFFUSE,
+    FIRST,
+    KINDS,
+    NEAR,
+    NO_SLIP,
+    NOBODY,
+    NUMBERS,
+    PIVOT,
+    REACH,
+    SAMPLES,
+    SIGNS,
+    SIZE,
+    SLIP,
+    STARTS,
+    SURFACES,
+    Bodies,
+)
+from mesokit.geometry.from_file import FromFile
+from mesokit.geometry.plates import Plates
 from mesokit.geometry.primitive import WIDTH
 from mesokit.geometry.region import Room
 from mesokit.geometry.shape import Body, Piece
@@ -27,22 +48,27 @@ if TYPE_CHECKING:
     from mesokit.geometry import Wall
 
 Floats = NDArray[np.float64]
+THIN, NARROW = 1.5, 3.0  # cells
+Tight = tuple[tuple[float, ...], float]
 FINE = 8  # parts of a cell, along each axis, by which volumes are summed
 _RULES = {"no-slip": NO_SLIP, "slip": SLIP, "diffuse": DIFFUSE}
 
 
-def is_slit(case: Case) -> bool:
-    """Whether the only walls are two plates, for which the step has a shorter way."""
-    return len(case.walls) == 1 and case.walls[0].shape == "plates" and not case.walls[0].diffuse
+def slit_of(case: Case) -> Plates | None:
+    """The two plates, if these are all walls: the step has a shorter way for them."""
+    wall = case.walls[0] if len(case.walls) == 1 else None
+    return wall if isinstance(wall, Plates) and not wall.diffuse else None
 
 
 def solids_of(case: Case) -> Solids:
     """The solids of a case; kept, for they take a moment to survey."""
-    return _kept(case.walls, case.box)
+    digests = tuple(wall.digest for wall in case.walls if isinstance(wall, FromFile))
+    return _kept(case.walls, case.box, digests)
 
 
 @functools.lru_cache(maxsize=8)
-def _kept(walls: tuple[Wall, ...], box: Box) -> Solids:
+def _kept(walls: tuple[Wall, ...], box: Box, digests: tuple[str, ...]) -> Solids:
+    """Files may change, and walls that name them are then other walls."""
     return Solids(walls, box)
 
 
@@ -79,7 +105,8 @@ class Solids:
     87.43
     """
 
-    def __init__(self, walls: Sequence[Wall], box: Box) -> None:
+    def __init__(self, walls: Sequence[Wall], box: Box, *, without_plates: bool = False) -> None:
+        self._walls, self._box = walls, box
         self.size, self.dimension = box.size, box.dimension
         shut = {wall.axis for wall in walls if wall.shape == "plates"}
         self.room = Room(box.size, tuple(axis in shut for axis in box.axes))
@@ -89,22 +116,29 @@ class Solids:
         self.walls: list[int] = []  # of which wall each body is
         for index, wall in enumerate(walls):
             number = numbers[wall.shape] = numbers.get(wall.shape, 0) + 1
-            made = wall.bodies(self.room, f"{wall.shape}-{number}")
+            if without_plates and wall.shape == "plates":
+                continue
+            try:
+                made = wall.bodies(self.room, f"{wall.shape}-{number}")
+            except CaseError as error:
+                raise CaseError(f"wall[#{index + 1}].{error}") from None
             self.bodies += made
             self.walls += [index] * len(made)
         self.like = (0.0,) * self.dimension
         pieces = [(piece, row) for row, body in enumerate(self.bodies) for piece in body.pieces]
         self.kernel = self._kernel(pieces)
-        self.least = np.zeros(math.prod(self.size))
+        self.least, self._terms = np.zeros(math.prod(self.size)), len(pieces)
         self.kernel = self.reaching(REACH)
 
     def reaching(self, away: float) -> Bodies:
         """Parameters for compiled code, with lists of the terms within `away` of each cell."""
         starts, nothing = np.zeros(len(self.least) + 1, np.int32), np.zeros(0, np.int32)
-        survey.near_cells(self.kernel, self.like, away, starts, nothing, self.least)
+        survey.near_cells(self.kernel, self._terms, self.like, away, starts, nothing, self.least)
         near = np.zeros(max(starts[-1], 1), np.int32)
-        survey.near_cells(self.kernel, self.like, away, starts, near, self.least)
-        return self.kernel._replace(starts=self._keep(starts), near=self._keep(near))
+        survey.near_cells(self.kernel, self._terms, self.like, away, starts, near, self.least)
+        places = self._places.copy()
+        places[STARTS], places[NEAR] = self._keep(starts), self._keep(near)
+        return self.kernel._replace(tables=self._keep(places, np.int64))
 
     def _keep(self, table: Any, kind: Any = np.int32) -> int:
         """Keep a table as long as this object lives; its address."""
@@ -117,11 +151,15 @@ class Solids:
         parts = [part for piece, _ in pieces for part in piece.term]
         numbers = np.array([part.numbers for part in parts]).reshape(-1, WIDTH)
         samples, total = [np.zeros(1)], 1
+        begin: dict[int, int] = {}  # images share their samples
         for i, part in enumerate(parts):
-            if part.samples is not None:
-                numbers[i, 7] = total
+            if part.samples is None:
+                continue
+            if id(part.samples) not in begin:
+                begin[id(part.samples)] = total
                 samples.append(part.samples.ravel())
                 total += part.samples.size
+            numbers[i, 7] = begin[id(part.samples)]
         pivots = np.zeros((len(pieces), 3))
         for i, (piece, _) in enumerate(pieces):
             pivots[i, : self.dimension] = piece.pivot
@@ -132,40 +170,46 @@ class Solids:
         self.body_of_term = np.array([row for _, row in pieces], np.int32)
         self.pivots = pivots
         surfaces = [self._surface(body) for body in self.bodies]
-        return Bodies(
-            size=tuple(float(length) for length in self.size),
-            inverse=inverse,
-            kinds=self._keep([part.code for part in parts]),
-            signs=self._keep([part.sign for part in parts], float),
-            numbers=self._keep(numbers, float),
-            samples=self._keep(np.concatenate(samples), float),
-            first=self._keep(np.cumsum([0, *(len(piece.term) for piece, _ in pieces)])),
-            body=self._keep(self.body_of_term),
-            pivot=self._keep(pivots, float),
-            surfaces=self._keep(surfaces, float),
-            starts=0,
-            near=0,
-            clear=0,
-            terms=len(pieces),
-            stride=0.0,
-        )
+        tables = {
+            KINDS: self._keep([part.code for part in parts]),
+            SIGNS: self._keep([part.sign for part in parts], float),
+            NUMBERS: self._keep(numbers, float),
+            SAMPLES: self._keep(np.concatenate(samples), float),
+            FIRST: self._keep(np.cumsum([0, *(len(piece.term) for piece, _ in pieces)])),
+            BODY: self._keep(self.body_of_term),
+            PIVOT: self._keep(pivots, float),
+            SURFACES: self._keep(surfaces, float),
+        }
+        self._places = np.zeros(SIZE + 3, np.int64)
+        for number, place in tables.items():
+            self._places[number] = place
+        self._places[SIZE : SIZE + self.dimension] = self.size
+        size = tuple(float(length) for length in self.size)
+        return Bodies(size, inverse, address(self._places), 0, 0.0, 0, 1.0, size, size)
 
     def _surface(self, body: Body) -> list[float]:
         velocity = list(body.surface.velocity or ()) + [0.0] * 3
         fills = body.surface.rule != "slip" and body.virtual != "none"
         return [_RULES[body.surface.rule], *velocity[:3], *body.rotation, float(fills)]
 
+    @functools.cached_property
+    def _others(self) -> Solids:
+        """The same without the plates, in the same room."""
+        return Solids(self._walls, self._box, without_plates=True)
+
     @property
     def names(self) -> list[str]:
         """Of the bodies."""
         return [body.name for body in self.bodies]
 
-    def distance(self, points: Any) -> Floats:
+    def distance(self, points: Any, plates: bool = True) -> Floats:
         """Signed distance (n,) of points (n, d) from the nearest surface, positive in the fluid.
 
         Exact near surfaces; elsewhere, and inside of solids made of several, a lower bound of its
-        size.
+        size. Without `plates`, from the other surfaces.
         """
+        if not plates and any(self.room.closed):
+            return self._others.distance(points)
         points = np.ascontiguousarray(points, float).reshape(-1, self.dimension)
         out = np.zeros(len(points))
         survey.clearances(self.kernel, self.least, self.like, points, out)
@@ -226,7 +270,7 @@ class Solids:
         clear = self.distance(points).reshape(points.shape[:-1])
         return np.clip(0.5 + clear / side, 0.0, 1.0)
 
-    def open_part(self, centres: Floats, side: float) -> Floats:
+    def open_part(self, centres: NDArray[Any], side: float) -> Floats:
         """Part of cubes of this side that is fluid, from FINE^d cubes in each."""
         steps = ((np.arange(FINE) + 0.5) / FINE - 0.5) * side
         grid = np.stack(np.meshgrid(*[steps] * self.dimension, indexing="ij"), -1)
@@ -256,6 +300,27 @@ class Solids:
         end[:, axis] = np.nextafter(self.size[axis], 0.0)
         a, b = self.distance(start), self.distance(end)
         return float(np.abs(np.clip(a, 0, 1) - np.clip(b, 0, 1)).max())
+
+    def tight_places(self) -> tuple[Tight | None, Tight | None]:
+        """Where the solid is thinner than THIN cells, and a gap narrower than NARROW: the tightest
+        place of each, and its width; None where there is none."""
+        centres = np.stack(
+            np.meshgrid(*(np.arange(n) + 0.5 for n in self.size), indexing="ij"), -1
+        ).reshape(-1, self.dimension)
+        body, distance, normal = self.nearest(centres)
+        near = (body >= 0) & (np.abs(distance) < 0.5 * math.sqrt(self.dimension))
+        feet = centres[near] - distance[near, None] * normal[near]
+        found: list[Tight | None] = []
+        for side, limit in ((-1.0, THIN), (1.0, NARROW)):
+            tightest = None
+            for step in np.arange(0.25, limit, 0.25):
+                there = side * self.distance(feet + side * step * normal[near])
+                beyond = np.flatnonzero(there < -0.05)
+                if len(beyond):
+                    tightest = tuple(feet[beyond[0]] % self.size), float(step)
+                    break
+            found.append(tightest)
+        return found[0], found[1]
 
     def motion_across(self) -> dict[int, float]:
         """How fast the surface of each moving wall would move across itself, by its number."""

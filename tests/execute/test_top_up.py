@@ -27,7 +27,7 @@ def topped_up():
     shift = (0.0, 0.5)
     grid = Grid(shift, shift, cpu.grid.cells, cpu.grid.inverse)
     fill(
-        (DENSITY,), cpu.physics, Counter(np.uint64(1), np.uint64(1)), grid, cpu.cell_arrays,
+        (DENSITY,), (), 0, cpu.physics, Counter(np.uint64(1), np.uint64(1)), grid, cpu.cell_arrays,
         cpu.number_of_cells, cpu.like, cpu.scales,
     )  # fmt: skip
     sums = cpu.sums[0].reshape(cpu.number_of_cells + 1, -1)[:LENGTH]

@@ -60,7 +60,7 @@ def test_warm_up_is_seen_by_no_observer(case):
     fluid.advance(steps)
     area, dt = case.box.size[0], case.fluid.timestep
     np.testing.assert_allclose(
-        simulation["wall-stress"].value, fluid.wall_impulse / (steps * dt * area), atol=1e-9
+        simulation["wall-stress"].value, fluid.wall_impulse[:, :2] / (steps * dt * area), atol=1e-9
     )
 
 

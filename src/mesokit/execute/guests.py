@@ -15,7 +15,7 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.execute.bounce import take
 from mesokit.execute.cell_energy import tally, untangled
-from mesokit.execute.chart import clear_place, offset_of
+from mesokit.execute.chart import offset_of
 from mesokit.execute.flags import MEASURE_WALLS
 from mesokit.execute.layout import LANES, ROW, share, strip_of, sums_length
 from mesokit.execute.lumps import Lumps, fill_lumps, lumps_recoil
@@ -23,6 +23,7 @@ from mesokit.execute.rows import load, mass_of, store
 from mesokit.execute.stages import add_strip, bin_strip, cell_index, collide_strip, gather_strip
 from mesokit.execute.sums import nothing_found, read_sums
 from mesokit.geometry.bodies import (
+    BODY,
     FILLS,
     from_pivot,
     home_cell,
@@ -33,7 +34,7 @@ from mesokit.geometry.bodies import (
     surface_velocity,
     term_clearance,
 )
-from mesokit.pointer import short, whole
+from mesokit.pointer import whole, word
 from mesokit.random import BODY_POSITION, BODY_VELOCITY, normals, unit_open, words
 from mesokit.scalar import added, added_scaled, by_type, dot, first, scalar, scaled, seldom
 
@@ -45,11 +46,15 @@ KINDS = 1024  # masses to draw from, in a mixture
 class Guests(NamedTuple):
     """Tables and memory of the virtual particles; arrays, `threads` first where each has its own.
 
-    density: particles per cell; first_number: their numbers follow those of the fluid's. starts (offsets + 1,), cells, corners (entries, d): cut cells for
-    each offset of the grid, and their lower corners in the grid. pieces: number of the piece of
-    surface in each cell of the box, or -1. outward, probes (pieces, d): its normal, and where to look for fluid; terms (pieces,). rates (pieces, d): slopes of the velocity.
-    masses: those of mixtures. data, cell, number, term (threads, ...) and filled (threads,): the
-    virtual particles of this step.
+    density: particles per cell. first_number: their numbers follow those of the fluid's.
+    starts (offsets + 1,), cells, corners (entries, d): cut cells for each offset of the grid, and
+    their lower corners in the grid.
+    pieces: number of the piece of surface in each cell of the box, or -1.
+    outward, probes (pieces, d): its normal, and where to look for fluid; terms (pieces,).
+    rates (pieces, d): slopes of the velocity.
+    masses: those of mixtures.
+    data, cell, number, term (threads, ...), filled (threads,): the virtual particles of this step.
+    lumps: Lumps, or () where they come one by one.
     """
 
     density: float
@@ -68,7 +73,7 @@ class Guests(NamedTuple):
     number: Any
     term: Any
     filled: Any
-    lumps: Any  # Lumps, or () where they come one by one
+    lumps: Any
 
 
 @by_type
@@ -132,12 +137,12 @@ def settle(guests, thread, physics, r, number, count, rows, like):
     """Note a virtual particle at r, with the mean velocity of the gas there, if that is solid."""
     solid = physics.solid
     x = in_box(solid, r)
-    clear, part, term = nearest(solid, x)
-    if clear >= 0.0 or surface_number(solid, term, FILLS) < 0.5:
+    clear, part, term = nearest(solid.tables, x)
+    if clear >= 0.0 or surface_number(solid.tables, term, FILLS) < 0.5:
         return False
-    foot = in_box(solid, added_scaled(x, -clear, part_normal(solid, part, x)))
-    u = surface_velocity(solid, term, x)
-    piece = guests.pieces[home_cell(solid, foot)]
+    foot = in_box(solid, added_scaled(x, -clear, part_normal(solid.tables, part, x)))
+    u = surface_velocity(solid.tables, term, x)
+    piece = guests.pieces[home_cell(solid.tables, foot)]
     if piece >= 0:
         for k in range(len(like)):
             u = tuple_setitem(u, k, u[k] + clear * guests.rates[piece, k])
@@ -153,8 +158,8 @@ def settle(guests, thread, physics, r, number, count, rows, like):
 
 @scalar
 def draw_velocities(
-    guests, thread, what, physics, counter, grid, count, rows, sums, gathered, quanta, impulse, like,
-    terms, scales,
+    guests, thread, what, physics, counter, grid, count, rows, sums, gathered, quanta, impulse,
+    like, terms, scales,
 ):  # fmt: skip
     """Thermal velocities about the mean, cells, and what the particles add to the sums."""
     d = len(like)
@@ -183,8 +188,8 @@ def momentum(guests, thread, physics, s, strip, lanes, impulse, scale, sign, lik
         r, v = load(strip, i, 0, like), load(strip, i, d, like)
         term = guests.term[thread, s * LANES + i]
         m = mass_of(physics.masses, strip, i, 2 * d)
-        lever = from_pivot(solid, term, in_box(solid, r))
-        take(impulse, whole(solid.body, term), lever, scaled(sign * m, v), scale)
+        lever = from_pivot(solid.tables, term, in_box(solid, r))
+        take(impulse, whole(word(solid.tables, BODY), term), lever, scaled(sign * m, v), scale)
 
 
 @by_type
@@ -224,8 +229,8 @@ def top_up_guests(guests, tops_up, thread, threads, *rest):
 
 
 def _top_up(
-    guests, tops_up, thread, threads, what, physics, counter, grid, rows, all_sums, gathered, quanta,
-    impulse, like, terms, scales,
+    guests, tops_up, thread, threads, what, physics, counter, grid, rows, all_sums, gathered,
+    quanta, impulse, like, terms, scales,
 ):  # fmt: skip
     """A fractional density is met on average. Places are uniform in the solid part of the cell."""
     width, most = sums_length(len(terms)), int(guests.density) + 2
@@ -264,8 +269,6 @@ def follow_pieces(guests, thread, threads, physics, grid, sums, like, terms, sca
             probe = tuple_setitem(probe, k, guests.probes[e, k])
             n = tuple_setitem(n, k, guests.outward[e, k])
         cell = cell_index(probe, grid)
-        if short(solid.clear, clear_place(solid, grid, cell)) <= 0.0:
-            continue
         found = nothing_found(terms)
         for t in range(sums.shape[0]):
             for k in range(len(found)):
@@ -280,8 +283,11 @@ def follow_pieces(guests, thread, threads, physics, grid, sums, like, terms, sca
         for k in range(len(like)):
             corner = np.floor(probe[k] + grid.origin[k]) - grid.origin[k]
             middle = tuple_setitem(middle, k, corner + 0.5)
-        height, _ = term_clearance(solid, guests.terms[e], middle)
-        u = surface_velocity(solid, guests.terms[e], middle)
+        least, _, _ = nearest(solid.tables, in_box(solid, middle))
+        if least < 0.5 * math.sqrt(float(len(like))):  # another surface may cut that cell
+            continue
+        height, _ = term_clearance(solid.tables, guests.terms[e], middle)
+        u = surface_velocity(solid.tables, guests.terms[e], middle)
         rise = scaled(1.0 / height, added_scaled(scaled(1.0 / mass, momentum), -1.0, u))
         rise = added_scaled(rise, -dot(rise, n), n)
         for k in range(len(like)):

@@ -16,17 +16,17 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.elementary import log
 from mesokit.execute.bounce import take
-from mesokit.execute.cell_energy import many_energy_term, many_tally
+from mesokit.execute.cell_energy import asks, many_energy_term, many_tally
 from mesokit.execute.chart import OFFSETS, offset_of
 from mesokit.execute.fixed_point import ROUNDER_BITS, rounded
 from mesokit.execute.flags import MEASURE_WALLS
 from mesokit.execute.layout import record_length, share, sums_length
 from mesokit.execute.rows import fetch
 from mesokit.execute.stages import in_cell
-from mesokit.geometry.bodies import from_pivot, in_box, surface_velocity
+from mesokit.geometry.bodies import BODY, from_pivot, in_box, surface_velocity
 from mesokit.geometry.cut_cube import share_and_depth
 from mesokit.mpcd.collision.protocol import collide, contribute
-from mesokit.pointer import whole
+from mesokit.pointer import whole, word
 from mesokit.random import BODY_NUMBER, BODY_VELOCITY, normal, normals, unit_open, words
 from mesokit.scalar import added, added_scaled, scalar, scaled, seldom
 
@@ -76,9 +76,9 @@ def chi_square(freedom, counter, entry):
     while done + 1 < freedom:
         a, b, c, e = words(counter, BODY_VELOCITY, entry, draw)
         draw += 1
-        for word in (a, b, c, e):
+        for chance in (a, b, c, e):
             if done + 1 < freedom:
-                product *= unit_open(word)
+                product *= unit_open(chance)
                 done += 2
         if product < 1e-200:
             total -= 2.0 * log(product)
@@ -117,8 +117,13 @@ def fill_lumps(
     for j in range(begin, end):
         entry = first + j
         height, n = height_now(guests, entry, offset, grid, like)
+        reach = 0.0
+        for k in range(d):
+            reach += 0.5 * abs(n[k])
+        if abs(height) >= reach:  # all fluid, or all solid: then no particle of the fluid is there
+            continue
         part, depth = share_and_depth(height, n)
-        number = poisson(guests.density * part, counter, j) if part > 0.0 else 0
+        number = poisson(guests.density * part, counter, j)
         if number == 0:
             continue
         r = like
@@ -126,7 +131,7 @@ def fill_lumps(
             middle = guests.corners[entry, k] + 0.5 - grid.origin[k]
             r = tuple_setitem(r, k, middle - (height + depth) * n[k])
         term = lumps.terms[entry]
-        u = surface_velocity(solid, term, in_box(solid, r))
+        u = surface_velocity(solid.tables, term, in_box(solid, r))
         piece = lumps.pieces[entry]
         if piece >= 0:
             for k in range(d):
@@ -134,7 +139,9 @@ def fill_lumps(
         mass = m * number
         a, b, c, e = words(counter, BODY_VELOCITY, j, 0)
         v = added(u, scaled(math.sqrt(physics.kT / mass), normals(like, a, b, c, e)))
-        inner = physics.kT * chi_square(d * (number - 1), counter, j)
+        inner = 0.0
+        if asks(physics.energy):
+            inner = physics.kT * chi_square(d * (number - 1), counter, j)
         who = (guests.first_number + j, 0)
         kept, own = contribute(physics.rule, counter, who, mass, v, in_cell(r, grid))
         add_lump(
@@ -181,5 +188,5 @@ def lumps_recoil(guests, thread, what, physics, grid, coefficients, impulse, lik
         after = collide(physics.rule, fetch(coefficients, record, c), kept, in_cell(r, grid))
         given = scaled(lumps.state[thread, i, 3 * d], added_scaled(after, -1.0, v))
         term = lumps.terms[entry]
-        lever = from_pivot(solid, term, in_box(solid, r))
-        take(impulse, whole(solid.body, term), lever, given, scales[0])
+        lever = from_pivot(solid.tables, term, in_box(solid, r))
+        take(impulse, whole(word(solid.tables, BODY), term), lever, given, scales[0])

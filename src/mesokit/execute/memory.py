@@ -26,7 +26,7 @@ from mesokit.execute.layout import (
 )
 from mesokit.execute.stages import Grid, Physics
 from mesokit.geometry.none import Nothing
-from mesokit.solids import free_volume, is_slit, solids_of
+from mesokit.solids import free_volume, slit_of, solids_of
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -50,7 +50,7 @@ class Memory:
         self.box = np.array(box.size, float)
         self.step, self.timestep = 0, fluid.timestep
         self.measures = frozenset(measures)
-        self.slit = is_slit(case)
+        self.slit = slit_of(case)
         self.solids = solids_of(case) if case.walls else None
         self.closed = self.solids.room.closed if self.solids else (False,) * d
         bodies = self.solids.bodies if self.solids else []
@@ -68,7 +68,7 @@ class Memory:
         layer = math.prod(s for s, shut in zip(box.size, self.closed, strict=True) if not shut)
         self.n_virtual = (
             round(fluid.density * layer)
-            if self.slit and self.virtual in ("fill", "extrapolate")
+            if self.slit is not None and self.virtual in ("fill", "extrapolate")
             else 0
         )
 
@@ -119,8 +119,8 @@ class Memory:
         """Parameters of the solids; plates alone have a kernel of their own."""
         if self.solids is None:
             return Nothing()
-        if self.slit:
-            return self.case.walls[0].kernel(self.case.box.size)
+        if self.slit is not None:
+            return self.slit.kernel(self.case.box.size)
         bodies, self._clear = charted(self.case, self.solids, self.cells)
         return bodies
 
@@ -147,7 +147,7 @@ class Memory:
         self.wall_rates = zeros((2, d))
         self.calm = zeros(self.strips[0])
         self.guests: Guests | tuple[()] = ()
-        if self.solids and not self.slit and self.virtual != "none":
+        if self.solids and self.slit is None and self.virtual != "none":
             masses = np.repeat(self.masses_of_kinds, self.counts)
             self.guests = guests_of(self.case, self.solids, self.cells, threads, self.rows, masses)
             self.wall_rates = self.guests.rates

@@ -32,7 +32,8 @@ def cells_at(shift, old, closed):
 @kernel
 def advance(
     thread, threads, gate, clock, steps, done, seed, strength, closed, what, density, wanted,
-    guests, physics, box, grid, particles, cells, number, scratch, cell_scratch, like, c, terms, scales,
+    guests, physics, box, grid, particles, cells, number, scratch, cell_scratch, like, c, terms,
+    scales,
 ):  # fmt: skip
     """Run some steps; velocities are those after the collision of the last when it returns.
 

@@ -9,16 +9,18 @@ import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.execute.cache import kernel
-from mesokit.geometry.cut_cube import share_beyond
 from mesokit.geometry.bodies import (
+    NEAR,
     REACH,
+    STARTS,
     home_cell,
     in_box,
     nearest,
     part_normal,
     term_clearance,
 )
-from mesokit.pointer import whole
+from mesokit.geometry.cut_cube import share_beyond
+from mesokit.pointer import whole, word
 from mesokit.scalar import scalar, scaled, seldom
 
 
@@ -41,15 +43,15 @@ def centre_of(cell, solid, like):
 
 
 @kernel
-def near_cells(solid, like, away, starts, near, least):
+def near_cells(solid, terms, like, away, starts, near, least):
     """Count, or list once `near` has room, the terms `away` or nearer from any part of each cell;
     and the least clearance of its middle."""
     reach = 0.5 * math.sqrt(float(len(like))) + away
-    cells, terms = len(starts) - 1, solid.terms
+    cells = len(starts) - 1
     for cell in range(cells):
         r, found, closest = centre_of(cell, solid, like), 0, math.inf
         for term in range(terms):
-            c, _ = term_clearance(solid, term, r)
+            c, _ = term_clearance(solid.tables, term, r)
             closest = min(closest, c)
             if c <= reach:
                 if len(near) > 0:
@@ -70,7 +72,7 @@ def clearances(solid, least, like, points, out):
 @seldom
 def bound(solid, least, r, like):
     """Clearance of r, in the box; far from all solids, what the middle of its cell lets it have."""
-    c, _, _ = nearest(solid, r)
+    c, _, _ = nearest(solid.tables, r)
     if c < REACH:
         return c
     cell, stride, away = 0, 1, 0.0
@@ -88,9 +90,9 @@ def who_is_near(solid, like, points, terms, clearance, normals):
     """Nearest term (-1: none within reach), clearance and normal at each point."""
     for i in range(len(points)):
         r = in_box(solid, point(points, i, like))
-        c, part, term = nearest(solid, r)
+        c, part, term = nearest(solid.tables, r)
         terms[i], clearance[i] = term, c
-        n = part_normal(solid, part, r) if term >= 0 else scaled(0.0, like)
+        n = part_normal(solid.tables, part, r) if term >= 0 else scaled(0.0, like)
         for k in range(len(like)):
             normals[i, k] = n[k]
 
@@ -101,14 +103,15 @@ def depths(solid, like, away, points, terms, clearance, normals):
     the lists of the solid are."""
     for i in range(len(points)):
         r = in_box(solid, point(points, i, like))
-        cell, least, part, term = home_cell(solid, r), away, 0, -1
-        for j in range(whole(solid.starts, cell), whole(solid.starts, cell + 1)):
-            candidate = whole(solid.near, j)
-            c, which = term_clearance(solid, candidate, r)
+        cell, least, part, term = home_cell(solid.tables, r), away, 0, -1
+        starts = word(solid.tables, STARTS)
+        for j in range(whole(starts, cell), whole(starts, cell + 1)):
+            candidate = whole(word(solid.tables, NEAR), j)
+            c, which = term_clearance(solid.tables, candidate, r)
             if c < least:
                 least, part, term = c, which, candidate
         terms[i], clearance[i] = term, least
-        n = part_normal(solid, part, r) if term >= 0 else scaled(0.0, like)
+        n = part_normal(solid.tables, part, r) if term >= 0 else scaled(0.0, like)
         for k in range(len(like)):
             normals[i, k] = n[k]
 
@@ -121,7 +124,7 @@ def cut(solid, like, points, half, pieces, out):
     small = half / pieces
     corner = small * math.sqrt(float(d))
     for i in range(len(points)):
-        c, _, _ = nearest(solid, in_box(solid, point(points, i, like)))
+        c, _, _ = nearest(solid.tables, in_box(solid, point(points, i, like)))
         whole = half * math.sqrt(float(d))
         if abs(c) > whole:
             out[i] = 0
@@ -133,7 +136,7 @@ def cut(solid, like, points, half, pieces, out):
                 step = 2.0 * (rest % pieces) + 1.0 - pieces
                 r = tuple_setitem(r, k, r[k] + small * step)
                 rest //= pieces
-            c, _, _ = nearest(solid, in_box(solid, r))
+            c, _, _ = nearest(solid.tables, in_box(solid, r))
             fluid |= c > -corner
             inside |= c < corner
         out[i] = 1 if fluid and inside else 0
@@ -141,14 +144,14 @@ def cut(solid, like, points, half, pieces, out):
 
 @kernel
 def open_volume(solid, like, points, side, out):
-    """Part of cubes about the points that is fluid: a cube cut by a plane, at the nearest surface."""
+    """Part of cubes about the points that is fluid: cubes cut by a plane, the nearest surface."""
     for i in range(len(points)):
         r = in_box(solid, point(points, i, like))
-        c, part, term = nearest(solid, r)
+        c, part, term = nearest(solid.tables, r)
         if term < 0:
             out[i] = 1.0
             continue
-        n = part_normal(solid, part, r)
+        n = part_normal(solid.tables, part, r)
         out[i] = share_beyond(c / side, n)
 
 
@@ -158,8 +161,8 @@ def planes(solid, like, points, open_share, normals, heights, terms, feet):
     surface nearest to the middle, and leaves `open_share` of the cube to the fluid."""
     for i in range(len(points)):
         r = in_box(solid, point(points, i, like))
-        c, part, term = nearest(solid, r)
-        n = part_normal(solid, part, r)
+        c, part, term = nearest(solid.tables, r)
+        n = part_normal(solid.tables, part, r)
         low, high = -1.0, 1.0  # no corner of the cube is farther from its middle
         for _ in range(50):
             middle = 0.5 * (low + high)

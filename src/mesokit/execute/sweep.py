@@ -50,7 +50,7 @@ def sweep(
     Time levels: velocities of step n before COLLIDE, after it; positions and velocities of
     step n + 1 after STREAM, with their cells and cell sums.
     """
-    data, cell, ident, image, count, strips, first_virtual, rows, spare_cell = particles
+    data, cell, ident, image, count, strips, _, rows, _ = particles
     coefficients, sums = cells
     gathered, clear, calm, hits, quanta, impulse, tensor, rates = scratch
     gathered, clear, hits = gathered[thread], clear[thread], hits[thread]

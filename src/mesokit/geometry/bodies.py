@@ -13,7 +13,7 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.geometry import primitive
 from mesokit.geometry.primitive import WIDTH
-from mesokit.pointer import real, whole
+from mesokit.pointer import real, short, whole, word
 from mesokit.scalar import elementwise, scalar, scaled, seldom
 
 REACH = 1.0  # lists hold the terms within this distance of a cell; flights are cut into such pieces
@@ -21,36 +21,40 @@ NOBODY = -1
 
 
 class Bodies(NamedTuple):
-    """Parts, terms and bodies, and what is near each cell: addresses of tables (see `pointer`).
+    """Parts, terms and bodies, and what is near each cell.
 
-    size, inverse: tuples, lengths of the box and their inverses (0 along an axis that plates close).
-    kinds, signs (parts,), numbers (parts, WIDTH): primitive, 1 or -1 for its complement, parameters.
-    samples: what sampled primitives interpolate.
-    first (terms + 1,): where the parts of each term start. body (terms,), pivot (terms, 3).
-    surfaces (bodies, 8): rule, velocity (3), rate of rotation (3), whether virtual particles act.
-    starts (cells + 1,), near: the terms near each cell of the box, x varying fastest.
-    clear (offsets, collision cells + 1): square of the distance that every particle of a cell may
-    fly before it meets a solid, for each offset of the grid (see `offset_of`).
-    Tables hold float64 or, for numbers of things, int32; `clear` holds float32.
+    size, inverse: lengths of the box and their inverses (0 along an axis that plates close).
+    tables: address of the addresses of these tables (see `pointer`), in this order, as int64:
+
+    - KINDS, SIGNS (parts,), NUMBERS (parts, WIDTH): primitive, 1 or -1 for its complement,
+      parameters; SAMPLES: what sampled primitives interpolate;
+    - FIRST (terms + 1,): where the parts of each term start; BODY (terms,); PIVOT (terms, 3);
+    - SURFACES (bodies, 8): rule, velocity (3), rate of rotation (3), whether virtual particles act;
+    - STARTS (cells + 1,), NEAR: the terms near each cell of the box, x varying fastest;
+    - SIZE: not an address but the whole lengths of the box, 3 places.
+
+    Tables hold float64 or, for numbers of things, int32.
+    clear (offsets, collision cells + 1): address of the square of the distance, float32, that every
+    particle of a cell may fly before it meets a solid, for each offset of the grid (`offset_of`).
+    stride: distance that hardly a particle flies beyond in a timestep.
+    fine (parts of the box): address of a float32 lower bound of the clearance in cubes of 1/parts,
+    `parts` to a cell along each axis.
+    lowest, highest: coordinates between which a flight ends that does not hit a plate; plates are
+    not in `clear`, for each flight can look itself.
     """
 
     size: tuple[float, ...]
     inverse: tuple[float, ...]
-    kinds: int
-    signs: int
-    numbers: int
-    samples: int
-    first: int
-    body: int
-    pivot: int
-    surfaces: int
-    starts: int
-    near: int
+    tables: int
     clear: int
-    terms: int  # how many
-    stride: float  # what hardly a particle flies beyond in a timestep
+    stride: float
+    fine: int
+    parts: float
+    lowest: tuple[float, ...]
+    highest: tuple[float, ...]
 
 
+KINDS, SIGNS, NUMBERS, SAMPLES, FIRST, BODY, PIVOT, SURFACES, STARTS, NEAR, SIZE = range(11)
 RULE, VELOCITY, ROTATION, FILLS, COLUMNS = 0, 1, 4, 7, 8  # of `surfaces`
 NO_SLIP, SLIP, DIFFUSE = 0.0, 1.0, 2.0
 
@@ -67,82 +71,95 @@ def in_box(solid, r):
 
 
 @scalar
-def home_cell(solid, r):
+def sure_clearance(solid, r):
+    """A lower bound of the clearance of r, which is in the box: of the cube that holds it."""
+    cube, stride = 0, 1
+    for k in range(len(r)):
+        length = int(solid.size[k] * solid.parts)
+        cube += min(max(int(np.floor(r[k] * solid.parts)), 0), length - 1) * stride
+        stride *= length
+    return short(solid.fine, cube)
+
+
+@scalar
+def home_cell(tables, r):
     """Number of the unit cell of the box that holds r, which is in the box."""
     cell, stride = 0, 1
     for k in range(len(r)):
-        length = int(solid.size[k])
+        length = word(tables, SIZE + k)
         cell += min(max(int(np.floor(r[k])), 0), length - 1) * stride
         stride *= length
     return cell
 
 
 @seldom
-def part_clearance(solid, part, r):
+def part_clearance(tables, part, r):
     """Distance of r from one part, positive outside of it."""
-    p = solid.numbers + 8 * WIDTH * part
-    kind = whole(solid.kinds, part)
-    return real(solid.signs, part) * primitive.distance(kind, p, solid.samples, r)
+    p = word(tables, NUMBERS) + 8 * WIDTH * part
+    kind = whole(word(tables, KINDS), part)
+    return real(word(tables, SIGNS), part) * primitive.distance(kind, p, word(tables, SAMPLES), r)
 
 
 @seldom
-def part_normal(solid, part, r):
+def part_normal(tables, part, r):
     """Unit normal of one part, out of it."""
-    p = solid.numbers + 8 * WIDTH * part
-    kind = whole(solid.kinds, part)
-    return scaled(real(solid.signs, part), primitive.normal(kind, p, solid.samples, r))
+    p = word(tables, NUMBERS) + 8 * WIDTH * part
+    kind = whole(word(tables, KINDS), part)
+    return scaled(
+        real(word(tables, SIGNS), part), primitive.normal(kind, p, word(tables, SAMPLES), r)
+    )
 
 
 @seldom
-def term_clearance(solid, term, r):
+def term_clearance(tables, term, r):
     """Distance of r from a term, and the part that gives it: the one that r is farthest out of."""
     widest, which = -np.inf, 0
-    for part in range(whole(solid.first, term), whole(solid.first, term + 1)):
-        c = part_clearance(solid, part, r)
+    for part in range(whole(word(tables, FIRST), term), whole(word(tables, FIRST), term + 1)):
+        c = part_clearance(tables, part, r)
         if c > widest:
             widest, which = c, part
     return widest, which
 
 
 @seldom
-def nearest(solid, r):
+def nearest(tables, r):
     """Clearance of r, which is in the box, and the part and term it is measured from.
 
     Where nothing is near, the clearance is REACH, a lower bound, and the term is NOBODY.
     """
     least, part, term = REACH, 0, NOBODY
-    cell = home_cell(solid, r)
-    for j in range(whole(solid.starts, cell), whole(solid.starts, cell + 1)):
-        candidate = whole(solid.near, j)
-        c, which = term_clearance(solid, candidate, r)
+    cell = home_cell(tables, r)
+    for j in range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1)):
+        candidate = whole(word(tables, NEAR), j)
+        c, which = term_clearance(tables, candidate, r)
         if c < least:
             least, part, term = c, which, candidate
     return least, part, term
 
 
 @elementwise
-def from_pivot(solid, term, r):
+def from_pivot(tables, term, r):
     """r relative to the pivot of a term."""
-    return "r[{k}] - real(solid.pivot, 3 * term + {k})"
+    return "r[{k}] - real(word(tables, PIVOT), 3 * term + {k})"
 
 
 @scalar
-def surface_number(solid, term, column):
+def surface_number(tables, term, column):
     """A number of the surface of the body that a term belongs to."""
-    return real(solid.surfaces, whole(solid.body, term) * COLUMNS + column)
+    return real(word(tables, SURFACES), whole(word(tables, BODY), term) * COLUMNS + column)
 
 
 @scalar
-def surface_velocity(solid, term, r):
+def surface_velocity(tables, term, r):
     """Velocity of the surface of a body at r: along itself, and round its pivot."""
-    u, arm = scaled(0.0, r), from_pivot(solid, term, r)
+    u, arm = scaled(0.0, r), from_pivot(tables, term, r)
     for k in range(len(r)):
-        u = tuple_setitem(u, k, surface_number(solid, term, VELOCITY + k))
-    about_z = surface_number(solid, term, ROTATION + 2)
+        u = tuple_setitem(u, k, surface_number(tables, term, VELOCITY + k))
+    about_z = surface_number(tables, term, ROTATION + 2)
     if len(r) == 2:
         return (u[0] - about_z * arm[1], u[1] + about_z * arm[0])
-    about_x = surface_number(solid, term, ROTATION)
-    about_y = surface_number(solid, term, ROTATION + 1)
+    about_x = surface_number(tables, term, ROTATION)
+    about_y = surface_number(tables, term, ROTATION + 1)
     return (
         u[0] + about_y * arm[2] - about_z * arm[1],
         u[1] + about_z * arm[0] - about_x * arm[2],

@@ -4,6 +4,7 @@ import math
 
 from mesokit.elementary import log
 from mesokit.geometry.bodies import (
+    BODY,
     DIFFUSE,
     NOBODY,
     RULE,
@@ -14,6 +15,7 @@ from mesokit.geometry.bodies import (
     nearest,
     part_clearance,
     part_normal,
+    sure_clearance,
     surface_number,
     surface_velocity,
 )
@@ -32,7 +34,7 @@ from mesokit.geometry.protocol import (
     surface_of,
     touches,
 )
-from mesokit.pointer import whole
+from mesokit.pointer import whole, word
 from mesokit.random import DIFFUSE_WALL, Counter, normals, unit_open, words
 from mesokit.scalar import added_scaled, dot, scaled, seldom
 
@@ -47,20 +49,17 @@ def _(solid):
 @touches.register(Bodies)
 def _(solid, clear, r, v, a, time):
     ahead = added_scaled(scaled(time, v), 0.5 * time * time, a)
-    return dot(ahead, ahead) >= clear[0]
+    near = dot(ahead, ahead) >= clear[0]
+    for k in range(len(r)):
+        end = r[k] + ahead[k]
+        near |= (min(r[k], end) < solid.lowest[k]) | (max(r[k], end) > solid.highest[k])
+    return near
 
 
 @free.register(Bodies)
 def _(solid, r, v, a, time):
-    return out_of_reach(solid, r, v, a, time)
-
-
-@seldom
-def out_of_reach(solid, r, v, a, time):
-    """Whether the way is shorter than the clearance."""
     path = (length(v) + 0.5 * length(a) * time) * time
-    clear, _, _ = nearest(solid, in_box(solid, r))
-    return clear > path + MARGIN
+    return sure_clearance(solid, in_box(solid, r)) > path + MARGIN
 
 
 @homed.register(Bodies)
@@ -70,7 +69,7 @@ def _(solid, r):
 
 @first_hit.register(Bodies)
 def _(solid, r, v, a, time):
-    hit, part, term = first_meeting(solid, r, v, a, time)
+    hit, part, term = first_meeting(solid.tables, r, v, a, time)
     return hit, (part, term)
 
 
@@ -81,35 +80,35 @@ def _(solid, contact):
 
 @surface_of.register(Bodies)
 def _(solid, contact):
-    return whole(solid.body, contact[1])
+    return whole(word(solid.tables, BODY), contact[1])
 
 
 @lever.register(Bodies)
 def _(solid, contact, r):
-    return from_pivot(solid, contact[1], r)
+    return from_pivot(solid.tables, contact[1], r)
 
 
 @confine.register(Bodies)
 def _(solid, contact, r):
     part = contact[0]
-    lacking = MARGIN - part_clearance(solid, part, r)
-    return added_scaled(r, max(lacking, 0.0), part_normal(solid, part, r))
+    lacking = MARGIN - part_clearance(solid.tables, part, r)
+    return added_scaled(r, max(lacking, 0.0), part_normal(solid.tables, part, r))
 
 
 @reflect.register(Bodies)
 def _(solid, contact, r, v, chance):
-    return rebound(solid, contact[0], contact[1], r, v, chance)
+    return rebound(solid.tables, contact[0], contact[1], r, v, chance)
 
 
 @seldom
-def rebound(solid, part, term, r, v, chance):
+def rebound(tables, part, term, r, v, chance):
     """Velocity after a hit: bounced back, mirrored, or drawn anew at the temperature of the wall.
 
     In the frame of the surface. A thermal wall sends particles out with a Maxwellian flux: normal
     velocities with density u exp(-m u^2 / 2 kT) (Lebowitz and Spohn 1978).
     """
-    u, n = surface_velocity(solid, term, r), part_normal(solid, part, r)
-    rule = surface_number(solid, term, RULE)
+    u, n = surface_velocity(tables, term, r), part_normal(tables, part, r)
+    rule = surface_number(tables, term, RULE)
     coming = added_scaled(v, -1.0, u)
     if rule == SLIP:
         return added_scaled(v, -2.0 * dot(n, coming), n)
@@ -126,6 +125,8 @@ def rebound(solid, part, term, r, v, chance):
 
 @settled.register(Bodies)
 def _(solid, r):
+    if sure_clearance(solid, r) > MARGIN:
+        return r, True
     return put_back(solid, r)
 
 
@@ -133,10 +134,10 @@ def _(solid, r):
 def put_back(solid, r):
     """r, moved off the surface by the margin if it is nearer; whether it is then in the fluid."""
     for _ in range(8):
-        c, part, _ = nearest(solid, r)
+        c, part, _ = nearest(solid.tables, r)
         if c >= 0.5 * MARGIN:
             return r, True
         if c < -1e-6:
             return r, False
-        r = in_box(solid, added_scaled(r, MARGIN - c, part_normal(solid, part, r)))
+        r = in_box(solid, added_scaled(r, MARGIN - c, part_normal(solid.tables, part, r)))
     return r, False

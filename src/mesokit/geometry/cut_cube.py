@@ -1,7 +1,7 @@
 """A unit cube cut by a plane: how much of it lies on either side, and how deep.
 
-The height of a uniform point of the cube over the plane is a sum of uniform numbers of widths |n_k|,
-whose distribution is known (Irwin 1927, Hall 1927).
+The height of a uniform point of the cube over the plane is a sum of uniform numbers of widths
+|n_k|, whose distribution is known (Irwin 1927, Hall 1927).
 """
 
 from numba.cpython.unsafe.tuple import tuple_setitem

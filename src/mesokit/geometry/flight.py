@@ -11,15 +11,20 @@ import math
 
 from mesokit.geometry import primitive
 from mesokit.geometry.bodies import (
+    FIRST,
+    KINDS,
+    NEAR,
     NOBODY,
     REACH,
+    SIGNS,
+    STARTS,
     home_cell,
     part_clearance,
     part_normal,
     term_clearance,
 )
 from mesokit.geometry.primitive.numbers import length
-from mesokit.pointer import real, whole
+from mesokit.pointer import real, whole, word
 from mesokit.scalar import added_scaled, dot, scalar, seldom
 
 ON_SURFACE = 1e-11  # cells: a flight that comes so close has arrived
@@ -58,12 +63,12 @@ def at(r, v, a, t):
 
 
 @seldom
-def approach(solid, part, r, v, a, time):
+def approach(tables, part, r, v, a, time):
     """When the flight enters a convex part; more than `time` if it does not."""
     late, t = 2.0 * time + 1.0, 0.0
     x, u = r, v
     for _ in range(MOST_TRIES):
-        c, n = part_clearance(solid, part, x), part_normal(solid, part, x)
+        c, n = part_clearance(tables, part, x), part_normal(tables, part, x)
         if c <= ON_SURFACE and dot(n, u) < 0.0:
             return t
         t += time_to_fall(max(c, 0.0), dot(n, u), dot(n, a), time - t)
@@ -74,67 +79,75 @@ def approach(solid, part, r, v, a, time):
 
 
 @seldom
-def march(solid, part, r, v, a, time):
+def march(tables, part, r, v, a, time):
     """When the flight enters any part; more than `time` if it does not."""
     late, t, pull = 2.0 * time + 1.0, 0.0, length(a)
     x, _ = at(r, v, a, time)
-    if real(solid.signs, part) < 0.0 and is_convex(whole(solid.kinds, part)):
-        # Within a convex room a straight flight that ends inside stays inside.
-        if part_clearance(solid, part, x) >= 0.5 * pull * time * time:
-            return late
+    room = real(word(tables, SIGNS), part) < 0.0 and is_convex(whole(word(tables, KINDS), part))
+    # Within a convex room a straight flight that ends inside stays inside.
+    if room and part_clearance(tables, part, x) >= 0.5 * pull * time * time:
+        return late
     x, u = r, v
     while t < time:
-        c = max(part_clearance(solid, part, x), SHORT_STEP)
+        c = max(part_clearance(tables, part, x), SHORT_STEP)
         ahead = min(t + c / (length(u) + pull * (time - t) + 1e-300), time)
         x, u = at(r, v, a, ahead)
-        if part_clearance(solid, part, x) < 0.0:
-            return crossing(solid, part, r, v, a, t, ahead)
+        if part_clearance(tables, part, x) < 0.0:
+            return crossing(tables, part, r, v, a, t, ahead)
         t = ahead
     return late
 
 
 @seldom
-def crossing(solid, part, r, v, a, outside, inside):
+def crossing(tables, part, r, v, a, outside, inside):
     """The last time found outside, when the flight crosses the surface between two times."""
-    for _ in range(MOST_TRIES):
-        middle = 0.5 * (outside + inside)
-        if middle <= outside or middle >= inside:
-            break
+    x, _ = at(r, v, a, outside)
+    above = max(part_clearance(tables, part, x), 0.0)
+    x, _ = at(r, v, a, inside)
+    below = part_clearance(tables, part, x)
+    for n in range(MOST_TRIES):
+        # false position; its end that stays is given half the weight (Illinois), now and then half
+        share = above / (above - below) if n % 8 < 7 else 0.5
+        middle = outside + share * (inside - outside)
+        if not outside < middle < inside:
+            middle = 0.5 * (outside + inside)
+            if not outside < middle < inside:
+                break
         x, _ = at(r, v, a, middle)
-        c = part_clearance(solid, part, x)
+        c = part_clearance(tables, part, x)
         if c < 0.0:
-            inside = middle
+            inside, below, above = middle, c, 0.5 * above
         else:
-            outside = middle
+            outside, above, below = middle, c, 0.5 * below
             if c < ON_SURFACE:
                 break
     return outside
 
 
 @seldom
-def entry(solid, part, r, v, a, time):
+def entry(tables, part, r, v, a, time):
     """When the flight enters a part; more than `time` if it does not."""
-    if real(solid.signs, part) > 0.0 and is_convex(whole(solid.kinds, part)):
-        return approach(solid, part, r, v, a, time)
-    return march(solid, part, r, v, a, time)
+    if real(word(tables, SIGNS), part) > 0.0 and is_convex(whole(word(tables, KINDS), part)):
+        return approach(tables, part, r, v, a, time)
+    return march(tables, part, r, v, a, time)
 
 
 @seldom
-def meeting(solid, term, r, v, a, time):
+def meeting(tables, term, r, v, a, time):
     """When the flight enters all parts of a term, and the part that it entered last.
 
     From place to place: as long as it is outside of a part, nothing happens before it enters that.
     """
-    first = whole(solid.first, term)
-    if whole(solid.first, term + 1) - first == 1:
-        return entry(solid, first, r, v, a, time), first
+    first = whole(word(tables, FIRST), term)
+    if whole(word(tables, FIRST), term + 1) - first == 1:
+        return entry(tables, first, r, v, a, time), first
     late, t = 2.0 * time + 1.0, 0.0
     x, u = r, v
     for _ in range(MOST_TRIES):
-        c, part = term_clearance(solid, term, x)
-        if c <= ON_SURFACE and dot(part_normal(solid, part, x), u) < 0.0:
+        c, part = term_clearance(tables, term, x)
+        if c <= ON_SURFACE and dot(part_normal(tables, part, x), u) < 0.0:
             return t, part
-        t += entry(solid, part, x, u, a, time - t)
+        t += entry(tables, part, x, u, a, time - t)
         if t > time:
             return late, first
         x, u = at(r, v, a, t)
@@ -142,7 +155,7 @@ def meeting(solid, term, r, v, a, time):
 
 
 @seldom
-def first_meeting(solid, r, v, a, time):
+def first_meeting(tables, r, v, a, time):
     """The first hit of a flight that starts in the box: time, part and term.
 
     A flight is followed no farther than REACH at a time: where it then is, the term is NOBODY.
@@ -155,12 +168,12 @@ def first_meeting(solid, r, v, a, time):
     if path > REACH:
         soonest = REACH / speed
         path, time = REACH, soonest
-    cell = home_cell(solid, r)
-    for j in range(whole(solid.starts, cell), whole(solid.starts, cell + 1)):
-        candidate = whole(solid.near, j)
-        c, _ = term_clearance(solid, candidate, r)
+    cell = home_cell(tables, r)
+    for j in range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1)):
+        candidate = whole(word(tables, NEAR), j)
+        c, _ = term_clearance(tables, candidate, r)
         if c <= path:
-            t, which = meeting(solid, candidate, r, v, a, time)
+            t, which = meeting(tables, candidate, r, v, a, time)
             if t <= time and t < soonest:
                 soonest, part, term = t, which, candidate
     return soonest, part, term

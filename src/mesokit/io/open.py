@@ -19,8 +19,8 @@ from mesokit.io.run_directory import RunDirectory
 if TYPE_CHECKING:
     from mesokit.case import Case
     from mesokit.observe.result import Result
-    from mesokit.si import SI
     from mesokit.report.flow import Film
+    from mesokit.si import SI
 
 
 class RunFiles:

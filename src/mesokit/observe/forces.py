@@ -18,7 +18,7 @@ from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpa
 from mesokit.observe.result import Array, Comparison, Result, with_error
 from mesokit.observe.wall_stress import PLATES, balance
 from mesokit.observe.walls import require_counted
-from mesokit.solids import free_volume, solids_of
+from mesokit.solids import free_volume, slit_of, solids_of
 from mesokit.statistics import Blocks, TimeSeries
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ class ForcesAccumulator:
         observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         self.dimension = d = case.box.dimension
-        slit = setting.slit(case)
+        slit = slit_of(case)
         self.bodies = list(PLATES) if slit else solids_of(case).names
         turns = ("tz",) if d == 2 else ("tx", "ty", "tz")
         self.components = (*(f"f{axis}" for axis in AXES[:d]), *turns)
@@ -151,7 +151,7 @@ class ForcesAccumulator:
         """What a balance or a theory says of each solid, nan elsewhere."""
         case, d = self.case, self.dimension
         expected = np.full(self.shape, np.nan)
-        wall, gap = setting.slit(case), recognise.gap(case)
+        wall, gap = slit_of(case), recognise.gap(case)
         if wall is not None:
             area = np.prod(case.box.size) / case.box.size[AXES.index(wall.axis)]
             expected[:, :d] = area * balance(case)

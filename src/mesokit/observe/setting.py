@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.box import AXES, Axis
 from mesokit.errors import CaseError
-from mesokit.solids import is_slit, solids_of
+from mesokit.solids import slit_of, solids_of
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -148,12 +148,6 @@ def driven(case: Case) -> bool:
     return bool(case.box.shear_rate or case.fluid.force.rule != "none" or moving)
 
 
-def slit(case: Case) -> Plates | None:
-    """The two plates of a slit, if these are all walls."""
-    only: Any = case.walls[0] if is_slit(case) else None
-    return only
-
-
 def closed_axes(case: Case) -> set[int]:
     """Axes that plates close."""
     return {AXES.index(wall.axis) for wall in case.walls if wall.shape == "plates"}
@@ -161,7 +155,7 @@ def closed_axes(case: Case) -> set[int]:
 
 def obstructed(case: Case) -> bool:
     """Whether there are solids other than the plates of a slit."""
-    return bool(case.walls) and not is_slit(case)
+    return bool(case.walls) and slit_of(case) is None
 
 
 def axis_index(case: Case, axis: str, key: str = "axis") -> int:
@@ -210,7 +204,7 @@ def bin_average(function: Callable[[Array], Array], edges: Array) -> Array:
 
 def flow(case: Case, component: int) -> Flow:
     """The steady flow along axis number `component`."""
-    box, plates = case.box, slit(case)
+    box, plates = case.box, slit_of(case)
     if plates is None and case.walls:
         return Flow("round solids", 1, None) if driven(case) else Flow("rest", 1, np.zeros_like)
     if plates and not (box.shear_rate and plates.lower.rule == plates.upper.rule == "slip"):

@@ -12,6 +12,7 @@ from mesokit.observe import setting
 from mesokit.observe.estimate import Estimate, fit, of_ratio
 from mesokit.observe.profile import Array, Profile, ProfileAccumulator
 from mesokit.observe.result import Comparison, Result
+from mesokit.solids import slit_of
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -119,7 +120,7 @@ class VelocityProfileAccumulator(ProfileAccumulator):
 
     def plates(self) -> tuple[float, float]:
         """Velocities of the lower and the upper plate."""
-        wall = setting.slit(self.case)
+        wall = slit_of(self.case)
         assert wall is not None  # only such flows are fitted so
         lower, upper = (
             setting.surface_velocity(s, self.component) for s in (wall.lower, wall.upper)

@@ -16,6 +16,7 @@ from mesokit.observe.estimate import of_mean
 from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.observe.walls import require_counted
+from mesokit.solids import slit_of
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ class WallStress(Observable):
 
     def check(self, case: Case) -> None:
         """Raise CaseError without walls, or for a second one: it sees what the first left."""
-        if setting.slit(case) is None:
+        if slit_of(case) is None:
             raise CaseError(
                 "wall-stress needs one [[wall]] of shape 'plates', and no other; "
                 "for other walls observe 'forces'"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mesokit.errors import CaseError
-from mesokit.observe import setting
+from mesokit.solids import slit_of
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def require_counted(case: Case, quantity: str) -> None:
     """Raise CaseError where it is not counted, or for a second observer: reading it starts anew."""
-    if setting.slit(case) is not None and case.walls[0].virtual == "top-up":
+    if slit_of(case) is not None and case.walls[0].virtual == "top-up":
         raise CaseError(
             f"{quantity} is not counted with virtual = 'top-up' in a slit; use 'extrapolate'"
         )
