@@ -147,13 +147,15 @@ def surface_pieces(solids: Solids) -> tuple[Any, Any, Any, Any]:
     return pieces, outward, probes, terms[where]
 
 
-def cut_planes(solids: Solids, corners: Any, starts: Any) -> tuple[Any, Any, Any, Any]:
-    """For each cut cell the normal and height of the plane that cuts it, its term, and the cell of
-    the box in which the surface lies that is nearest to its middle."""
+def cut_planes(solids: Solids, corners: Any, starts: Any) -> tuple[Any, Any, Any, Any, Any]:
+    """For each cut cell the normal and height of the plane that cuts it, its middle in the box, its
+    term, and the cell of the box in which the surface lies that is nearest to its middle."""
     middles = np.empty(corners.shape)
     for number, origin in enumerate(origins(solids.room.closed)):
         some = slice(starts[number], starts[number + 1])
         middles[some] = corners[some] + 0.5 - np.array(origin)
+    for k, (length, shut) in enumerate(zip(solids.size, solids.room.closed, strict=True)):
+        middles[:, k] = middles[:, k] if shut else middles[:, k] % length
     share = solids.open_part(middles, 1.0)
     normals, heights = np.zeros(middles.shape), np.zeros(len(middles))
     terms, feet = np.zeros(len(middles), np.int64), np.zeros(middles.shape)
@@ -163,7 +165,7 @@ def cut_planes(solids: Solids, corners: Any, starts: Any) -> tuple[Any, Any, Any
     heights[share <= 0.0] = -2.0
     slippery = np.array([body.surface.rule == "slip" for body in solids.bodies])
     heights[slippery[solids.body_of_term[terms]]] = 2.0  # no virtual particles there
-    return normals, heights, terms, cell_numbers(solids, feet)
+    return normals, heights, middles, terms, cell_numbers(solids, feet)
 
 
 def cell_numbers(solids: Solids, points: Any) -> Any:
