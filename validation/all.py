@@ -10,7 +10,7 @@ import sys
 
 NAMES = (
     "viscosity_routes", "viscosity_rules", "lees_edwards_profile", "wall_slip", "thermostat",
-    "conservation",
+    "conservation", "solids_inside",
 )  # fmt: skip
 
 
