@@ -23,6 +23,7 @@ from mesokit.geometry.bodies import (
     NOBODY,
     NUMBERS,
     PIVOT,
+    REACH,
     SAMPLES,
     SIGNS,
     SIZE,
@@ -38,7 +39,7 @@ from mesokit.geometry.shape import Body, Piece
 from mesokit.pointer import address
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from mesokit.box import Box
     from mesokit.case import Case
@@ -114,13 +115,21 @@ class Solids:
         self.like = (0.0,) * self.dimension
         pieces = [(piece, row) for row, body in enumerate(self.bodies) for piece in body.pieces]
         self.kernel = self._kernel(pieces)
-        cells = math.prod(self.size)
-        self.least, nothing = np.zeros(cells), np.zeros(0, np.int32)
-        starts = np.zeros(cells + 1, np.int32)
-        survey.near_cells(self.kernel, len(pieces), self.like, starts, nothing, self.least)
+        self.terms = len(pieces)
+        self.least = np.zeros(math.prod(self.size))
+        self.kernel = self.reaching(REACH)
+
+    def reaching(self, away: float) -> Bodies:
+        """Parameters for compiled code, with lists of the terms within `away` of each cell."""
+        starts, nothing = np.zeros(len(self.least) + 1, np.int32), np.zeros(0, np.int32)
+        given = self.kernel, self.terms, self.like, away, starts
+        survey.near_cells(*given, nothing, self.least)
         near = np.zeros(max(starts[-1], 1), np.int32)
-        survey.near_cells(self.kernel, len(pieces), self.like, starts, near, self.least)
-        self._places[STARTS], self._places[NEAR] = self._keep(starts), self._keep(near)
+        survey.near_cells(*given, near, self.least)
+        places = self._places.copy()
+        places[STARTS], places[NEAR] = self._keep(starts), self._keep(near)
+        self._tables.append(places)
+        return self.kernel._replace(tables=address(places))
 
     def _keep(self, table: Any, kind: Any = np.int32) -> int:
         """Keep a table as long as this object lives; its address."""
@@ -193,6 +202,20 @@ class Solids:
         distance, normal = np.zeros(len(points)), np.zeros(points.shape)
         survey.who_is_near(self.kernel, self.like, points, terms, distance, normal)
         return np.where(terms == NOBODY, NOBODY, self.body_of_term[terms]), distance, normal
+
+    def depths(self, away: float) -> Callable[[Any], tuple[NDArray[np.int64], Floats, Floats]]:
+        """What tells body (-1: none so near), distance (n,) and normal at points (n, d), exact for
+        distances up to `away`."""
+        kernel = self.reaching(away)
+
+        def look(points: Any) -> tuple[NDArray[np.int64], Floats, Floats]:
+            points = np.ascontiguousarray(points, float).reshape(-1, self.dimension)
+            terms = np.zeros(len(points), np.int64)
+            distance, normal = np.zeros(len(points)), np.zeros(points.shape)
+            survey.depths(kernel, self.like, float(away), points, terms, distance, normal)
+            return np.where(terms == NOBODY, NOBODY, self.body_of_term[terms]), distance, normal
+
+        return look
 
     @functools.cached_property
     def open_cells(self) -> Floats:

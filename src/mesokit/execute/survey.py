@@ -9,8 +9,18 @@ import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.execute.cache import kernel
-from mesokit.geometry.bodies import REACH, in_box, nearest, part_normal, term_clearance
+from mesokit.geometry.bodies import (
+    NEAR,
+    REACH,
+    STARTS,
+    home_cell,
+    in_box,
+    nearest,
+    part_normal,
+    term_clearance,
+)
 from mesokit.geometry.cut_cube import share_beyond
+from mesokit.pointer import whole, word
 from mesokit.scalar import scalar, scaled, seldom
 
 
@@ -33,9 +43,10 @@ def centre_of(cell, solid, like):
 
 
 @kernel
-def near_cells(solid, terms, like, starts, near, least):
-    """Count, or list once `near` has room, the terms near each cell, and its least clearance."""
-    reach = 0.5 * math.sqrt(float(len(like))) + REACH
+def near_cells(solid, terms, like, away, starts, near, least):
+    """Count, or list once `near` has room, the terms `away` or nearer from any part of each cell;
+    and the least clearance of its middle."""
+    reach = 0.5 * math.sqrt(float(len(like))) + away
     cells = len(starts) - 1
     for cell in range(cells):
         r, found, closest = centre_of(cell, solid, like), 0, math.inf
@@ -81,6 +92,25 @@ def who_is_near(solid, like, points, terms, clearance, normals):
         r = in_box(solid, point(points, i, like))
         c, part, term = nearest(solid.tables, r)
         terms[i], clearance[i] = term, c
+        n = part_normal(solid.tables, part, r) if term >= 0 else scaled(0.0, like)
+        for k in range(len(like)):
+            normals[i, k] = n[k]
+
+
+@kernel
+def depths(solid, like, away, points, terms, clearance, normals):
+    """Nearest term (-1: none so near), clearance and normal at each point, exact up to `away` if
+    the lists of the solid are."""
+    for i in range(len(points)):
+        r = in_box(solid, point(points, i, like))
+        cell, least, part, term = home_cell(solid.tables, r), away, 0, -1
+        starts = word(solid.tables, STARTS)
+        for j in range(whole(starts, cell), whole(starts, cell + 1)):
+            candidate = whole(word(solid.tables, NEAR), j)
+            c, which = term_clearance(solid.tables, candidate, r)
+            if c < least:
+                least, part, term = c, which, candidate
+        terms[i], clearance[i] = term, least
         n = part_normal(solid.tables, part, r) if term >= 0 else scaled(0.0, like)
         for k in range(len(like)):
             normals[i, k] = n[k]

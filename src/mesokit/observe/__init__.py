@@ -13,8 +13,10 @@ from mesokit.observe.forces import Forces
 from mesokit.observe.longitudinal_modes import LongitudinalModes
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
 from mesokit.observe.protocol import Accumulator, Observable, RunningFluid
+from mesokit.observe.radial_profile import RadialProfile
 from mesokit.observe.result import Comparison, Result
 from mesokit.observe.stress import Stress
+from mesokit.observe.surface_profile import SurfaceProfile
 from mesokit.observe.temperature_profile import TemperatureProfile
 from mesokit.observe.transverse_modes import TransverseModes
 from mesokit.observe.velocity_autocorrelation import VelocityAutocorrelation
@@ -38,6 +40,8 @@ AnyObservable = (
     | Stress
     | Forces
     | FlowRate
+    | RadialProfile
+    | SurfaceProfile
 )
 OBSERVABLES: tuple[type, ...] = get_args(AnyObservable)
 
@@ -55,9 +59,11 @@ __all__ = [
     "LongitudinalModes",
     "MeanSquareDisplacement",
     "Observable",
+    "RadialProfile",
     "Result",
     "RunningFluid",
     "Stress",
+    "SurfaceProfile",
     "TemperatureProfile",
     "TransverseModes",
     "VelocityAutocorrelation",

@@ -1,4 +1,4 @@
-"""Solids whose flow is known: a round pipe, a round gap, arrays of cylinders and of spheres."""
+"""Solids whose flow is known: round pipes, drums and gaps, arrays of cylinders and of spheres."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Pipe(NamedTuple):
-    """A round pipe along axis number `axis`, through `centre`."""
+    """Something round along axis number `axis`, through `centre`."""
 
     axis: int
     centre: tuple[float, ...]
@@ -34,6 +34,15 @@ class Gap(NamedTuple):
     outer_rate: float
     inner_body: int
     outer_body: int
+
+
+class Drum(NamedTuple):
+    """Fluid in a round vessel that turns about its axis."""
+
+    axis: int
+    centre: tuple[float, ...]
+    radius: float
+    rate: float
 
 
 class Lattice(NamedTuple):
@@ -60,6 +69,31 @@ def pipe(case: Case) -> Pipe | None:
     if wall.shape != "cylinder" or wall.fluid == "outside" or axis is None or not _still(wall):
         return None
     return Pipe(axis, wall.centre, wall.radius)
+
+
+def post(case: Case) -> Pipe | None:
+    """The disk or cylinder along an axis of the box that is the only wall, fluid around it."""
+    if len(case.walls) != 1:
+        return None
+    wall: Any = case.walls[0]
+    axis = _axis(wall, case)
+    if axis is None or wall.fluid == "inside":
+        return None
+    return Pipe(axis, wall.centre, wall.radius)
+
+
+def drum(case: Case) -> Drum | None:
+    """The round vessel that is the only wall, if it does not move but by turning."""
+    if len(case.walls) != 1:
+        return None
+    wall: Any = case.walls[0]
+    axis = _axis(wall, case)
+    if axis is None or wall.fluid == "outside" or wall.surface.rule != "no-slip":
+        return None
+    rate = solids_of(case).bodies[0].rotation
+    if any(wall.surface.velocity or ()) or any(rate[k] for k in range(3) if k != axis):
+        return None
+    return Drum(axis, wall.centre, wall.radius, rate[axis])
 
 
 def gap(case: Case) -> Gap | None:

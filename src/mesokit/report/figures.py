@@ -30,6 +30,8 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "wall-stress": tensor.draw,
     "stress": tensor.draw,
     "forces": forces.draw,
+    "radial-profile": profile.draw,
+    "surface-profile": profile.draw,
     "flow-rate": series.draw_flow,
 }
 

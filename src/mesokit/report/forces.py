@@ -22,10 +22,12 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     panels = figure.subplots(rows, 3, sharex=True, squeeze=False).ravel()
     for column, panel in enumerate(panels):
         _panel(panel, result, column)
-        panel.label_outer()
         panel.set_title(panel.get_ylabel(), fontsize=10)
         panel.set_ylabel("")
-    panels[0].legend(loc="best")
+        if column < 3 * (rows - 1):
+            panel.set_xlabel("")
+            panel.tick_params(labelbottom=False)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
 
 
 def _panel(ax: Any, result: Result, column: int) -> None:

@@ -9,12 +9,16 @@ import numpy as np
 from mesokit.observe.result import Result
 from mesokit.report.style import COLOURS, labelled
 
+AXES = {"r": "distance from the axis $r$", "distance": "distance from the surface"}
 NAMES = {
     "poiseuille": "Poiseuille, no slip",
     "half poiseuille": "Poiseuille, one slip plate",
     "couette": "Couette, no slip",
     "lees-edwards": "uniform shear",
     "kolmogorov": "Kolmogorov",
+    "hagen-poiseuille": "Hagen-Poiseuille, no slip",
+    "taylor-couette": "Taylor-Couette, no slip",
+    "drum": "turning as one",
 }
 
 
@@ -49,8 +53,9 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         finite = abs(deviation[np.isfinite(deviation)]) if deviation is not None else np.zeros(0)
         reach = max(3.5, 1.15 * finite.max()) if len(finite) else 3.5
         residuals.set_ylim(-reach, reach)
-    bottom.set_xlabel(labelled(f"${axis}$", result.units[axis]))
-    bottom.set_xlim(0, x[-1] + x[0])
+    edges = result.extra.get("edges", np.array([0, x[-1] + x[0]]))
+    bottom.set_xlabel(labelled(AXES.get(axis, f"${axis}$"), result.units[axis]))
+    bottom.set_xlim(edges[0], edges[-1])
 
 
 def _frame(ax: Any, result: Result) -> None:
