@@ -99,7 +99,10 @@ class Solids:
     87.43
     """
 
-    def __init__(self, walls: Sequence[Wall], box: Box) -> None:
+    def __init__(
+        self, walls: Sequence[Wall], box: Box, *, without_plates: bool = False
+    ) -> None:
+        self._walls, self._box = walls, box
         self.size, self.dimension = box.size, box.dimension
         shut = {wall.axis for wall in walls if wall.shape == "plates"}
         self.room = Room(box.size, tuple(axis in shut for axis in box.axes))
@@ -109,6 +112,8 @@ class Solids:
         self.walls: list[int] = []  # of which wall each body is
         for index, wall in enumerate(walls):
             number = numbers[wall.shape] = numbers.get(wall.shape, 0) + 1
+            if without_plates and wall.shape == "plates":
+                continue
             made = wall.bodies(self.room, f"{wall.shape}-{number}")
             self.bodies += made
             self.walls += [index] * len(made)
@@ -172,24 +177,31 @@ class Solids:
             self._places[number] = place
         self._places[SIZE : SIZE + self.dimension] = self.size
         size = tuple(float(length) for length in self.size)
-        return Bodies(size, inverse, tables=address(self._places), clear=0, stride=0.0)
+        return Bodies(size, inverse, address(self._places), 0, 0.0, size, size)
 
     def _surface(self, body: Body) -> list[float]:
         velocity = list(body.surface.velocity or ()) + [0.0] * 3
         fills = body.surface.rule != "slip" and body.virtual != "none"
         return [_RULES[body.surface.rule], *velocity[:3], *body.rotation, float(fills)]
 
+    @functools.cached_property
+    def _others(self) -> Solids:
+        """The same without the plates, in the same room."""
+        return Solids(self._walls, self._box, without_plates=True)
+
     @property
     def names(self) -> list[str]:
         """Of the bodies."""
         return [body.name for body in self.bodies]
 
-    def distance(self, points: Any) -> Floats:
+    def distance(self, points: Any, plates: bool = True) -> Floats:
         """Signed distance (n,) of points (n, d) from the nearest surface, positive in the fluid.
 
         Exact near surfaces; elsewhere, and inside of solids made of several, a lower bound of its
-        size.
+        size. Without `plates`, from the other surfaces.
         """
+        if not plates and any(self.room.closed):
+            return self._others.distance(points)
         points = np.ascontiguousarray(points, float).reshape(-1, self.dimension)
         out = np.zeros(len(points))
         survey.clearances(self.kernel, self.least, self.like, points, out)

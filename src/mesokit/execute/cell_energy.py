@@ -56,6 +56,11 @@ def untangled(energy, total):
 
 
 @generic
+def asks(energy):
+    """Whether anybody needs the energy (a literal)."""
+
+
+@generic
 def many_energy_term(energy, m_v_squared):
     """What several particles of this sum of m v^2 add to a column of their own, or ()."""
 
@@ -94,6 +99,16 @@ def _(energy, total):
 def _(energy, total):
     number = np.int64(np.uint64(total) >> np.uint64(COUNT_SHIFT))
     return number, float(total & np.int64(ENERGY_MASK)) * (1.0 / energy.scale)
+
+
+@asks.register(NotAsked)
+def _(energy):
+    return False
+
+
+@asks.register(Column, WithCount)
+def _(energy):
+    return True
 
 
 @many_energy_term.register(NotAsked, WithCount)

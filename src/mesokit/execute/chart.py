@@ -67,12 +67,12 @@ def centres(cells: tuple[int, ...], origin: tuple[float, ...]) -> Any:
 def clear_distances(solids: Solids, cells: tuple[int, ...], bend: float) -> Any:
     """Square of the distance that any particle of each cell may fly (offsets, cells + 1).
 
-    No flight is farther than `bend` from the straight way to its end.
+    No flight is farther than `bend` from the straight way to its end. Plates do not count.
     """
     d, rows = solids.dimension, []
     corner = (0.5 + 0.5 / OFFSETS) * math.sqrt(d)
     for origin in origins(solids.room.closed):
-        clear = solids.distance(centres(cells, origin)) - corner - bend - MARGIN
+        clear = solids.distance(centres(cells, origin), plates=False) - corner - bend - MARGIN
         rows.append([*np.maximum(clear, 0.0) ** 2, EVERYWHERE])
     return np.array(rows, np.float32)
 

@@ -15,7 +15,7 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.execute.bounce import take
 from mesokit.execute.cell_energy import tally, untangled
-from mesokit.execute.chart import clear_place, offset_of
+from mesokit.execute.chart import offset_of
 from mesokit.execute.flags import MEASURE_WALLS
 from mesokit.execute.layout import LANES, ROW, share, strip_of, sums_length
 from mesokit.execute.lumps import Lumps, fill_lumps, lumps_recoil
@@ -34,7 +34,7 @@ from mesokit.geometry.bodies import (
     surface_velocity,
     term_clearance,
 )
-from mesokit.pointer import short, whole, word
+from mesokit.pointer import whole, word
 from mesokit.random import BODY_POSITION, BODY_VELOCITY, normals, unit_open, words
 from mesokit.scalar import added, added_scaled, by_type, dot, first, scalar, scaled, seldom
 
@@ -269,8 +269,6 @@ def follow_pieces(guests, thread, threads, physics, grid, sums, like, terms, sca
             probe = tuple_setitem(probe, k, guests.probes[e, k])
             n = tuple_setitem(n, k, guests.outward[e, k])
         cell = cell_index(probe, grid)
-        if short(solid.clear, clear_place(solid, grid, cell)) <= 0.0:
-            continue
         found = nothing_found(terms)
         for t in range(sums.shape[0]):
             for k in range(len(found)):
@@ -285,6 +283,9 @@ def follow_pieces(guests, thread, threads, physics, grid, sums, like, terms, sca
         for k in range(len(like)):
             corner = np.floor(probe[k] + grid.origin[k]) - grid.origin[k]
             middle = tuple_setitem(middle, k, corner + 0.5)
+        least, _, _ = nearest(solid.tables, in_box(solid, middle))
+        if least < 0.5 * math.sqrt(float(len(like))):  # another surface may cut that cell
+            continue
         height, _ = term_clearance(solid.tables, guests.terms[e], middle)
         u = surface_velocity(solid.tables, guests.terms[e], middle)
         rise = scaled(1.0 / height, added_scaled(scaled(1.0 / mass, momentum), -1.0, u))

@@ -12,6 +12,7 @@ from mesokit.execute.guests import KINDS, Guests
 from mesokit.execute.layout import BLOCK, ROW, blocks_for, zeros
 from mesokit.execute.lumps import Lumps
 from mesokit.geometry.bodies import Bodies
+from mesokit.geometry.contact import MARGIN
 from mesokit.pointer import address
 
 if TYPE_CHECKING:
@@ -28,7 +29,15 @@ def charted(case: Case, solids: Solids, cells: tuple[int, ...]) -> tuple[Bodies,
     clear = clear_distances(solids, cells, bend)
     lightest = min((kind.mass for kind in case.fluid.species), default=case.fluid.mass)
     stride = MANY_SIGMA * math.sqrt(case.fluid.kT / lightest) * case.fluid.timestep + bend
-    return solids.kernel._replace(clear=address(clear), stride=stride), clear
+    gap = bend + MARGIN  # no parabola is further from its straight line than a t^2 / 8
+    ends = list(zip(solids.room.closed, case.box.size, strict=True))
+    kernel = solids.kernel._replace(
+        clear=address(clear),
+        stride=stride,
+        lowest=tuple(gap if shut else -math.inf for shut, _ in ends),
+        highest=tuple(length - gap if shut else math.inf for shut, length in ends),
+    )
+    return kernel, clear
 
 
 def guests_of(

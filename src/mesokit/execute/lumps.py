@@ -16,7 +16,7 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.elementary import log
 from mesokit.execute.bounce import take
-from mesokit.execute.cell_energy import many_energy_term, many_tally
+from mesokit.execute.cell_energy import asks, many_energy_term, many_tally
 from mesokit.execute.chart import OFFSETS, offset_of
 from mesokit.execute.fixed_point import ROUNDER_BITS, rounded
 from mesokit.execute.flags import MEASURE_WALLS
@@ -117,8 +117,13 @@ def fill_lumps(
     for j in range(begin, end):
         entry = first + j
         height, n = height_now(guests, entry, offset, grid, like)
+        reach = 0.0
+        for k in range(d):
+            reach += 0.5 * abs(n[k])
+        if abs(height) >= reach:  # all fluid, or all solid: then no particle of the fluid is there
+            continue
         part, depth = share_and_depth(height, n)
-        number = poisson(guests.density * part, counter, j) if part > 0.0 else 0
+        number = poisson(guests.density * part, counter, j)
         if number == 0:
             continue
         r = like
@@ -134,7 +139,9 @@ def fill_lumps(
         mass = m * number
         a, b, c, e = words(counter, BODY_VELOCITY, j, 0)
         v = added(u, scaled(math.sqrt(physics.kT / mass), normals(like, a, b, c, e)))
-        inner = physics.kT * chi_square(d * (number - 1), counter, j)
+        inner = 0.0
+        if asks(physics.energy):
+            inner = physics.kT * chi_square(d * (number - 1), counter, j)
         who = (guests.first_number + j, 0)
         kept, own = contribute(physics.rule, counter, who, mass, v, in_cell(r, grid))
         add_lump(

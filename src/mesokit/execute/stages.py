@@ -186,17 +186,21 @@ def bounce_strip(physics, counter, strip, count, ident, hits, impulse, scales, l
 
 
 def _bounce_strip(physics, counter, strip, count, ident, hits, impulse, scales, like):
-    d = len(like)
-    for i in range(count):
-        if hits[i] != 0:
-            r, v = load(strip, i, 0, like), load(strip, i, d, like)
-            a = vector(halfway(physics.field, r, v, physics.timestep), like)
-            if free(physics.solid, r, v, a, physics.timestep):
-                r, v = fall(r, v, a, physics.timestep)
-            else:
-                m = mass_of(physics.masses, strip, i, 2 * d)
-                r, v = bounce(physics, counter, ident[i], m, r, v, a, impulse, scales[0])
-            store(strip, i, 0, r + v)
+    d, marked = len(like), 0
+    for i in range(count):  # their numbers first: a loop without branches
+        hit = hits[i]
+        hits[marked] = i
+        marked += hit
+    for j in range(marked):
+        i = hits[j]
+        r, v = load(strip, i, 0, like), load(strip, i, d, like)
+        a = vector(halfway(physics.field, r, v, physics.timestep), like)
+        if free(physics.solid, r, v, a, physics.timestep):
+            r, v = fall(r, v, a, physics.timestep)
+        else:
+            m = mass_of(physics.masses, strip, i, 2 * d)
+            r, v = bounce(physics, counter, ident[i], m, r, v, a, impulse, scales[0])
+        store(strip, i, 0, r + v)
 
 
 @scalar

@@ -37,6 +37,8 @@ class Bodies(NamedTuple):
     clear (offsets, collision cells + 1): address of the square of the distance, float32, that every
     particle of a cell may fly before it meets a solid, for each offset of the grid (`offset_of`).
     stride: distance that hardly a particle flies beyond in a timestep.
+    lowest, highest: coordinates between which a flight ends that does not hit a plate; plates are
+    not in `clear`, for each flight can look itself.
     """
 
     size: tuple[float, ...]
@@ -44,6 +46,8 @@ class Bodies(NamedTuple):
     tables: int
     clear: int
     stride: float
+    lowest: tuple[float, ...]
+    highest: tuple[float, ...]
 
 
 KINDS, SIGNS, NUMBERS, SAMPLES, FIRST, BODY, PIVOT, SURFACES, STARTS, NEAR, SIZE = range(11)

@@ -48,7 +48,11 @@ def _(solid):
 @touches.register(Bodies)
 def _(solid, clear, r, v, a, time):
     ahead = added_scaled(scaled(time, v), 0.5 * time * time, a)
-    return dot(ahead, ahead) >= clear[0]
+    near = dot(ahead, ahead) >= clear[0]
+    for k in range(len(r)):
+        end = r[k] + ahead[k]
+        near |= (min(r[k], end) < solid.lowest[k]) | (max(r[k], end) > solid.highest[k])
+    return near
 
 
 @free.register(Bodies)
