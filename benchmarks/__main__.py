@@ -1,6 +1,6 @@
 """Run all benchmarks, alternating with the peer, and write docs/benchmark.md.
 
-python -m benchmarks [--rounds 5] [--seconds 3] [--only peers,cost,observe,memory,startup]
+python -m benchmarks [--rounds 5] [--seconds 3] [--only peers,cost,solids,observe,memory,startup]
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from benchmarks import costs, peers, startup
 PARTS = {
     "peers": peers.table,
     "cost": costs.rules,
+    "solids": costs.solids,
     "observe": costs.observables,
     "memory": costs.memory,
     "startup": startup.table,

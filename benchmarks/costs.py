@@ -33,6 +33,31 @@ def rules(rounds: int, seconds: float) -> Iterator[str]:
             yield f"| {name} | {total:.2f} | {' | '.join(stages)} | {ratio:.2f} |"
 
 
+def solids(rounds: int, seconds: float) -> Iterator[str]:
+    """What solids cost, beside the same fluid in a periodic box."""
+    yield "## Solids"
+    yield ""
+    yield "2D, 400 x 50 cells, thermostat; nanoseconds per particle-step, and relative to no solid."
+    yield ""
+    yield "| solids | 1 thread | relative | 2 threads | relative | asked |"
+    yield "|---|---|---|---|---|---|"
+    asked = {"W5-disks": "1.3", "W5-sampled": "1.6"}
+    names = {
+        "W5": "none, periodic",
+        "W5-plates": "two plates",
+        "W5-disks": "plates and 6 disks, 10 % of the area",
+        "W5-sampled": "the same, the disks as a sampled distance",
+    }
+    one, two = (once.alternate(list(names), threads, rounds, seconds) for threads in (1, 2))
+    for name, words in names.items():
+        cells = []
+        for runs in (one, two):
+            pairs = zip(runs[name], runs["W5"], strict=True)
+            ratio = median(a["nanoseconds"] / b["nanoseconds"] for a, b in pairs)
+            cells += [f"{once.middle(runs[name], 'nanoseconds'):.2f}", f"{ratio:.2f}"]
+        yield f"| {words} | {' | '.join(cells)} | {asked.get(name, '')} |"
+
+
 def memory(rounds: int, seconds: float) -> Iterator[str]:
     """Bytes per particle: what the arrays take, and how the whole process grows."""
     small, large = once.run("W1@80", 1, 0.0), once.run("W1@112", 1, 0.0)

@@ -9,8 +9,14 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import resource
+import tempfile
 import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from mesokit import (
     AT,
@@ -18,13 +24,16 @@ from mesokit import (
     ATPlusA,
     Box,
     Case,
+    Disk,
     Fluid,
     MaxwellBoltzmann,
     NoForce,
     NoThermostat,
     Plates,
     Run,
+    Sampled,
     Simulation,
+    Solids,
     SRDPlusA,
     Uniform,
 )
@@ -36,8 +45,12 @@ STEPS = 10**9  # the clock ends a run
 def case(name: str) -> Case:
     """W1 to W4, with -thermostat or the name of a rule, such as -at, in place of plain SRD.
 
-    W1@48 is W1 with another length of the box.
+    W1@48 is W1 with another length of the box. W5 is a 2D fluid of 400 x 50 cells with a
+    thermostat: empty, or a channel with -plates, with -disks that cover 10 % of the area as well,
+    or with these -sampled.
     """
+    if name.startswith("W5"):
+        return _channel(name.partition("-")[2])
     workload, _, variant = name.partition("-")
     workload, _, length = workload.partition("@")
     size = {"W1": [30] * 3, "W2": [64] * 3, "W3": [30] * 3, "W4": [160] * 2}[workload]
@@ -55,6 +68,33 @@ def case(name: str) -> Case:
         ),
         walls=[Plates("z")] if wall else [],
     )
+
+
+def _channel(solids: str) -> Case:
+    box = Box([400, 50])
+    radius = (0.1 * box.volume / (6 * math.pi)) ** 0.5
+    centres = [((i + 0.5) * 400 / 6, 25.0) for i in range(6)]
+    disks: list[Any] = [Disk(centre=centre, radius=radius) for centre in centres]
+    if solids == "sampled":
+        disks = [_sampled(Solids(disks, box))]
+    return Case(
+        run=Run(steps=STEPS),
+        box=box,
+        fluid=Fluid(
+            thermostat=MaxwellBoltzmann(),
+            force=Uniform([0.0002, 0]) if solids else NoForce(),
+        ),
+        walls=[Plates("y"), *(disks if solids != "plates" else [])] if solids else [],
+    )
+
+
+def _sampled(solids: Solids, spacing: float = 0.25) -> Sampled:
+    """The same solids as a signed distance on a grid."""
+    grids = [np.arange(0, length, spacing) for length in solids.size]
+    points = np.stack(np.meshgrid(*grids, indexing="ij"), -1)
+    values = solids.distance(points).reshape(points.shape[:-1])
+    file = Path(tempfile.mkdtemp()) / "disks.npy"
+    return Sampled.from_array(values, file, spacing=spacing)
 
 
 def measure(name: str, threads: int, seconds: float, warm: int = 101) -> dict[str, object]:

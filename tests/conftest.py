@@ -1,4 +1,4 @@
-"""What the tests of several folders share: the laboratory of the laws and the fake fluid."""
+"""What the tests of several folders share: laboratory, fake fluid and examples of shapes."""
 
 import sys
 from pathlib import Path
@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 HERE = Path(__file__).parent
-# laboratory.py, fake_fluid.py, flows.py
-sys.path[:0] = [str(HERE / "laws"), str(HERE / "observe"), str(HERE / "report")]
+# laboratory.py, fake_fluid.py, flows.py, shapes.py
+sys.path[:0] = [str(HERE / name) for name in ("laws", "observe", "report", "geometry")]
 
 
 @pytest.fixture

@@ -6,6 +6,7 @@ import contextlib
 import dataclasses
 import difflib
 import json
+import os
 import re
 import tomllib
 from collections.abc import Mapping
@@ -79,16 +80,21 @@ class Case:
             data = parse(_read(path))
             for key, value in (overrides or {}).items():
                 _override(data, key, value)
-            _locate(data, path.parent)
-            return build(cls, _fields_of(data), KEYS)
+            return build(cls, _fields_of(data), KEYS, path.parent)
         except CaseError as error:
             raise CaseError(f"{path}: {error}") from None
 
-    def to_toml(self) -> str:
-        """The case as a file, with every default written out; `from_toml` gives an equal case."""
+    def to_toml(self, folder: Path | None = None) -> str:
+        """The case as a file, with every default written out; `from_toml` gives an equal case.
+
+        Files in the folder that the file is for are named without it: they may be moved together.
+        """
         plain = {"title": f"title = {_value(self.title)}\n"} if self.title else {}
         tables = [_table(KEYS.get(f.name, f.name), getattr(self, f.name)) for f in _fields(self)]
-        return "\n".join([*plain.values(), *filter(None, tables)])
+        text = "\n".join([*plain.values(), *filter(None, tables)])
+        if folder is None:
+            return text
+        return text.replace(f"file = {_value(f'{folder.resolve()}{os.sep}')[:-1]}", 'file = "')
 
     def missing_files(self) -> list[str]:
         """'key = file' for each file or folder that the start needs and that is not there."""
@@ -180,16 +186,6 @@ def _which(path: str, items: list[Any]) -> CaseError:
     example = f"{start}.1" if last.isdecimal() else f"{start}.1.{last}"
     known = f"a number from 1 to {len(items)}" if len(items) != 1 else "the number 1"
     return CaseError(f"{path}: expected {known} or a unique name after {start}, as in {example}")
-
-
-def _locate(data: dict[str, Any], folder: Path) -> None:
-    """Make the file names of `fluid.start` independent of the working directory."""
-    fluid = data.get("fluid")
-    start = fluid.get("start") if isinstance(fluid, dict) else None
-    if isinstance(start, dict):
-        for key, name in start.items():
-            if isinstance(name, str):
-                start[key] = str((folder / name).resolve())
 
 
 # --- writing ------------------------------------------------------------------------------------

@@ -18,15 +18,32 @@ import operator
 import types
 import typing
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import Annotated, Any, TypeVar, dataclass_transform
 
 import pydantic
-from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidationInfo,
+)
 from pydantic_core import PydanticCustomError
 
 from mesokit.errors import CaseError
 
 T = TypeVar("T")
+
+
+def _located(name: str, info: ValidationInfo) -> str:
+    """A file name that holds wherever it is read: from the folder of the case on, or from here."""
+    folder = (info.context or {}).get("folder") or Path.cwd()
+    return str((folder / name).resolve())
+
+
+FileName = Annotated[str, AfterValidator(_located)]
 TAGS = ("rule", "shape", "quantity", "substance")
 
 
@@ -82,14 +99,20 @@ def tag_of(cls: Any) -> tuple[str, str] | None:
     return None
 
 
-def build(cls: type[T], values: dict[str, Any], rename: dict[str, str] | None = None) -> T:
+def build(
+    cls: type[T],
+    values: dict[str, Any],
+    rename: dict[str, str] | None = None,
+    folder: Path | None = None,
+) -> T:
     """A component from nested dictionaries, as read from a case file.
 
-    `rename` maps field names of the outermost component to the keys to show in messages.
+    `rename` maps field names of the outermost component to the keys to show in messages; file
+    names are relative to `folder`, or to the working directory.
     Raises CaseError with the full key path, the given value and what was expected.
     """
     try:
-        return pydantic.TypeAdapter(cls).validate_python(values)
+        return pydantic.TypeAdapter(cls).validate_python(values, context={"folder": folder})
     except ValidationError as error:
         raise CaseError(first_line(cls, error, rename or {})) from None
 

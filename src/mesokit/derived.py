@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,7 +15,9 @@ import numpy as np
 
 from mesokit import theory
 from mesokit.box import AXES
+from mesokit.geometry import Plates
 from mesokit.observe import setting
+from mesokit.solids import solids_of
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -25,7 +28,8 @@ RATES = {
     (2, "srd"): 210.0, (2, "at"): 80.0, (2, "srd+a"): 120.0, (2, "at+a"): 60.0,
     (3, "srd"): 130.0, (3, "at"): 58.0, (3, "srd+a"): 40.0, (3, "at+a"): 33.0,
 }  # fmt: skip
-COSTS = {"thermostat": 1.15, "walls": 1.25, "shear": 1.2, "thread": 0.85}  # factors of time, rate
+# factors of time, rate
+COSTS = {"thermostat": 1.15, "walls": 1.25, "solids": 1.7, "shear": 1.2, "thread": 0.85}
 SAMPLE = 12e-9  # seconds for each particle in each sample of an observable
 BYTES = {"particle 2D": 68, "particle 3D": 88, "cell 2D": 60, "cell 3D": 110, "program": 250e6}
 WIDTHS = {"image": 4, "id": 8}  # bytes of a trajectory field; the others follow the precision
@@ -79,6 +83,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
     for cost, applies in (
         ("thermostat", fluid.thermostat.rule != "none"),
         ("walls", bool(case.walls)),
+        ("solids", setting.obstructed(case)),
         ("shear", case.box.shear_rate != 0),
     ):
         rate /= COSTS[cost] if applies else 1
@@ -106,7 +111,16 @@ def derive(case: Case, threads: int | None = None) -> Derived:
 
 
 def _flow(case: Case) -> tuple[str, int, float | None]:
-    """Kind of the steady flow, axis number across it, and its largest speed."""
+    """Kind of the steady flow, axis number across it, and its largest speed.
+
+    For a channel with obstacles these are what they would be without: an upper bound.
+    """
+    if setting.obstructed(case):
+        plates = tuple(wall for wall in case.walls if isinstance(wall, Plates))
+        if len(plates) == 1 and not plates[0].diffuse:
+            bare = dataclasses.replace(case, walls=plates, observe=(), trajectory=None)
+            kind, across, speed = _flow(bare)
+            return kind if kind == "rest" else f"{kind}, as without obstacles", across, speed
     kinds, across, squares = [], 1, np.zeros(201)
     for i in range(case.box.dimension):
         flow = setting.flow(case, i)
@@ -180,6 +194,7 @@ def _trajectory_bytes(case: Case) -> int:
 
 def _warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
     yield from _method_warnings(case, numbers)
+    yield from _solid_warnings(case)
     yield from _flow_warnings(case, numbers, across)
     yield from _run_warnings(case, numbers)
 
@@ -222,6 +237,28 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
             f"in 2D fluctuations raise a dynamic viscosity of {transport.dynamic_viscosity:.3g} "
             "(below 7) by several percent over theory, more in a larger box"
         )
+
+
+def _solid_warnings(case: Case) -> Iterator[str]:
+    if not setting.obstructed(case):
+        return
+    thin, narrow = solids_of(case).tight_places()
+    if thin is not None:
+        place, size = thin
+        yield (
+            f"wall: the solid at {_place(place)} is about {size:.2g} cells thick; below 1.5 fluid "
+            "on its two sides collides"
+        )
+    if narrow is not None:
+        place, size = narrow
+        yield (
+            f"wall: the gap at {_place(place)} is about {size:.2g} cells wide; below 3 the flow in "
+            "it is not resolved"
+        )
+
+
+def _place(coordinates: Sequence[float]) -> str:
+    return "(" + ", ".join(f"{x:.1f}" for x in coordinates) + ")"
 
 
 def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:

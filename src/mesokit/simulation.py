@@ -91,7 +91,9 @@ class Simulation:
 
     def write_to(self, output: str | Path) -> None:
         """Write to this new folder from now on. Raises RunError if it holds something already."""
-        self._attach(RunDirectory.create(output, self.case))
+        directory = RunDirectory.create(output, self.case)
+        self.case = Case.from_toml(directory.case_file)  # what `resume` will read
+        self._attach(directory)
         self._save_provenance(provenance(self.case, self.threads))
 
     @classmethod
@@ -282,13 +284,14 @@ class Simulation:
         arrays = {f"fluid/{key}": value for key, value in self.fluid.state().items()}
         for name, accumulator in self.accumulators.items():
             arrays |= {f"observe/{name}/{key}": v for key, v in accumulator.state().items()}
-        case = checkpoint.digest(self.case.to_toml())
+        case = checkpoint.digest(self.case.to_toml(self.directory.path))
         checkpoint.write(self.directory.checkpoint_file, arrays, {"step": self.step}, case)
 
     def _restore(self) -> None:
         assert self.directory is not None
         path = self.directory.checkpoint_file
-        arrays, _ = checkpoint.read(path, checkpoint.digest(self.case.to_toml()))
+        case = checkpoint.digest(self.case.to_toml(self.directory.path))
+        arrays, _ = checkpoint.read(path, case)
         try:
             self.fluid.restore(part(arrays, "fluid/"))
             for name, accumulator in self.accumulators.items():

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.errors import CaseError
 from mesokit.execute import survey
 from mesokit.geometry.bodies import (
     BODY,
@@ -32,6 +33,7 @@ from mesokit.geometry.bodies import (
     SURFACES,
     Bodies,
 )
+from mesokit.geometry.from_file import FromFile
 from mesokit.geometry.plates import Plates
 from mesokit.geometry.primitive import WIDTH
 from mesokit.geometry.region import Room
@@ -46,6 +48,8 @@ if TYPE_CHECKING:
     from mesokit.geometry import Wall
 
 Floats = NDArray[np.float64]
+THIN, NARROW = 1.5, 3.0  # cells
+Tight = tuple[tuple[float, ...], float]
 FINE = 8  # parts of a cell, along each axis, by which volumes are summed
 _RULES = {"no-slip": NO_SLIP, "slip": SLIP, "diffuse": DIFFUSE}
 
@@ -58,11 +62,13 @@ def slit_of(case: Case) -> Plates | None:
 
 def solids_of(case: Case) -> Solids:
     """The solids of a case; kept, for they take a moment to survey."""
-    return _kept(case.walls, case.box)
+    digests = tuple(wall.digest for wall in case.walls if isinstance(wall, FromFile))
+    return _kept(case.walls, case.box, digests)
 
 
 @functools.lru_cache(maxsize=8)
-def _kept(walls: tuple[Wall, ...], box: Box) -> Solids:
+def _kept(walls: tuple[Wall, ...], box: Box, digests: tuple[str, ...]) -> Solids:
+    """Files may change, and walls that name them are then other walls."""
     return Solids(walls, box)
 
 
@@ -99,9 +105,7 @@ class Solids:
     87.43
     """
 
-    def __init__(
-        self, walls: Sequence[Wall], box: Box, *, without_plates: bool = False
-    ) -> None:
+    def __init__(self, walls: Sequence[Wall], box: Box, *, without_plates: bool = False) -> None:
         self._walls, self._box = walls, box
         self.size, self.dimension = box.size, box.dimension
         shut = {wall.axis for wall in walls if wall.shape == "plates"}
@@ -114,27 +118,27 @@ class Solids:
             number = numbers[wall.shape] = numbers.get(wall.shape, 0) + 1
             if without_plates and wall.shape == "plates":
                 continue
-            made = wall.bodies(self.room, f"{wall.shape}-{number}")
+            try:
+                made = wall.bodies(self.room, f"{wall.shape}-{number}")
+            except CaseError as error:
+                raise CaseError(f"wall[#{index + 1}].{error}") from None
             self.bodies += made
             self.walls += [index] * len(made)
         self.like = (0.0,) * self.dimension
         pieces = [(piece, row) for row, body in enumerate(self.bodies) for piece in body.pieces]
         self.kernel = self._kernel(pieces)
-        self.terms = len(pieces)
-        self.least = np.zeros(math.prod(self.size))
+        self.least, self._terms = np.zeros(math.prod(self.size)), len(pieces)
         self.kernel = self.reaching(REACH)
 
     def reaching(self, away: float) -> Bodies:
         """Parameters for compiled code, with lists of the terms within `away` of each cell."""
         starts, nothing = np.zeros(len(self.least) + 1, np.int32), np.zeros(0, np.int32)
-        given = self.kernel, self.terms, self.like, away, starts
-        survey.near_cells(*given, nothing, self.least)
+        survey.near_cells(self.kernel, self._terms, self.like, away, starts, nothing, self.least)
         near = np.zeros(max(starts[-1], 1), np.int32)
-        survey.near_cells(*given, near, self.least)
+        survey.near_cells(self.kernel, self._terms, self.like, away, starts, near, self.least)
         places = self._places.copy()
         places[STARTS], places[NEAR] = self._keep(starts), self._keep(near)
-        self._tables.append(places)
-        return self.kernel._replace(tables=address(places))
+        return self.kernel._replace(tables=self._keep(places, np.int64))
 
     def _keep(self, table: Any, kind: Any = np.int32) -> int:
         """Keep a table as long as this object lives; its address."""
@@ -147,11 +151,15 @@ class Solids:
         parts = [part for piece, _ in pieces for part in piece.term]
         numbers = np.array([part.numbers for part in parts]).reshape(-1, WIDTH)
         samples, total = [np.zeros(1)], 1
+        begin: dict[int, int] = {}  # images share their samples
         for i, part in enumerate(parts):
-            if part.samples is not None:
-                numbers[i, 7] = total
+            if part.samples is None:
+                continue
+            if id(part.samples) not in begin:
+                begin[id(part.samples)] = total
                 samples.append(part.samples.ravel())
                 total += part.samples.size
+            numbers[i, 7] = begin[id(part.samples)]
         pivots = np.zeros((len(pieces), 3))
         for i, (piece, _) in enumerate(pieces):
             pivots[i, : self.dimension] = piece.pivot
@@ -177,7 +185,7 @@ class Solids:
             self._places[number] = place
         self._places[SIZE : SIZE + self.dimension] = self.size
         size = tuple(float(length) for length in self.size)
-        return Bodies(size, inverse, address(self._places), 0, 0.0, size, size)
+        return Bodies(size, inverse, address(self._places), 0, 0.0, 0, 1.0, size, size)
 
     def _surface(self, body: Body) -> list[float]:
         velocity = list(body.surface.velocity or ()) + [0.0] * 3
@@ -292,6 +300,27 @@ class Solids:
         end[:, axis] = np.nextafter(self.size[axis], 0.0)
         a, b = self.distance(start), self.distance(end)
         return float(np.abs(np.clip(a, 0, 1) - np.clip(b, 0, 1)).max())
+
+    def tight_places(self) -> tuple[Tight | None, Tight | None]:
+        """Where the solid is thinner than THIN cells, and a gap narrower than NARROW: the tightest
+        place of each, and its width; None where there is none."""
+        centres = np.stack(
+            np.meshgrid(*(np.arange(n) + 0.5 for n in self.size), indexing="ij"), -1
+        ).reshape(-1, self.dimension)
+        body, distance, normal = self.nearest(centres)
+        near = (body >= 0) & (np.abs(distance) < 0.5 * math.sqrt(self.dimension))
+        feet = centres[near] - distance[near, None] * normal[near]
+        found: list[Tight | None] = []
+        for side, limit in ((-1.0, THIN), (1.0, NARROW)):
+            tightest = None
+            for step in np.arange(0.25, limit, 0.25):
+                there = side * self.distance(feet + side * step * normal[near])
+                beyond = np.flatnonzero(there < -0.05)
+                if len(beyond):
+                    tightest = tuple(feet[beyond[0]] % self.size), float(step)
+                    break
+            found.append(tightest)
+        return found[0], found[1]
 
     def motion_across(self) -> dict[int, float]:
         """How fast the surface of each moving wall would move across itself, by its number."""

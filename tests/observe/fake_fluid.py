@@ -8,16 +8,18 @@ import numpy as np
 
 from mesokit.errors import CaseError
 from mesokit.geometry import Disk, Plates, Sphere
+from mesokit.mpcd.field import Uniform
 from mesokit.solids import solids_of
 
 
 def case_for(observable, make_case, size, **fluid):
-    """A case in which it can be measured: without walls, in a slit, or about a body."""
+    """A case in which it can be measured: without walls, in a slit, or in a flow about a body."""
     middle = [length / 2 for length in size]
     body = Disk(centre=middle, radius=1) if len(size) == 2 else Sphere(centre=middle, radius=1)
-    for walls in ((), (Plates(axis="y"),), (body,)):
+    push = {"force": Uniform((0.01,) + (0.0,) * (len(size) - 1))}
+    for walls, parts in (((), fluid), ((Plates(axis="y"),), fluid), ((body,), push | fluid)):
         try:
-            return make_case(size, [observable], walls=walls, **fluid)
+            return make_case(size, [observable], walls=walls, **parts)
         except CaseError as error:
             refused = error
     raise refused

@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-TEMPLATES = ("poiseuille", "couette", "shear", "kolmogorov", "bulk")
+TEMPLATES = ("poiseuille", "obstacle", "couette", "shear", "kolmogorov", "bulk")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 @click.argument("name")
 @click.option("--template", type=click.Choice(TEMPLATES), help="What to start from.")
 def new(name: str, template: str | None) -> None:
-    """Write a commented case NAME.toml: poiseuille, couette, shear, kolmogorov or bulk.
+    """Write a commented case NAME.toml: poiseuille, obstacle, couette, shear, kolmogorov or bulk.
 
     With another NAME, say which --template.
     """

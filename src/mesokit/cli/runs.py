@@ -118,7 +118,8 @@ def _files_of_run(output: Path) -> list[Path]:
         figures = [run.figure_file(o.label) for o in Case.from_toml(run.case_file).observe]
     figures += [run.flow_file(kind, end) for kind in KINDS for end in (".png", ".mp4")]
     files = [run.data_file, run.checkpoint_file, run.log_file, run.provenance_file]
-    return [*figures, *output.glob(".*.tmp"), run.trajectory_folder, *files, run.case_file]
+    solids = output.glob(run.wall_file("*").name)
+    return [*figures, *output.glob(".*.tmp"), *solids, run.trajectory_folder, *files, run.case_file]
 
 
 def _clear(output: Path) -> None:

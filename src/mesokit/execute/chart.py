@@ -20,6 +20,7 @@ from mesokit.scalar import by_type, scalar
 from mesokit.solids import Solids
 
 OFFSETS = 4  # along each axis
+PARTS = {2: 4, 3: 2}  # of a cell along each axis, for which a bound of the clearance is kept
 PIECES = 5  # along each axis, by which a cell is searched for a surface
 EVERYWHERE = 1e30
 
@@ -75,6 +76,21 @@ def clear_distances(solids: Solids, cells: tuple[int, ...], bend: float) -> Any:
         clear = solids.distance(centres(cells, origin), plates=False) - corner - bend - MARGIN
         rows.append([*np.maximum(clear, 0.0) ** 2, EVERYWHERE])
     return np.array(rows, np.float32)
+
+
+def sure_clearances(solids: Solids) -> tuple[Any, int]:
+    """A lower bound of the clearance in small cubes that fill the box, x varying fastest, and their
+    number to a cell along each axis."""
+    d = solids.dimension
+    parts = PARTS[d]
+    grids = [(np.arange(n * parts) + 0.5) / parts for n in solids.size]
+    corner = 0.5 * math.sqrt(d) / parts
+    rows = []
+    for last in grids[-1]:  # slice by slice, for there may be many
+        mesh = np.meshgrid(*reversed([*grids[:-1], np.array([last])]), indexing="ij")
+        points = np.stack([axis.ravel() for axis in reversed(mesh)], axis=-1)
+        rows.append((solids.distance(points) - corner - MARGIN).astype(np.float32))
+    return np.concatenate(rows), parts
 
 
 def cut_cells(solids: Solids, cells: tuple[int, ...]) -> tuple[Any, Any, Any]:

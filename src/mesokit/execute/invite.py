@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesokit.execute.chart import clear_distances, cut_cells, cut_planes, surface_pieces
+from mesokit.execute.chart import (
+    clear_distances,
+    cut_cells,
+    cut_planes,
+    sure_clearances,
+    surface_pieces,
+)
 from mesokit.execute.guests import KINDS, Guests
 from mesokit.execute.layout import BLOCK, ROW, blocks_for, zeros
 from mesokit.execute.lumps import Lumps
@@ -24,9 +30,10 @@ MANY_SIGMA = 4.5  # of the Maxwell distribution: one particle in 20,000 is faste
 
 
 def charted(case: Case, solids: Solids, cells: tuple[int, ...]) -> tuple[Bodies, Any]:
-    """The solids with the distances that are clear around each cell, and that table."""
+    """The solids with the distances that are clear around each cell and place; those tables."""
     bend = 0.125 * case.fluid.force.largest * case.fluid.timestep**2
     clear = clear_distances(solids, cells, bend)
+    fine, parts = sure_clearances(solids)
     lightest = min((kind.mass for kind in case.fluid.species), default=case.fluid.mass)
     stride = MANY_SIGMA * math.sqrt(case.fluid.kT / lightest) * case.fluid.timestep + bend
     gap = bend + MARGIN  # no parabola is further from its straight line than a t^2 / 8
@@ -34,10 +41,12 @@ def charted(case: Case, solids: Solids, cells: tuple[int, ...]) -> tuple[Bodies,
     kernel = solids.kernel._replace(
         clear=address(clear),
         stride=stride,
+        fine=address(fine),
+        parts=float(parts),
         lowest=tuple(gap if shut else -math.inf for shut, _ in ends),
         highest=tuple(length - gap if shut else math.inf for shut, length in ends),
     )
-    return kernel, clear
+    return kernel, (clear, fine)
 
 
 def guests_of(

@@ -12,8 +12,11 @@ from mesokit.geometry.cylinder import Cylinder
 from mesokit.geometry.disk import Disk
 from mesokit.geometry.half_space import HalfSpace
 from mesokit.geometry.intersection import Intersection
+from mesokit.geometry.mesh import Mesh
+from mesokit.geometry.picture import Picture
 from mesokit.geometry.plates import Plates
 from mesokit.geometry.rectangle import Rectangle
+from mesokit.geometry.sampled import Sampled
 from mesokit.geometry.sphere import Sphere
 from mesokit.geometry.surface import Surface
 from mesokit.geometry.union import Union
@@ -31,6 +34,9 @@ Wall = (
     | Union
     | Intersection
     | Array
+    | Sampled
+    | Picture
+    | Mesh
 )
 SHAPES: tuple[type, ...] = get_args(Wall)
 
@@ -44,8 +50,11 @@ __all__ = [
     "Disk",
     "HalfSpace",
     "Intersection",
+    "Mesh",
+    "Picture",
     "Plates",
     "Rectangle",
+    "Sampled",
     "Sphere",
     "Surface",
     "Union",

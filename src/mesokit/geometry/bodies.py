@@ -13,7 +13,7 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.geometry import primitive
 from mesokit.geometry.primitive import WIDTH
-from mesokit.pointer import real, whole, word
+from mesokit.pointer import real, short, whole, word
 from mesokit.scalar import elementwise, scalar, scaled, seldom
 
 REACH = 1.0  # lists hold the terms within this distance of a cell; flights are cut into such pieces
@@ -37,6 +37,8 @@ class Bodies(NamedTuple):
     clear (offsets, collision cells + 1): address of the square of the distance, float32, that every
     particle of a cell may fly before it meets a solid, for each offset of the grid (`offset_of`).
     stride: distance that hardly a particle flies beyond in a timestep.
+    fine (parts of the box): address of a float32 lower bound of the clearance in cubes of 1/parts,
+    `parts` to a cell along each axis.
     lowest, highest: coordinates between which a flight ends that does not hit a plate; plates are
     not in `clear`, for each flight can look itself.
     """
@@ -46,6 +48,8 @@ class Bodies(NamedTuple):
     tables: int
     clear: int
     stride: float
+    fine: int
+    parts: float
     lowest: tuple[float, ...]
     highest: tuple[float, ...]
 
@@ -64,6 +68,17 @@ def in_box(solid, r):
         wrapped = image >= solid.size[k] and solid.inverse[k] > 0.0
         r = tuple_setitem(r, k, 0.0 if wrapped else image)
     return r
+
+
+@scalar
+def sure_clearance(solid, r):
+    """A lower bound of the clearance of r, which is in the box: of the cube that holds it."""
+    cube, stride = 0, 1
+    for k in range(len(r)):
+        length = int(solid.size[k] * solid.parts)
+        cube += min(max(int(np.floor(r[k] * solid.parts)), 0), length - 1) * stride
+        stride *= length
+    return short(solid.fine, cube)
 
 
 @scalar

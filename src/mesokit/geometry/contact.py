@@ -15,6 +15,7 @@ from mesokit.geometry.bodies import (
     nearest,
     part_clearance,
     part_normal,
+    sure_clearance,
     surface_number,
     surface_velocity,
 )
@@ -57,15 +58,8 @@ def _(solid, clear, r, v, a, time):
 
 @free.register(Bodies)
 def _(solid, r, v, a, time):
-    return out_of_reach(solid, r, v, a, time)
-
-
-@seldom
-def out_of_reach(solid, r, v, a, time):
-    """Whether the way is shorter than the clearance."""
     path = (length(v) + 0.5 * length(a) * time) * time
-    clear, _, _ = nearest(solid.tables, in_box(solid, r))
-    return clear > path + MARGIN
+    return sure_clearance(solid, in_box(solid, r)) > path + MARGIN
 
 
 @homed.register(Bodies)
@@ -131,6 +125,8 @@ def rebound(tables, part, term, r, v, chance):
 
 @settled.register(Bodies)
 def _(solid, r):
+    if sure_clearance(solid, r) > MARGIN:
+        return r, True
     return put_back(solid, r)
 
 

@@ -101,16 +101,24 @@ def march(tables, part, r, v, a, time):
 @seldom
 def crossing(tables, part, r, v, a, outside, inside):
     """The last time found outside, when the flight crosses the surface between two times."""
-    for _ in range(MOST_TRIES):
-        middle = 0.5 * (outside + inside)
-        if middle <= outside or middle >= inside:
-            break
+    x, _ = at(r, v, a, outside)
+    above = max(part_clearance(tables, part, x), 0.0)
+    x, _ = at(r, v, a, inside)
+    below = part_clearance(tables, part, x)
+    for n in range(MOST_TRIES):
+        # false position; its end that stays is given half the weight (Illinois), now and then half
+        share = above / (above - below) if n % 8 < 7 else 0.5
+        middle = outside + share * (inside - outside)
+        if not outside < middle < inside:
+            middle = 0.5 * (outside + inside)
+            if not outside < middle < inside:
+                break
         x, _ = at(r, v, a, middle)
         c = part_clearance(tables, part, x)
         if c < 0.0:
-            inside = middle
+            inside, below, above = middle, c, 0.5 * above
         else:
-            outside = middle
+            outside, above, below = middle, c, 0.5 * below
             if c < ON_SURFACE:
                 break
     return outside

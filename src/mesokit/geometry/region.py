@@ -46,6 +46,10 @@ class Part(NamedTuple):
         place = tuple(x + dx for x, dx in zip(self.numbers[:3], _three(by), strict=True))
         return self._replace(numbers=place + self.numbers[3:])
 
+    def repeats(self, axis: int) -> bool:
+        """Whether it is its own image beyond the ends of an axis."""
+        return self.kind == "sampled" and self.numbers[9 + axis] > 0.5
+
     @property
     def code(self) -> int:
         """Its number at run time."""
@@ -91,9 +95,14 @@ def images(region: Region, room: Room) -> list[tuple[Term, Vector]]:
     found: dict[Any, tuple[Term, Vector]] = {}
     for term in region:
         bounded = any(part.kind in IMAGED and part.sign > 0 for part in term)
-        for by in itertools.product(*steps) if bounded else [(0.0,) * room.dimension]:
+        own = [
+            (0.0,) if all(part.repeats(axis) for part in term) else along
+            for axis, along in enumerate(steps)
+        ]
+        for by in itertools.product(*own) if bounded else [(0.0,) * room.dimension]:
             image = tuple(part.moved(by) for part in term)
-            found.setdefault(tuple((p.kind, p.numbers, p.sign) for p in image), (image, by))
+            key = tuple((p.kind, p.numbers, p.sign, id(p.samples)) for p in image)
+            found.setdefault(key, (image, by))
     return list(found.values())
 
 
@@ -139,23 +148,29 @@ def sampled(
     values: NDArray[np.float64], origin: Vector, spacing: float, repeats: Sequence[bool]
 ) -> Region:
     """A signed distance on a grid, linear between its points."""
-    shape, steep = _three(values.shape, 1.0), _steepest(values, spacing, repeats)
+    shape = _three(values.shape, 1.0)
+    steep = max(1.0, float(steepness(values, repeats).max()) / spacing)
     ends = _three([float(again) for again in repeats])
     numbers = (*_three(origin), spacing, *shape, 0.0, steep, *ends)
     return ((Part("sampled", numbers, samples=np.ascontiguousarray(values, float)),),)
 
 
-def _steepest(values: NDArray[np.float64], spacing: float, repeats: Sequence[bool]) -> float:
-    """A bound of the gradient of the interpolation, at least 1."""
+def steepness(values: NDArray[np.float64], repeats: Sequence[bool]) -> NDArray[np.float64]:
+    """A bound of the gradient within the cell that starts at each sample, per spacing.
+
+    Along each axis the slope within a cell lies between those of its edges.
+    """
     total = np.zeros(values.shape)
+    for axis in range(values.ndim):
+        slope = np.abs(np.roll(values, -1, axis) - values)
+        for other in range(values.ndim):
+            if other != axis:
+                slope = np.maximum(slope, np.roll(slope, -1, other))
+        total += slope**2
     for axis, again in enumerate(repeats):
-        steps = np.abs(np.roll(values, -1, axis) - values)
-        if not again:
-            last = [slice(None)] * values.ndim
-            last[axis] = slice(-1, None)
-            steps[tuple(last)] = 0.0
-        total += steps.max() ** 2
-    return max(1.0, math.sqrt(float(total.max())) / spacing)
+        if not again:  # no cell starts at the last
+            np.moveaxis(total, axis, -1)[..., -1] = 0.0
+    return np.sqrt(total)
 
 
 def _one(kind: str, numbers: Vector) -> Region:

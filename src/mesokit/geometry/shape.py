@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 from mesokit.component import component, param
+from mesokit.errors import CaseError
+from mesokit.geometry.reach import reaches
 from mesokit.geometry.region import Region, Term, complement, images
 from mesokit.geometry.surface import Surface
 
@@ -18,6 +21,8 @@ VIRTUAL = (
     "surface's velocity, 'extrapolate' the fluid's velocity into that gas, 'top-up' each cell to "
     "the mean density, or 'none' (a slip surface has none)"
 )
+
+MOST_TERMS = 4096  # of a complement, which has one for each choice of a part from every term
 
 
 class Piece(NamedTuple):
@@ -75,7 +80,11 @@ class Shape:
         """The solid in this box, in pieces, with what its images put into the box."""
         if self.fluid == "outside":
             return pieces_of(self.body(room), self.pivot(room), room)
-        everywhere = tuple(term for term, _ in images(self.body(room), room))
+        everywhere = tuple(term for term, _ in images(self.body(room), room) if reaches(term, room))
+        if math.prod(map(len, everywhere)) > MOST_TERMS:
+            raise CaseError(
+                "fluid = 'inside': too many parts whose outsides overlap; expected fewer of them"
+            )
         return [Piece(term, self.pivot(room)) for term in complement(everywhere)]
 
     def bodies(self, room: Room, label: str) -> list[Body]:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from mesokit.errors import RunError
 from mesokit.io import checkpoint
 from mesokit.io.atomic import write_text
+from mesokit.io.solid_files import keep_solids
 from mesokit.si import convert
 
 if TYPE_CHECKING:
@@ -55,6 +56,10 @@ class RunDirectory:
         """What the run said."""
         return self.path / "log.txt"
 
+    def wall_file(self, number: int | str) -> Path:
+        """Distances from a solid that was read from a file, by the number of its wall."""
+        return self.path / f"wall-{number}.npy"
+
     @property
     def trajectory_folder(self) -> Path:
         """Frames that are not in the data file yet."""
@@ -70,7 +75,7 @@ class RunDirectory:
 
     @classmethod
     def create(cls, path: str | Path, case: Case) -> RunDirectory:
-        """Make the folder and write the resolved case.
+        """Make the folder and write the resolved case, and what it reads its solids from.
 
         Raises RunError if something is there already, or the folder cannot be written.
         """
@@ -83,7 +88,7 @@ class RunDirectory:
         except OSError as error:
             reason = (error.strerror or str(error)).lower()
             raise RunError(f"{path}: cannot make the folder: {reason}") from None
-        write_text(run.case_file, case.to_toml())
+        write_text(run.case_file, keep_solids(case, run).to_toml(run.path))
         return run
 
     @property

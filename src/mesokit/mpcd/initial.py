@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.component import component, param
+from mesokit.component import FileName, component, param
 from mesokit.errors import CaseError, MesokitError
 from mesokit.geometry.contact import MARGIN
 from mesokit.random import INITIAL_POSITION, INITIAL_VELOCITY
@@ -31,11 +31,11 @@ class Start:
     Drawn positions are uniform; drawn velocities are Maxwellian with zero total momentum.
     """
 
-    positions: str | None = param(None, doc="file .npy or .npz with an (n, d) array", unit="a")
-    velocities: str | None = param(
+    positions: FileName | None = param(None, doc="file .npy or .npz with an (n, d) array", unit="a")
+    velocities: FileName | None = param(
         None, doc="file .npy or .npz with an (n, d) array", unit="a/time"
     )
-    run: str | None = param(None, doc="folder of an earlier run: go on from its last state")
+    run: FileName | None = param(None, doc="folder of an earlier run: go on from its last state")
 
 
 def read_arrays(

@@ -12,6 +12,7 @@ from mesokit.observe.flow_rate import FlowRate
 from mesokit.observe.forces import Forces
 from mesokit.observe.longitudinal_modes import LongitudinalModes
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
+from mesokit.observe.probe import Probe
 from mesokit.observe.protocol import Accumulator, Observable, RunningFluid
 from mesokit.observe.radial_profile import RadialProfile
 from mesokit.observe.result import Comparison, Result
@@ -22,6 +23,7 @@ from mesokit.observe.transverse_modes import TransverseModes
 from mesokit.observe.velocity_autocorrelation import VelocityAutocorrelation
 from mesokit.observe.velocity_field import VelocityField
 from mesokit.observe.velocity_profile import VelocityProfile
+from mesokit.observe.wake import Wake
 from mesokit.observe.wall_stress import WallStress
 
 AnyObservable = (
@@ -42,6 +44,8 @@ AnyObservable = (
     | FlowRate
     | RadialProfile
     | SurfaceProfile
+    | Wake
+    | Probe
 )
 OBSERVABLES: tuple[type, ...] = get_args(AnyObservable)
 
@@ -59,6 +63,7 @@ __all__ = [
     "LongitudinalModes",
     "MeanSquareDisplacement",
     "Observable",
+    "Probe",
     "RadialProfile",
     "Result",
     "RunningFluid",
@@ -69,5 +74,6 @@ __all__ = [
     "VelocityAutocorrelation",
     "VelocityField",
     "VelocityProfile",
+    "Wake",
     "WallStress",
 ]

@@ -140,6 +140,27 @@ def lattice(case: Case) -> Lattice | None:
     return Lattice(across, pitches.pop(), one.radius)
 
 
+def in_channel(case: Case) -> str | None:
+    """ "disk" or "square" for one at rest in the middle of a 2D channel 8 times as high."""
+    shapes: dict[str, Any] = {wall.shape: wall for wall in case.walls}
+    if case.box.dimension == 3 or len(case.walls) != 2 or "plates" not in shapes:
+        return None
+    plates = shapes.pop("plates")
+    body = next(iter(shapes.values()), plates)
+    if body.shape not in ("disk", "rectangle") or body.fluid == "inside" or not _still(body):
+        return None
+    if not all(s.rule == "no-slip" and not s.moves for s in (plates.lower, plates.upper)):
+        return None
+    across = AXES.index(plates.axis)
+    height = case.box.size[across]
+    sides: tuple[float, ...] = body.size if body.shape == "rectangle" else (2 * body.radius,)
+    square = body.shape == "disk" or (sides[0] == sides[1] and body.angle % 90 == 0)
+    middle = abs(body.centre[across] - height / 2) < 0.02 * height
+    if not square or not middle or abs(8 * sides[0] / height - 1) > 0.03:
+        return None
+    return "disk" if body.shape == "disk" else "square"
+
+
 SIDES = {"inside", "outside"}
 
 

@@ -12,7 +12,7 @@ from typing import Any
 from mesokit.errors import RunError
 from mesokit.io.atomic import replacing
 from mesokit.observe.result import Result
-from mesokit.report import correlation, field, forces, profile, series, tensor
+from mesokit.report import correlation, field, forces, probe, profile, series, tensor, wake
 from mesokit.report.style import HEIGHT, STYLE, WIDTH, below
 
 DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
@@ -32,6 +32,8 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "forces": forces.draw,
     "radial-profile": profile.draw,
     "surface-profile": profile.draw,
+    "wake": wake.draw,
+    "probe": probe.draw,
     "flow-rate": series.draw_flow,
 }
 

@@ -12,6 +12,7 @@ from mesokit.statistics.fit import (
 )
 from mesokit.statistics.multiple_tau import Correlation, MultipleTau
 from mesokit.statistics.ratio import ratio
+from mesokit.statistics.spectrum import Frequency, Spectrum, dominant_frequency, spectrum
 from mesokit.statistics.time_series import TimeSeries
 
 __all__ = [
@@ -19,13 +20,17 @@ __all__ = [
     "ChiSquare",
     "Correlation",
     "Fit",
+    "Frequency",
     "MultipleTau",
+    "Spectrum",
     "TimeSeries",
     "blocking_error",
     "chi_square",
     "deviation",
+    "dominant_frequency",
     "plateau_error",
     "ratio",
+    "spectrum",
     "weighted_line",
     "weighted_polynomial",
 ]

@@ -5,12 +5,14 @@ start among the samples (the last axis varies fastest), p[8] the steepest gradie
 along an axis on which the grid repeats itself, 0 where beyond it there is only fluid.
 """
 
+import math
+
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
-from mesokit.geometry.primitive.numbers import length, unit
+from mesokit.geometry.primitive.numbers import unit
 from mesokit.pointer import real
-from mesokit.scalar import added_scaled, scalar, scaled
+from mesokit.scalar import dot, scalar, scaled
 
 CONVEX = False
 
@@ -68,16 +70,26 @@ def interpolated(p, samples, x):
 
 @scalar
 def distance(p, samples, r):
-    """No more than the distance of r, and of its sign."""
+    """No more than the distance of r, and of its sign.
+
+    Beyond the grid, the way to the solid and the way to the grid make no acute angle there.
+    """
     x, off = inside_grid(p, r)
     value, _ = interpolated(p, samples, x)
-    beyond = length(off)
-    return max(value / real(p, 8) - beyond, beyond) if beyond > 0.0 else value / real(p, 8)
+    beyond = dot(off, off)
+    clear = value / real(p, 8)
+    return math.sqrt(max(clear, 0.0) ** 2 + beyond) if beyond > 0.0 else clear
 
 
 @scalar
 def normal(p, samples, r):
     """Unit normal into the fluid: the direction in which the distance rises."""
     x, off = inside_grid(p, r)
-    _, gradient = interpolated(p, samples, x)
-    return unit(added_scaled(gradient, 1.0, off))
+    value, gradient = interpolated(p, samples, x)
+    if dot(off, off) == 0.0:
+        return unit(gradient)
+    weight = max(value, 0.0) / (real(p, 8) ** 2 * real(p, 3))
+    for k in range(len(r)):
+        if off[k] == 0.0:
+            off = tuple_setitem(off, k, weight * gradient[k])
+    return unit(off)

@@ -1,0 +1,168 @@
+"""Velocity in a small part of the fluid in time, and the frequency at which it oscillates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.box import AXES, Axis
+from mesokit.component import component, param, show, tag
+from mesokit.errors import CaseError
+from mesokit.observe import setting
+from mesokit.observe.estimate import of_mean
+from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
+from mesokit.observe.result import Array, Comparison, Result
+from mesokit.solids import solids_of
+from mesokit.statistics import Blocks, TimeSeries, dominant_frequency, spectrum
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+ROWS = 16384  # of the time series
+
+
+@component
+class Probe(Observable):
+    """Mean velocity of the particles in a small box: its time series and power spectrum.
+
+    The spectrum is of one component, by default that across the flow, in which the vortices of a
+    wake show best. Where it has a clear peak the dominant frequency f is given, and with `speed` U
+    and `length` D the Strouhal number f D/U.
+    """
+
+    quantity: Literal["probe"] = tag("probe")
+    centre: tuple[float, ...] | None = param(
+        None, doc="middle of the small box (that of the box unless said)", unit="a"
+    )
+    size: tuple[float, ...] | None = param(
+        None, doc="its sides (2 cells along each axis unless said)", unit="a"
+    )
+    component: Axis | None = param(
+        None, doc="axis of the velocity whose spectrum is taken (across the flow unless said)"
+    )
+    speed: float | None = param(None, doc="speed U of the Strouhal number", unit="a/tau", gt=0)
+    length: float | None = param(None, doc="length D of the Strouhal number", unit="a", gt=0)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for a place without fluid, or half a Strouhal number."""
+        d = case.box.dimension
+        for key in ("centre", "size"):
+            vector = getattr(self, key)
+            if vector is not None and len(vector) != d:
+                raise CaseError(f"{key} = {show(vector)}: expected {d} numbers, one for each axis")
+        if self.size is not None and not all(
+            0 < side <= length for side, length in zip(self.size, case.box.size, strict=True)
+        ):
+            raise CaseError(f"size = {show(self.size)}: expected lengths that fit the box")
+        if self.component is not None:
+            setting.axis_index(case, self.component, "component")
+        if (self.speed is None) != (self.length is None):
+            lone, other = ("speed", "length") if self.length is None else ("length", "speed")
+            raise CaseError(f"{lone}: no effect without {other}; give both or neither")
+        if case.walls and solids_of(case).distance(self.place(case))[0] <= 0:
+            raise CaseError(f"centre = {show(self.place(case))}: lies in a solid")
+
+    def place(self, case: Case) -> tuple[float, ...]:
+        """The middle of the small box in this case."""
+        return self.centre or tuple(length / 2 for length in case.box.size)
+
+    def seen(self, case: Case) -> int:
+        """Number of the axis whose spectrum is taken."""
+        if self.component is not None:
+            return AXES.index(self.component)
+        flowing = setting.push_axis(case)
+        return 1 if flowing in (None, 0) else 0
+
+    def accumulator(self, case: Case) -> ProbeAccumulator:
+        """An empty memory for it."""
+        return ProbeAccumulator(self, case)
+
+
+class ProbeAccumulator:
+    """The time series of the velocity, and its average."""
+
+    def __init__(self, observable: Probe, case: Case) -> None:
+        observable.check(case)
+        self.observable, self.case, self.name = observable, case, observable.label
+        self.dimension = d = case.box.dimension
+        self.centre = np.array(observable.place(case))
+        self.half = np.array(observable.size or (2.0,) * d) / 2
+        lengths = np.array(case.box.size, float)
+        shut = [k in setting.closed_axes(case) for k in range(d)]
+        self.lengths = np.where(shut, np.inf, lengths)
+        self.component = observable.seen(case)
+        self.blocks, self.series = Blocks((d,)), TimeSeries(d, ROWS)
+        self.last = np.zeros(d)  # the velocity where nobody is there to tell a new one
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        away = fluid.positions() - self.centre
+        away -= np.where(np.isfinite(self.lengths), self.lengths, 0) * np.round(away / self.lengths)
+        inside = (np.abs(away) <= self.half).all(axis=1)
+        if inside.any():
+            m = fluid.masses()[inside]
+            self.last = m @ fluid.velocities()[inside] / m.sum()
+        self.blocks.add(self.last)
+        self.series.add(fluid.time, self.last)
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks, series=self.series, last=self.last)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        self.series = TimeSeries.from_state(unpack(state, "series"))
+        self.last = np.array(state["last"])
+
+    def result(self) -> Result:
+        """The spectrum of one component; the time series of all is in `extra`."""
+        given = self.observable
+        interval = given.every * self.case.fluid.timestep * self.series.stride
+        values, letter = self.series.values(), AXES[self.component]
+        found = spectrum(values[:, self.component], interval)
+        peak = dominant_frequency(values[:, self.component], interval)
+        return Result(
+            quantity="probe",
+            name=self.name,
+            x={"frequency": found.frequency},
+            value=found.power,
+            error=found.error,
+            label=f"power of v_{letter} per frequency",
+            units={"value": "a^2/tau", "frequency": "1/tau", "velocity": "a/tau", "time": "tau"},
+            comparisons=tuple(self.comparisons(peak)) if self.blocks.count else (),
+            samples=self.blocks.count,
+            extra={
+                "time": self.series.time(),
+                "velocity": values,
+                "component": letter,
+                "dominant": np.nan if peak is None else peak.value,
+            },
+        )
+
+    def comparisons(self, peak: Any) -> list[Comparison]:
+        """Mean velocity, dominant frequency, Strouhal number."""
+        mean: Any = of_mean(self.blocks)
+        value: Array = mean.value
+        found = [
+            Comparison(f"mean velocity v_{letter}", float(value[k]), float(mean.error[k]),
+                       unit="a/tau")
+            for k, letter in enumerate(AXES[: self.dimension])
+        ]  # fmt: skip
+        if peak is None:
+            return found
+        note = f"peak {peak.contrast:.2g} times the power around it"
+        found.append(
+            Comparison("dominant frequency", peak.value, peak.error, unit="1/tau", note=note)
+        )
+        given = self.observable
+        if given.speed is not None and given.length is not None:
+            scale = given.length / given.speed
+            note = f"U = {given.speed:g} a/tau"
+            found.append(
+                Comparison("Strouhal number", scale * peak.value, scale * peak.error, note=note)
+            )
+        return found

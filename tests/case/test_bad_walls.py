@@ -1,0 +1,218 @@
+"""Wrong walls: each is refused by `check` with one line that names the key."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from PIL import Image
+
+from mesokit.cli import main
+
+PLANE = "[run]\nsteps = 1\n[box]\nsize = [12, 10]\n"
+SPACE = "[run]\nsteps = 1\n[box]\nsize = [12, 10, 8]\n"
+DISK = 'shape = "disk"\ncentre = [6, 5]\nradius = 2\n'
+BALL = 'shape = "sphere"\ncentre = [6, 5, 4]\nradius = 2\n'
+BOX = 'shape = "rectangle"\ncentre = [6, 5]\nsize = [4, 3]\n'
+FLOOR = 'shape = "half-space"\npoint = [0, 3]\nnormal = [0, 1]\n'
+WAVES = 'shape = "cosine-channel"\nwidth = 4\namplitude = 1\n'
+HEAVY = "[fluid]\nspecies = [{ mass = 1, density = 5 }, { mass = 5, density = 5 }]\n"
+
+# name: (the case without its walls, its walls, what the message must say)
+BAD: dict[str, tuple[str, list[str], tuple[str, ...]]] = {
+    # shapes and their numbers
+    "a disk in 3D": (SPACE, [DISK], ("wall[#1].shape = 'disk'", "not in 3D", "'sphere'")),
+    "a sphere in 2D": (PLANE, [BALL], ("wall[#1].shape = 'sphere'", "not in 2D", "'disk'")),
+    "a picture in 3D": (SPACE, ['shape = "picture"\nfile = "disk.png"'], ("not in 3D",)),
+    "unknown shape": (PLANE, [DISK.replace("disk", "disc")], ("'disc'", "did you mean 'disk'?")),
+    "no shape": (PLANE, ["radius = 2"], ("wall[#1].shape: missing", "'disk'")),
+    "negative radius": (PLANE, [DISK.replace("= 2", "= -2")], ("wall[#1].radius = -2", "above 0")),
+    "no radius": (PLANE, [DISK.replace("radius = 2", "")], ("wall[#1].radius: missing",)),
+    "unknown key": (PLANE, [DISK + "radus = 4"], ("wall[#1].radus: unknown key", "'radius'")),
+    "long centre": (PLANE, [DISK.replace("6, 5", "6, 5, 4")], ("wall[#1].centre", "2 numbers")),
+    "short centre": (SPACE, [BALL.replace(", 4]", "]")], ("wall[#1].centre", "3 numbers")),
+    "negative side": (PLANE, [BOX.replace("4, 3", "4, -3")], ("wall[#1].size", "positive")),
+    "no direction": (PLANE, [FLOOR.replace("0, 1", "0, 0")], ("wall[#1].normal", "direction")),
+    "capsule without length": (
+        PLANE, ['shape = "capsule"\nstart = [1, 1]\nend = [1, 1]\nradius = 1'],
+        ("end = start", "another place"),
+    ),
+    "closed channel": (PLANE, [WAVES.replace("= 1", "= 2")], ("amplitude", "half the width")),
+    "channel along itself": (PLANE, [WAVES + 'across = "x"'], ("across = 'x'", "another axis")),
+    "channel across z in 2D": (PLANE, [WAVES + 'across = "z"'], ("wall[#1].across = 'z'", "2D")),
+    "no copies": (
+        PLANE, [f'shape = "array"\nrepeat = [0, 2]\nof = {{ {DISK.strip()} }}'.replace("\n", ", ")
+                .replace('"array", ', '"array"\n').replace("2], ", "2]\n")],
+        ("wall[#1].repeat", "at least 1"),
+    ),
+    "a part with a surface": (
+        PLANE,
+        ['shape = "union"\nparts = [{ shape = "disk", centre = [5, 5], radius = 1, '
+         'surface = { rule = "slip" } }]'],
+        ("parts[#1].surface", "of the union"),
+    ),
+    "unknown side": (PLANE, [DISK + 'fluid = "left"'], ("wall[#1].fluid", "'inside'")),
+    "unknown surface": (
+        PLANE, [DISK + 'surface = { rule = "sticky" }'], ("wall[#1].surface.rule", "'no-slip'"),
+    ),
+    # walls and the box
+    "a floor that the box repeats": (PLANE, [FLOOR], ("do not fit the periodic box", "along y")),
+    "an inclined wall": (
+        PLANE, [FLOOR.replace("0, 1", "1, 4")], ("do not fit the periodic box", "along x"),
+    ),
+    "no room": (PLANE, [BOX.replace("4, 3", "20, 20")], ("the solids leave", "to the fluid")),
+    "nothing inside": (
+        PLANE, [DISK.replace("= 2", "= 0.1") + 'fluid = "inside"'], ("the solids leave",),
+    ),
+    "plates twice": (
+        PLANE, ['shape = "plates"\naxis = "y"', 'shape = "plates"\naxis = "y"'],
+        ("wall[#2].axis = 'y'", "wall[#1] closes it"),
+    ),
+    "two rules of virtual particles": (
+        PLANE, [DISK, DISK.replace("6, 5", "2, 5").replace("= 2\n", '= 1\nvirtual = "fill"\n')],
+        ("wall[#2].virtual = 'fill'", "one rule"),
+    ),
+    "top-up of a mixture": (
+        PLANE + HEAVY, [DISK + 'virtual = "top-up"'], ("wall[#1].virtual = 'top-up'", "mass"),
+    ),
+    # surfaces that move
+    "a post that drifts": (
+        PLANE, [DISK + "surface = { velocity = [0.1, 0] }"], ("wall[#1].surface", "across itself"),
+    ),
+    "a block that turns": (
+        PLANE, [BOX + "surface = { rotation = 0.1 }"], ("wall[#1].surface", "across itself"),
+    ),
+    "slip that turns": (
+        PLANE, [DISK + 'surface = { rule = "slip", rotation = 0.1 }'],
+        ("wall[#1].surface.rotation", "drags nothing"),
+    ),
+    "three rates in 2D": (
+        PLANE, [DISK + "surface = { rotation = [0, 0, 1] }"],
+        ("wall[#1].surface.rotation", "one number in 2D"),
+    ),
+    "two rates in 3D": (
+        SPACE, [BALL + "surface = { rotation = [0, 1] }"],
+        ("wall[#1].surface.rotation", "a number or three"),
+    ),
+    "long velocity": (
+        PLANE, [DISK + "surface = { velocity = [0, 0, 0] }"],
+        ("wall[#1].surface.velocity", "2 numbers"),
+    ),
+    # files
+    "no picture": (PLANE, ['shape = "picture"\nfile = "x.png"'],
+                   ("wall[#1].file = ", "x.png'", "no such file")),
+    "a folder": (PLANE, ['shape = "picture"\nfile = "."'], ("wall[#1].file", "cannot be read")),
+    "text for a picture": (PLANE, ['shape = "picture"\nfile = "text.png"'],
+                           ("wall[#1].file", "expected a picture")),
+    "white picture": (PLANE, ['shape = "picture"\nfile = "white.png"'],
+                      ("wall[#1].file", "no surface")),
+    "picture of other proportions": (
+        PLANE, ['shape = "picture"\nfile = "disk.png"\nsize = [4, 6]'],
+        ("wall[#1].file", "120 x 100 pixels", "proportions"),
+    ),
+    "flat picture": (PLANE, ['shape = "picture"\nfile = "disk.png"\nsize = [4, 0]'],
+                     ("wall[#1].size", "positive")),
+    "no array": (PLANE, ['shape = "sampled"\nfile = "x.npy"\nspacing = 1'],
+                 ("wall[#1].file", "no such file")),
+    "text for an array": (PLANE, ['shape = "sampled"\nfile = "text.png"\nspacing = 1'],
+                          ("wall[#1].file", ".npy file of numbers")),
+    "several arrays": (PLANE, ['shape = "sampled"\nfile = "two.npz"\nspacing = 1'],
+                       ("wall[#1].file", ".npy file of numbers")),
+    "array of another dimension": (SPACE, ['shape = "sampled"\nfile = "post.npy"\nspacing = 0.5'],
+                                   ("wall[#1].file", "2D, in a 3D box")),
+    "array without a surface": (PLANE, ['shape = "sampled"\nfile = "ones.npy"\nspacing = 1'],
+                                ("wall[#1].file", "one sign")),
+    "array that is not finite": (PLANE, ['shape = "sampled"\nfile = "nan.npy"\nspacing = 1'],
+                                 ("wall[#1].file", "finite")),
+    "array in other units": (PLANE, ['shape = "sampled"\nfile = "post.npy"\nspacing = 0.1'],
+                             ("wall[#1].file", "gradient", "signed distance")),
+    "array that is cut off": (PLANE, ['shape = "sampled"\nfile = "cut.npy"\nspacing = 0.5'],
+                              ("wall[#1].file", "reaches the first samples along x")),
+    "no spacing": (PLANE, ['shape = "sampled"\nfile = "post.npy"'],
+                   ("wall[#1].spacing: missing",)),
+    "no mesh": (SPACE, ['shape = "mesh"\nfile = "x.stl"'], ("wall[#1].file", "no such file")),
+    "mesh of another format": (SPACE, ['shape = "mesh"\nfile = "text.png"'],
+                               ("wall[#1].file", ".stl, .obj or .ply")),
+    "text for a mesh": (SPACE, ['shape = "mesh"\nfile = "text.stl"'],
+                        ("wall[#1].file", "triangle mesh")),
+    "mesh with a hole": (SPACE, ['shape = "mesh"\nfile = "open.stl"\nposition = [6, 5, 4]'],
+                         ("wall[#1].file", "not watertight")),
+    "section beside the mesh": (PLANE, ['shape = "mesh"\nfile = "ball.ply"\nheight = 9'],
+                                ("wall[#1].height = 9", "lies between -2 and 2")),
+    "no scale": (SPACE, ['shape = "mesh"\nfile = "ball.ply"\nscale = 0'],
+                 ("wall[#1].scale = 0", "above 0")),
+    "far too fine": (SPACE, ['shape = "mesh"\nfile = "ball.ply"\nspacing = 0.001'],
+                     ("wall[#1].spacing = 0.001", "samples")),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Files for the walls."""
+    path = tmp_path_factory.mktemp("walls")
+    x, y = np.meshgrid(np.arange(120) / 10 - 6, np.arange(100) / 10 - 5)
+    Image.fromarray(np.where(np.hypot(x, y) > 2, 255, 0).astype(np.uint8)).save(path / "disk.png")
+    Image.new("L", (120, 100), 255).save(path / "white.png")
+    for name in ("text.png", "text.stl"):
+        (path / name).write_text("neither picture nor mesh")
+    x, y = np.meshgrid(np.arange(-3, 3.1, 0.5), np.arange(-3, 3.1, 0.5), indexing="ij")
+    post = np.hypot(x, y) - 2
+    np.save(path / "post.npy", post)
+    np.save(path / "cut.npy", post[5:])
+    np.save(path / "ones.npy", np.ones((5, 5)))
+    np.save(path / "nan.npy", np.full((5, 5), np.nan))
+    np.savez(path / "two.npz", a=post, b=post)
+    ball = trimesh.creation.icosphere(subdivisions=3, radius=2)
+    ball.export(path / "ball.ply")
+    ball.update_faces(np.arange(len(ball.faces)) > 3)
+    ball.export(path / "open.stl")
+    return path
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_walls_are_refused(name: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    start, walls, expected = BAD[name]
+    text = start + "".join(f"[[wall]]\n{wall.strip()}\n" for wall in walls)
+    (folder / "bad.toml").write_text(text)
+    with pytest.raises(SystemExit) as end:
+        main(["check", str(folder / "bad.toml")])
+    said = capsys.readouterr()
+    assert (end.value.code, said.out) == (2, ""), said.err
+    assert said.err.startswith("mesokit: error: ")
+    assert said.err.count("\n") == 1
+    assert "bad.toml: " in said.err
+    for words in expected:
+        assert words in said.err
+
+
+GOOD = {
+    "disk": (PLANE, DISK),
+    "sphere": (SPACE, BALL),
+    "waves": (PLANE, WAVES),
+    "picture": (PLANE, 'shape = "picture"\nfile = "disk.png"'),
+    "array": (PLANE, 'shape = "sampled"\nfile = "post.npy"\nspacing = 0.5\norigin = [2, 2]'),
+    "mesh": (SPACE, 'shape = "mesh"\nfile = "ball.ply"\nposition = [6, 5, 4]'),
+    "section": (PLANE, 'shape = "mesh"\nfile = "ball.ply"\nposition = [6, 5]\nheight = 1'),
+}
+
+
+@pytest.mark.parametrize("name", GOOD)
+def test_good_walls_are_good(name: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    start, wall = GOOD[name]
+    (folder / "good.toml").write_text(f"{start}[[wall]]\n{wall}\n")
+    with pytest.raises(SystemExit) as end:
+        main(["check", str(folder / "good.toml")])
+    assert end.value.code == 0
+    assert "particles" in capsys.readouterr().out
+
+
+def test_without_trimesh_the_error_says_what_to_install(folder: Path, capsys, monkeypatch) -> None:
+    monkeypatch.setitem(sys.modules, "trimesh", None)
+    wall = GOOD["mesh"][1].replace("[6, 5, 4]", "[5, 5, 5]")  # not one that was read before
+    (folder / "mesh.toml").write_text(f"{SPACE}[[wall]]\n{wall}\n")
+    with pytest.raises(SystemExit):
+        main(["check", str(folder / "mesh.toml")])
+    assert "pip install 'mesokit[mesh]'" in capsys.readouterr().err
