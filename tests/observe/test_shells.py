@@ -13,7 +13,7 @@ from mesokit.geometry import Cylinder, Disk, Plates, Rectangle, Sphere, Surface
 from mesokit.mpcd.collision import SRD
 from mesokit.mpcd.field import Uniform
 from mesokit.mpcd.thermostat import MaxwellBoltzmann
-from mesokit.observe import RadialProfile, SurfaceProfile, setting
+from mesokit.observe import Forces, RadialProfile, SurfaceProfile, setting
 from mesokit.observe.radial_profile import ring_average
 from mesokit.simulation import Simulation
 
@@ -248,3 +248,24 @@ def test_a_real_fluid_is_uniform_up_to_a_post(make_case):
         assert np.abs(result.deviation).max() < 5, result.name
         for found in result.comparisons:
             assert abs(found.deviation) < 4.5, str(found)
+
+
+def test_a_real_fluid_between_turning_surfaces(make_case):
+    """Velocity of Taylor and Couette, and the torques of a fluid that loses angular momentum."""
+    walls = [
+        Disk(centre=[11, 11], radius=3),
+        Disk(centre=[11, 11], radius=9, fluid="inside", surface=Surface(rotation=0.04)),
+    ]
+    parts = make_case((22, 22), [RadialProfile(), Forces()], walls,
+                      thermostat=MaxwellBoltzmann(), collision=SRD(angle=90))  # fmt: skip
+    run = type(parts.run)(steps=6000, warmup=1500)
+    simulation = Simulation(Case(**{**vars(parts), "run": run}), threads=1)
+    simulation.run()
+    profile = by_name(simulation["radial-profile"])
+    for name in ("inner", "outer"):
+        slip = profile[f"slip at the {name} surface"]
+        assert abs(slip.measured) < 4 * slip.error + 2 and slip.error < 4
+    outer = by_name(simulation["forces"])["torque on disk-2"]
+    one_sided = 2 * np.pi * 81 * 0.04 * 10 * setting.transport(parts).viscosity_collisional
+    assert one_sided > 0.5 * abs(outer.expected) > 5 * outer.error
+    assert outer.measured == pytest.approx(outer.expected, rel=0.1, abs=4 * outer.error)

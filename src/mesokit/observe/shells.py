@@ -39,9 +39,11 @@ class ShellAccumulator:
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         distance, place = self.locate(fluid.positions())
-        shell = np.searchsorted(self.edges, distance, side="right") - 1
-        inside = (shell >= 0) & (shell < self.bins)
-        shell, v, m = shell[inside], fluid.velocities()[inside], fluid.masses()[inside]
+        first, last = self.edges[0], self.edges[-1]
+        inside = np.flatnonzero((distance >= first) & (distance < last))
+        shell = ((distance[inside] - first) * (self.bins / (last - first))).astype(np.int64)
+        shell = np.minimum(shell, self.bins - 1)  # a product may round up
+        v, m = fluid.velocities()[inside], fluid.masses()[inside]
         velocities = self.along(place[inside], v)
         terms = [np.ones(len(m)), m, m * (v**2).sum(axis=1), *(m * velocities)]
         self.blocks.add(np.stack([np.bincount(shell, term, self.bins) for term in terms]))

@@ -22,6 +22,7 @@ from mesokit.statistics import Blocks
 if TYPE_CHECKING:
     from mesokit.case import Case
 
+SURE = 3.0  # standard errors by which the fluid must flow back
 STEP = 0.01  # by which the ends of a body are looked for
 PARABOLIC = "approximate: channel with parabolic inflow, at the Reynolds number of this flow"
 
@@ -31,8 +32,8 @@ class Wake(Observable):
     """Mean velocity along the flow in a strip behind a body, from its rear on.
 
     Where the fluid flows back, the length L_r of that part over the size D of the body is where
-    the velocity passes zero, by a straight line through the places around. D is the body's extent
-    across the flow.
+    the velocity passes zero, by a straight line through the places around. It is given if the fluid
+    flows back by more than 3 standard errors. D is the body's extent across the flow.
     """
 
     quantity: Literal["wake"] = tag("wake")
@@ -218,15 +219,18 @@ class WakeAccumulator:
     def crossing(self, velocity: Estimate) -> tuple[float, float] | None:
         """Where the velocity passes zero, and its error; None if the fluid does not flow back.
 
-        The flux behind the body falls to its minimum there, however noisy the velocity. The line
-        goes through the bins within half a cell, or a quarter of the length if that is more.
+        The flux behind the body falls to its minimum there, however noisy the velocity; it has to
+        be negative by more than SURE standard errors. The line goes through the bins within a cell,
+        or a quarter of the length if that is more.
         """
         flux = np.cumsum(velocity.value)
         last = int(np.argmin(flux))
-        if flux[last] >= 0 or last + 1 >= len(flux):
+        back = (np.arange(len(flux)) <= last) * 1.0
+        value, error = velocity.scalar(flux[last], back)
+        if not value < -SURE * error or last + 1 >= len(flux):
             return None
         place = float(self.edges[last + 1])
-        near = abs(self.centres - place) <= max(0.75, 0.25 * place)
+        near = abs(self.centres - place) <= max(1.0, 0.25 * place)
         if near.sum() < 2:
             return None
         basis = np.stack([np.ones(len(near)), self.centres - place], axis=1)
