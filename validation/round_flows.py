@@ -32,7 +32,7 @@ def gap(turns: str, steps: int) -> Case:
     rates = {name: SPEED / radius for name, radius in (("inner", INNER), ("outer", OUTER))}
     surface = {name: Surface(rotation=rates[name] * (name == turns)) for name in rates}
     return Case(
-        run=Run(steps=steps, warmup=long(5000), seed=3),
+        run=Run(steps=steps, warmup=long(5000), seed=5),
         box=Box([42, 42]),
         fluid=Fluid(
             density=10, timestep=0.1, collision=SRD(angle=90), thermostat=MaxwellBoltzmann()
@@ -42,7 +42,7 @@ def gap(turns: str, steps: int) -> Case:
             Disk(centre=[21, 21], radius=OUTER, fluid="inside", surface=surface["outer"]),
         ],
         observe=[
-            mesokit.RadialProfile(of="azimuthal", bins_per_cell=2, every=20),
+            mesokit.RadialProfile(of="azimuthal", bins_per_cell=2, every=50),
             mesokit.Forces(every=10),
         ],
     )
@@ -60,7 +60,7 @@ def pipe(steps: int) -> Case:
         ),
         walls=[Cylinder(centre=[0, 12, 12], axis="x", radius=RADIUS, fluid="inside")],
         observe=[
-            mesokit.RadialProfile(of="axial", bins_per_cell=2, every=20),
+            mesokit.RadialProfile(of="axial", bins_per_cell=2, every=50),
             mesokit.FlowRate(every=10),
             mesokit.Forces(every=10),
         ],
@@ -80,7 +80,7 @@ def couette(page: Page, axes: Any) -> None:
     )
     rows: list[Comparison] = []
     for axis, turns in zip(axes, ("inner", "outer"), strict=True):
-        files = page.run(f"{turns}-turns", gap(turns, long(4e5)))
+        files = page.run(f"{turns}-turns", gap(turns, long(3e5)))
         profile, forces = files["radial-profile"], files["forces"]
         rows += [renamed(c, f"{turns} turns: {c.what}", c.note) for c in profile.comparisons]
         rows += [renamed(c, f"{turns} turns: {c.what}", c.note) for c in forces.comparisons]
@@ -120,7 +120,7 @@ def hagen_poiseuille(page: Page, axis: Any) -> None:
         "viscosity of theory, which itself is good to about 1 %, and with that of the curvature of "
         "the measured parabola, which tests the wall alone."
     )
-    files = page.run("pipe", pipe(long(4e5)))
+    files = page.run("pipe", pipe(long(1.5e5)))
     profile, rate, forces = files["radial-profile"], files["flow-rate"], files["forces"]
     flow, nu = found(rate, "flow rate"), found(profile, "viscosity")
     push = files.case.fluid.force.acceleration[0]

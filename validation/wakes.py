@@ -41,10 +41,10 @@ class Flow(NamedTuple):
     density: int = 16
 
 
-SHEDDING = Flow(100, 24, 1.5, 1e4, density=40)
+SHEDDING = Flow(100, 24, 1.5, 5e3, density=40)
 HIGH, FAR = 120, 400  # of the channel and the box in which vortices are shed
 FAST = 0.33
-STEADY = (Flow(10, 8, 0.5, 3e4), Flow(20, 12, 1.0, 2e4), Flow(30, 16, 1.0, 1.6e4))
+STEADY = (Flow(10, 8, 0.5, 1e4), Flow(20, 12, 1.0, 6e3), Flow(30, 16, 1.0, 4.5e3))
 DRAG = {10: 3.29, 20: 2.23, 30: 1.83}  # about, to choose the force
 EXCESS = 1.15  # of the viscosity over that of theory, about, to choose the velocity
 
@@ -91,7 +91,7 @@ def channel(page: Page, flow: Flow) -> Comparison:
     nu = EXCESS * viscosity_of_theory(flow.density, flow.timestep)
     relaxation = height**2 / (math.pi**2 * nu * flow.timestep)
     case = Case(
-        run=Run(steps=long(6 * relaxation), warmup=long(relaxation / 4), seed=7),
+        run=Run(steps=long(3 * relaxation), warmup=long(relaxation / 4), seed=7),
         box=Box([96, height]),
         fluid=fluid(flow.density, flow.timestep, 8 * nu * speed / height**2),
         walls=[Plates(axis="y")],
