@@ -24,15 +24,16 @@ from mesokit import (
 )
 
 INNER, OUTER, SPEED = 8.0, 20.0, 0.2  # radii, and the velocity of the surface that turns
+SEEDS = (3, 5)  # independent runs
 RADIUS, CENTRE = 10.0, 0.2  # of the pipe, and its velocity on the axis
 
 
-def gap(turns: str, steps: int) -> Case:
+def gap(turns: str, seed: int, steps: int) -> Case:
     """Two cylinders, of which one turns."""
     rates = {name: SPEED / radius for name, radius in (("inner", INNER), ("outer", OUTER))}
     surface = {name: Surface(rotation=rates[name] * (name == turns)) for name in rates}
     return Case(
-        run=Run(steps=steps, warmup=long(5000), seed=5),
+        run=Run(steps=steps, warmup=long(5000), seed=seed),
         box=Box([42, 42]),
         fluid=Fluid(
             density=10, timestep=0.1, collision=SRD(angle=90), thermostat=MaxwellBoltzmann()
@@ -67,6 +68,16 @@ def pipe(steps: int) -> Case:
     )  # fmt: skip
 
 
+def together(runs: list[Comparison]) -> Comparison:
+    """The mean of independent runs, by their errors."""
+    weight = np.array([1 / c.error**2 for c in runs])
+    mean = float(weight @ [c.measured for c in runs] / weight.sum())
+    first = runs[0]
+    return Comparison(
+        first.what, mean, float(weight.sum() ** -0.5), first.expected, first.unit, first.note
+    )
+
+
 def couette(page: Page, axes: Any) -> None:
     """Either cylinder turning."""
     page.heading("Between two cylinders")
@@ -80,31 +91,36 @@ def couette(page: Page, axes: Any) -> None:
     )
     rows: list[Comparison] = []
     for axis, turns in zip(axes, ("inner", "outer"), strict=True):
-        files = page.run(f"{turns}-turns", gap(turns, long(3e5)))
-        profile, forces = files["radial-profile"], files["forces"]
-        rows += [renamed(c, f"{turns} turns: {c.what}", c.note) for c in profile.comparisons]
-        rows += [renamed(c, f"{turns} turns: {c.what}", c.note) for c in forces.comparisons]
+        both = [page.run(f"{turns}-{s}", gap(turns, s, long(3e5))) for s in SEEDS]
+        profiles = [files["radial-profile"] for files in both]
         for name in ("inner", "outer"):
-            slip = found(profile, f"slip at the {name}")
+            slip = together([found(p, f"slip at the {name}") for p in profiles])
+            rows.append(renamed(slip, f"{turns} turns: {slip.what}", slip.note))
             page.check(
                 f"{turns} cylinder turning: slip at the {name} surface {slip.measured:+.2f} +- "
                 f"{slip.error:.2f} % of the surface speed (below 1 %)",
                 abs(slip.measured) < 1,
             )
-        chi = found(profile, "chi-square")
-        p = float(chi.note.split("p = ")[1].split(",")[0])
-        page.check(
-            f"{turns} cylinder turning: chi-square of the profile per degree of freedom "
-            f"{chi.measured:.2f} ({chi.note.split(',')[0]}; above 0.001)",
-            p > 0.001,
-        )
-        r, deviation = profile.x["r"], profile.value - profile.expected
-        axis[0].errorbar(r, profile.value, profile.error, fmt="o", ms=3, color=BLUE)
-        axis[0].plot(r, profile.expected, "-", color=GREY, lw=1, label="A r + B/r, no slip")
+        for profile in profiles:
+            chi = found(profile, "chi-square")
+            p = float(chi.note.split("p = ")[1].split(",")[0])
+            page.check(
+                f"{turns} cylinder turning: chi-square of the profile per degree of freedom "
+                f"{chi.measured:.2f} ({chi.note}; p above 0.001)",
+                p > 0.001,
+            )
+        for torque in zip(*(files["forces"].comparisons for files in both), strict=True):
+            c = together(list(torque))
+            rows.append(renamed(c, f"{turns} turns: {c.what}", c.note))
+        r, expected = profiles[0].x["r"], profiles[0].expected
+        value = np.mean([p.value for p in profiles], axis=0)
+        error = np.sqrt(np.sum([p.error**2 for p in profiles], axis=0)) / len(profiles)
+        axis[0].errorbar(r, value, error, fmt="o", ms=3, color=BLUE)
+        axis[0].plot(r, expected, "-", color=GREY, lw=1, label="A r + B/r, no slip")
         axis[0].set(ylabel="azimuthal velocity", title=f"{turns} cylinder turns")
         axis[0].legend()
         axis[1].errorbar(
-            r, 100 * deviation / SPEED, 100 * profile.error / SPEED, fmt="o", ms=3, color=BLUE
+            r, 100 * (value - expected) / SPEED, 100 * error / SPEED, fmt="o", ms=3, color=BLUE
         )
         axis[1].axhline(0, color=GREY, lw=1)
         axis[1].set(xlabel="r", ylabel="deviation, % of the speed", ylim=(-3, 3))
