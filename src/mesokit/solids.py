@@ -49,6 +49,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 THIN, NARROW = 1.5, 3.0  # cells
+FARTHEST = 8.0  # cells from a surface at which anybody asks
 Tight = tuple[tuple[float, ...], float]
 FINE = 8  # parts of a cell, along each axis, by which volumes are summed
 _RULES = {"no-slip": NO_SLIP, "slip": SLIP, "diffuse": DIFFUSE}
@@ -127,8 +128,18 @@ class Solids:
         self.like = (0.0,) * self.dimension
         pieces = [(piece, row) for row, body in enumerate(self.bodies) for piece in body.pieces]
         self.kernel = self._kernel(pieces)
+        pieces = self._in_reach(pieces)
+        self.kernel = self._kernel(pieces)
         self.least, self._terms = np.zeros(math.prod(self.size)), len(pieces)
         self.kernel = self.reaching(REACH)
+
+    def _in_reach(self, pieces: list[tuple[Piece, int]]) -> list[tuple[Piece, int]]:
+        """Those that no place in the box is too far from to matter: most images are not."""
+        middle = tuple(0.5 * length for length in self.size)
+        clearance = np.zeros(len(pieces))
+        survey.term_clearances(self.kernel, middle, clearance)
+        far = 0.5 * math.hypot(*self.size) + FARTHEST
+        return [piece for piece, c in zip(pieces, clearance, strict=True) if c <= far]
 
     def reaching(self, away: float) -> Bodies:
         """Parameters for compiled code, with lists of the terms within `away` of each cell."""

@@ -138,3 +138,21 @@ def test_density_and_temperature_are_the_same_up_to_the_surface(rule, virtual):
     temperature = energy.sum(axis=0) / number.sum(axis=0)
     known = 0.012 if rule.rule == "srd+a" else 0.0  # what the thermostat of +a rules is off by
     assert (np.abs(temperature - 1) < 4.5 / np.sqrt(number.sum(axis=0)) + known).all()
+
+
+@pytest.mark.parametrize("length", [26, 27])
+def test_a_round_vessel_at_rest_feels_no_torque(length):
+    """Also where it comes so near to the end of the box that cut cells reach over it."""
+    fluid = make_fluid(
+        (length, length),
+        thermostat=MaxwellBoltzmann(),
+        walls=[Disk(centre=[length / 2, length / 2], radius=12, fluid="inside")],
+        measures=("walls",),
+    )
+    fluid.advance(100)
+    _ = fluid.wall_impulse
+    torque = []
+    for _ in range(20):
+        fluid.advance(50)
+        torque.append(fluid.wall_impulse[0, 2])
+    assert abs(np.mean(torque)) < 4.5 * np.std(torque, ddof=1) / np.sqrt(20)

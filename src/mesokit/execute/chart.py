@@ -19,10 +19,17 @@ from mesokit.geometry.contact import MARGIN
 from mesokit.scalar import by_type, scalar
 from mesokit.solids import Solids
 
-OFFSETS = 4  # along each axis
+OFFSETS = {2: 4, 3: 2}  # along each axis, by dimension
 PARTS = {2: 4, 3: 2}  # of a cell along each axis, for which a bound of the clearance is kept
 PIECES = 5  # along each axis, by which a cell is searched for a surface
 EVERYWHERE = 1e30
+
+
+@by_type
+def offsets_along(r):
+    """Number of intervals along each axis, for a box of as many axes as r."""
+    number = OFFSETS[len(r)]
+    return lambda r: number
 
 
 @by_type
@@ -36,7 +43,8 @@ def offset_of(solid, grid):
 def _offset(solid, grid):
     number = 0
     for k in range(len(grid.origin)):
-        number = number * OFFSETS + int(np.floor(grid.origin[k] * OFFSETS)) % OFFSETS
+        many = offsets_along(grid.origin)
+        number = number * many + int(np.floor(grid.origin[k] * many)) % many
     return number
 
 
@@ -51,8 +59,9 @@ def clear_place(solid, grid, cell):
 
 def origins(closed: tuple[bool, ...]) -> Iterator[tuple[float, ...]]:
     """The middle of each interval: from 0 to 1 along a closed axis, from -1/2 to 1/2 elsewhere."""
+    many = OFFSETS[len(closed)]
     along = [
-        [((q if shut or q < OFFSETS // 2 else q - OFFSETS) + 0.5) / OFFSETS for q in range(OFFSETS)]
+        [((q if shut or q < many // 2 else q - many) + 0.5) / many for q in range(many)]
         for shut in closed
     ]
     return itertools.product(*along)
@@ -71,11 +80,11 @@ def clear_distances(solids: Solids, cells: tuple[int, ...], bend: float) -> Any:
     No flight is farther than `bend` from the straight way to its end. Plates do not count.
     """
     d, rows = solids.dimension, []
-    corner = (0.5 + 0.5 / OFFSETS) * math.sqrt(d)
+    corner = (0.5 + 0.5 / OFFSETS[d]) * math.sqrt(d)
     for origin in origins(solids.room.closed):
         clear = solids.distance(centres(cells, origin), plates=False) - corner - bend - MARGIN
-        rows.append([*np.maximum(clear, 0.0) ** 2, EVERYWHERE])
-    return np.array(rows, np.float32)
+        rows.append(np.append(np.maximum(clear, 0.0) ** 2, EVERYWHERE).astype(np.float32))
+    return np.stack(rows)
 
 
 def sure_clearances(solids: Solids) -> tuple[Any, int]:
@@ -97,7 +106,7 @@ def cut_cells(solids: Solids, cells: tuple[int, ...]) -> tuple[Any, Any, Any]:
     """Cells that may hold both fluid and solid: where those of each offset start, and their lower
     corners in the grid (entries, d), as whole numbers."""
     starts, numbers, corners = [0], [], []
-    half = 0.5 + 0.5 / OFFSETS
+    half = 0.5 + 0.5 / OFFSETS[solids.dimension]
     for origin in origins(solids.room.closed):
         middle = centres(cells, origin)
         near = np.flatnonzero(np.abs(solids.distance(middle)) <= half * math.sqrt(len(cells)))
@@ -134,17 +143,19 @@ def surface_pieces(solids: Solids) -> tuple[Any, Any, Any, Any]:
     pieces[where] = np.arange(len(where))
     outward = normal[where]
     feet = middle[where] - distance[where, None] * outward
-    probes = feet + ((1.0 + 0.5 / OFFSETS) * math.sqrt(d) + 2 * MARGIN) * outward
+    probes = feet + ((1.0 + 0.5 / OFFSETS[d]) * math.sqrt(d) + 2 * MARGIN) * outward
     return pieces, outward, probes, terms[where]
 
 
-def cut_planes(solids: Solids, corners: Any, starts: Any) -> tuple[Any, Any, Any, Any]:
-    """For each cut cell the normal and height of the plane that cuts it, its term, and the cell of
-    the box in which the surface lies that is nearest to its middle."""
+def cut_planes(solids: Solids, corners: Any, starts: Any) -> tuple[Any, Any, Any, Any, Any]:
+    """For each cut cell the normal and height of the plane that cuts it, its middle in the box, its
+    term, and the cell of the box in which the surface lies that is nearest to its middle."""
     middles = np.empty(corners.shape)
     for number, origin in enumerate(origins(solids.room.closed)):
         some = slice(starts[number], starts[number + 1])
         middles[some] = corners[some] + 0.5 - np.array(origin)
+    for k, (length, shut) in enumerate(zip(solids.size, solids.room.closed, strict=True)):
+        middles[:, k] = middles[:, k] if shut else middles[:, k] % length
     share = solids.open_part(middles, 1.0)
     normals, heights = np.zeros(middles.shape), np.zeros(len(middles))
     terms, feet = np.zeros(len(middles), np.int64), np.zeros(middles.shape)
@@ -154,7 +165,7 @@ def cut_planes(solids: Solids, corners: Any, starts: Any) -> tuple[Any, Any, Any
     heights[share <= 0.0] = -2.0
     slippery = np.array([body.surface.rule == "slip" for body in solids.bodies])
     heights[slippery[solids.body_of_term[terms]]] = 2.0  # no virtual particles there
-    return normals, heights, terms, cell_numbers(solids, feet)
+    return normals, heights, middles, terms, cell_numbers(solids, feet)
 
 
 def cell_numbers(solids: Solids, points: Any) -> Any:

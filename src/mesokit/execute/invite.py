@@ -63,11 +63,12 @@ def guests_of(
     lumps: Lumps | tuple[()] = ()
     if lumped:
         most = 0
-        normals, heights, cut_terms, where = cut_planes(solids, corners, starts)
+        normals, heights, places, cut_terms, where = cut_planes(solids, corners, starts)
         entries = int(np.diff(starts).max(initial=0)) // threads + 1
         lumps = Lumps(
             normals=normals,
             heights=heights,
+            places=places,
             terms=cut_terms,
             pieces=pieces[where].astype(np.int64),
             state=np.zeros((threads, entries, 3 * d + 1)),

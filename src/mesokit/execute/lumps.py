@@ -17,13 +17,13 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from mesokit.elementary import log
 from mesokit.execute.bounce import take
 from mesokit.execute.cell_energy import asks, many_energy_term, many_tally
-from mesokit.execute.chart import OFFSETS, offset_of
+from mesokit.execute.chart import offset_of, offsets_along
 from mesokit.execute.fixed_point import ROUNDER_BITS, rounded
 from mesokit.execute.flags import MEASURE_WALLS
 from mesokit.execute.layout import record_length, share, sums_length
 from mesokit.execute.rows import fetch
 from mesokit.execute.stages import in_cell
-from mesokit.geometry.bodies import BODY, from_pivot, in_box, surface_velocity
+from mesokit.geometry.bodies import BODY, from_pivot, surface_velocity
 from mesokit.geometry.cut_cube import share_and_depth
 from mesokit.mpcd.collision.protocol import collide, contribute
 from mesokit.pointer import whole, word
@@ -35,13 +35,15 @@ class Lumps(NamedTuple):
     """Planes of the cut cells, and the lumps of this step.
 
     normals (entries, d), heights (entries,): of the middle of the cell over the surface, at the
-    middle of the interval of offsets. terms, pieces (entries,): the body, and the piece of surface.
+    middle of the interval of offsets; places (entries, d): that middle, in the box.
+    terms, pieces (entries,): the body, and the piece of surface.
     state (threads, entries, 3 d + 1): velocity, velocity kept for the collision, place, mass.
     entry (threads, entries), filled (threads,).
     """
 
     normals: Any
     heights: Any
+    places: Any
     terms: Any
     pieces: Any
     state: Any
@@ -91,15 +93,20 @@ def chi_square(freedom, counter, entry):
 
 
 @seldom
-def height_now(guests, entry, offset, grid, like):
-    """Height of the middle of the cell over the surface, and the normal."""
-    n, height = like, guests.lumps.heights[entry]
+def height_now(guests, entry, grid, like):
+    """Height of the middle of the cell over the surface, the normal, and that middle.
+
+    The middle is that of the image next to the term, which may lie beyond an end of the box.
+    """
+    n, height, middle = like, guests.lumps.heights[entry], like
     for k in range(len(like)):
         n = tuple_setitem(n, k, guests.lumps.normals[entry, k])
-        within = grid.origin[k] * OFFSETS
-        moved = (within - np.floor(within) - 0.5) / OFFSETS
+        many = offsets_along(like)
+        within = grid.origin[k] * many
+        moved = (within - np.floor(within) - 0.5) / many
         height -= n[k] * moved
-    return height, n
+        middle = tuple_setitem(middle, k, guests.lumps.places[entry, k] - moved)
+    return height, n, middle
 
 
 @seldom
@@ -116,7 +123,7 @@ def fill_lumps(
     count = 0
     for j in range(begin, end):
         entry = first + j
-        height, n = height_now(guests, entry, offset, grid, like)
+        height, n, middle = height_now(guests, entry, grid, like)
         reach = 0.0
         for k in range(d):
             reach += 0.5 * abs(n[k])
@@ -126,12 +133,9 @@ def fill_lumps(
         number = poisson(guests.density * part, counter, j)
         if number == 0:
             continue
-        r = like
-        for k in range(d):
-            middle = guests.corners[entry, k] + 0.5 - grid.origin[k]
-            r = tuple_setitem(r, k, middle - (height + depth) * n[k])
+        r = added_scaled(middle, -(height + depth), n)
         term = lumps.terms[entry]
-        u = surface_velocity(solid.tables, term, in_box(solid, r))
+        u = surface_velocity(solid.tables, term, r)
         piece = lumps.pieces[entry]
         if piece >= 0:
             for k in range(d):
@@ -188,5 +192,5 @@ def lumps_recoil(guests, thread, what, physics, grid, coefficients, impulse, lik
         after = collide(physics.rule, fetch(coefficients, record, c), kept, in_cell(r, grid))
         given = scaled(lumps.state[thread, i, 3 * d], added_scaled(after, -1.0, v))
         term = lumps.terms[entry]
-        lever = from_pivot(solid.tables, term, in_box(solid, r))
+        lever = from_pivot(solid.tables, term, r)
         take(impulse, whole(word(solid.tables, BODY), term), lever, given, scales[0])

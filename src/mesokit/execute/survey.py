@@ -63,6 +63,13 @@ def near_cells(solid, terms, like, away, starts, near, least):
 
 
 @kernel
+def term_clearances(solid, r, out):
+    """Clearance of one place from each term."""
+    for term in range(len(out)):
+        out[term], _ = term_clearance(solid.tables, term, r)
+
+
+@kernel
 def clearances(solid, least, like, points, out):
     """A lower bound of the distance of each point from the solid, exact within REACH."""
     for i in range(len(points)):
