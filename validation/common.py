@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import math
 import platform
+import shutil
 import sys
 import time
 from datetime import date
@@ -21,7 +23,10 @@ from mesokit import Comparison
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-FOLDER = Path(__file__).resolve().parent.parent / "docs" / "validation"
+ROOT = Path(__file__).resolve().parent.parent
+FOLDER = ROOT / "docs" / "validation"
+RUNS = ROOT / "build" / "validation"  # runs that `kept` keeps
+SHORT = "--short" in sys.argv  # a quick try: a fiftieth of the steps, nothing is written to docs
 ANGLE = math.degrees(2.27)  # the angle at which the 3D viscosity is quoted in the literature
 BLUE, RED, GREEN, PURPLE, GREY = "#1b4f8a", "#c1491d", "#2a7f4f", "#7a3b8f", "#444444"
 
@@ -51,6 +56,8 @@ class Page:
         self.parts: list[str] = []
         self.checks: list[tuple[str, bool]] = []
         self.began = time.perf_counter()
+        self.kept = 0.0  # seconds of runs that `kept` has read
+        self.sources: set[str] = set()  # of those
 
     def text(self, text: str) -> None:
         """A paragraph."""
@@ -86,10 +93,10 @@ class Page:
 
     def figure(self, fig: Any, caption: str, suffix: str = "") -> None:
         """Save a figure beside the page, and show it there."""
-        FOLDER.mkdir(parents=True, exist_ok=True)
+        folder = place()
         file = f"{self.name}{suffix}.png"
         fig.tight_layout()
-        fig.savefig(FOLDER / file)
+        fig.savefig(folder / file)
         plt.close(fig)
         caption = " ".join(caption.split())
         self.parts.append(f"![{caption}]({file})\n\n*{caption}*\n")
@@ -99,11 +106,37 @@ class Page:
         self.checks.append((what, bool(met)))
         print(f"  {'met' if met else 'NOT MET'}: {what}", flush=True)
 
+    def run(
+        self, name: str, case: mesokit.Case, positions: Any = None, velocities: Any = None
+    ) -> mesokit.io.open.RunFiles:
+        """Run a case on one thread, or read the same run from build/validation if it is there.
+
+        Long scripts can be stopped and go on; `make clean` makes them begin anew.
+        """
+        folder = RUNS / ("short" if SHORT else "") / self.name / name
+        record = folder / "sources.json"
+        if not record.exists() or mesokit.open(folder).case != case:
+            shutil.rmtree(folder, ignore_errors=True)
+            print(f"  running {name}: {case.particles} particles", flush=True)
+            begun = time.perf_counter()
+            simulation = mesokit.Simulation(
+                case, output=folder, threads=1, positions=positions, velocities=velocities
+            )
+            simulation.run()
+            (folder / "checkpoint.npz").unlink(missing_ok=True)  # large
+            seconds = time.perf_counter() - begun
+            record.write_text(json.dumps({"sources": sources(), "seconds": seconds}))
+            self.began += seconds
+        known = json.loads(record.read_text())
+        self.kept += known["seconds"]
+        self.sources.add(known["sources"])
+        return mesokit.open(folder)
+
     def write(self) -> int:
         """Write the page; returns how many requirements were not met."""
-        FOLDER.mkdir(parents=True, exist_ok=True)
-        seconds = time.perf_counter() - self.began
-        versions = f"mesokit {mesokit.__version__} (sources {sources()})"
+        seconds = time.perf_counter() - self.began + self.kept
+        digests = ", ".join(sorted(self.sources)) or sources()
+        versions = f"mesokit {mesokit.__version__} (sources {digests})"
         versions += f", Python {platform.python_version()}"
         versions += f", NumPy {np.__version__}, Numba {numba.__version__}"
         head = [
@@ -115,8 +148,20 @@ class Page:
         marks = [f"- {'met' if met else '**not met**'}: {what}" for what, met in self.checks]
         if marks:
             head.append("\n".join(marks) + "\n")
-        (FOLDER / f"{self.name}.md").write_text("\n".join(head + self.parts), encoding="utf-8")
+        (place() / f"{self.name}.md").write_text("\n".join(head + self.parts), encoding="utf-8")
         return sum(not met for _, met in self.checks)
+
+
+def place() -> Path:
+    """Where pages and figures go."""
+    folder = RUNS / "short" if SHORT else FOLDER
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+def long(steps: float) -> int:
+    """So many steps, or few for a quick try."""
+    return max(int(steps / (50 if SHORT else 1)), 100)
 
 
 def decimals(error: float, value: float) -> int:
