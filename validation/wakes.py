@@ -212,7 +212,8 @@ def steady(page: Page) -> None:
             rows.append(
                 [shape, flow.reynolds, d, flow.timestep, f"{nu.measured:.4f} +- {nu.error:.4f}",
                  f"{top:.3f} ({misfit:.1f} %)", f"{re:.1f} +- {re_error:.1f}",
-                 f"{length:.2f} +- {error:.2f}", f"{known[0]:.2f}", f"{drag:.2f} +- {drag_error:.2f}",
+                 f"{length:.2f} +- {error:.2f}", f"{known[0]:.2f}",
+                 f"{drag:.2f} +- {drag_error:.2f}",
                  f"{known[1]:.2f}" if math.isfinite(known[1]) else "",
                  f"{total.percent:+.1f} +- {100 * total.error / total.expected:.1f} %"]
             )  # fmt: skip
