@@ -195,9 +195,9 @@ def steady(page: Page) -> None:
         "plain channel of the same height and fluid, measured here; at the scale of the body it is "
         "some per cent lower. Reference values for the disk: lattice Boltzmann, 2 %, between and "
         "just below the tabulated Reynolds numbers by a straight line (drag: of the logarithms); "
-        "for the square: Breuer et al., L_r/D = -0.065 + 0.0554 Re; both at the measured Re. "
-        "Forces and body force balance in a steady flow only: what the fluid still loses in momentum, in per "
-        "cent of the body force, is the last column."
+        "for the square: Breuer et al., L_r/D = -0.065 + 0.0554 Re; all at the measured Re. "
+        "Forces and body force balance in a steady flow only: what the fluid still loses in "
+        "momentum, in per cent of the body force, is the last column."
     )
     rows, points = [], []
     fig, axes = plt.subplots(1, 2, figsize=(9.5, 3.9))
