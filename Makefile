@@ -41,4 +41,4 @@ validate: $(READY)
 	@$(BIN)/python validation/all.py
 
 clean:
-	@rm -rf .venv demo
+	@rm -rf .venv demo build/validation
