@@ -126,6 +126,26 @@ def test_first_hit(every, kind, seed):
         assert abs(clearance(solids, r, v, a, got)[0]) < TOUCH
 
 
+def test_short_chords_are_seen(every):
+    """Straight flights that cut only just into a bump, nowhere deeper than 10^-6 to 10^-2."""
+    name, d, side, solids = every
+    rng, cuts = np.random.default_rng(4), 0
+    places, normals = surface(solids)
+    for place, n in zip(places[:100], normals, strict=False):
+        along = rng.standard_normal(d)
+        along = unit(along - along @ n * n)
+        start = place - 10 ** rng.uniform(-6, -2) * n - rng.uniform(0.2, 0.6) * along
+        path = clearance(solids, start, along, np.zeros(d), np.linspace(0, 1, 400))
+        if path[0] > 0 and path.min() < -SLIVER:
+            cuts += 1
+            got = meets(solids, start, along, np.zeros(d), 1.0)
+            assert np.isfinite(got)
+            before = np.linspace(0, got, 400)[:-1]
+            assert clearance(solids, start, along, np.zeros(d), before).min() > -SLIVER
+    flat = name in ("plates", "half-space")
+    assert cuts > 0 or flat or side == "inside"
+
+
 def test_straight_into_a_ball():
     """Times are those of a quadratic equation."""
     from shapes import solids_of
