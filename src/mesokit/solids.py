@@ -196,7 +196,8 @@ class Solids:
             self._places[number] = place
         self._places[SIZE : SIZE + self.dimension] = self.size
         size = tuple(float(length) for length in self.size)
-        return Bodies(size, inverse, address(self._places), 0, 0.0, 0, 1.0, size, size)
+        unsure = self._keep(np.full(math.prod(self.size), -1.0), np.float32)
+        return Bodies(size, inverse, address(self._places), 0, 0.0, unsure, 1.0, size, size)
 
     def _surface(self, body: Body) -> list[float]:
         velocity = list(body.surface.velocity or ()) + [0.0] * 3

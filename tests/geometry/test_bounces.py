@@ -26,11 +26,11 @@ def rule(request):
 @pytest.fixture(scope="module")
 def ruled(every, rule):
     """Every solid with every rule: the same tables, but for the numbers of its surfaces."""
-    from mesokit.geometry.bodies import COLUMNS
+    from mesokit.geometry.bodies import COLUMNS, SURFACES
     from mesokit.solids import _RULES
 
     solids = every[3]
-    table = next(t for t in solids._tables if t.ctypes.data == solids.kernel.surfaces)
+    table = next(t for t in solids._tables if t.ctypes.data == solids._places[SURFACES])
     before = table.copy()
     table.reshape(-1, COLUMNS)[:, 0] = _RULES[rule]
     yield solids
