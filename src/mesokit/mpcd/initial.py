@@ -129,7 +129,7 @@ def start(cpu: CPU, positions: Any = None, velocities: Any = None) -> None:
 
 def _uniform(cpu: CPU, random: np.random.Generator) -> Floats:
     """Places (n, d) uniform in the fluid: those that lie in a solid are drawn again."""
-    places = random.random((cpu.n, cpu.dimension)) * cpu.box
+    places = np.stack([random.random(cpu.n) * length for length in cpu.box], axis=1)
     if cpu.solids is None or cpu.slit is not None:
         return places
     left = np.arange(cpu.n)
