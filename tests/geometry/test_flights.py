@@ -63,7 +63,8 @@ def flight(solids, kind, rng):
     if kind == "corner":
         place = kinks(solids)[rng.integers(5)]
     if kind == "grazing":
-        place, a = place + normal[i] * 10 ** rng.uniform(-12, -2), 0 * a
+        height = rng.choice([-1, 1]) * 10 ** rng.uniform(-12, -1)  # below: a short chord
+        place, a = place + height * normal[i], 0 * a
         direction = along
     else:
         direction = unit(rng.standard_normal(d))
