@@ -114,14 +114,19 @@ class Page:
         Long scripts can be stopped and go on; `make clean` makes them begin anew.
         """
         folder = RUNS / ("short" if SHORT else "") / self.name / name
-        record = folder / "sources.json"
-        if not record.exists() or mesokit.open(folder).case != case:
-            shutil.rmtree(folder, ignore_errors=True)
+        record, asked = folder / "sources.json", folder / "asked.toml"
+        same = asked.exists() and asked.read_text() == case.to_toml()
+        if not (same and record.exists()):
             print(f"  running {name}: {case.particles} particles", flush=True)
             begun = time.perf_counter()
-            simulation = mesokit.Simulation(
-                case, output=folder, threads=1, positions=positions, velocities=velocities
-            )
+            if same and (folder / "checkpoint.npz").exists():
+                simulation = mesokit.Simulation.resume(folder, threads=1)
+            else:
+                shutil.rmtree(folder, ignore_errors=True)
+                simulation = mesokit.Simulation(
+                    case, output=folder, threads=1, positions=positions, velocities=velocities
+                )
+                asked.write_text(case.to_toml())
             simulation.run()
             (folder / "checkpoint.npz").unlink(missing_ok=True)  # large
             seconds = time.perf_counter() - begun
