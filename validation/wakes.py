@@ -392,7 +392,7 @@ def shedding(page: Page) -> None:
         "that "
         "some per cent of what is seen is compressibility. The box is periodic: vortices come "
         "round weakened. Beside it the Strouhal number at the onset of shedding at this blockage "
-        f"(Re = {onset.reynolds:g}; {onset.source}). It rises with Re: Schafer and Turek have 0.300 "
+        f"(Re = {onset.reynolds:g}; {onset.source}). It rises with Re: Schafer and Turek have 0.300 "  # noqa: E501
         "with the mean velocity, 0.200 with the centre velocity, at a Re of 150 by this definition "
         "and a blockage of 0.244."
     )
@@ -428,7 +428,7 @@ def shedding(page: Page) -> None:
     page.figure(fig, "Lift coefficient, and its spectrum.", "_shedding")
     page.figure(
         street_picture(files["flow-frames"]),
-        "Velocity across the channel in the last 60 steps, over U; means of 4 by 4 cells.", "_street",
+        "Velocity across the channel in the last 60 steps, over U; means of 4 by 4 cells.", "_street",  # noqa: E501
     )  # fmt: skip
 
 
