@@ -282,9 +282,9 @@ class Solids:
         clear = self.distance(points).reshape(points.shape[:-1])
         return np.clip(0.5 + clear / side, 0.0, 1.0)
 
-    def open_part(self, centres: NDArray[Any], side: float) -> Floats:
-        """Part of cubes of this side that is fluid, from FINE^d cubes in each."""
-        steps = ((np.arange(FINE) + 0.5) / FINE - 0.5) * side
+    def open_part(self, centres: NDArray[Any], side: float, fine: int = FINE) -> Floats:
+        """Part of cubes of this side that is fluid, from fine^d cubes in each."""
+        steps = ((np.arange(fine) + 0.5) / fine - 0.5) * side
         grid = np.stack(np.meshgrid(*[steps] * self.dimension, indexing="ij"), -1)
         grid = grid.reshape(-1, self.dimension)
         share = np.zeros(len(centres))
@@ -292,7 +292,7 @@ class Solids:
             some = centres[first : first + 4096]
             points = (some[:, None] + grid).reshape(-1, self.dimension)
             out = np.zeros(len(points))
-            survey.open_volume(self.kernel, self.like, points, side / FINE, out)
+            survey.open_volume(self.kernel, self.like, points, side / fine, out)
             share[first : first + 4096] = out.reshape(len(some), -1).mean(axis=1)
         return share
 

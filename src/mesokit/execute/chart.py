@@ -22,7 +22,9 @@ from mesokit.solids import Solids
 OFFSETS = {2: 4, 3: 2}  # along each axis, by dimension
 PARTS = {2: 4, 3: 2}  # of a cell along each axis, for which a bound of the clearance is kept
 PIECES = 5  # along each axis, by which a cell is searched for a surface
+SHIFTED_FINE = 4  # parts of a cell along each axis by which its volume is summed, for each shift
 EVERYWHERE = 1e30
+ROUNDING = 1e-9  # of a share
 
 
 @by_type
@@ -147,6 +149,12 @@ def surface_pieces(solids: Solids) -> tuple[Any, Any, Any, Any]:
     return pieces, outward, probes, terms[where]
 
 
+def shifts_within(d: int) -> Any:
+    """Shifts within an interval over which means are taken (shifts, d): Gauss's points."""
+    side = 0.5 / OFFSETS[d] / math.sqrt(3.0)
+    return np.array(list(itertools.product((-side, side), repeat=d)))
+
+
 def cut_planes(solids: Solids, corners: Any, starts: Any) -> tuple[Any, Any, Any, Any, Any]:
     """For each cut cell the normal and height of the plane that cuts it, its middle in the box, its
     term, and the cell of the box in which the surface lies that is nearest to its middle."""
@@ -156,15 +164,16 @@ def cut_planes(solids: Solids, corners: Any, starts: Any) -> tuple[Any, Any, Any
         middles[some] = corners[some] + 0.5 - np.array(origin)
     for k, (length, shut) in enumerate(zip(solids.size, solids.room.closed, strict=True)):
         middles[:, k] = middles[:, k] if shut else middles[:, k] % length
-    share = solids.open_part(middles, 1.0)
+    shifts = shifts_within(solids.dimension)
+    share = np.mean([solids.open_part(middles - x, 1.0, SHIFTED_FINE) for x in shifts], axis=0)
     normals, heights = np.zeros(middles.shape), np.zeros(len(middles))
     terms, feet = np.zeros(len(middles), np.int64), np.zeros(middles.shape)
-    survey.planes(solids.kernel, solids.like, middles, share, normals, heights, terms, feet)
-    # a cube that is all fluid or all solid stays so, whatever its shift within the interval
-    heights[share >= 1.0] = 2.0
-    heights[share <= 0.0] = -2.0
+    away = (0.5 + 0.5 / OFFSETS[solids.dimension]) * math.sqrt(solids.dimension) + MARGIN
+    near, like = solids.reaching(away), solids.like
+    survey.planes(near, like, away, shifts, middles, share, normals, heights, terms, feet)
     slippery = np.array([body.surface.rule == "slip" for body in solids.bodies])
-    heights[slippery[solids.body_of_term[terms]]] = 2.0  # no virtual particles there
+    nobody = slippery[solids.body_of_term[terms]] | (share <= ROUNDING) | (share >= 1.0 - ROUNDING)
+    heights[nobody | (terms < 0)] = EVERYWHERE
     return normals, heights, middles, terms, cell_numbers(solids, feet)
 
 

@@ -10,18 +10,15 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.execute.cache import kernel
 from mesokit.geometry.bodies import (
-    NEAR,
     REACH,
-    STARTS,
-    home_cell,
     in_box,
     nearest,
+    nearest_within,
     part_normal,
     term_clearance,
 )
 from mesokit.geometry.cut_cube import share_beyond
-from mesokit.pointer import whole, word
-from mesokit.scalar import scalar, scaled, seldom
+from mesokit.scalar import dot, scalar, scaled, seldom
 
 
 @scalar
@@ -110,14 +107,8 @@ def depths(solid, like, away, points, terms, clearance, normals):
     the lists of the solid are."""
     for i in range(len(points)):
         r = in_box(solid, point(points, i, like))
-        cell, least, part, term = home_cell(solid.tables, r), away, 0, -1
-        starts = word(solid.tables, STARTS)
-        for j in range(whole(starts, cell), whole(starts, cell + 1)):
-            candidate = whole(word(solid.tables, NEAR), j)
-            c, which = term_clearance(solid.tables, candidate, r)
-            if c < least:
-                least, part, term = c, which, candidate
-        terms[i], clearance[i] = term, least
+        c, part, term = nearest_within(solid.tables, away, r)
+        terms[i], clearance[i] = term, c
         n = part_normal(solid.tables, part, r) if term >= 0 else scaled(0.0, like)
         for k in range(len(like)):
             normals[i, k] = n[k]
@@ -163,21 +154,28 @@ def open_volume(solid, like, points, side, out):
 
 
 @kernel
-def planes(solid, like, points, open_share, normals, heights, terms, feet):
+def planes(solid, like, away, shifts, points, open_share, normals, heights, terms, feet):
     """The plane that cuts unit cubes about the points as the solid does: it has the normal of the
-    surface nearest to the middle, and leaves `open_share` of the cube to the fluid."""
+    surface nearest to the middle, and leaves `open_share` of the cube to the fluid in the mean over
+    the shifts. Terms are -1 where no surface is within `away`.
+    """
     for i in range(len(points)):
         r = in_box(solid, point(points, i, like))
-        c, part, term = nearest(solid.tables, r)
+        c, part, term = nearest_within(solid.tables, away, r)
+        terms[i] = term
+        if term < 0:
+            continue
         n = part_normal(solid.tables, part, r)
-        low, high = -1.0, 1.0  # no corner of the cube is farther from its middle
-        for _ in range(50):
-            middle = 0.5 * (low + high)
-            if share_beyond(middle, n) < open_share[i]:
+        low, high = -2.0, 2.0  # no corner of a shifted cube is farther from the middle
+        for _ in range(40):
+            middle, share = 0.5 * (low + high), 0.0
+            for j in range(len(shifts)):
+                share += share_beyond(middle - dot(n, point(shifts, j, like)), n)
+            if share < open_share[i] * len(shifts):
                 low = middle
             else:
                 high = middle
-        heights[i], terms[i] = 0.5 * (low + high), term
+        heights[i] = 0.5 * (low + high)
         for k in range(len(like)):
             normals[i, k] = n[k]
             feet[i, k] = r[k] - c * n[k]

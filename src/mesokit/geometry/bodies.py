@@ -121,13 +121,14 @@ def term_clearance(tables, term, r):
     return widest, which
 
 
-@seldom
-def nearest(tables, r):
+@scalar
+def nearest_within(tables, away, r):
     """Clearance of r, which is in the box, and the part and term it is measured from.
 
-    Where nothing is near, the clearance is REACH, a lower bound, and the term is NOBODY.
+    Where nothing is nearer than `away`, which the lists of the tables must reach, that is the
+    clearance, and the term is NOBODY.
     """
-    least, part, term = REACH, 0, NOBODY
+    least, part, term = away, 0, NOBODY
     cell = home_cell(tables, r)
     for j in range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1)):
         candidate = whole(word(tables, NEAR), j)
@@ -135,6 +136,12 @@ def nearest(tables, r):
         if c < least:
             least, part, term = c, which, candidate
     return least, part, term
+
+
+@seldom
+def nearest(tables, r):
+    """The same for all that any list has: nearer than REACH."""
+    return nearest_within(tables, REACH, r)
 
 
 @elementwise

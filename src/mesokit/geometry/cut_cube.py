@@ -8,7 +8,7 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.scalar import seldom
 
-FLAT = 1e-6  # components of the normal below this are taken for 0
+FLAT = 1e-4  # components of the normal below this are taken for 0: they would cancel digits
 
 
 @seldom
@@ -56,11 +56,13 @@ def share_beyond(c, n):
 @seldom
 def share_and_depth(c, n):
     """Part of the cube behind the plane, and the mean depth there (positive)."""
-    back = n
+    back, deepest = n, -c
     for k in range(len(n)):
         back = tuple_setitem(back, k, -n[k])
+        deepest += 0.5 * abs(n[k])
     powers = live(n)
     share = heights(-c, back, powers)
     if share < 1e-12:
         return 0.0, 0.0
-    return min(share, 1.0), heights(-c, back, powers + 1) / share
+    depth = heights(-c, back, powers + 1) / share  # of a tiny share, digits are lost
+    return min(share, 1.0), min(max(depth, 0.0), deepest)
