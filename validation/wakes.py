@@ -389,10 +389,10 @@ def shedding(page: Page) -> None:
         f"degrees, density {flow.density}, timestep {flow.timestep}: viscosity {nu:.4f} by theory, "
         f"some per cent more by fluctuations. Centre velocity 2.5 to 3.5 diameters before the disk "
         f"{top:.3f} (in the middle {misfit:+.1f} %), Re = {re:.0f}: the Mach number is a third, so "
-        "that "
-        "some per cent of what is seen is compressibility. The box is periodic: vortices come "
-        "round weakened. Beside it the Strouhal number at the onset of shedding at this blockage "
-        f"(Re = {onset.reynolds:g}; {onset.source}). It rises with Re: Schafer and Turek have 0.300 "  # noqa: E501
+        "that some per cent of what is seen is compressibility. The box is periodic: vortices "
+        "come round weakened, and four wavelengths fit the box, which may draw the frequency to "
+        "itself. Beside it the Strouhal number at the onset of shedding at this blockage (Re = "
+        f"{onset.reynolds:g}; {onset.source}). It rises with Re: Schafer and Turek have 0.300 "
         "with the mean velocity, 0.200 with the centre velocity, at a Re of 150 by this definition "
         "and a blockage of 0.244."
     )
@@ -428,7 +428,8 @@ def shedding(page: Page) -> None:
     page.figure(fig, "Lift coefficient, and its spectrum.", "_shedding")
     page.figure(
         street_picture(files["flow-frames"]),
-        "Velocity across the channel in the last 60 steps, over U; means of 4 by 4 cells.", "_street",  # noqa: E501
+        "Velocity across the channel in the last 60 steps, over U; means of 4 by 4 cells.",
+        "_street",
     )  # fmt: skip
 
 

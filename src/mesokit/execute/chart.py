@@ -128,8 +128,8 @@ def cut_cells(solids: Solids, cells: tuple[int, ...]) -> tuple[Any, Any, Any]:
 def surface_pieces(solids: Solids) -> tuple[Any, Any, Any, Any]:
     """A piece of surface in each cell of the box that has one, whose body follows the fluid.
 
-    Number of the piece in each cell or -1, then for each piece its normal, the place to
-    look for fluid, which is so far that its cell is free of solid, and its term.
+    Number of the piece in each cell or -1, then for each piece its normal, the first place to look
+    for fluid, and its term.
     """
     d, size = solids.dimension, solids.size
     middle = centres(size, (0.0,) * d)
@@ -145,7 +145,7 @@ def surface_pieces(solids: Solids) -> tuple[Any, Any, Any, Any]:
     pieces[where] = np.arange(len(where))
     outward = normal[where]
     feet = middle[where] - distance[where, None] * outward
-    probes = feet + ((1.0 + 0.5 / OFFSETS[d]) * math.sqrt(d) + 2 * MARGIN) * outward
+    probes = feet + (0.3 + 0.5 * math.sqrt(d)) * outward  # with most shifts, that cell is free
     return pieces, outward, probes, terms[where]
 
 

@@ -3,8 +3,8 @@
 Each step draws, uniform over the cut cells of its grid, as many places as the fluid would have
 particles there, and keeps those that lie in a solid: their number in a cell is then that of an
 ideal gas in the solid part of the cell, whatever its shape. What a gas at the surface's velocity
-lacks, the fluid's own profile gives, as for plates (see `wall_flow`): its slope at each piece of
-surface is followed in the cell of fluid in front of it.
+lacks, the fluid's own profile gives, as for plates (see `wall_flow`), which is followed at each
+piece of surface (see `near_flow`).
 """
 
 import math
@@ -19,9 +19,9 @@ from mesokit.execute.chart import offset_of
 from mesokit.execute.flags import MEASURE_WALLS
 from mesokit.execute.layout import LANES, ROW, share, strip_of, sums_length
 from mesokit.execute.lumps import Lumps, fill_lumps, lumps_recoil
+from mesokit.execute.near_flow import flow_at
 from mesokit.execute.rows import load, mass_of, store
-from mesokit.execute.stages import add_strip, bin_strip, cell_index, collide_strip, gather_strip
-from mesokit.execute.sums import nothing_found, read_sums
+from mesokit.execute.stages import add_strip, bin_strip, collide_strip, gather_strip
 from mesokit.geometry.bodies import (
     BODY,
     FILLS,
@@ -32,13 +32,11 @@ from mesokit.geometry.bodies import (
     part_normal,
     surface_number,
     surface_velocity,
-    term_clearance,
 )
 from mesokit.pointer import whole, word
 from mesokit.random import BODY_POSITION, BODY_VELOCITY, normals, unit_open, words
-from mesokit.scalar import added, added_scaled, by_type, dot, first, scalar, scaled, seldom
+from mesokit.scalar import added, added_scaled, by_type, first, scalar, scaled, seldom
 
-MEMORY = 1.0 / 128.0  # weight of one step in the slope at a piece of surface
 TRIES = 32  # to find a place in the solid part of a cell that is to be topped up
 KINDS = 1024  # masses to draw from, in a mixture
 
@@ -50,8 +48,8 @@ class Guests(NamedTuple):
     starts (offsets + 1,), cells, corners (entries, d): cut cells for each offset of the grid, and
     their lower corners in the grid.
     pieces: number of the piece of surface in each cell of the box, or -1.
-    outward, probes (pieces, d): its normal, and where to look for fluid; terms (pieces,).
-    rates (pieces, d): slopes of the velocity.
+    outward, probes (pieces, d): its normal, and where first to look for fluid; terms (pieces,).
+    rates (pieces, columns): what is known of the flow there.
     masses: those of mixtures.
     data, cell, number, term (threads, ...), filled (threads,): the virtual particles of this step.
     lumps: Lumps, or () where they come one by one.
@@ -144,8 +142,7 @@ def settle(guests, thread, physics, r, number, count, rows, like):
     u = surface_velocity(solid.tables, term, x)
     piece = guests.pieces[home_cell(solid.tables, foot)]
     if piece >= 0:
-        for k in range(len(like)):
-            u = tuple_setitem(u, k, u[k] + clear * guests.rates[piece, k])
+        u = added(u, flow_at(guests.rates, piece, clear, like))
     strip = strip_of(guests.data[thread], count // LANES, rows)
     store(strip, count % LANES, 0, r + u)
     if len(physics.masses) == 0:
@@ -256,39 +253,3 @@ def _top_up(
         guests, thread, what, physics, counter, grid, count, rows, all_sums[thread], gathered,
         quanta, impulse, like, terms, scales,
     )  # fmt: skip
-
-
-@seldom
-def follow_pieces(guests, thread, threads, physics, grid, sums, like, terms, scales):
-    """Update the slopes of the velocity at the pieces of surface, from this step's cells."""
-    solid, width = physics.solid, sums_length(len(terms))
-    begin, end = share(len(guests.terms), thread, threads)
-    for e in range(begin, end):
-        probe, n = like, like
-        for k in range(len(like)):
-            probe = tuple_setitem(probe, k, guests.probes[e, k])
-            n = tuple_setitem(n, k, guests.outward[e, k])
-        cell = cell_index(probe, grid)
-        found = nothing_found(terms)
-        for t in range(sums.shape[0]):
-            for k in range(len(found)):
-                more = found[k] + sums[t, cell * width + k]
-                found = tuple_setitem(found, k, more)
-        number, mass, momentum, _, _ = read_sums(
-            physics.masses, physics.energy, found, like, scales
-        )
-        if number < 1.0:
-            continue
-        middle = probe
-        for k in range(len(like)):
-            corner = np.floor(probe[k] + grid.origin[k]) - grid.origin[k]
-            middle = tuple_setitem(middle, k, corner + 0.5)
-        least, _, _ = nearest(solid.tables, in_box(solid, middle))
-        if least < 0.5 * math.sqrt(float(len(like))):  # another surface may cut that cell
-            continue
-        height, _ = term_clearance(solid.tables, guests.terms[e], middle)
-        u = surface_velocity(solid.tables, guests.terms[e], middle)
-        rise = scaled(1.0 / height, added_scaled(scaled(1.0 / mass, momentum), -1.0, u))
-        rise = added_scaled(rise, -dot(rise, n), n)
-        for k in range(len(like)):
-            guests.rates[e, k] += MEMORY * (rise[k] - guests.rates[e, k])

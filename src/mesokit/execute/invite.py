@@ -17,6 +17,7 @@ from mesokit.execute.chart import (
 from mesokit.execute.guests import KINDS, Guests
 from mesokit.execute.layout import BLOCK, ROW, blocks_for, zeros
 from mesokit.execute.lumps import Lumps
+from mesokit.execute.near_flow import columns
 from mesokit.geometry.bodies import Bodies
 from mesokit.geometry.contact import MARGIN
 from mesokit.pointer import address
@@ -87,7 +88,7 @@ def guests_of(
         outward=outward,
         probes=probes,
         terms=terms,
-        rates=np.zeros((len(terms), d)),
+        rates=np.zeros((len(terms), columns(d))),
         masses=kinds,
         data=zeros((threads, blocks * rows * ROW)),
         cell=zeros((threads, blocks * BLOCK), np.int32),

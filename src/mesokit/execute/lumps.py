@@ -21,6 +21,7 @@ from mesokit.execute.chart import offset_of, offsets_along
 from mesokit.execute.fixed_point import ROUNDER_BITS, rounded
 from mesokit.execute.flags import MEASURE_WALLS
 from mesokit.execute.layout import record_length, share, sums_length
+from mesokit.execute.near_flow import flow_at
 from mesokit.execute.rows import fetch
 from mesokit.execute.stages import in_cell
 from mesokit.geometry.bodies import BODY, from_pivot, surface_velocity
@@ -138,8 +139,7 @@ def fill_lumps(
         u = surface_velocity(solid.tables, term, r)
         piece = lumps.pieces[entry]
         if piece >= 0:
-            for k in range(d):
-                u = tuple_setitem(u, k, u[k] - depth * guests.rates[piece, k])
+            u = added(u, flow_at(guests.rates, piece, -depth, like))
         mass = m * number
         a, b, c, e = words(counter, BODY_VELOCITY, j, 0)
         v = added(u, scaled(math.sqrt(physics.kT / mass), normals(like, a, b, c, e)))

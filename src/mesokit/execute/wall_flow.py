@@ -8,8 +8,8 @@ the rate of the profile known they can move like that; the plate is then where i
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
-from mesokit.execute.guests import follow_pieces
 from mesokit.execute.layout import sums_length
+from mesokit.execute.near_flow import follow_pieces
 from mesokit.execute.rows import fetch
 from mesokit.execute.sums import nothing_found, read_sums
 from mesokit.geometry.protocol import across
