@@ -16,7 +16,8 @@ from mesokit.execute.sums import nothing_found, read_sums
 from mesokit.geometry.bodies import in_box, nearest, surface_velocity, term_clearance
 from mesokit.scalar import added_scaled, dot, scalar, scaled, seldom
 
-MEMORY = 1.0 / 256.0  # weight of one step
+EVERY = 4  # steps from one look at a piece to the next: sooner, the same particles are there
+MEMORY = EVERY / 256.0  # weight of one look
 PROBES = 2
 APART = 1.0  # cells between the places where fluid is looked for
 LEAST_APART = 0.5  # of the first mean height: nearer to one another, two tell no bend
@@ -40,10 +41,13 @@ def flow_at(rates, piece, height, like):
 
 
 @seldom
-def follow_pieces(guests, thread, threads, physics, grid, sums, like, terms, scales):
-    """Update what is known at the pieces of surface, from this step's cells."""
-    begin, end = share(len(guests.terms), thread, threads)
-    for e in range(begin, end):
+def follow_pieces(
+    guests, thread, threads, physics, counter, grid, sums, like, terms, scales
+):  # fmt: skip
+    """Update what is known at every EVERYth piece of surface, from this step's cells."""
+    turn = np.int64(counter.step) % EVERY
+    begin, end = share((len(guests.terms) + EVERY - 1 - turn) // EVERY, thread, threads)
+    for e in range(turn + EVERY * begin, turn + EVERY * end, EVERY):
         for p in range(PROBES):
             look(guests, e, p, physics, grid, sums, like, terms, scales)
         straighten(guests.rates, e, like)

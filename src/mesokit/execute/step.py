@@ -62,8 +62,9 @@ def advance(
         )  # fmt: skip
         wait(gate, threads)
         follow(
-            wanted, guests, thread, threads, physics, new, cells[1], scratch[7], like, terms, scales
-        )
+            wanted, guests, thread, threads, physics, counter, new, cells[1], scratch[7], like,
+            terms, scales,
+        )  # fmt: skip
         top_up(density, guests, thread, physics, counter, new, cells, number, like, scales)
         top_up_guests(
             guests, density, thread, threads, what, physics, counter, new, rows, cells[1], gathered,

@@ -19,7 +19,9 @@ MEMORY = 1.0 / 32.0  # weight of one step; the mean must not follow the noise of
 
 
 @by_type
-def follow(wanted, guests, thread, threads, physics, grid, sums, rates, like, terms, scales):
+def follow(
+    wanted, guests, thread, threads, physics, counter, grid, sums, rates, like, terms, scales
+):
     """Update the rates (2, d) of the lower and upper plate, or those of guests; if wanted."""
     if len(wanted) == 0:
         return lambda *_: None
@@ -27,12 +29,14 @@ def follow(wanted, guests, thread, threads, physics, grid, sums, rates, like, te
 
 
 def _update_pieces(
-    wanted, guests, thread, threads, physics, grid, sums, rates, like, terms, scales
+    wanted, guests, thread, threads, physics, counter, grid, sums, rates, like, terms, scales
 ):
-    follow_pieces(guests, thread, threads, physics, grid, sums, like, terms, scales)
+    follow_pieces(guests, thread, threads, physics, counter, grid, sums, like, terms, scales)
 
 
-def _update(wanted, guests, thread, threads, physics, grid, sums, rates, like, terms, scales):
+def _update(
+    wanted, guests, thread, threads, physics, counter, grid, sums, rates, like, terms, scales
+):
     """From the cells next to the cut ones, which hold no virtual particles, at this step."""
     if thread != 0:
         return
