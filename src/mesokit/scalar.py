@@ -36,8 +36,13 @@ def by_type(choose: Callable) -> Any:
     return _overloaded(choose, choose)
 
 
-def _overloaded(name: Callable, choose: Callable) -> Any:
-    options = {"forceinline": True, "error_model": "numpy", "_nrt": False}
+def by_type_with_views(choose: Callable) -> Any:
+    """As `by_type`, for code that makes views of arrays, which numba then counts the users of."""
+    return _overloaded(choose, choose, counting=True)
+
+
+def _overloaded(name: Callable, choose: Callable, counting: bool = False) -> Any:
+    options = {"forceinline": True, "error_model": "numpy"} | ({} if counting else {"_nrt": False})
     overload(name, strict=False, jit_options=options)(choose)
     return name
 

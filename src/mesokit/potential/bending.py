@@ -15,6 +15,11 @@ class Bending:
     rule: Literal["bending"] = tag("bending")
     kappa: float = param(doc="bending stiffness", unit="kT", ge=0)
 
+    @property
+    def stiffness(self) -> float:
+        """Second derivative by the angle of a straight chain."""
+        return self.kappa
+
     def kernel(self) -> Cosine:
         """Parameters for the scalar function below."""
         return Cosine(self.kappa)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal, NamedTuple
 
 from mesokit.component import component, param, tag
-from mesokit.potential.protocol import central
+from mesokit.potential.protocol import central, torn
 
 
 @component
@@ -17,6 +17,11 @@ class LennardJones:
     sigma: float = param(1.0, doc="distance of zero energy", unit="a", gt=0)
     cutoff: float = param(2.5, doc="no force beyond, in units of sigma", unit="sigma", gt=0)
     shift: bool = param(True, doc="whether the energy is shifted to 0 at the cut-off")
+
+    @property
+    def reach(self) -> float:
+        """Distance beyond which there is no force."""
+        return self.cutoff * self.sigma
 
     def kernel(self) -> TwelveSix:
         """Parameters for the scalar function below."""
@@ -52,3 +57,8 @@ def _(potential, square):
     push = 6.0 * potential.four * sixth * (2.0 * sixth - 1.0) * inverse / potential.square
     near = square < potential.limit
     return (energy if near else 0.0), (push if near else 0.0)
+
+
+@torn.register(TwelveSix)
+def _(potential, square):
+    return False

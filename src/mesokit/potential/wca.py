@@ -19,6 +19,11 @@ class WCA:
     epsilon: float = param(1.0, doc="energy at the distance sigma", unit="kT", gt=0)
     sigma: float = param(1.0, doc="diameter of a bead", unit="a", gt=0)
 
+    @property
+    def reach(self) -> float:
+        """Distance beyond which there is no force."""
+        return 2.0 ** (1.0 / 6.0) * self.sigma
+
     def kernel(self) -> TwelveSix:
         """Parameters for the scalar function of the Lennard-Jones potential."""
         return twelve_six(self.epsilon, self.sigma, 2.0 ** (1.0 / 6.0), True)
