@@ -9,6 +9,8 @@ import numpy as np
 from mesokit.errors import CaseError
 from mesokit.geometry import Disk, Plates, Sphere
 from mesokit.mpcd.field import Uniform
+from mesokit.mpcd.molecule import Molecule
+from mesokit.potential import Harmonic
 from mesokit.solids import solids_of
 
 
@@ -17,7 +19,11 @@ def case_for(observable, make_case, size, **fluid):
     middle = [length / 2 for length in size]
     body = Disk(centre=middle, radius=1) if len(size) == 2 else Sphere(centre=middle, radius=1)
     push = {"force": Uniform((0.01,) + (0.0,) * (len(size) - 1))}
-    for walls, parts in (((), fluid), ((Plates(axis="y"),), fluid), ((body,), push | fluid)):
+    alone = {key: value for key, value in fluid.items() if key != "species"}
+    pairs = {"density": 9, "molecule": Molecule(bond=Harmonic(K=1.0))} | alone
+    for walls, parts in (
+        ((), fluid), ((Plates(axis="y"),), fluid), ((body,), push | fluid), ((), pairs)
+    ):  # fmt: skip
         try:
             return make_case(size, [observable], walls=walls, **parts)
         except CaseError as error:
@@ -110,6 +116,12 @@ class FakeFluid:
 
     def masses(self, ids=None):
         return self.m if ids is None else self.m[ids]
+
+    def bond_vectors(self):
+        return np.sqrt(0.5) * self.rng.normal(size=(self.n // 2, self.dimension))
+
+    def potential_energy(self):
+        return float(self.rng.normal(self.n))
 
     def totals(self):
         v = self.velocities()

@@ -10,6 +10,11 @@ import numpy as np
 from mesokit.observe.result import Result
 from mesokit.report.style import COLOURS, MARKERS, labelled
 
+SYMBOLS = {
+    "stress": r"$\sigma_{\alpha\beta}$",
+    "bond-length": r"$\langle b_\alpha b_\beta\rangle$",
+}
+
 
 def draw(result: Result, figure: Any, ax: Any) -> None:
     """Off-diagonal and diagonal parts in panels of their own, as their sizes differ."""
@@ -45,7 +50,7 @@ def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) 
     ax.set_xlim(-0.6, len(inner) - 0.4)
     ax.set_title(title, fontsize=10)
     ax.margins(y=0.2)
-    symbol = r"$\sigma_{\alpha\beta}$" if result.quantity == "stress" else "force per area"
+    symbol = SYMBOLS.get(result.quantity, "force per area")
     ax.set_ylabel(labelled(symbol, result.units["value"]))
     ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=2)  # below: no data there
 
