@@ -233,8 +233,8 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
         phase = fluid.molecule.phase(case.box.dimension, fluid.timestep, fluid.kT, fluid.mass)
         if fluid.molecule.substeps is not None and phase > COARSE:
             yield (
-                f"fluid.molecule.substeps = {fluid.molecule.substeps}: the stiffest spring turns by "
-                f"{phase:.2g} rad in each (above {COARSE:g}): its swings read up to "
+                f"fluid.molecule.substeps = {fluid.molecule.substeps}: the stiffest spring turns "
+                f"by {phase:.2g} rad in each (above {COARSE:g}): its swings read up to "
                 f"{25 * phase**2:.2g} % too large"
             )
     if fluid.density < 3:
