@@ -1,6 +1,6 @@
 """Run all benchmarks, alternating with the peer, and write docs/benchmark.md.
 
-python -m benchmarks [--rounds 5] [--seconds 3] [--only peers,cost,solids,bonded,observe,memory,startup]
+python -m benchmarks [--rounds 5] [--seconds 3] [--only peers,cost,solids,bonded,...]
 """
 
 from __future__ import annotations
