@@ -119,8 +119,8 @@ def make() -> int:
         "SRD, density 10, timestep 0.1, Maxwell-Boltzmann thermostat, at rest; 'turning' surfaces "
         "move along themselves, at up to 0.2. Shells of an eighth of a cell about each solid, 2 "
         "cells deep. 'At the surface' is the mean over the cell next to it; chi-square is over all "
-        "shells, with the correlations between them. The temperature next to a turning surface "
-        "counts the flow, and is not compared. Forces: the largest component of force or torque "
+        "shells, with the correlations between them. Where a surface turns, the fluid turns with "
+        "it: it is denser outside, its temperature counts the flow, and neither is compared. Forces: the largest component of force or torque "
         "on any solid at rest, in standard errors."
     )
     rows, tests, off = [], [], []
@@ -139,9 +139,9 @@ def make() -> int:
                 density, temperature = files["surface-profile"], files["temperature"]
                 near = found(density, "density in the cell")
                 cells = [f"{d}D {name}", surface, f"{near.measured:.3f} +- {near.error:.3f}"]
-                off.append((near.deviation, f"{d}D {name}, {surface}: density"))
                 profiles = [(density, "density")]
                 if surface != "turning":
+                    off.append((near.deviation, f"{d}D {name}, {surface}: density"))
                     warm = found(temperature, "temperature in the cell")
                     off.append((warm.deviation, f"{d}D {name}, {surface}: temperature"))
                     cells.append(f"{warm.measured:.4f} +- {warm.error:.4f}")
