@@ -115,7 +115,7 @@ def body(shape: str, flow: Flow) -> Case:
     if shape == "square":
         solid = Rectangle(centre=centre, size=[d, d], name="body")
     return Case(
-        run=Run(steps=long(flow.steps), warmup=long(flow.steps / 3), seed=8),
+        run=Run(steps=long(flow.steps), warmup=long(flow.steps), seed=8),
         box=Box([length, height]),
         fluid=fluid(flow.density, flow.timestep, push),
         walls=[Plates(axis="y"), solid],
