@@ -226,6 +226,11 @@ def shear(case: Case) -> Iterator[str]:
     """Lees-Edwards images along y, flow along x."""
     rate, rule = case.box.shear_rate, case.fluid.force
     if rate == 0:
+        if case.box.shear_frequency:
+            yield (
+                f"box.shear_frequency = {show(case.box.shear_frequency)}: needs box.shear_rate, "
+                "the amplitude of the shear rate"
+            )
         return
     key = f"box.shear_rate = {show(rate)}"
     for i, wall in enumerate(case.walls):

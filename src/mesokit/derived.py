@@ -263,7 +263,7 @@ def _place(coordinates: Sequence[float]) -> str:
 
 def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
     fluid, force = case.fluid, case.fluid.force
-    sheared = numbers.flow == "lees-edwards"
+    sheared = case.box.shear_rate != 0
     if numbers.mach is not None and _above(numbers.mach, 0.2) and not sheared:
         yield (
             f"Mach number {numbers.mach:.2g}: above 0.2 the fluid is compressible; "

@@ -13,11 +13,14 @@ from mesokit.solids import solids_of
 
 
 def case_for(observable, make_case, size, **fluid):
-    """A case in which it can be measured: without walls, in a slit, or in a flow about a body."""
+    """A case in which it can be measured: without walls, in a slit, in a flow about a body, or in a
+    shear that oscillates."""
     middle = [length / 2 for length in size]
     body = Disk(centre=middle, radius=1) if len(size) == 2 else Sphere(centre=middle, radius=1)
     push = {"force": Uniform((0.01,) + (0.0,) * (len(size) - 1))}
-    for walls, parts in (((), fluid), ((Plates(axis="y"),), fluid), ((body,), push | fluid)):
+    shear = {"shear_rate": 0.01, "shear_frequency": 1.0}
+    slit = (Plates(axis="y"),)
+    for walls, parts in (((), fluid), (slit, fluid), ((body,), push | fluid), ((), shear | fluid)):
         try:
             return make_case(size, [observable], walls=walls, **parts)
         except CaseError as error:

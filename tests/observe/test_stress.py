@@ -10,7 +10,7 @@ from mesokit.errors import CaseError
 from mesokit.geometry import Plates, Surface
 from mesokit.mpcd.field import Uniform
 from mesokit.mpcd.thermostat import MaxwellBoltzmann
-from mesokit.observe import Conservation, Stress, WallStress, setting
+from mesokit.observe import Conservation, DynamicModuli, Stress, WallStress, setting
 from mesokit.observe.conservation import ROWS
 
 
@@ -159,3 +159,30 @@ def test_one_wall_stress_is_enough(make_case):
 def test_wall_stress_needs_walls(make_case):
     with pytest.raises(CaseError, match="needs one"):
         make_case((4, 4), [WallStress()])
+
+
+def test_moduli_of_a_known_stress(make_case):
+    """Of a stress that follows the strain and its rate the fit gives both shares back."""
+    shear = {"shear_rate": 0.2, "shear_frequency": 0.7}
+    case = make_case((4, 4), [DynamicModuli()], timestep=0.1, **shear)
+    accumulator, fluid = DynamicModuli().accumulator(case), FakeFluid(case)
+    amplitude = 0.2 / 0.7
+    for step in range(1, 1000):
+        fluid.step = step
+        s, c = np.sin(0.7 * fluid.time), np.cos(0.7 * fluid.time)
+        stress = np.zeros((2, 2))
+        stress[0, 1] = amplitude * (3.0 * s + 5.0 * c) + 0.4
+        fluid.stress = {"kinetic": 0.25 * stress, "collisional": 0.75 * stress}
+        accumulator.observe(fluid)
+    result = accumulator.result()
+    assert result.samples == 999
+    np.testing.assert_allclose(result.value, np.outer([0.25, 0.75, 1.0], [3.0, 5.0]), rtol=1e-9)
+
+
+def test_moduli_need_an_oscillation_with_enough_samples(make_case):
+    with pytest.raises(CaseError, match="shear_frequency"):
+        make_case((4, 4), [DynamicModuli()], shear_rate=0.1)
+    with pytest.raises(CaseError, match="samples in a period"):
+        make_case((4, 4), [DynamicModuli()], shear_rate=0.1, shear_frequency=50.0)
+    with pytest.raises(CaseError, match="shear_frequency = 2"):
+        make_case((4, 4), shear_frequency=2.0)

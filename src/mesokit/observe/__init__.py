@@ -7,6 +7,7 @@ from typing import get_args
 from mesokit.observe.conservation import Conservation
 from mesokit.observe.density_field import DensityField
 from mesokit.observe.density_profile import DensityProfile
+from mesokit.observe.dynamic_moduli import DynamicModuli
 from mesokit.observe.flow_frames import FlowFrames
 from mesokit.observe.flow_rate import FlowRate
 from mesokit.observe.forces import Forces
@@ -40,6 +41,7 @@ AnyObservable = (
     | LongitudinalModes
     | WallStress
     | Stress
+    | DynamicModuli
     | Forces
     | FlowRate
     | RadialProfile
@@ -57,6 +59,7 @@ __all__ = [
     "Conservation",
     "DensityField",
     "DensityProfile",
+    "DynamicModuli",
     "FlowFrames",
     "FlowRate",
     "Forces",

@@ -97,8 +97,9 @@ class StressAccumulator:
         elif rate:
             # the parts and the normal stresses are of higher order in the shear rate
             expected[:, range(d), range(d)] = np.nan
+            steady = coefficients and not case.box.shear_frequency
             for part, nu in enumerate(self.viscosities()):
-                shear = nu * setting.mass_density(case) * rate if coefficients else np.nan
+                shear = nu * setting.mass_density(case) * rate if steady else np.nan
                 expected[part, 0, 1] = expected[part, 1, 0] = shear
         return expected
 
@@ -114,7 +115,7 @@ class StressAccumulator:
         case, found = self.case, []
         mean, error = self.blocks.mean(), self.blocks.error()
         rate = case.box.shear_rate
-        if rate:
+        if rate and not case.box.shear_frequency:
             scale = setting.mass_density(case) * rate
             notes = (
                 setting.caveat(case),

@@ -29,6 +29,7 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "longitudinal-modes": correlation.draw_modes,
     "wall-stress": tensor.draw,
     "stress": tensor.draw,
+    "dynamic-moduli": tensor.draw_moduli,
     "forces": forces.draw,
     "radial-profile": profile.draw,
     "surface-profile": profile.draw,
