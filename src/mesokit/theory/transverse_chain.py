@@ -12,6 +12,8 @@ from mesokit.theory.relaxation_modulus import checked_times
 
 Array = NDArray[np.float64]
 
+MEETING = 1e3  # residues of two poles that meet grow beyond bounds and cancel
+
 
 class TransversePoles(NamedTuple):
     """C(t) = sum of `residues` times exp(`poles` t): real, or at most one conjugate pair."""
@@ -34,21 +36,18 @@ def transverse_poles(
     phi kT/rho, kT/(n m) where every particle is in a chain of n; `stress_times` (N,) tau_p, see
     `rouse_times`. Raises ValueError for a value out of range. Source: D. Toneian, diploma thesis,
     TU Wien (2015), eq. (5.1.29); its solution (5.1.38) by coefficients of polynomials is off by
-    3e-2 for 100 beads, where this, the eigenvalues of the matrix, is good to 1e-12 (1e-8 where two
-    poles meet). Valid for times above the timestep and waves longer than the chains.
+    3e-2 for 100 beads, where this, the eigenvalues of the matrix, is good to 1e-12. Where two poles
+    meet, their residues grow beyond bounds (`transverse_correlation_chain` then takes the
+    exponential itself). Valid for times above the timestep and waves longer than the chains.
 
     >>> poles, _ = transverse_poles(2 * np.pi / 30, 0.8705, 0.5, [13.4])
     >>> poles.round(4).tolist()
     [(-0.0564-0.147j), (-0.0564+0.147j)]
     """
-    positive(viscosity=viscosity, elasticity=elasticity)
-    tau, count = _distinct(checked_times(elasticity, stress_times))
-    matrix = -np.diag(np.append(viscosity * k * k, 1 / tau))
-    matrix[0, 1:] = -k * np.sqrt(elasticity * count)
-    matrix[1:, 0] = k * np.sqrt(elasticity * count)
-    poles, v = np.linalg.eig(matrix)
+    poles, v = np.linalg.eig(_arrow(k, viscosity, elasticity, stress_times))
     # the transposed matrix has the same eigenvectors with the sign of all but row 0 turned
-    residues = v[0] ** 2 / (v[0] ** 2 - (v[1:] ** 2).sum(axis=0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        residues = v[0] ** 2 / (v[0] ** 2 - (v[1:] ** 2).sum(axis=0))
     order = np.lexsort((poles.imag, -poles.real))
     return TransversePoles(poles[order].astype(complex), residues[order].astype(complex))
 
@@ -74,8 +73,29 @@ def transverse_correlation_chain(
     for wave in np.unique(k):
         here = k == wave
         poles, residues = transverse_poles(float(wave), viscosity, elasticity, stress_times)
-        result[here] = (np.exp(t[here][:, None] * poles) @ residues).real
+        if np.abs(residues).max() < MEETING:
+            result[here] = (np.exp(t[here][:, None] * poles) @ residues).real
+        else:
+            matrix = _arrow(float(wave), viscosity, elasticity, stress_times)
+            result[here] = _exponential(matrix, t[here])
     return result
+
+
+def _arrow(k: float, viscosity: float, elasticity: float, stress_times: ArrayLike) -> Array:
+    """The matrix A of `transverse_poles`."""
+    positive(viscosity=viscosity, elasticity=elasticity)
+    tau, count = _distinct(checked_times(elasticity, stress_times))
+    matrix = -np.diag(np.append(viscosity * k * k, 1 / tau))
+    matrix[0, 1:] = -k * np.sqrt(elasticity * count)
+    matrix[1:, 0] = k * np.sqrt(elasticity * count)
+    return matrix
+
+
+def _exponential(matrix: Array, time: Array) -> Array:
+    """[exp(A t)]_00 without eigenvalues: slower, but nothing happens where two of them meet."""
+    from scipy.linalg import expm
+
+    return np.array([expm(matrix * t)[0, 0] for t in time])
 
 
 def _distinct(tau: Array) -> tuple[Array, Array]:
