@@ -88,6 +88,16 @@ def test_zimm_times_of_long_chains():
     assert zimm_times(100, zeta, ETA, 1.0).mode[0] / 1000 / ETA == pytest.approx(0.4016, rel=2e-3)
 
 
+def test_zimm_times_give_the_intrinsic_viscosity_of_long_chains():
+    """Flory's constant, sum of stress times kT/(eta <R^2>^(3/2)) times Avogadro's number, is
+    2.87e23 for pre-averaged hydrodynamics (Miyaki et al., Macromolecules 13, 588, 1980)."""
+    zeta = 6 * np.pi * ETA * 0.25
+    n = np.array([100, 400])
+    flory = [zimm_times(i, zeta, ETA, 1.0).stress.sum() / ETA / i**1.5 for i in n]
+    limit = 2 * flory[1] - flory[0]  # the next order is n^(-1/2)
+    assert 6.022 * limit == pytest.approx(2.87, rel=0.01)
+
+
 def test_exponents_are_those_of_the_laws():
     zeta = 6 * np.pi * ETA * 0.25
     n = np.array([200, 400])

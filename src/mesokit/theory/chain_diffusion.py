@@ -35,7 +35,7 @@ def kirkwood_diffusion(
     root-mean-square; `kT`. Raises ValueError for a value out of range. Source: J. G. Kirkwood and
     J. Riseman, J. Chem. Phys. 16, 565 (1948), with Gaussian distances, as in H of D. Toneian,
     diploma thesis, TU Wien (2015), eq. (6.3). Valid for Gaussian chains in a large box (see
-    `diffusion_in_box`); it is some per cent high, as the chain's shape is averaged first.
+    `diffusion_in_box`); a little high, as shapes are averaged before they move.
 
     >>> round(kirkwood_diffusion(10, friction=50, viscosity=8.7, bond_length=1), 6)
     0.006676
@@ -51,8 +51,8 @@ def zimm_diffusion(beads: int, viscosity: float, bond_length: float, kT: float =
     """Diffusion coefficient 8 kT/(3 sqrt(6 pi^3) eta b sqrt n) of a long ideal chain.
 
     Parameters, errors as in `kirkwood_diffusion`, whose limit of large n it is. Source: B. H. Zimm,
-    J. Chem. Phys. 24, 269 (1956). At n = 60 and bead friction near 6 pi eta b/4 it is still some 10
-    % off: compare short chains with `kirkwood_diffusion`.
+    J. Chem. Phys. 24, 269 (1956). Good at any n for beads of hydrodynamic radius b/4; for b/10 16 %
+    low at n = 60: compare short chains with `kirkwood_diffusion`.
 
     >>> round(zimm_diffusion(100, viscosity=8.7, bond_length=1), 6)
     0.002247

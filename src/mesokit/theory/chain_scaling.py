@@ -34,7 +34,8 @@ def chain_exponents(dynamics: str, solvent: str = "ideal", dimension: int = 3) -
     Parameters: `dynamics` "rouse" or "zimm"; `solvent` "ideal" (beads pass through each other),
     "theta" or "good"; `dimension` 2 or 3, for zimm 3 only (in 2D diffusion depends on the box).
     Raises ValueError for others. Source: P.-G. de Gennes, Scaling Concepts in Polymer Physics
-    (1979); nu as in `FLORY`. Valid for long chains; those of 10 to 60 beads are within 0.1 of it.
+    (1979); nu as in `FLORY`. Valid for long chains: between 10 and 60 beads of hydrodynamic radius
+    b/10 Zimm chains have -0.62 and 1.71 (`kirkwood_diffusion`, `zimm_times`).
 
     >>> chain_exponents("rouse")
     ChainExponents(size=0.5, diffusion=-1.0, relaxation=2.0)

@@ -42,7 +42,7 @@ def maxwell_shear(
     Parameters: `shear_rate` of either sign; `modulus` phi kT, phi the number of molecules a volume;
     `stress_times` tau_p, see `rouse_times`; `viscosity` eta, dynamic, of the fluid without bonds.
     Raises ValueError for a value out of range. Source: R. B. Bird, C. F. Curtiss, R. C. Armstrong
-    and O. Hassager, Dynamics of Polymeric Liquids 2 (1987), sections 13.4 (dumbbells) and 15.3
+    and O. Hassager, Dynamics of Polymeric Liquids 2 (1987), chapters 13 (dumbbells) and 15
     (chains). Valid for springs without rest length, beads without hydrodynamic interaction, and
     temperatures held.
 
@@ -73,7 +73,7 @@ def size_in_shear(
         bond_squared: <b^2> of a free bond at rest, see `mean_square_bond`.
         dimension: of space.
 
-    Raises ValueError for a value out of range. Source: Bird et al. (1987), section 13.4; for chains
+    Raises ValueError for a value out of range. Source: Bird et al. (1987), chapter 13; for chains
     derived in docs/theory-polymers.md. Valid as `maxwell_shear`.
 
     >>> from mesokit.theory import linear_modes

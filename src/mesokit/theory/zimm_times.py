@@ -21,7 +21,9 @@ def zimm_times(
     Parameters: as in `kirkwood_diffusion`. Raises ValueError for a value out of range, and where H
     is not positive (beads too large for their distance). Source: B. H. Zimm, J. Chem. Phys. 24, 269
     (1956), without his limit of large n; H of D. Toneian, diploma thesis, TU Wien (2015), eq.
-    (6.3). Valid for Gaussian chains in a large box. For long chains the slowest goes as n^(3/2).
+    (6.3). Valid for Gaussian chains in a large box. The slowest of long chains
+    is 0.4016 eta b^3 n^(3/2)/kT (Doi and Edwards' 1/sqrt(3 pi) = 0.326 holds mode by mode for large
+    p, with p^(-3/2)).
 
     >>> zimm_times(3, friction=50, viscosity=8.7, bond_length=1).mode.round(3).tolist()
     [23.74, 10.336]
@@ -38,6 +40,6 @@ def zimm_times(
         )
     # bond vectors have the same rates, without the zero of the centre of mass
     bonds = np.diff(np.eye(beads), axis=0)
-    rates = 3 * kT / bond_length**2 * np.linalg.eigvals(bonds @ mobility @ bonds.T).real
+    rates = 3 * kT / bond_length**2 * np.linalg.eigvalsh(bonds @ mobility @ bonds.T)
     mode = 1 / np.sort(rates)
     return RouseTimes(mode, mode / 2)
