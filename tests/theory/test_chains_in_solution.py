@@ -98,6 +98,14 @@ def test_zimm_times_give_the_intrinsic_viscosity_of_long_chains():
     assert 6.022 * limit == pytest.approx(2.87, rel=0.01)
 
 
+def test_dimers_of_the_thesis_without_a_fit():
+    """Mode time 26.8 (published) and 27.2 (simulated again) for beads of D = 0.0587, K = 1/6."""
+    assert zimm_times(2, 1 / 0.0587, 8.7, 3.0).mode == pytest.approx([26.8], abs=0.05)
+    assert rouse_times(linear_modes(2), 1 / 0.0587, K=1 / 6).mode == pytest.approx(
+        [25.55], abs=0.01
+    )
+
+
 def test_exponents_are_those_of_the_laws():
     zeta = 6 * np.pi * ETA * 0.25
     n = np.array([200, 400])

@@ -231,13 +231,15 @@ def test_kernel_is_the_stress_of_moving_chains():
 def test_finite_k_of_dimers():
     """The closed form leaves out q^2/6 of the kernel; without both terms it is the thesis."""
     t = np.linspace(0, 60, 25)
-    closed = transverse_correlation_dimer(K30, t, NU, 0.5, 13.4, 3.0, 0.03)
+    closed = transverse_correlation_dimer(K30, t, NU, 0.5, 13.4, 9.0, 0.03)
     full = transverse_correlation_finite_k(K30, t, NU, 0.5, linear_modes(2), 26.8, 9.0, 0.03)
     thesis = transverse_correlation_dimer(K30, t, NU, 0.5, 13.4)
     assert np.max(np.abs(closed - full)) < 2e-4
     assert 0.01 < np.max(np.abs(closed - thesis)) < 0.03
     c2 = 0.5 * np.exp(-(K30**2) * 9 / 12)
     shifted = 1 / (1 / 13.4 + K30**2 * 0.03)
+    flat = transverse_correlation_dimer(K30, t, NU, 0.5, 13.4, 6.0, 0.03, dimension=2)
+    assert flat == pytest.approx(closed, abs=1e-12)  # the same <b_y^2>
     assert closed == pytest.approx(by_expm(K30, t, NU, c2, [shifted]), abs=1e-12)
 
 
@@ -261,7 +263,7 @@ def test_finite_k_does_not_depend_on_its_steps():
 def test_refuses():
     with pytest.raises(ValueError, match="stress_time = 0"):
         transverse_correlation_dimer(0.1, 1.0, NU, 0.5, 0)
-    with pytest.raises(ValueError, match="bond_length = -1"):
+    with pytest.raises(ValueError, match="bond_squared = -1"):
         transverse_correlation_dimer(0.1, 1.0, NU, 0.5, 13.4, -1)
     with pytest.raises(ValueError, match="time = -1"):
         transverse_correlation_chain(0.1, -1, NU, 0.5, [13.4])

@@ -85,8 +85,7 @@ def size_in_shear(
     stretch = bond_squared * (1 + 2 / dimension * (shear_rate * tau) ** 2)
     squares = stretch / modes.eigenvalues[1:]
     ends = modes.vectors[-1, 1:] - modes.vectors[0, 1:]
-    # tr of the connectivity matrix counts every bond twice
-    bonds = round(float((modes.eigenvalues * modes.vectors**2).sum())) / 2
+    bonds = round(float(modes.eigenvalues.sum())) / 2  # the trace counts each at both its beads
     return SizeInShear(
         float(stretch.sum()) / bonds,
         float((ends**2 * squares).sum()),

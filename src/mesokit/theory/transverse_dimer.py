@@ -18,8 +18,9 @@ def transverse_correlation_dimer(
     viscosity: float,
     elasticity: float,
     stress_time: float,
-    bond_length: float = 0.0,
+    bond_squared: float = 0.0,
     centre_diffusion: float = 0.0,
+    dimension: int = 3,
 ) -> Array:
     """Normalised autocorrelation of a transverse Fourier mode of the velocity of a dimer fluid.
 
@@ -34,27 +35,29 @@ def transverse_correlation_dimer(
         viscosity: nu, kinematic, of the same fluid without bonds.
         elasticity: phi kT/rho, a velocity squared; kT/2m where every particle is in a dimer.
         stress_time: tau, half the time in which the end-to-end vector relaxes.
-        bond_length, centre_diffusion: root-mean-square bond length l and diffusion coefficient of
-            the dimer's centre (half that of a bead). With them the form for finite k: elasticity
-            times exp(-k^2 l^2/12), rate 1/tau + k^2 D_centre.
+        bond_squared, centre_diffusion: mean square bond length l^2 and diffusion coefficient of the
+            dimer's centre (half that of a bead). With them the form for finite k: elasticity times
+            exp(-k^2 l^2/4d), rate 1/tau + k^2 D_centre.
+        dimension: d of space, for that form.
 
     Raises ValueError for a value out of range. Source: D. Toneian, diploma thesis, TU Wien (2015),
     eqs. (5.1.57), (5.1.59); finite k derived in docs/theory-polymers.md. Valid for times above the
-    timestep and k l below 1; in simulations of l = 3 and L = 30 deviations were below 0.025, with
-    finite k below 0.010.
+    timestep and k l below 1; in a simulation of l = 3 and L = 30 the largest deviation was 0.025,
+    with finite k 0.010.
 
     >>> t = np.array([5.0, 10, 20])
     >>> transverse_correlation_dimer(2 * np.pi / 30, t, 0.8705, 0.5, 13.4).round(5).tolist()
     [0.6223, 0.12758, -0.30899]
     """
     positive(viscosity=viscosity, elasticity=elasticity, stress_time=stress_time)
-    not_negative(bond_length=bond_length, centre_diffusion=centre_diffusion)
+    positive(dimension=dimension)
+    not_negative(bond_squared=bond_squared, centre_diffusion=centre_diffusion)
     k, t = np.broadcast_arrays(np.asarray(k, dtype=float), np.asarray(time, dtype=float))
     if np.any(t < 0):
         raise ValueError(f"time = {time!r}: expected 0 or more")
     k2 = k * k
     rate = 1 / stress_time + k2 * centre_diffusion
-    c2 = k2 * elasticity * np.exp(-k2 * bond_length**2 / 12)
+    c2 = k2 * elasticity * np.exp(-k2 * bond_squared / (4 * dimension))
     p = -(rate + viscosity * k2) / 2
     product = viscosity * k2 * rate + c2
     # p^2 - product, without the cancellation

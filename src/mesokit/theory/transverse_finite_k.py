@@ -24,7 +24,7 @@ def gaussian_stress_kernel(
 
     For k = 0 the sum of exp(-t/tau_p) over the stress times. The Fourier mode of the stress is that
     of the spring forces over i k, so that with the component s^2 = <b^2>/d of a bond, the
-    connectivity matrix L, r = 1/(mode_time eigenvalue_1^-1) and positions y along the wave,
+    connectivity matrix L, r = 1/(mode_time eigenvalue_1) and positions y along the wave,
 
         G/(phi kT) = sum_ij [L exp(-r L t)]_ij exp(-k^2 <(y_i(t) - y_j(0))^2>/2)/(k s)^2.
 
@@ -54,10 +54,12 @@ def gaussian_stress_kernel(
     s2 = bond_squared / dimension
     own = (v**2 / stiffness).sum(axis=1)  # <y_i^2>/s2 about the centre of mass
     decay = np.exp(-np.multiply.outer(t, stiffness / stiffness[0]) / mode_time)
-    spread = own[:, None] + own - 2 * _matrix(v, decay / stiffness)
-    forces = _matrix(v, decay * stiffness)
-    elastic = (forces * np.exp(-k * k * s2 / 2 * spread)).sum(axis=(-2, -1)) / (k * k * s2)
-    return np.asarray(elastic * np.exp(-k * k * centre_diffusion * t))
+    elastic = np.empty(t.shape)
+    for place in np.ndindex(t.shape):  # one time after the other: n^2 numbers each
+        spread = own[:, None] + own - 2 * (v * (decay[place] / stiffness)) @ v.T
+        forces = (v * (decay[place] * stiffness)) @ v.T
+        elastic[place] = (forces * np.exp(-k * k * s2 / 2 * spread)).sum() / (k * k * s2)
+    return elastic * np.exp(-k * k * centre_diffusion * t)
 
 
 def transverse_correlation_finite_k(
@@ -98,23 +100,12 @@ def transverse_correlation_finite_k(
     from scipy.interpolate import CubicSpline
 
     grid = np.linspace(0, t.max(), 2 * steps + 1)
-    kernel = (
-        k
-        * k
-        * elasticity
-        * gaussian_stress_kernel(
-            k, grid, modes, mode_time, bond_squared, centre_diffusion, dimension
-        )
-    )
+    molecule = (modes, mode_time, bond_squared, centre_diffusion, dimension)
+    kernel = k * k * elasticity * gaussian_stress_kernel(k, grid, *molecule)
     damping = viscosity * k * k
     coarse = _solve(kernel[::2], damping, grid[2])
     fine = _solve(kernel, damping, grid[1])[::2]
     return np.asarray(CubicSpline(grid[::2], fine + (fine - coarse) / 3)(t))
-
-
-def _matrix(v: Array, diagonal: Array) -> Array:
-    """v diag v^T for each row of the diagonals."""
-    return np.asarray((v * diagonal[..., None, :]) @ v.T)
 
 
 def _solve(kernel: Array, damping: float, step: float) -> Array:
