@@ -177,7 +177,8 @@ class Simulation:
     def run(self, progress: Reporter | None = None) -> None:
         """Run to the end, then write results and figures.
 
-        Ctrl-C or SIGTERM writes a checkpoint and raises KeyboardInterrupt; `resume` goes on.
+        Ctrl-C or SIGTERM raises KeyboardInterrupt after the steps in hand, with a checkpoint where
+        there is a folder; `resume`, or `run` again in the same process, goes on.
         """
         progress = progress or Reporter(quiet=True)
         progress.start(self.last_step, self.fluid.n, "running", self.step)
@@ -218,7 +219,7 @@ class Simulation:
                 self.checkpoint()
                 saved = perf_counter()
             progress.update(self.step)
-        if self._stopped_by is not None:
+        if self._stopped_by is not None and self.directory is not None:
             self.checkpoint()
 
     def _next_stop(self) -> int:

@@ -1,9 +1,18 @@
-"""A box whose shear oscillates: what it stores, what it loses, and the same bits."""
+"""A box whose shear oscillates, and stress at rest: two ways to the viscosity; the same bits."""
 
 import numpy as np
 import pytest
 
-from mesokit import Box, Case, DynamicModuli, Fluid, MaxwellBoltzmann, Run, Simulation
+from mesokit import (
+    Box,
+    Case,
+    DynamicModuli,
+    Fluid,
+    MaxwellBoltzmann,
+    Run,
+    Simulation,
+    StressAutocorrelation,
+)
 from mesokit.observe import VelocityProfile
 
 
@@ -54,3 +63,24 @@ def test_same_bits():
         two.fluid.advance(5)
     np.testing.assert_array_equal(one.fluid.positions(), two.fluid.positions())
     np.testing.assert_array_equal(one.fluid.velocities(), two.fluid.velocities())
+
+
+@pytest.mark.parametrize("size", [(16, 16), (8, 8, 8)], ids=["2D", "3D"])
+def test_stress_at_rest_forgets_at_once_and_its_integral_is_the_viscosity(size):
+    """Green and Kubo. Molecular chaos is good to some per cent (see test_stress)."""
+    simulation = Simulation(
+        Case(
+            run=Run(steps=8000, warmup=100, seed=5),
+            box=Box(size),
+            fluid=Fluid(density=10, timestep=0.1, thermostat=MaxwellBoltzmann()),
+            observe=[StressAutocorrelation(max_lag=100)],
+        )
+    )
+    simulation.run()
+    result = simulation["stress-autocorrelation"]
+    (viscosity,) = result.comparisons
+    assert viscosity.error < 0.03 * viscosity.expected
+    assert abs(viscosity.measured - viscosity.expected) < (
+        4 * viscosity.error + 0.06 * viscosity.expected
+    )
+    assert abs(result.value[3:10].mean()) < 0.01 * result.value[0]

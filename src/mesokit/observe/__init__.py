@@ -18,6 +18,7 @@ from mesokit.observe.protocol import Accumulator, Observable, RunningFluid
 from mesokit.observe.radial_profile import RadialProfile
 from mesokit.observe.result import Comparison, Result
 from mesokit.observe.stress import Stress
+from mesokit.observe.stress_autocorrelation import StressAutocorrelation
 from mesokit.observe.surface_profile import SurfaceProfile
 from mesokit.observe.temperature_profile import TemperatureProfile
 from mesokit.observe.transverse_modes import TransverseModes
@@ -42,6 +43,7 @@ AnyObservable = (
     | WallStress
     | Stress
     | DynamicModuli
+    | StressAutocorrelation
     | Forces
     | FlowRate
     | RadialProfile
@@ -71,6 +73,7 @@ __all__ = [
     "Result",
     "RunningFluid",
     "Stress",
+    "StressAutocorrelation",
     "SurfaceProfile",
     "TemperatureProfile",
     "TransverseModes",

@@ -51,6 +51,33 @@ def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
 def draw_memory(result: Result, figure: Any, ax: Any) -> None:
     """Logarithmic in value and time, as a power law follows an exponential."""
     ax = figure.subplots() if ax is None else ax
+    _logarithmic(result, ax)
+    ax.set_ylabel(labelled(r"$|\langle v_x(0)\, v_x(t)\rangle|$", result.units["value"]))
+
+
+def draw_modulus(result: Result, figure: Any, ax: Any) -> None:
+    """Relaxation modulus, and what its Fourier transforms say is stored and lost."""
+    given = ax
+    ax, right = figure.subplots(1, 2) if ax is None else (ax, None)
+    _logarithmic(result, ax)
+    ax.set_ylabel(labelled("$|G(t)|$", result.units["value"]))
+    if given is not None or "frequency" not in result.extra:
+        return
+    w = result.extra["frequency"]
+    for k, (name, label) in enumerate((("storage", "$G'$"), ("loss", "$G''$"))):
+        right.errorbar(
+            w, result.extra[name], result.extra[f"{name}_error"], fmt=MARKERS[k], mfc="white",
+            color=COLOURS[k], label=label,
+        )  # fmt: skip
+    right.set_xscale("log")
+    right.set_yscale("log", nonpositive="mask")
+    right.set_xlabel(labelled(r"frequency $\omega$", "1/tau"))
+    right.set_ylabel(labelled("modulus", result.units["value"]))
+    right.legend(loc="best")
+
+
+def _logarithmic(result: Result, ax: Any) -> None:
+    """Size of a correlation, negative values filled."""
     time = result.x["time"]
     late, size = time > 0, abs(result.value)
     signs = {"measured, positive": result.value > 0, "measured, negative": result.value < 0}
@@ -75,9 +102,8 @@ def draw_memory(result: Result, figure: Any, ax: Any) -> None:
         largest = size[late].max()
         ax.set_ylim(0.2 * max(noise, 1e-6 * largest), 3 * largest)
     ax.set_xlabel(labelled("time lag $t$", result.units["time"]))
-    label = r"$|\langle v_x(0)\, v_x(t)\rangle|$"
-    ax.set_ylabel(labelled(label, result.units["value"]))
-    ax.legend(loc="best")
+    if ax.get_legend_handles_labels()[0]:
+        ax.legend(loc="best")
 
 
 def draw_modes(result: Result, figure: Any, ax: Any) -> None:

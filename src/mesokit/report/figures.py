@@ -30,6 +30,7 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "wall-stress": tensor.draw,
     "stress": tensor.draw,
     "dynamic-moduli": tensor.draw_moduli,
+    "stress-autocorrelation": correlation.draw_modulus,
     "forces": forces.draw,
     "radial-profile": profile.draw,
     "surface-profile": profile.draw,
