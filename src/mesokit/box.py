@@ -156,6 +156,11 @@ def fold(box, r, v, shift):
 
 
 @generic
+def unfold(box, r, v, crossed):
+    """The image so many boxes on: what `fold` at this time brought back."""
+
+
+@generic
 def slide(box, r, v, shift):
     """`fold`, where it must be done at every step; the crossings are () where it can wait.
 
@@ -181,6 +186,21 @@ def _(box, r, v, shift):
     for k in range(len(r)):
         r = tuple_setitem(r, k, r[k] - n[k] * box.size[k])
     return r, v, n
+
+
+@unfold.register(Periodic)
+def _(box, r, v, crossed):
+    for k in range(len(r)):
+        r = tuple_setitem(r, k, r[k] + crossed[k] * box.size[k])
+    return r, v
+
+
+@unfold.register(Sheared)
+def _(box, r, v, crossed):
+    for k in range(len(r)):
+        r = tuple_setitem(r, k, r[k] + crossed[k] * box.size[k])
+    r = tuple_setitem(r, 0, r[0] + crossed[1] * box.offset)
+    return r, tuple_setitem(v, 0, v[0] + crossed[1] * box.speed)
 
 
 @slide.register(Periodic)

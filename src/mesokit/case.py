@@ -57,9 +57,15 @@ class Case:
 
     @property
     def particles(self) -> int:
-        """Number of particles: density times the volume that walls leave, for each species."""
+        """Number of particles: density times the volume that walls leave, for each species.
+
+        Of molecules there is a whole number.
+        """
         kinds = [kind.density for kind in self.fluid.species] or [self.fluid.density]
         volume = free_volume(self)
+        if self.fluid.molecule is not None:
+            length = self.fluid.molecule.length
+            return length * round(self.fluid.density * volume / length)
         return sum(round(density * volume) for density in kinds)
 
     @classmethod

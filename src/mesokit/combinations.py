@@ -11,7 +11,9 @@ from mesokit.box import AXES
 from mesokit.component import one_of, show, tag_of
 from mesokit.errors import CaseError
 from mesokit.geometry import SHAPES, Surface
+from mesokit.mpcd.molecule import COARSE, MOST_SUBSTEPS, UNSTABLE
 from mesokit.observe import setting
+from mesokit.potential.thermal import mean_square
 from mesokit.solids import solids_of
 from mesokit.units import MATCHES
 
@@ -244,6 +246,54 @@ def shear(case: Case) -> Iterator[str]:
         yield f"{key}: not with fluid.force.acceleration along y, the gradient of the shear"
 
 
+def molecule(case: Case) -> Iterator[str]:
+    """Whole molecules, of one mass, in a box that holds them, by stable sub-steps."""
+    fluid, molecule = case.fluid, case.fluid.molecule
+    if molecule is None:
+        return
+    if fluid.species:
+        yield "fluid.species: not with fluid.molecule; its beads have one mass, fluid.mass"
+    number = fluid.density * case.box.volume
+    whole = all(wall.shape == "plates" for wall in case.walls)
+    if whole and round(number) % molecule.length:
+        near = max(1, round(number / molecule.length)) * molecule.length
+        yield (
+            f"fluid.molecule.length = {molecule.length}: {round(number)} particles are no whole "
+            f"number of such molecules; fluid.density = {show(near / case.box.volume)} makes "
+            f"{near // molecule.length} of them"
+        )
+    size = math.sqrt(
+        mean_square(molecule.bond_potentials, case.box.dimension, fluid.kT, molecule.bond.longest)
+    )
+    if 2 * size > min(case.box.size):
+        yield (
+            f"fluid.molecule.bond: its root-mean-square length {size:.3g} is more than half of "
+            f"the box, {show(min(case.box.size))}; expected stiffer bonds or a larger box"
+        )
+    if molecule.propagation == "exact":
+        key = "fluid.molecule.propagation = 'exact'"
+        if case.walls:
+            yield f"{key}: not with walls, of which its curved flights know nothing; use 'verlet'"
+        if fluid.force.rule == "sinusoidal":
+            yield f"{key}: not with fluid.force.rule = 'sinusoidal'; use 'verlet'"
+        return
+    phase = molecule.phase(case.box.dimension, fluid.timestep, fluid.kT, fluid.mass)
+    if molecule.substeps is not None and phase >= UNSTABLE:
+        need = molecule.needed_substeps(case.box.dimension, fluid.timestep, fluid.kT, fluid.mass)
+        yield (
+            f"fluid.molecule.substeps = {molecule.substeps}: the stiffest spring turns by "
+            f"{phase:.3g} rad in a sub-step and is unstable from {UNSTABLE:g} on; expected at "
+            f"least {math.ceil(molecule.substeps * phase / COARSE)}, or none: {need} are then taken"
+        )
+    if molecule.substeps is None:
+        need = molecule.needed_substeps(case.box.dimension, fluid.timestep, fluid.kT, fluid.mass)
+        if need > MOST_SUBSTEPS:
+            yield (
+                f"fluid.molecule: its stiffest spring needs {need} sub-steps in a timestep; "
+                f"expected at most {MOST_SUBSTEPS}: a shorter timestep, or softer springs"
+            )
+
+
 def start(case: Case) -> Iterator[str]:
     """Arrays or an earlier run."""
     given = case.fluid.start
@@ -301,7 +351,7 @@ def units(case: Case) -> Iterator[str]:
 
 RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
     axes, vectors, walls, room, moving_surfaces, size, mean_free_path, collision, force, shear,
-    start, names, bins, trajectory, units,
+    molecule, start, names, bins, trajectory, units,
 )  # fmt: skip
 
 

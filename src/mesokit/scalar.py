@@ -36,8 +36,13 @@ def by_type(choose: Callable) -> Any:
     return _overloaded(choose, choose)
 
 
-def _overloaded(name: Callable, choose: Callable) -> Any:
-    options = {"forceinline": True, "error_model": "numpy", "_nrt": False}
+def by_type_with_views(choose: Callable) -> Any:
+    """As `by_type`, for code that makes views of arrays, which numba then counts the users of."""
+    return _overloaded(choose, choose, counting=True)
+
+
+def _overloaded(name: Callable, choose: Callable, counting: bool = False) -> Any:
+    options = {"forceinline": True, "error_model": "numpy"} | ({} if counting else {"_nrt": False})
     overload(name, strict=False, jit_options=options)(choose)
     return name
 
@@ -48,7 +53,7 @@ def generic(stub: Callable) -> Any:
     The first argument is a `NamedTuple` of parameters; its class picks the implementation when the
     calling kernel is compiled, so that a kernel for one rule holds no trace of the others. Called
     from plain Python it is compiled for its arguments; a class that is not registered is a
-    TypeError. The stub has a docstring and no body.
+    TypeError. `plain` is the same uncompiled, for a few calls. The stub has a docstring and no body.
 
     Examples
     --------
@@ -90,6 +95,7 @@ def generic(stub: Callable) -> Any:
 
     names = inspect.signature(stub).parameters.keys()
     dispatch.register = register  # type: ignore[attr-defined]
+    dispatch.plain = lambda *given: table[type(given[0])](*given)  # type: ignore[attr-defined]
     return _overloaded(dispatch, choose)
 
 

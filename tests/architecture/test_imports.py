@@ -36,6 +36,7 @@ PHYSICS_AVOIDS = (
 NOT = {
     "mpcd": PHYSICS_AVOIDS,
     "geometry": PHYSICS_AVOIDS,
+    "potential": PHYSICS_AVOIDS,
     "observe": ("mesokit.execute", "mesokit.domain", "h5py", "mpi4py"),
     "execute": ("mesokit.io", "mesokit.report", "mesokit.observe", "mesokit.cli", "h5py"),
 }

@@ -13,7 +13,7 @@ from mesokit.errors import RunError
 from mesokit.execute.cell_energy import MOST_PARTICLES, ONE_PARTICLE, WithCount
 from mesokit.execute.clock import STAGES
 from mesokit.execute.flags import MEASURE_STRESS, MEASURE_WALLS
-from mesokit.execute.layout import ROW
+from mesokit.execute.layout import LANES, ROW
 from mesokit.execute.readings import Readings
 from mesokit.execute.sort import sort
 from mesokit.execute.step import FINISH, SOLVE, SWEEP, advance
@@ -89,13 +89,22 @@ class CPU(Readings):
         """Bring particles back into the box and those of one cell together in memory."""
         start = perf_counter()
         self.team.run(
-            sort, self.box_kernel, self.grid, self.data, self.cell, self.ident, self.image, self.n,
-            self.strips[0], self.rows, self.order, self.ends, self.spare,
+            sort, self.box_kernel, self.grid, self.data, self.cell, self.ident, self.image,
+            self.filling, self.rows, self.order, self.ends, self.spare,
             self.spare.view(np.int32), self.like,
         )  # fmt: skip
         self.calm[:] = 0.0  # other particles are in the strips now
         self.sort_seconds += perf_counter() - start
-        self._check_sums(int(np.diff(self.ends[-1], prepend=0).max()))
+        self._check_sums(self._largest_crowd())
+
+    def _largest_crowd(self) -> int:
+        """Particles in the fullest cell, just after the sort."""
+        if self.beads == 1:
+            return int(np.diff(self.ends[-1], prepend=0).max())
+        strips = self.cell[: self.places].reshape(-1, LANES)
+        full, last = strips[: -self.beads], strips[-self.beads :]
+        last = last[:, : (self.filling.molecules - 1) % LANES + 1]
+        return int(np.bincount(np.concatenate([full.ravel(), last.ravel()])).max())
 
     def _check_sums(self, crowd: int) -> None:
         """That a cell of so many particles of the fastest kind cannot make its sums overflow."""
@@ -127,8 +136,8 @@ class CPU(Readings):
         self._check_sums(1)
         return {
             "data": self.data[: self.real_blocks * self.rows * ROW].copy(),
-            "ident": self.ident[: self.n].copy(),
-            "image": self.image[:, : self.n].copy(),
+            "ident": self.ident[: self.places].copy(),
+            "image": self.image[:, : self.places].copy(),
             "step": np.int64(self.step),
             "impulse": self.impulse.sum(axis=0),
             "wall_steps": np.int64(self.wall_steps),
@@ -139,8 +148,8 @@ class CPU(Readings):
         """Go on from a state, with the same bits whatever the number of threads was."""
         self._seen.clear()
         self.data[: state["data"].size] = state["data"]
-        self.ident[: self.n] = state["ident"]
-        self.image[:, : self.n] = state["image"]
+        self.ident[: self.places] = state["ident"]
+        self.image[:, : self.places] = state["image"]
         self.step = int(state["step"])
         self.impulse[:] = 0
         self.impulse[0] = state["impulse"]

@@ -6,19 +6,23 @@ strip stays in the first-level cache while all stages of a step pass over it, an
 continues the same rows, which the hardware prefetches. Eight numbers of padding keep rows off the
 same cache set. Loops run over all 256 lanes of a strip; the last, partly filled strip computes
 nonsense in its spare lanes, which nothing ever adds up.
+
+Molecules of N beads lie in groups of N strips in a row: strip k of a group holds bead k of 256
+molecules, one to a lane, so that forces between beads need no gathers. A group may reach from one
+block into the next; the last one may be partly filled. Single particles are molecules of one bead.
 """
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from mesokit.scalar import scalar
+from mesokit.scalar import by_type, scalar
 
 LANES = 256  # particles of a strip, cells of a batch
 BLOCK = 4096
 ROW = BLOCK + 8
 STRIPS = BLOCK // LANES
-BLOCK_BITS = np.uint64(12)  # BLOCK = 2^12
+BLOCK_BITS, LANE_BITS = np.uint64(12), np.uint64(8)  # BLOCK = 2^12, LANES = 2^8
 SCRATCH_ROW = LANES + 8
 LINE = 64  # bytes of a cache line
 QUAD = 4  # numbers of a vector; so many records are turned into rows together
@@ -32,14 +36,75 @@ def zeros(shape: int | tuple[int, ...], kind: Any = np.float64) -> Any:
     return raw[start : start + size].view(kind).reshape(shape)
 
 
+class Singles(NamedTuple):
+    """How many single particles lie in the strips."""
+
+    molecules: int
+
+
+class Molecules(NamedTuple):
+    """How many molecules of how many beads each lie in the strips."""
+
+    molecules: int
+    beads: int
+
+
 def blocks_for(particles: int) -> int:
     """Number of blocks that hold so many particles."""
     return -(-particles // BLOCK)
 
 
-def strips_for(particles: int) -> int:
-    """Number of strips that hold so many particles."""
-    return -(-particles // LANES)
+def strips_for(molecules: int, beads: int = 1) -> int:
+    """Number of strips that hold so many molecules."""
+    return -(-molecules // LANES) * beads
+
+
+def places_of_beads(molecules: int, beads: int) -> Any:
+    """Where the beads of each molecule lie (molecules, beads), counted through the strips."""
+    molecule = np.arange(molecules)[:, None]
+    return (molecule // LANES * beads + np.arange(beads)) * LANES + molecule % LANES
+
+
+@by_type
+def beads_of(filling):
+    """Number of beads of each molecule (a literal 1 for single particles)."""
+    if filling.instance_class is Singles:
+        return lambda filling: 1
+    return lambda filling: filling.beads
+
+
+@scalar
+def groups_in(filling):
+    """Number of groups of strips, one strip in each for every bead."""
+    return (filling.molecules + LANES - 1) // LANES
+
+
+@scalar
+def strips_in(filling):
+    """Number of strips that hold particles."""
+    return groups_in(filling) * beads_of(filling)
+
+
+@scalar
+def lanes_in(filling, strip):
+    """Number of lanes of a strip that hold particles."""
+    return min(LANES, filling.molecules - strip // beads_of(filling) * LANES)
+
+
+@by_type
+def place_of_bead(filling, molecule, bead):
+    """Where a bead of a molecule lies, counted through the strips."""
+    return _molecule if filling.instance_class is Singles else _in_group
+
+
+def _molecule(filling, molecule, bead):
+    return molecule
+
+
+def _in_group(filling, molecule, bead):
+    group, lane = np.uint64(molecule) >> LANE_BITS, np.uint64(molecule) & np.uint64(LANES - 1)
+    strip = group * np.uint64(filling.beads) + np.uint64(bead)
+    return np.int64((strip << LANE_BITS) + lane)
 
 
 @scalar

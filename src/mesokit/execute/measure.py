@@ -10,20 +10,20 @@ from mesokit.box import fold
 from mesokit.elementary import sincos_turn
 from mesokit.execute.cache import kernel
 from mesokit.execute.fixed_point import ROUNDER_BITS, fixed, integers, rounded
-from mesokit.execute.layout import LANES, share, strip_of
+from mesokit.execute.layout import LANES, lanes_in, share, strip_of, strips_in
 from mesokit.execute.rows import load, mass_of, note
 from mesokit.execute.stages import add_strip
 from mesokit.scalar import dot, scalar, scaled
 
 
 @kernel
-def totals(thread, threads, gate, physics, data, count, rows, like, out):
+def totals(thread, threads, gate, physics, data, filling, rows, like, out):
     """Momentum, sum of m v^2 and largest component of |v| in each strip: out (blocks, d + 2)."""
     d = len(like)
-    first, last = share((count + LANES - 1) // LANES, thread, threads)
+    first, last = share(strips_in(filling), thread, threads)
     for b in range(first, last):
         strip = strip_of(data, b, rows)
-        for i in range(min(LANES, count - b * LANES)):
+        for i in range(lanes_in(filling, b)):
             v = load(strip, i, d, like)
             m = mass_of(physics.masses, strip, i, 2 * d)
             for k in range(d):
@@ -34,7 +34,7 @@ def totals(thread, threads, gate, physics, data, count, rows, like, out):
 
 @kernel
 def bin_sums(
-    thread, threads, gate, physics, box, data, count, rows, like, axes, bins, scales, scratch, out
+    thread, threads, gate, physics, box, data, filling, rows, like, axes, bins, scales, scratch, out
 ):  # fmt: skip
     """Number, momentum, mass and m v^2 in bins along one or two axes, as fixed-point sums.
 
@@ -45,7 +45,7 @@ def bin_sums(
     place, quanta = scratch
     place, quanta, out = place[thread], quanta[thread], out[thread]
     terms = integers(scales)
-    first, last = share((count + LANES - 1) // LANES, thread, threads)
+    first, last = share(strips_in(filling), thread, threads)
     for b in range(first, last):
         strip = strip_of(data, b, rows)
         for i in range(LANES):
@@ -58,11 +58,11 @@ def bin_sums(
                 index = index * bins[k] + min(max(x, 0.0), bins[k] - 1.0)
             place[i] = np.int32(index)
             note(quanta, i, rounded(scaled(m, v) + (m, m * dot(v, v)), scales))
-        add_strip(place, quanta, out, min(LANES, count - b * LANES), terms, ())
+        add_strip(place, quanta, out, lanes_in(filling, b), terms, ())
 
 
 @kernel
-def modes(thread, threads, gate, physics, box, data, count, rows, like, waves, scale, out):
+def modes(thread, threads, gate, physics, box, data, filling, rows, like, waves, scale, out):
     """Fourier sums of mass and momentum as fixed-point sums: out (threads, waves, 2 (1 + d)).
 
     `waves` are wave vectors over 2 pi, in turns per length. Each row holds mass times cosine and
@@ -70,10 +70,10 @@ def modes(thread, threads, gate, physics, box, data, count, rows, like, waves, s
     terms, zero in spare lanes.
     """
     d = len(like)
-    first, last = share((count + LANES - 1) // LANES, thread, threads)
+    first, last = share(strips_in(filling), thread, threads)
     for b in range(first, last):
         strip = strip_of(data, b, rows)
-        lanes = min(LANES, count - b * LANES)
+        lanes = lanes_in(filling, b)
         for w in range(len(waves)):
             wave = load_wave(waves, w, like)
             sums = integers((0.0, 0.0) + like + like)
@@ -102,15 +102,15 @@ def load_wave(waves, w, like):
 
 @kernel
 def gather_by_id(
-    thread, threads, gate, box, data, image, ident, slots, count, rows, like, unwrapped, position,
+    thread, threads, gate, box, data, image, ident, slots, filling, rows, like, unwrapped, position,
     velocity, number,
 ):  # fmt: skip
     """Positions, velocities and images of particles that have a slot: slots[ident], or -1."""
     d = len(like)
-    first, last = share((count + LANES - 1) // LANES, thread, threads)
+    first, last = share(strips_in(filling), thread, threads)
     for b in range(first, last):
         strip = strip_of(data, b, rows)
-        for i in range(min(LANES, count - b * LANES)):
+        for i in range(lanes_in(filling, b)):
             j = b * LANES + i
             slot = slots[ident[j]]
             if slot < 0:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
+from mesokit.execute.beads import bead_size
 from mesokit.execute.cell_energy import MOST_DENSITY, Column, NotAsked, WithCount, with_count
 from mesokit.execute.invite import charted, guests_of
 from mesokit.execute.layout import (
@@ -18,7 +19,10 @@ from mesokit.execute.layout import (
     ROW,
     SCRATCH_ROW,
     STRIPS,
+    Molecules,
+    Singles,
     blocks_for,
+    places_of_beads,
     record_length,
     strips_for,
     sums_length,
@@ -62,7 +66,12 @@ class Memory:
         kinds = kinds or [(fluid.mass, fluid.density)]
         heaviest = max(mass for mass, _ in kinds)
         self.counts = [round(density * free_volume(case)) for _, density in kinds]
+        self.beads = fluid.molecule.length if fluid.molecule else 1
+        if self.beads > 1:
+            self.counts = [case.particles]
         self.n = sum(self.counts)
+        molecules = self.n // self.beads
+        self.filling = Molecules(molecules, self.beads) if fluid.molecule else Singles(molecules)
         if self.n == 0:
             raise RunError(f"fluid.density = {fluid.density:g}: no particle in the box")
         layer = math.prod(s for s, shut in zip(box.size, self.closed, strict=True) if not shut)
@@ -96,6 +105,7 @@ class Memory:
             energy,
             fluid.timestep,
             fluid.kT,
+            self._molecule(),
         )
 
         names = ["momentum"] * d + ([] if uniform else ["mass"])
@@ -124,16 +134,31 @@ class Memory:
         bodies, self._clear = charted(self.case, self.solids, self.cells)
         return bodies
 
+    def _molecule(self) -> tuple:
+        """Parameters of what holds molecules together."""
+        fluid = self.case.fluid
+        if fluid.molecule is None:
+            return ()
+        kernel, self._links = fluid.molecule.kernel(
+            self.dimension, fluid.timestep, fluid.kT, fluid.mass
+        )
+        return kernel
+
     def _allocate(self, uniform: bool) -> None:
         d, threads = self.dimension, self.threads
         self.rows = 2 * d + (not uniform)
-        self.real_blocks = blocks_for(self.n)
-        self.strips = strips_for(self.n), strips_for(self.n_virtual)
+        beads, molecules = self.beads, self.filling.molecules
+        self.strips = strips_for(molecules, beads), strips_for(self.n_virtual)
+        self.real_blocks = blocks_for(self.strips[0] * LANES)
+        # up to the last particle; among molecules some places are empty
+        self.places = self.n if beads == 1 else self.strips[0] * LANES
         blocks = self.real_blocks + blocks_for(self.n_virtual)
         lanes = blocks * BLOCK
         self.data = zeros(blocks * self.rows * ROW)
         self.cell = zeros(lanes, np.int32)
         self.ident = np.arange(lanes, dtype=np.int32)  # beyond n: virtual particles
+        if beads > 1:
+            self.ident[places_of_beads(molecules, beads).ravel()] = np.arange(self.n)
         self.image = zeros((d, lanes), np.int32)
         self.order, self.spare = zeros(self.n, np.int32), zeros(self.n)
         self.ends = zeros((threads, self.number_of_cells), np.int32)
@@ -151,16 +176,19 @@ class Memory:
             masses = np.repeat(self.masses_of_kinds, self.counts)
             self.guests = guests_of(self.case, self.solids, self.cells, threads, self.rows, masses)
             self.wall_rates = self.guests.rates
-        self.tensor = zeros((2, parts, 2 * d * d))
+        self.tensor = zeros((2 + (beads > 1), parts, 2 * d * d))
+        self.faults = zeros((threads, 8), np.int64)
         self.sweep_scratch = (
             zeros((threads, most * SCRATCH_ROW)),
-            zeros((threads, SCRATCH_ROW), np.int32),
+            zeros((threads, beads * SCRATCH_ROW), np.int32),
             self.calm,
             zeros((threads, LANES), np.int64),
             zeros((threads, (len(self.terms) + 1) * SCRATCH_ROW), np.int64),
             self.impulse,
             self.tensor,
             self.wall_rates,
+            zeros((threads, beads * bead_size(d) if beads > 1 else 1)),
+            self.faults,
         )
         self.cell_scratch = (
             zeros((threads, most * SCRATCH_ROW)),
@@ -172,7 +200,7 @@ class Memory:
             self.cell,
             self.ident,
             self.image,
-            (self.n, self.n_virtual),
+            (self.filling, self.n_virtual),
             self.strips,
             self.real_blocks * STRIPS,
             self.rows,
@@ -184,6 +212,14 @@ class Memory:
         """Row k of every block of fluid particles, as a view (blocks, lanes)."""
         whole = self.data[: self.real_blocks * self.rows * ROW]
         return whole.reshape(self.real_blocks, self.rows, ROW)[:, k, :BLOCK]
+
+    def put(self, k: int, values: Floats) -> None:
+        """Write a number for each particle, by particle id, into row k; ids are still in order."""
+        places = np.arange(self.n) if self.beads == 1 else self._places_by_id()
+        self.row(k)[places // BLOCK, places % BLOCK] = values
+
+    def _places_by_id(self) -> NDArray[np.int64]:
+        return places_of_beads(self.filling.molecules, self.beads).ravel()
 
     def virtual_row(self, k: int) -> Floats:
         """Row k of every block of virtual particles, as a view (blocks, lanes)."""

@@ -39,7 +39,7 @@ class Readings(Memory):
 
     def _totals(self) -> Floats:
         out = np.zeros((self.strips[0], self.dimension + 2))
-        self.team.run(measure.totals, self.physics, self.data, self.n, self.rows, self.like, out)
+        self.team.run(measure.totals, self.physics, self.data, self.filling, self.rows, self.like, out)
         return out
 
     def moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
@@ -60,7 +60,7 @@ class Readings(Memory):
             np.zeros((threads, LANES), np.int32),
             np.zeros((threads, (d + 2) * SCRATCH_ROW), np.int64),
         )
-        particles = self.physics, self.box_kernel, self.data, self.n, self.rows, self.like
+        particles = self.physics, self.box_kernel, self.data, self.filling, self.rows, self.like
         self.team.run(measure.bin_sums, *particles, *two, scales, quanta, part)
         total = part.sum(axis=0).reshape(size, length)[:, : d + 3]
         number, sums = total[:, 0], total[:, 1:] - total[:, :1] * ROUNDER_BITS
@@ -72,7 +72,7 @@ class Readings(Memory):
         waves = np.ascontiguousarray(wavevectors, float) / (2.0 * math.pi)
         d, scale = self.dimension, self.units["momentum"]
         part = np.zeros((self.threads, len(waves), 2 + 2 * d), np.int64)
-        particles = self.physics, self.box_kernel, self.data, self.n, self.rows, self.like
+        particles = self.physics, self.box_kernel, self.data, self.filling, self.rows, self.like
         self.team.run(measure.modes, *particles, waves, scale, part)
         total = part.sum(axis=0) / scale
         return total[:, 0] + 1j * total[:, 1], total[:, 2 : 2 + d] + 1j * total[:, 2 + d :]
@@ -103,7 +103,7 @@ class Readings(Memory):
         slots = np.arange(self.n, dtype=np.int32) if ids is None else self._slots(ids)
         shape = self.n if ids is None else len(ids), self.dimension
         out = np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32)
-        particles = self.data, self.image, self.ident, slots, self.n, self.rows, self.like
+        particles = self.data, self.image, self.ident, slots, self.filling, self.rows, self.like
         self.team.run(measure.gather_by_id, self.box_kernel, *particles, unwrapped, *out)
         return out
 

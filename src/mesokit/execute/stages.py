@@ -34,6 +34,7 @@ class Physics(NamedTuple):
     energy: tuple  # how cells learn their kinetic energy
     timestep: float
     kT: float
+    molecule: tuple  # what holds the beads of molecules together, or () for single particles
 
 
 def kind_of_solid(physics: Any) -> type:

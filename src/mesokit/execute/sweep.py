@@ -5,12 +5,13 @@ Blocks are shared out among the threads in order; each thread adds to cell sums 
 
 import numpy as np
 
-from mesokit.box import peculiar
+from mesokit.box import at_time, peculiar
+from mesokit.execute.beads import WIDTH, bead_of, put_bead, take_bead
 from mesokit.execute.cache import inner
 from mesokit.execute.cell_energy import tally
 from mesokit.execute.flags import COLLIDE, MEASURE_STRESS, STREAM
 from mesokit.execute.layers import fill_layers
-from mesokit.execute.layout import LANES, share, strip_of
+from mesokit.execute.layout import LANES, SCRATCH_ROW, groups_in, lanes_in, share, strip_of
 from mesokit.execute.rows import load, mass_of
 from mesokit.execute.stages import (
     add_strip,
@@ -23,7 +24,8 @@ from mesokit.execute.stages import (
     slide_strip,
     stream_strip,
 )
-from mesokit.scalar import added, scalar
+from mesokit.execute.verlet import Flock, fly_molecules
+from mesokit.scalar import added, by_type_with_views, scalar
 
 
 @scalar
@@ -50,16 +52,52 @@ def sweep(
     Time levels: velocities of step n before COLLIDE, after it; positions and velocities of
     step n + 1 after STREAM, with their cells and cell sums.
     """
+    sweep_fluid(
+        thread, threads, what, physics, box, counter, old, grid, particles, cells, scratch, like,
+        c, terms, scales,
+    )  # fmt: skip
+    fill_layers(
+        thread, threads, what, physics, counter, old, grid, particles, cells, scratch[7],
+        scratch[0][thread], scratch[4][thread], scratch[5][thread], like, c, terms, scales,
+    )  # fmt: skip
+
+
+@by_type_with_views
+def sweep_fluid(
+    thread, threads, what, physics, box, counter, old, grid, particles, cells, scratch, like, c,
+    terms, scales,
+):  # fmt: skip
+    """The fluid's own particles: strip by strip, or a group of strips of molecules at a time."""
+    molecule = physics.types[physics.fields.index("molecule")]
+    chosen = _sweep_singles if len(molecule) == 0 else _sweep_molecules
+
+    def pass_over(
+        thread, threads, what, physics, box, counter, old, grid, particles, cells, scratch, like,
+        c, terms, scales,
+    ):  # fmt: skip
+        chosen(
+            thread, threads, what, physics, box, counter, old, grid, particles, cells, scratch,
+            like, c, terms, scales,
+        )  # fmt: skip
+
+    return pass_over
+
+
+@inner
+def _sweep_singles(
+    thread, threads, what, physics, box, counter, old, grid, particles, cells, scratch, like, c,
+    terms, scales,
+):  # fmt: skip
     data, cell, ident, image, count, strips, _, rows, _ = particles
     coefficients, sums = cells
-    gathered, clear, calm, hits, quanta, impulse, tensor, rates = scratch
+    gathered, clear, calm, hits, quanta, impulse, tensor = scratch[:7]
     gathered, clear, hits = gathered[thread], clear[thread], hits[thread]
     quanta, impulse = quanta[thread], impulse[thread]
     measured = what & MEASURE_STRESS
     first, last = share(strips[0], thread, threads)
     for s in range(first, last):
         strip, here = strip_of(data, s, rows), cell[s * LANES : (s + 1) * LANES]
-        lanes = min(LANES, count[0] - s * LANES)
+        lanes = lanes_in(count[0], s)
         who = ident[s * LANES : (s + 1) * LANES]
         boxes = image[:, s * LANES : (s + 1) * LANES]
         if what & STREAM:
@@ -85,7 +123,59 @@ def sweep(
                 momentum_flux(physics, box, grid, strip, lanes, tensor[0, s], like)
             bin_strip(physics, counter, grid, strip, here, who, quanta, scales, like)
             add_strip(here, quanta, sums[thread], lanes, terms, tally(physics.energy, 0.0, like))
-    fill_layers(
-        thread, threads, what, physics, counter, old, grid, particles, cells, rates, gathered,
-        quanta, impulse, like, c, terms, scales,
-    )  # fmt: skip
+
+
+@inner
+def _sweep_molecules(
+    thread, threads, what, physics, box, counter, old, grid, particles, cells, scratch, like, c,
+    terms, scales,
+):  # fmt: skip
+    data, cell, ident, image, count, _, _, rows, _ = particles
+    coefficients, sums = cells
+    gathered, clear, calm, hits, quanta, impulse, tensor, _, work, faults = scratch
+    gathered, clear, hits, work = gathered[thread], clear[thread], hits[thread], work[thread]
+    quanta, impulse, faults = quanta[thread], impulse[thread], faults[thread]
+    beads, measured = physics.molecule.beads, what & MEASURE_STRESS
+    before = at_time(box, (counter.step - 1) * physics.timestep)  # in which images were counted
+    first, last = share(groups_in(count[0]), thread, threads)
+    for g in range(first, last):
+        lanes = lanes_in(count[0], g * beads)
+        for k in range(beads):  # velocities of step n, after the collision
+            s = g * beads + k
+            strip, here = strip_of(data, s, rows), cell[s * LANES : (s + 1) * LANES]
+            if what & STREAM:
+                near = clear[k * SCRATCH_ROW : (k + 1) * SCRATCH_ROW]
+                look_around_strip(
+                    physics.solid, old, what & COLLIDE, strip, s, here, calm, near, like
+                )
+            if what & COLLIDE:
+                gather_strip(here, coefficients, gathered, c)
+                collide_strip(physics, old, strip, gathered, like, c)
+                if measured and not what & STREAM:
+                    momentum_flux(physics, box, old, strip, lanes, tensor[1, s], like)
+        if not what & STREAM:
+            continue
+        for start in range(0, lanes, WIDTH):  # positions and velocities of step n + 1
+            flock = Flock(g * beads, start, min(WIDTH, lanes - start))
+            leader = image[:, g * beads * LANES : (g * beads + 1) * LANES]
+            for k in range(beads - 1, -1, -1):  # the leader's counts of boxes stay to the end
+                s = g * beads + k
+                boxes = image[:, s * LANES : (s + 1) * LANES]
+                strip = strip_of(data, s, rows)
+                take_bead(before, strip, start, boxes, leader, bead_of(work, k, like), like)
+            fly_molecules(
+                physics, flock, counter, work, ident, clear, calm, hits, impulse, faults, measured,
+                tensor[2, g], scales, like,
+            )  # fmt: skip
+            for k in range(beads):
+                strip = strip_of(data, g * beads + k, rows)
+                put_bead(strip, start, bead_of(work, k, like), like)
+        for k in range(beads):  # cells and their sums of step n + 1
+            s = g * beads + k
+            strip, here = strip_of(data, s, rows), cell[s * LANES : (s + 1) * LANES]
+            who = ident[s * LANES : (s + 1) * LANES]
+            slide_strip(box, grid, strip, image[:, s * LANES : (s + 1) * LANES], like)
+            if measured:
+                momentum_flux(physics, box, grid, strip, lanes, tensor[0, s], like)
+            bin_strip(physics, counter, grid, strip, here, who, quanta, scales, like)
+            add_strip(here, quanta, sums[thread], lanes, terms, tally(physics.energy, 0.0, like))

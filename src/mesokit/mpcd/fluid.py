@@ -8,6 +8,7 @@ from mesokit.component import component, param
 from mesokit.mpcd.collision import SRD, Collision
 from mesokit.mpcd.field import Force, NoForce
 from mesokit.mpcd.initial import Start
+from mesokit.mpcd.molecule import Molecule
 from mesokit.mpcd.species import Species
 from mesokit.mpcd.thermostat import NoThermostat, Thermostat
 
@@ -39,6 +40,9 @@ class Fluid:
         1.0, doc="strength of the random shift of the cells: 1 full, 0 none", ge=0, le=1
     )
     species: tuple[Species, ...] = param((), doc="kinds of particles of different mass")
+    molecule: Molecule | None = param(
+        None, doc="what every particle is a bead of (single particles unless said)"
+    )
     start: Start = param(Start(), doc="initial positions and velocities")
 
     def __post_init__(self) -> None:

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.box import AXES
 from mesokit.component import FileName, component, param
 from mesokit.errors import CaseError, MesokitError
 from mesokit.geometry.contact import MARGIN
+from mesokit.mpcd.conformation import connected, drawn
 from mesokit.random import INITIAL_POSITION, INITIAL_VELOCITY
 from mesokit.solids import solids_of
 
@@ -109,10 +111,15 @@ def start(cpu: CPU, positions: Any = None, velocities: Any = None) -> None:
     random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_POSITION))))
     mass = cpu.masses()
     _put_masses(cpu, mass)
-    if positions is None:
+    molecule = case.fluid.molecule
+    if molecule is not None and positions is not None:
+        positions = connected(positions, molecule, _periods(cpu))
+    elif molecule is not None:
+        positions = drawn(molecule, cpu.n, case.fluid.kT, cpu.box, random, _stays_out(cpu))
+    elif positions is None:
         positions = _uniform(cpu, random)
     for k in range(d):
-        _put(cpu, k, positions[:, k])
+        cpu.put(k, positions[:, k])
     random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_VELOCITY))))
     for k in range(d):
         if velocities is None:
@@ -121,7 +128,7 @@ def start(cpu: CPU, positions: Any = None, velocities: Any = None) -> None:
             v -= np.sum(mass * v) / mass.sum()  # np.dot would depend on the threads of BLAS
         else:
             v = velocities[:, k]
-        _put(cpu, d + k, v)
+        cpu.put(d + k, v)
     if velocities is None and case.box.shear_rate != 0.0:
         cpu.row(d)[...] += case.box.shear_rate * (cpu.row(1) - 0.5 * cpu.box[1])
     cpu.sort()
@@ -139,19 +146,40 @@ def _uniform(cpu: CPU, random: np.random.Generator) -> Floats:
     return places
 
 
-def _put(cpu: CPU, row: int, values: Floats) -> None:
-    """Write values, by place in memory, into a row of the blocks."""
-    rows = cpu.row(row)
-    for block in range(len(rows)):
-        part = values[block * rows.shape[1] : (block + 1) * rows.shape[1]]
-        rows[block, : len(part)] = part
+def _stays_out(cpu: CPU) -> Callable[[Floats], NDArray[np.bool_]]:
+    """Which of places (..., d) are in the fluid."""
+    if cpu.solids is None:
+        return lambda places: np.ones(places.shape[:-1], bool)
+    if cpu.slit is not None:
+        axis, length = AXES.index(cpu.slit.axis), cpu.box[AXES.index(cpu.slit.axis)]
+        return lambda places: (places[..., axis] > 0) & (places[..., axis] < length)
+    solids, d = cpu.solids, cpu.dimension
+
+    def outside(places: Floats) -> NDArray[np.bool_]:
+        inside_box = places.reshape(-1, d).copy()
+        good = np.ones(len(inside_box), bool)
+        for k, shut in enumerate(cpu.closed):
+            x = inside_box[:, k]
+            if shut:
+                good &= (x > 0) & (x < cpu.box[k])
+            else:
+                x -= np.floor(x / cpu.box[k]) * cpu.box[k]
+        good[good] = solids.distance(inside_box[good]) >= MARGIN
+        return good.reshape(places.shape[:-1])
+
+    return outside
+
+
+def _periods(cpu: CPU) -> Floats:
+    """Lengths of the box, infinite where walls close it."""
+    return np.where(cpu.closed, np.inf, cpu.box)
 
 
 def _put_masses(cpu: CPU, mass: Floats) -> None:
     """Write the row of masses, where there is one; virtual particles get them in proportion."""
     if cpu.rows == 2 * cpu.dimension:
         return
-    _put(cpu, 2 * cpu.dimension, mass)
+    cpu.put(2 * cpu.dimension, mass)
     sample = mass[(np.arange(cpu.n_virtual) * 7919) % cpu.n]
     virtual = cpu.virtual_row(2 * cpu.dimension)
     virtual[...] = mass[0]

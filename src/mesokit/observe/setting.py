@@ -53,6 +53,8 @@ def caveat(case: Case) -> str:
     """Why there is no theory of the transport coefficients, "" where there is."""
     if len({kind.mass for kind in case.fluid.species}) > 1:
         return "no theory of a mixture"
+    if case.fluid.molecule is not None:
+        return "no theory of a fluid of molecules"
     return "theory needs the full grid shift" if case.fluid.grid_shift < 1 else ""
 
 

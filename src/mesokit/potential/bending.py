@@ -1,0 +1,36 @@
+"""Stiffness of a chain: the worm-like chain."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+from mesokit.component import component, param, tag
+from mesokit.potential.protocol import angular
+
+
+@component
+class Bending:
+    """U = kappa (1 - cos theta), theta the angle between two bonds in a row: 0 where straight."""
+
+    rule: Literal["bending"] = tag("bending")
+    kappa: float = param(doc="bending stiffness", unit="kT", ge=0)
+
+    @property
+    def stiffness(self) -> float:
+        """Second derivative by the angle of a straight chain."""
+        return self.kappa
+
+    def kernel(self) -> Cosine:
+        """Parameters for the scalar function below."""
+        return Cosine(self.kappa)
+
+
+class Cosine(NamedTuple):
+    """U = kappa (1 - cosine)."""
+
+    kappa: float
+
+
+@angular.register(Cosine)
+def _(potential, cosine):
+    return potential.kappa * (1.0 - cosine), -potential.kappa

@@ -1,0 +1,45 @@
+"""A finitely extensible bond."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal, NamedTuple
+
+from mesokit.component import component, param, tag
+from mesokit.potential.protocol import central, torn
+
+
+@component
+class FENE:
+    """U = -(k R0^2/2) ln(1 - r^2/R0^2): harmonic where short, never longer than R0 (Warner 1972)."""
+
+    rule: Literal["fene"] = tag("fene")
+    k: float = param(30.0, doc="spring constant of a short bond", unit="kT/a^2", gt=0)
+    R0: float = param(1.5, doc="length that the bond cannot reach", unit="a", gt=0)
+
+    @property
+    def longest(self) -> float:
+        """Length that the bond cannot reach."""
+        return self.R0
+
+    def kernel(self) -> Finite:
+        """Parameters for the scalar functions below."""
+        return Finite(self.k, self.R0 * self.R0)
+
+
+class Finite(NamedTuple):
+    """Spring constant, and square of the length that cannot be reached."""
+
+    k: float
+    limit: float
+
+
+@central.register(Finite)
+def _(potential, square):
+    left = max(1.0 - square / potential.limit, 1e-12)  # a torn bond stops the run: see `torn`
+    return -0.5 * potential.k * potential.limit * math.log(left), -potential.k / left
+
+
+@torn.register(Finite)
+def _(potential, square):
+    return square >= potential.limit

@@ -1,0 +1,80 @@
+"""Harmonic bonds, in the two conventions that are in use: they differ by a factor of two."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal, NamedTuple
+
+from mesokit.component import component, param, tag
+from mesokit.potential.protocol import central, torn
+
+
+@component
+class Harmonic:
+    """U = K r^2: a spring without a length of its own, its mean square length d kT/2K in d dimensions.
+
+    Mind the factor: K is half the spring constant of U = k r^2/2, which rule "spring" has.
+    """
+
+    rule: Literal["harmonic"] = tag("harmonic")
+    K: float = param(doc="U = K r^2", unit="kT/a^2", gt=0)
+
+    @property
+    def longest(self) -> float:
+        """Length that the bond cannot reach."""
+        return math.inf
+
+    def kernel(self) -> Square:
+        """Parameters for the scalar functions below."""
+        return Square(self.K)
+
+
+@component
+class Spring:
+    """U = (k/2) (r - length)^2: a spring about a length of its own (0 unless said)."""
+
+    rule: Literal["spring"] = tag("spring")
+    k: float = param(doc="U = (k/2) (r - length)^2", unit="kT/a^2", gt=0)
+    length: float = param(0.0, doc="length of the spring at rest", unit="a", ge=0)
+
+    @property
+    def longest(self) -> float:
+        """Length that the bond cannot reach."""
+        return math.inf
+
+    def kernel(self) -> AboutLength:
+        """Parameters for the scalar functions below."""
+        return AboutLength(self.k, self.length)
+
+
+class Square(NamedTuple):
+    """U = K r^2."""
+
+    K: float
+
+
+class AboutLength(NamedTuple):
+    """U = (k/2) (r - length)^2."""
+
+    k: float
+    length: float
+
+
+NO_LENGTH = 1e-12  # below this a bond has no direction, and pulls nowhere
+
+
+@central.register(Square)
+def _(potential, square):
+    return potential.K * square, -2.0 * potential.K
+
+
+@central.register(AboutLength)
+def _(potential, square):
+    r = math.sqrt(square)
+    beyond = r - potential.length
+    return 0.5 * potential.k * beyond * beyond, -potential.k * beyond / max(r, NO_LENGTH)
+
+
+@torn.register(Square, AboutLength)
+def _(potential, square):
+    return False

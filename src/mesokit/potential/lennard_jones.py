@@ -1,0 +1,64 @@
+"""The Lennard-Jones potential, cut off where it is told to be."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+from mesokit.component import component, param, tag
+from mesokit.potential.protocol import central, torn
+
+
+@component
+class LennardJones:
+    """U = 4 epsilon ((sigma/r)^12 - (sigma/r)^6) up to the cut-off, shifted to 0 there."""
+
+    rule: Literal["lennard-jones"] = tag("lennard-jones")
+    epsilon: float = param(1.0, doc="depth of the well", unit="kT", gt=0)
+    sigma: float = param(1.0, doc="distance of zero energy", unit="a", gt=0)
+    cutoff: float = param(2.5, doc="no force beyond, in units of sigma", unit="sigma", gt=0)
+    shift: bool = param(True, doc="whether the energy is shifted to 0 at the cut-off")
+
+    @property
+    def reach(self) -> float:
+        """Distance beyond which there is no force."""
+        return self.cutoff * self.sigma
+
+    def kernel(self) -> TwelveSix:
+        """Parameters for the scalar function below."""
+        return twelve_six(self.epsilon, self.sigma, self.cutoff, self.shift)
+
+
+class TwelveSix(NamedTuple):
+    """4 epsilon, squares of sigma and of the cut-off, and the energy added."""
+
+    four: float
+    square: float
+    limit: float
+    lift: float
+
+
+def twelve_six(epsilon: float, sigma: float, cutoff: float, shift: bool) -> TwelveSix:
+    """Parameters; the cut-off is in units of sigma."""
+    sixth = cutoff**-6
+    at_cutoff = 4.0 * epsilon * (sixth * sixth - sixth)
+    return TwelveSix(
+        4.0 * epsilon, sigma**2, (cutoff * sigma) ** 2, -at_cutoff if shift else 0.0
+    )
+
+
+CLOSEST = 1e-3  # of sigma^2: nearer, the force grows no more
+
+
+@central.register(TwelveSix)
+def _(potential, square):
+    inverse = potential.square / max(square, CLOSEST * potential.square)
+    sixth = inverse * inverse * inverse
+    energy = potential.four * sixth * (sixth - 1.0) + potential.lift
+    push = 6.0 * potential.four * sixth * (2.0 * sixth - 1.0) * inverse / potential.square
+    near = square < potential.limit
+    return (energy if near else 0.0), (push if near else 0.0)
+
+
+@torn.register(TwelveSix)
+def _(potential, square):
+    return False

@@ -1,0 +1,29 @@
+"""The repulsive part of the Lennard-Jones potential."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from mesokit.component import component, param, tag
+from mesokit.potential.lennard_jones import TwelveSix, twelve_six
+
+
+@component
+class WCA:
+    """Lennard-Jones cut off at its minimum 2^(1/6) sigma and shifted: beads that only repel.
+
+    After Weeks, Chandler and Andersen (1971).
+    """
+
+    rule: Literal["wca"] = tag("wca")
+    epsilon: float = param(1.0, doc="energy at the distance sigma", unit="kT", gt=0)
+    sigma: float = param(1.0, doc="diameter of a bead", unit="a", gt=0)
+
+    @property
+    def reach(self) -> float:
+        """Distance beyond which there is no force."""
+        return 2.0 ** (1.0 / 6.0) * self.sigma
+
+    def kernel(self) -> TwelveSix:
+        """Parameters for the scalar function of the Lennard-Jones potential."""
+        return twelve_six(self.epsilon, self.sigma, 2.0 ** (1.0 / 6.0), True)
