@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -54,9 +55,15 @@ def spring_of(molecule: Molecule) -> theory.Spring | None:
     return None
 
 
+def without_bonds(case: Case) -> theory.Transport | None:
+    """Transport coefficients of the same fluid of single particles."""
+    fluid = dataclasses.replace(case.fluid, molecule=None)
+    return setting.transport(dataclasses.replace(case, fluid=fluid, observe=(), trajectory=None))
+
+
 def rouse_times_of(case: Case) -> theory.RouseTimes | None:
     """Relaxation times of molecules whose beads have the friction of free particles."""
-    coefficients, spring = setting.transport(case), spring_of(case.fluid.molecule)
+    coefficients, spring = without_bonds(case), spring_of(case.fluid.molecule)
     if coefficients is None or spring is None:
         return None
     friction = case.fluid.kT / coefficients.diffusion
