@@ -9,18 +9,21 @@ import numpy as np
 from mesokit.errors import CaseError
 from mesokit.geometry import Disk, Plates, Sphere
 from mesokit.mpcd.field import Uniform
+from mesokit.mpcd.molecule import Molecule
+from mesokit.potential import Harmonic
 from mesokit.solids import solids_of
 
 
 def case_for(observable, make_case, size, **fluid):
-    """A case in which it can be measured: without walls, in a slit, in a flow about a body, or in a
-    shear that oscillates."""
+    """A case in which it can be measured: without walls, in a slit, in a flow about a body, in a
+    shear that oscillates, or in a fluid of molecules."""
     middle = [length / 2 for length in size]
     body = Disk(centre=middle, radius=1) if len(size) == 2 else Sphere(centre=middle, radius=1)
     push = {"force": Uniform((0.01,) + (0.0,) * (len(size) - 1))}
     shear = {"shear_rate": 0.01, "shear_frequency": 1.0}
-    slit = (Plates(axis="y"),)
-    for walls, parts in (((), fluid), (slit, fluid), ((body,), push | fluid), ((), shear | fluid)):
+    slit, molecules = (Plates(axis="y"),), {"molecule": Molecule(bond=Harmonic(K=1.0))}
+    for walls, parts in (((), fluid), (slit, fluid), ((body,), push | fluid), ((), shear | fluid),
+                         ((), molecules | fluid)):  # fmt: skip
         try:
             return make_case(size, [observable], walls=walls, **parts)
         except CaseError as error:

@@ -13,6 +13,8 @@ from mesokit.observe.flow_rate import FlowRate
 from mesokit.observe.forces import Forces
 from mesokit.observe.longitudinal_modes import LongitudinalModes
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
+from mesokit.observe.molecule_size import MoleculeSize
+from mesokit.observe.normal_modes import NormalModes
 from mesokit.observe.probe import Probe
 from mesokit.observe.protocol import Accumulator, Observable, RunningFluid
 from mesokit.observe.radial_profile import RadialProfile
@@ -39,6 +41,8 @@ AnyObservable = (
     | MeanSquareDisplacement
     | VelocityAutocorrelation
     | TransverseModes
+    | MoleculeSize
+    | NormalModes
     | LongitudinalModes
     | WallStress
     | Stress
@@ -67,6 +71,8 @@ __all__ = [
     "Forces",
     "LongitudinalModes",
     "MeanSquareDisplacement",
+    "MoleculeSize",
+    "NormalModes",
     "Observable",
     "Probe",
     "RadialProfile",

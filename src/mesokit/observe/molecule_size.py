@@ -26,7 +26,7 @@ PARTS = ("gyration", "end to end")
 
 @component
 class MoleculeSize(Observable):
-    """Mean gyration tensor, and mean R R of the vector from the first bead of a chain to the last."""
+    """Mean gyration tensor; of chains also mean R R of the vector R from end to end."""
 
     quantity: Literal["molecule-size"] = tag("molecule-size")
     molecules: int = param(2000, doc="molecules looked at", ge=1)

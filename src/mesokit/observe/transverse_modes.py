@@ -10,8 +10,8 @@ from mesokit import theory
 from mesokit.component import component, tag
 from mesokit.observe import setting
 from mesokit.observe.decay import fit_curve, normalised
-from mesokit.observe.molecules import free_bond, modes_of, rouse_times_of, without_bonds
 from mesokit.observe.modes import SHOWN, Array, Modes, ModesAccumulator, transverse_units
+from mesokit.observe.molecules import free_bond, modes_of, rouse_times_of, without_bonds
 from mesokit.observe.result import Comparison, Result
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ class TransverseModesAccumulator(ModesAccumulator):
         return np.stack(curves, axis=1)
 
     def deviations(self) -> list[Comparison]:
-        """The largest from theory for each of the smallest wave numbers, while there is a signal."""
+        """The largest from theory for each of the smallest wave numbers, above noise."""
         time, value, error = self.curves()
         found = []
         for finite, name in ((True, "finite k"), (False, "long waves")):

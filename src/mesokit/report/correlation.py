@@ -133,6 +133,29 @@ def draw_modes(result: Result, figure: Any, ax: Any) -> None:
     ax.legend(loc="upper right", ncols=1 + shown // 4)
 
 
+def draw_normal_modes(result: Result, figure: Any, ax: Any) -> None:
+    """One curve for each of the slowest modes, as far as they are above noise."""
+    ax = figure.subplots() if ax is None else ax
+    time = result.x["time"]
+    for i, p in enumerate(result.x["mode"][:SHOWN]):
+        colour, use = COLOURS[i % len(COLOURS)], result.value[:, i] > 2 * result.error[:, i]
+        ax.errorbar(
+            time[use], result.value[use, i], result.error[use, i], fmt=MARKERS[i % len(MARKERS)],
+            mfc="white", color=colour, lw=0.8, label=f"$p = {p}$", zorder=2,
+        )  # fmt: skip
+        if result.expected is not None:
+            line = result.expected[:, i] > 1e-3
+            label = f"theory: {result.theory}" if i == 0 else None
+            ax.plot(
+                time[line], result.expected[line, i], ls=LINES[i % len(LINES)], color="black",
+                lw=1, label=label,
+            )  # fmt: skip
+    ax.set_yscale("log", nonpositive="mask")
+    ax.set_xlabel(labelled("time lag $t$", result.units["time"]))
+    ax.set_ylabel(r"$\langle X_p(0) X_p(t)\rangle\,/\,\langle X_p^2\rangle$")
+    ax.legend(loc="upper right")
+
+
 def _end(time: NDArray[np.float64], result: Result) -> float:
     """The lag after which the longest wave stays small."""
     curve = result.value if result.expected is None else result.expected

@@ -25,6 +25,8 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "flow-frames": field.draw_frames,
     "mean-square-displacement": correlation.draw_displacement,
     "velocity-autocorrelation": correlation.draw_memory,
+    "molecule-size": tensor.draw,
+    "normal-modes": correlation.draw_normal_modes,
     "transverse-modes": correlation.draw_modes,
     "longitudinal-modes": correlation.draw_modes,
     "wall-stress": tensor.draw,

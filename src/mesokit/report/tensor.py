@@ -10,7 +10,11 @@ import numpy as np
 from mesokit.observe.result import Result
 from mesokit.report.style import COLOURS, MARKERS, labelled
 
-SYMBOLS = {"stress": r"$\sigma_{\alpha\beta}$", "dynamic-moduli": "modulus"}
+SYMBOLS = {
+    "stress": r"$\sigma_{\alpha\beta}$",
+    "dynamic-moduli": "modulus",
+    "molecule-size": r"$\langle x_\alpha x_\beta\rangle$",
+}
 
 
 def draw(result: Result, figure: Any, ax: Any) -> None:
