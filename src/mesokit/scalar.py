@@ -53,7 +53,7 @@ def generic(stub: Callable) -> Any:
     The first argument is a `NamedTuple` of parameters; its class picks the implementation when the
     calling kernel is compiled, so that a kernel for one rule holds no trace of the others. Called
     from plain Python it is compiled for its arguments; a class that is not registered is a
-    TypeError. `plain` is the same uncompiled, for a few calls. The stub has a docstring and no body.
+    TypeError. `plain` is the same, not compiled. The stub has a docstring and no body.
 
     Examples
     --------

@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 import pytest
-from laboratory import make_case, make_fluid
+from laboratory import assert_same, fingerprint, make_case, make_fluid
 
 from mesokit.execute.cpu import CPU
 from mesokit.geometry import Plates, Surface
@@ -29,21 +29,6 @@ CASES = {
     },
 }  # fmt: skip
 STEPS = 130  # more than one re-sorting
-
-
-def fingerprint(fluid):
-    number, momentum, energy = fluid.totals()
-    bins = fluid.moments((0, 1), (7, 5))
-    waves = np.ones((1, fluid.dimension))
-    return [
-        fluid.positions(), fluid.velocities(), fluid.images(), fluid.positions(unwrapped=True),
-        number, momentum, energy, *bins, *fluid.modes(waves), fluid.impulse.sum(axis=0),
-    ]  # fmt: skip
-
-
-def assert_same(one, other):
-    for a, b in zip(one, other, strict=True):
-        np.testing.assert_array_equal(a, b)
 
 
 @pytest.fixture(scope="module", params=CASES.values(), ids=CASES.keys())

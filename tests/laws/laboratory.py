@@ -50,6 +50,23 @@ def make_fluid(size, positions=None, velocities=None, measures=(), threads=1, **
     return cpu
 
 
+def fingerprint(fluid: CPU) -> list:
+    """All that can be read of a fluid."""
+    number, momentum, energy = fluid.totals()
+    bins = fluid.moments((0, 1), (7, 5))
+    waves = np.ones((1, fluid.dimension))
+    return [
+        fluid.positions(), fluid.velocities(), fluid.images(), fluid.positions(unwrapped=True),
+        number, momentum, energy, *bins, *fluid.modes(waves), fluid.impulse.sum(axis=0),
+    ]  # fmt: skip
+
+
+def assert_same(one, other) -> None:
+    """The same bits."""
+    for a, b in zip(one, other, strict=True):
+        np.testing.assert_array_equal(a, b)
+
+
 def cells(fluid: CPU) -> np.ndarray:
     """The unshifted cell of each particle, by id."""
     index = np.zeros(fluid.n, int)

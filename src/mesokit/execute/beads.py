@@ -54,8 +54,8 @@ def forget(image, i, values):
 
 
 @by_type
-def take_bead(box, strip, start, image, leader, bead, like):
-    """Copy lanes of a strip, from `start` on, to the rows of a bead.
+def take_bead(box, strip, image, leader, bead, like):
+    """Copy lanes of a strip, which begins where they do, to the rows of a bead.
 
     Under shear beads are folded one by one: here they go back to the image of the first bead of
     their molecule, whose counts of boxes are `leader`, and have its counts.
@@ -63,24 +63,24 @@ def take_bead(box, strip, start, image, leader, bead, like):
     return _take_unfolded if box.instance_class in (Sheared, Oscillating) else _take
 
 
-def _take(box, strip, start, image, leader, bead, like):
+def _take(box, strip, image, leader, bead, like):
     d = len(like)
     for i in range(WIDTH):
-        leave(bead, i, 0, load(strip, start + i, 0, like) + load(strip, start + i, d, like))
+        leave(bead, i, 0, load(strip, i, 0, like) + load(strip, i, d, like))
 
 
-def _take_unfolded(box, strip, start, image, leader, bead, like):
+def _take_unfolded(box, strip, image, leader, bead, like):
     d = len(like)
     for i in range(WIDTH):
-        r, v = load(strip, start + i, 0, like), load(strip, start + i, d, like)
-        first, own = counts(leader, start + i, like), counts(image, start + i, like)
+        r, v = load(strip, i, 0, like), load(strip, i, d, like)
+        first, own = counts(leader, i, like), counts(image, i, like)
         r, v = unfold(box, r, v, added_scaled(own, -1.0, first))
         leave(bead, i, 0, r + v)
-        forget(image, start + i, first)
+        forget(image, i, first)
 
 
 @scalar
-def put_bead(strip, start, bead, like):
+def put_bead(strip, bead, like):
     """Copy the rows of a bead back to lanes of a strip."""
     for i in range(WIDTH):
-        store(strip, start + i, 0, look(bead, i, 0, like + like))
+        store(strip, i, 0, look(bead, i, 0, like + like))

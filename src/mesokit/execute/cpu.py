@@ -82,8 +82,23 @@ class CPU(Readings):
         self.step += steps
         self.wall_steps += steps
         self.box_kernel = self.case.box.kernel(self.closed, self.time)
+        self._check_bonds()
         if measure_stress:
             self._stress()
+
+    def _check_bonds(self) -> None:
+        """That no bond was torn in the last steps."""
+        torn = self.faults[self.faults[:, 0] > 0]
+        molecule = self.case.fluid.molecule
+        if len(torn) == 0 or molecule is None:
+            return
+        step, first, second = min(map(tuple, torn[:, :3].tolist()))
+        raise RunError(
+            f"step {step}: the bond of particles {first} and {second} is longer than the "
+            f"{molecule.bond.longest:g} that it can be; take more sub-steps than "
+            f"{self.substeps} (fluid.molecule.substeps), a stiffer bond, or start "
+            "from particles that are not so far apart"
+        )
 
     def sort(self) -> None:
         """Bring particles back into the box and those of one cell together in memory."""
@@ -147,6 +162,7 @@ class CPU(Readings):
     def restore(self, state: dict[str, NDArray]) -> None:
         """Go on from a state, with the same bits whatever the number of threads was."""
         self._seen.clear()
+        self.faults[:] = 0
         self.data[: state["data"].size] = state["data"]
         self.ident[: self.places] = state["ident"]
         self.image[:, : self.places] = state["image"]

@@ -13,6 +13,8 @@ from mesokit.execute.fixed_point import ROUNDER_BITS, fixed, integers, rounded
 from mesokit.execute.layout import LANES, lanes_in, share, strip_of, strips_in
 from mesokit.execute.rows import load, mass_of, note
 from mesokit.execute.stages import add_strip
+from mesokit.potential.angle import bend
+from mesokit.potential.protocol import central
 from mesokit.scalar import dot, scalar, scaled
 
 
@@ -75,7 +77,7 @@ def modes(thread, threads, gate, physics, box, data, filling, rows, like, waves,
         strip = strip_of(data, b, rows)
         lanes = lanes_in(filling, b)
         for w in range(len(waves)):
-            wave = load_wave(waves, w, like)
+            wave = load_row(waves, w, like)
             sums = integers((0.0, 0.0) + like + like)
             for i in range(LANES):
                 r, v = load(strip, i, 0, like), load(strip, i, d, like)
@@ -93,10 +95,10 @@ def modes(thread, threads, gate, physics, box, data, filling, rows, like, waves,
 
 
 @scalar
-def load_wave(waves, w, like):
-    """One wave vector as a tuple."""
+def load_row(vectors, i, like):
+    """One row of an array of vectors as a tuple."""
     for k in range(len(like)):
-        like = tuple_setitem(like, k, waves[w, k])
+        like = tuple_setitem(like, k, vectors[i, k])
     return like
 
 
@@ -123,3 +125,17 @@ def gather_by_id(
                 position[slot, k] = r[k] + (image[k, j] * box.size[k] if unwrapped else 0.0)
                 velocity[slot, k] = v[k]
                 number[slot, k] = image[k, j] + np.int32(crossed[k])
+
+
+@kernel
+def central_energies(potential, squares):
+    """Squared distances become the energies of pairs that are so far apart."""
+    for i in range(len(squares)):
+        squares[i] = central(potential, squares[i])[0]
+
+
+@kernel
+def angle_energies(potential, before, after, like, out):
+    """Energies of bonds (n, d) that follow one another."""
+    for i in range(len(out)):
+        out[i] = bend(potential, load_row(before, i, like), load_row(after, i, like))[0]

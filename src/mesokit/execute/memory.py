@@ -139,9 +139,9 @@ class Memory:
         fluid = self.case.fluid
         if fluid.molecule is None:
             return ()
-        kernel, self._links = fluid.molecule.kernel(
-            self.dimension, fluid.timestep, fluid.kT, fluid.mass
-        )
+        given = self.dimension, fluid.timestep, fluid.kT, fluid.mass
+        self.substeps = fluid.molecule.number_of_substeps(*given)
+        kernel, self._links = fluid.molecule.kernel(*given)
         return kernel
 
     def _allocate(self, uniform: bool) -> None:

@@ -9,14 +9,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.box import Sheared
 from mesokit.execute import measure
 from mesokit.execute.fixed_point import ROUNDER_BITS
 from mesokit.execute.layout import LANES, SCRATCH_ROW, sums_length, zeros
 from mesokit.execute.memory import Floats, Memory
 from mesokit.execute.team import Team
+from mesokit.mpcd import topology
 
 if TYPE_CHECKING:
     from mesokit.case import Case
+    from mesokit.potential import Bond, Pair
 
 Moments = tuple[Floats, Floats, Floats, Floats]
 
@@ -39,7 +42,9 @@ class Readings(Memory):
 
     def _totals(self) -> Floats:
         out = np.zeros((self.strips[0], self.dimension + 2))
-        self.team.run(measure.totals, self.physics, self.data, self.filling, self.rows, self.like, out)
+        self.team.run(
+            measure.totals, self.physics, self.data, self.filling, self.rows, self.like, out
+        )
         return out
 
     def moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
@@ -99,6 +104,49 @@ class Readings(Memory):
         kind = np.repeat(np.arange(len(self.counts)), self.counts)
         return kind if ids is None else kind[ids]
 
+    def bonds(self) -> NDArray[np.int64]:
+        """Particle ids (bonds, 2) of all pairs that are linked; molecule after molecule."""
+        molecule = self.case.fluid.molecule
+        links = np.array(molecule.bonds if molecule else (), np.int64).reshape(-1, 2)
+        starts = np.arange(0, self.n, self.beads)
+        return (starts[:, None, None] + links).reshape(-1, 2) if len(links) else links
+
+    def bond_vectors(self) -> Floats:
+        """From the first to the second particle of each bond (bonds, d)."""
+        return self._between(self.bonds())
+
+    def potential_energy(self) -> float:
+        """Of all bonds, angles and pairs of beads."""
+        molecule = self.case.fluid.molecule
+        if molecule is None:
+            return 0.0
+        starts = np.arange(0, self.n, self.beads)[:, None, None]
+        total = self._central_energy(molecule.bond, self.bonds())
+        if molecule.pair is not None:
+            pairs = (starts + np.array(topology.pairs(self.beads))).reshape(-1, 2)
+            total += self._central_energy(molecule.pair, pairs)
+        if molecule.bending is not None and molecule.angles:
+            beads = (starts + np.array(molecule.angles)).reshape(-1, 3)
+            before, after = self._between(beads[:, :2]), self._between(beads[:, 1:])
+            out = np.zeros(len(beads))
+            measure.angle_energies(molecule.bending.kernel(), before, after, self.like, out)
+            total += float(out.sum())
+        return total
+
+    def _central_energy(self, potential: Bond | Pair, pairs: NDArray[np.int64]) -> float:
+        out = (self._between(pairs) ** 2).sum(axis=1)
+        measure.central_energies(potential.kernel(), out)
+        return float(out.sum())
+
+    def _between(self, pairs: NDArray[np.int64]) -> Floats:
+        """Vectors (n, d) between beads of one molecule, whatever images they lie in."""
+        r, _, image = self._gather(None, True)
+        first, second = pairs.T
+        way = r[second] - r[first]
+        if isinstance(self.box_kernel, Sheared):
+            way[:, 0] += (image[second, 1] - image[first, 1]) * self.box_kernel.offset
+        return way
+
     def _gather(self, ids: NDArray | None, unwrapped: bool) -> tuple[Floats, Floats, NDArray]:
         slots = np.arange(self.n, dtype=np.int32) if ids is None else self._slots(ids)
         shape = self.n if ids is None else len(ids), self.dimension
@@ -120,14 +168,17 @@ class Readings(Memory):
 
         Kinetic: momentum carried in the flight, which is the mean of the values before and after
         the collision. Collisional: momentum handed over within cells (Winkler and Huang 2009).
+        Bond: momentum handed over within molecules, the mean over the flight.
         """
         d = self.dimension
-        before, after = self.tensor.sum(axis=1).reshape(2, 2, d, d)
+        before, after, *bond = self.tensor.sum(axis=1).reshape(-1, 2, d, d)
         volume = math.prod(self.case.box.size)
         self.stress = {
             "kinetic": -0.5 * (before[0] + after[0]) / volume,
             "collisional": -(after[1] - before[1]) / (volume * self.timestep),
         }
+        if bond:
+            self.stress["bond"] = -bond[0][0] / (volume * self.timestep)
 
     @property
     def wall_impulse(self) -> Floats:

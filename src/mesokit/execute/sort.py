@@ -5,8 +5,6 @@ rarely. The order is that of a stable counting sort, whatever the number of thre
 sorted as a whole, by the cell of their first bead.
 """
 
-import numpy as np
-
 from mesokit.box import Sheared, fold, unfold
 from mesokit.execute.cache import inner, kernel
 from mesokit.execute.layout import (

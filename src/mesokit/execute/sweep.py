@@ -157,19 +157,19 @@ def _sweep_molecules(
             continue
         for start in range(0, lanes, WIDTH):  # positions and velocities of step n + 1
             flock = Flock(g * beads, start, min(WIDTH, lanes - start))
-            leader = image[:, g * beads * LANES : (g * beads + 1) * LANES]
+            leader = image[:, g * beads * LANES + start : (g * beads + 1) * LANES]
             for k in range(beads - 1, -1, -1):  # the leader's counts of boxes stay to the end
                 s = g * beads + k
-                boxes = image[:, s * LANES : (s + 1) * LANES]
-                strip = strip_of(data, s, rows)
-                take_bead(before, strip, start, boxes, leader, bead_of(work, k, like), like)
+                boxes = image[:, s * LANES + start : (s + 1) * LANES]
+                strip = strip_of(data, s, rows)[start:]
+                take_bead(before, strip, boxes, leader, bead_of(work, k, like), like)
             fly_molecules(
                 physics, flock, counter, work, ident, clear, calm, hits, impulse, faults, measured,
                 tensor[2, g], scales, like,
             )  # fmt: skip
             for k in range(beads):
-                strip = strip_of(data, g * beads + k, rows)
-                put_bead(strip, start, bead_of(work, k, like), like)
+                strip = strip_of(data, g * beads + k, rows)[start:]
+                put_bead(strip, bead_of(work, k, like), like)
         for k in range(beads):  # cells and their sums of step n + 1
             s = g * beads + k
             strip, here = strip_of(data, s, rows), cell[s * LANES : (s + 1) * LANES]

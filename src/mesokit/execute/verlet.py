@@ -20,7 +20,16 @@ from mesokit.mpcd.streaming import fall, halfway
 from mesokit.pointer import word
 from mesokit.potential.protocol import torn
 from mesokit.random import Counter
-from mesokit.scalar import added, added_scaled, by_type, by_type_with_views, chosen, dot, scalar, scaled
+from mesokit.scalar import (
+    added,
+    added_scaled,
+    by_type,
+    by_type_with_views,
+    chosen,
+    dot,
+    scalar,
+    scaled,
+)
 
 SUBSTEP_BITS = 40  # sub-steps stand above these bits of a step's number in random streams
 

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.component import component, param
-from mesokit.mpcd import topology
+from mesokit.mpcd import topology as links
 from mesokit.pointer import address
 from mesokit.potential import Angle, Bond, Pair
 from mesokit.potential.thermal import mean_square, stiffness
 
 PHASE = 0.15  # of the fastest oscillation in a sub-step: springs read (PHASE/2)^2 = 0.6 % too long
-COARSE = 0.5  # beyond this phase they read 6 % too long, and a case is warned about
+COARSE = 0.7  # beyond this phase they read 12 % too long, and a case is warned about
 UNSTABLE = 2.0  # from this phase on velocity Verlet blows up
 
 MOST_SUBSTEPS = 100_000
@@ -26,7 +26,7 @@ MOST_SUBSTEPS = 100_000
 class Molecule:
     """What every particle of the fluid is a bead of: chains, rings or stars of beads and bonds."""
 
-    topology: topology.Topology = param("chain", doc="how the beads are linked")
+    topology: links.Topology = param("chain", doc="how the beads are linked")
     length: int = param(2, doc="beads of a molecule", ge=2, le=1000)
     arms: int | None = param(None, doc="arms of a star, all of one length", ge=1)
     bond: Bond = param(doc="potential of the bonds")
@@ -35,7 +35,7 @@ class Molecule:
         None, doc="potential of any two beads of one molecule, bonded ones too (none unless said)"
     )
     substeps: int | None = param(
-        None, doc="sub-steps of velocity Verlet in a timestep (from the stiffest spring unless said)",
+        None, doc="sub-steps of velocity Verlet in a timestep (from the stiffest spring if none)",
         ge=1, le=MOST_SUBSTEPS,
     )  # fmt: skip
     propagation: Literal["verlet", "exact"] = param(
@@ -68,9 +68,14 @@ class Molecule:
                 raise ValueError(f"{key}: not with {name}; leave it out")
 
     @property
-    def bonds(self) -> topology.Links:
+    def bonds(self) -> links.Links:
         """Pairs of beads that are linked."""
-        return topology.bonds(self.topology, self.length, self.arms or 1)
+        return links.bonds(self.topology, self.length, self.arms or 1)
+
+    @property
+    def angles(self) -> links.Links:
+        """Triples of beads, the second of which two bonds share."""
+        return links.angles(self.topology, self.length, self.arms or 1)
 
     @property
     def bond_potentials(self) -> tuple[Any, ...]:
@@ -91,9 +96,7 @@ class Molecule:
         """Of the fastest oscillation in one sub-step, in radians."""
         return _frequency(self, dimension, kT, mass) * timestep / (self.substeps or 1)
 
-    def number_of_substeps(
-        self, dimension: int, timestep: float, kT: float, mass: float
-    ) -> int:
+    def number_of_substeps(self, dimension: int, timestep: float, kT: float, mass: float) -> int:
         """Those given, or those that it needs."""
         return self.substeps or self.needed_substeps(dimension, timestep, kT, mass)
 
@@ -122,10 +125,9 @@ class Molecule:
         """Parameters for compiled code, and the table in them that must be kept."""
         if self.propagation == "exact":
             return self._dimers(timestep, mass), np.zeros(0, np.int64)
-        angles = topology.angles(self.topology, self.length, self.arms or 1)
-        bends = angles if self.bending is not None else ()
-        pairs = topology.pairs(self.length) if self.pair is not None else ()
-        numbers = [k for links in (self.bonds, bends, pairs) for link in links for k in link]
+        bends = self.angles if self.bending is not None else ()
+        pairs = links.pairs(self.length) if self.pair is not None else ()
+        numbers = [k for kind in (self.bonds, bends, pairs) for link in kind for k in link]
         table = np.array(numbers, np.int64)
         kernel = Springs(
             self.length,
@@ -177,9 +179,7 @@ class Springs(NamedTuple):
 def _frequency(molecule: Molecule, dimension: int, kT: float, mass: float) -> float:
     """Angular frequency of the fastest oscillation."""
     bond, longest = molecule.bond_potentials, molecule.bond.longest
-    square = stiffness(bond, kT, longest) * topology.stiffest_mode(
-        molecule.bonds, molecule.length
-    )
+    square = stiffness(bond, kT, longest) * links.stiffest_mode(molecule.bonds, molecule.length)
     if molecule.bending is not None:  # four neighbours at most move against a bead
         size = mean_square(bond, dimension, kT, longest)
         square += 16.0 * molecule.bending.stiffness / size

@@ -11,7 +11,7 @@ from mesokit.potential.protocol import central, torn
 
 @component
 class FENE:
-    """U = -(k R0^2/2) ln(1 - r^2/R0^2): harmonic where short, never longer than R0 (Warner 1972)."""
+    """U = -(k R0^2/2) ln(1 - r^2/R0^2): never longer than R0 (Warner 1972)."""
 
     rule: Literal["fene"] = tag("fene")
     k: float = param(30.0, doc="spring constant of a short bond", unit="kT/a^2", gt=0)

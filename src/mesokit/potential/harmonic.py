@@ -11,9 +11,9 @@ from mesokit.potential.protocol import central, torn
 
 @component
 class Harmonic:
-    """U = K r^2: a spring without a length of its own, its mean square length d kT/2K in d dimensions.
+    """U = K r^2: a spring without a length of its own; its mean square is d kT/2K in d dimensions.
 
-    Mind the factor: K is half the spring constant of U = k r^2/2, which rule "spring" has.
+    K is half the spring constant of U = k r^2/2, which rule "spring" has.
     """
 
     rule: Literal["harmonic"] = tag("harmonic")

@@ -41,9 +41,7 @@ def twelve_six(epsilon: float, sigma: float, cutoff: float, shift: bool) -> Twel
     """Parameters; the cut-off is in units of sigma."""
     sixth = cutoff**-6
     at_cutoff = 4.0 * epsilon * (sixth * sixth - sixth)
-    return TwelveSix(
-        4.0 * epsilon, sigma**2, (cutoff * sigma) ** 2, -at_cutoff if shift else 0.0
-    )
+    return TwelveSix(4.0 * epsilon, sigma**2, (cutoff * sigma) ** 2, -at_cutoff if shift else 0.0)
 
 
 CLOSEST = 1e-3  # of sigma^2: nearer, the force grows no more

@@ -13,7 +13,7 @@ from mesokit.potential.protocol import central
 Floats = NDArray[np.float64]
 POINTS = 4001  # of the grid of lengths
 NEVER = 40.0  # kT above the lowest energy: a bond is not met there
-SOMETIMES = 8.0  # kT above the lowest energy: a bond is met there now and then
+SOMETIMES = 4.0  # kT above the lowest energy: a bond is met there now and then
 SMALLEST, LARGEST = 1e-6, 1e6  # lengths among which bonds are looked for
 
 

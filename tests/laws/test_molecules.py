@@ -1,0 +1,254 @@
+"""Fluids of molecules: mechanics of the bonds, equilibrium of the beads, stress."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from laboratory import make_fluid, mean
+
+from mesokit.errors import RunError
+from mesokit.geometry import Disk, Plates, Surface
+from mesokit.mpcd.collision import SRD
+from mesokit.mpcd.field import Uniform
+from mesokit.mpcd.molecule import Molecule
+from mesokit.mpcd.thermostat import MaxwellBoltzmann
+from mesokit.potential import FENE, WCA, Bending, Harmonic, Spring
+
+CHAINS = {
+    "dimers": Molecule(bond=Harmonic(K=1 / 6), substeps=4),
+    "decamers": Molecule(length=10, bond=Harmonic(K=1.0), substeps=4),
+    "rings": Molecule(topology="ring", length=5, bond=Spring(k=8.0, length=0.6), substeps=8),
+    "stars": Molecule(topology="star", length=7, arms=3, bond=Harmonic(K=1.0), substeps=4),
+    "stiff chains": Molecule(
+        length=5, bond=Spring(k=40.0, length=0.8), bending=Bending(kappa=4.0), substeps=20
+    ),
+    "Kremer and Grest": Molecule(length=5, bond=FENE(), pair=WCA(), substeps=60),
+}
+
+
+@pytest.fixture(scope="module", params=CHAINS.values(), ids=CHAINS.keys())
+def molecule(request):
+    return request.param
+
+
+def total_energy(fluid):
+    return fluid.totals()[2] + fluid.potential_energy()
+
+
+def refined(molecule, substeps, **parts):
+    """The same molecules by other sub-steps. Collisions keep the energy of each cell exactly."""
+    molecule = dataclasses.replace(molecule, substeps=substeps)
+    return make_fluid((8, 8, 8), density=molecule.length, molecule=molecule, **parts)
+
+
+def test_energy_is_kept_to_second_order_in_the_substep(molecule):
+    """Largest change of the energy over ten flights, with sub-steps and with half of them."""
+    changes = []
+    for refine in (1, 2, 4):
+        fluid = refined(molecule, refine * molecule.substeps)
+        first, worst = total_energy(fluid), 0.0
+        for _ in range(10):
+            fluid.advance(1)
+            worst = max(worst, abs(total_energy(fluid) - first))
+        changes.append(worst / first)
+    assert changes[0] < 0.01
+    assert changes[1] < 0.45 * changes[0] and changes[2] < 0.45 * changes[1]
+
+
+def test_momentum_is_kept_to_rounding(molecule):
+    fluid = refined(molecule, molecule.substeps)
+    _, momentum, _ = fluid.totals()
+    fluid.advance(300)
+    assert abs(fluid.totals()[1] - momentum).max() < 1e-9 * fluid.n
+
+
+def test_exact_dimers_are_what_many_substeps_come_to():
+    found = []
+    for parts in ({"propagation": "exact"}, {"substeps": 300}):
+        molecule = Molecule(bond=Harmonic(K=0.4), **parts)
+        fluid = make_fluid(
+            (6, 6, 6), density=4, molecule=molecule, measures=("stress",),
+            force=Uniform(acceleration=(0.1, 0.0, -0.2)), timestep=0.3,
+        )  # fmt: skip
+        fluid.advance(1, measure_stress=True)
+        found.append((fluid.positions(unwrapped=True), fluid.velocities(), fluid.stress["bond"]))
+    for a, b in zip(*found, strict=True):
+        np.testing.assert_allclose(a, b, atol=1e-6)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize(
+    "molecule",
+    [
+        Molecule(bond=Harmonic(K=1.0)),
+        Molecule(bond=Harmonic(K=1.0), propagation="exact"),
+        Molecule(length=5, bond=Harmonic(K=1.0)),
+        Molecule(topology="ring", length=4, bond=Harmonic(K=1.0)),
+        Molecule(length=3, bond=FENE(k=6.0, R0=2.0)),
+    ],
+    ids=["dimers", "exact dimers", "pentamers", "rings", "FENE"],
+)
+def test_bonds_and_beads_have_the_temperature(molecule, d):
+    """The mean square bond is that of Boltzmann, at the start and after."""
+    size = (20, 18) if d == 2 else (9, 10, 8)
+    fluid = make_fluid(size, density=10, molecule=molecule, thermostat=MaxwellBoltzmann())
+    expected = molecule.mean_square_bond(d, 1.0)
+    bonds = (fluid.bond_vectors() ** 2).sum(axis=1).reshape(-1, len(molecule.bonds))
+    assert mean(bonds.mean(axis=1)).agrees(expected)
+    squares, temperatures = [], []
+    for _ in range(30):
+        fluid.advance(80)  # bonds forget in half of that
+        squares.append((fluid.bond_vectors() ** 2).sum(axis=1).mean())
+        temperatures.append(2 * fluid.totals()[2] / (d * (fluid.n - 1)))
+    assert mean(squares).agrees(expected, systematic=0.01), (mean(squares), expected)
+    assert mean(temperatures).agrees(1.0, systematic=0.002), mean(temperatures)
+
+
+def test_length_three_for_one_sixth():
+    assert Molecule(bond=Harmonic(K=1 / 6)).mean_square_bond(3, 1.0) == pytest.approx(9)
+    ring = Molecule(topology="ring", length=4, bond=Harmonic(K=1.0))
+    assert ring.mean_square_bond(3, 1.0) == pytest.approx(1.5 * 3 / 4)
+
+
+@pytest.mark.parametrize("propagation", ["verlet", "exact"])
+def test_pressure_is_that_of_an_ideal_gas_of_molecules(propagation):
+    """Kinetic n kT, bonds -n kT (1 - 1/N): what holds together pushes less."""
+    molecule = Molecule(bond=Harmonic(K=1.0), propagation=propagation)
+    fluid = make_fluid(
+        (8, 8, 8), molecule=molecule, thermostat=MaxwellBoltzmann(), measures=("stress",)
+    )
+    fluid.advance(50)
+    kinetic, bond = [], []
+    for _ in range(40):
+        fluid.advance(9)
+        fluid.advance(1, measure_stress=True)
+        kinetic.append(-np.trace(fluid.stress["kinetic"]) / 3)
+        bond.append(-np.trace(fluid.stress["bond"]) / 3)
+    assert mean(kinetic).agrees(10.0, systematic=0.005), mean(kinetic)
+    assert mean(bond).agrees(-5.0, systematic=0.01), mean(bond)
+
+
+def test_a_force_moves_molecules_as_a_whole():
+    g, molecule = 0.05, Molecule(length=4, bond=Harmonic(K=1.0))
+    fluid = make_fluid((8, 8), density=4, molecule=molecule, force=Uniform(acceleration=(g, 0.0)))
+    fluid.advance(100)
+    _, momentum, _ = fluid.totals()
+    assert momentum == pytest.approx([fluid.n * g * 100 * fluid.timestep, 0.0], abs=1e-8)
+
+
+class TestSheared:
+    """Lees-Edwards: images slide, and bonds do not notice."""
+
+    def test_a_boundary_is_no_place(self):
+        """Bonds over the sliding boundary are as long as all others, along and across."""
+        molecule = Molecule(length=3, bond=Harmonic(K=1.0))
+        fluid = make_fluid(
+            (8, 10, 8), shear_rate=0.1, molecule=molecule, thermostat=MaxwellBoltzmann(), density=9
+        )
+        far, near, all_over = [], [], []
+        for _ in range(40):
+            fluid.advance(25)
+            way, ends = fluid.bond_vectors(), fluid.bonds()
+            y = fluid.positions(unwrapped=True)[:, 1]
+            over = np.floor(y[ends[:, 0]] / 10) != np.floor(y[ends[:, 1]] / 10)
+            far.append((way[over, 2] ** 2).mean())
+            near.append((way[~over, 2] ** 2).mean())
+            all_over.append((way[:, 2] ** 2).mean())
+        assert np.abs(way).max() < 8
+        assert mean(all_over).agrees(0.5, systematic=0.03), mean(all_over)
+        assert mean(far).agrees(0.5, systematic=0.06) and mean(near).agrees(0.5, systematic=0.03)
+
+    def test_the_profile_is_linear_and_bonds_lean(self):
+        rate, K = 0.1, 0.25
+        molecule = Molecule(bond=Harmonic(K=K), substeps=2)
+        fluid = make_fluid(
+            (10, 20, 10), shear_rate=rate, molecule=molecule, thermostat=MaxwellBoltzmann()
+        )
+        fluid.advance(600)
+        profile, lean = [], []
+        for _ in range(60):
+            fluid.advance(20)
+            _, mass, momentum, _ = fluid.moments((1,), (20,))
+            profile.append(momentum[0] / mass)
+            way = fluid.bond_vectors()
+            lean.append((way[:, 0] * way[:, 1]).mean())
+        y = np.arange(20) + 0.5
+        assert np.polyfit(y, np.mean(profile, axis=0), 1)[0] == pytest.approx(rate, rel=0.02)
+        assert abs(np.mean(profile, axis=0) - rate * (y - 10)).max() < 0.1
+        assert 0.05 < np.mean(lean) < 5
+
+
+class TestAmongSolids:
+    """Beads bounce off solids, and never are in them."""
+
+    @pytest.mark.parametrize("rule", ["no-slip", "slip"])
+    def test_plates(self, rule):
+        molecule = Molecule(length=4, bond=Harmonic(K=0.5), substeps=5)
+        fluid = make_fluid(
+            (10, 8), density=10, molecule=molecule, thermostat=MaxwellBoltzmann(),
+            force=Uniform(acceleration=(0.01, 0.0)), measures=("walls",),
+            walls=[Plates(axis="y", upper=Surface(rule))],
+        )  # fmt: skip
+        for _ in range(30):
+            fluid.advance(10)
+            r = fluid.positions()
+            assert (r[:, 1] >= 0).all() and (r[:, 1] <= 8).all()
+        taken = fluid.wall_impulse[:, :2].sum(axis=0)
+        given = np.array([fluid.n * 0.01 * 300 * fluid.timestep, 0.0])
+        assert abs(given - taken - fluid.totals()[1]).max() < 1e-6 * fluid.n
+
+    @pytest.mark.parametrize("rule", ["no-slip", "slip", "diffuse"])
+    def test_a_disk(self, rule):
+        molecule = Molecule(length=4, bond=Harmonic(K=0.5), substeps=5)
+        disk = Disk(centre=(6, 5), radius=2.5, surface=Surface(rule))
+        fluid = make_fluid(
+            (16, 10), density=10, molecule=molecule, thermostat=MaxwellBoltzmann(), walls=[disk],
+            force=Uniform(acceleration=(0.01, 0.0)), measures=("walls",),
+        )  # fmt: skip
+        for _ in range(30):
+            fluid.advance(10)
+            assert (fluid.solids.distance(fluid.positions()) >= 0).all()
+        taken = fluid.wall_impulse[:, :2].sum(axis=0)
+        given = np.array([fluid.n * 0.01 * 300 * fluid.timestep, 0.0])
+        assert abs(given - taken - fluid.totals()[1]).max() < 1e-6 * fluid.n
+
+    def test_bonds_between_plates_have_the_temperature(self):
+        """Those of beads that feel nothing of one another are as long as without plates."""
+        molecule = Molecule(bond=Harmonic(K=1.0), substeps=3)
+        fluid = make_fluid(
+            (20, 16), molecule=molecule, thermostat=MaxwellBoltzmann(), walls=[Plates(axis="y")]
+        )
+        along = []
+        for _ in range(30):
+            fluid.advance(80)
+            along.append((fluid.bond_vectors()[:, 0] ** 2).mean())
+        assert mean(along).agrees(0.5, systematic=0.01), mean(along)
+
+
+def test_start_from_arrays_takes_folded_ones():
+    molecule = Molecule(length=4, bond=Harmonic(K=1.0))
+    fluid = make_fluid((6, 7), density=4, molecule=molecule)
+    r, v = fluid.positions(), fluid.velocities()
+    bonds = fluid.bond_vectors()
+    other = make_fluid((6, 7), r, v, density=4, molecule=molecule)
+    near = np.abs(bonds).max(axis=1) < 3.0
+    np.testing.assert_allclose(other.bond_vectors()[near], bonds[near], atol=1e-12)
+    np.testing.assert_allclose(other.velocities(), v)
+
+
+def test_a_torn_bond_stops_the_run():
+    molecule = Molecule(length=2, bond=FENE(k=3.0, R0=2.0), substeps=2)
+    fluid = make_fluid((8, 8), density=2, molecule=molecule)
+    r, v = fluid.positions(), fluid.velocities()
+    v[11] += 40.0
+    fluid = make_fluid((8, 8), r, v, density=2, molecule=molecule)
+    with pytest.raises(RunError, match=r"^step 1: the bond of particles 10 and 11 is longer than"):
+        fluid.advance(100)
+
+
+def test_energy_does_not_drift():
+    molecule = Molecule(length=10, bond=Harmonic(K=1.0))
+    fluid = make_fluid((10, 10, 10), molecule=molecule, collision=SRD(130))
+    first = total_energy(fluid)
+    fluid.advance(500)
+    assert total_energy(fluid) == pytest.approx(first, rel=2e-3)
