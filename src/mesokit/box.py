@@ -195,7 +195,7 @@ def _(box, r, v, crossed):
     return r, v
 
 
-@unfold.register(Sheared)
+@unfold.register(Sheared, Oscillating)
 def _(box, r, v, crossed):
     for k in range(len(r)):
         r = tuple_setitem(r, k, r[k] + crossed[k] * box.size[k])
