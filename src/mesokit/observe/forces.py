@@ -131,6 +131,12 @@ class ForcesAccumulator:
             extra={
                 "time": self.series.time(),
                 "series": self.series.values().reshape(-1, *self.shape),
+                "plates": np.isin(range(len(self.bodies)), self.obstacles(), invert=True).astype(
+                    int
+                ),
+                "pivot": np.array(
+                    [body.pieces[0].pivot for body in solids_of(self.case).bodies], float
+                ),
             },
         )
 
@@ -138,6 +144,12 @@ class ForcesAccumulator:
         """Numbers of the bodies that stand in the flow: all but plates."""
         solids = solids_of(self.case)
         return [i for i, wall in enumerate(solids.walls) if self.case.walls[wall].shape != "plates"]
+
+    def plates(self) -> NDArray[np.int64]:
+        """1 for each body that is a plate, 0 for the others."""
+        plates = np.ones(len(self.bodies), np.int64)
+        plates[self.obstacles()] = 0
+        return plates
 
     def total(self) -> Array:
         """(d,): the force on the fluid, all of which the solids take in a steady flow.

@@ -109,7 +109,7 @@ class Canvas:
             return
         self.figure.colorbar(scale.mappable(), cax=ax, orientation="horizontal")
         ax.xaxis.set_ticks_position("top")
-        ax.locator_params(nbins=5)
+        ax.locator_params(nbins=4)
         ax.tick_params(labelsize=8, pad=1, length=2)
         ax.text(-0.03, 0.5, scale.label, transform=ax.transAxes, ha="right", va="center", size=9)
 

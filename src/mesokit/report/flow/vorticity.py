@@ -80,9 +80,10 @@ def note(flow: Flow, clear: bool) -> str:
         width = flow.smoothing * max(spacing(flow, flow.velocity))
         said.append(f"velocity smoothed over {width:.3g} a before its slopes are taken")
     if not clear:
+        fine = " and bins_per_cell = 1" * (min(spacing(flow, flow.velocity)) < 1)
         said.append(
-            "hardly above the noise: average over more frames, or keep flow-frames of a longer "
-            "window or fewer bins_per_cell"
+            f"hardly above the noise: a longer run, or flow-frames with a longer window{fine}, "
+            "would show more"
         )
     return "; ".join(said)
 
