@@ -212,6 +212,19 @@ def nearest(given: str, known: Iterable[str]) -> str:
     return f"; did you mean {show(plain[close[0]])}?" if close else ""
 
 
+def require_known(given: Iterable[str], known: Sequence[str]) -> None:
+    """Raise CaseError for a name that is not known.
+
+    >>> require_known(["regoin"], ["region", "window"])
+    Traceback (most recent call last):
+        ...
+    mesokit.errors.CaseError: regoin: unknown; expected 'region' or 'window'; did you mean 'region'?
+    """
+    for name in given:
+        if name not in known:
+            raise CaseError(f"{name}: unknown; expected {one_of(known)}{nearest(name, known)}")
+
+
 def one_of(names: Sequence[str]) -> str:
     """'a', 'b' or 'c'."""
     quoted = [show(name) for name in names]
