@@ -19,6 +19,8 @@ BALL = 'shape = "sphere"\ncentre = [6, 5, 4]\nradius = 2\n'
 BOX = 'shape = "rectangle"\ncentre = [6, 5]\nsize = [4, 3]\n'
 FLOOR = 'shape = "half-space"\npoint = [0, 3]\nnormal = [0, 1]\n'
 WAVES = 'shape = "cosine-channel"\nwidth = 4\namplitude = 1\n'
+ONE = '{ shape = "disk", centre = [2, 2], radius = 1 }'
+ARRAY = f'shape = "array"\nrepeat = [2, 2]\nof = {ONE}'
 HEAVY = "[fluid]\nspecies = [{ mass = 1, density = 5 }, { mass = 5, density = 5 }]\n"
 
 # name: (the case without its walls, its walls, what the message must say)
@@ -54,6 +56,37 @@ BAD: dict[str, tuple[str, list[str], tuple[str, ...]]] = {
          'surface = { rule = "slip" } }]'],
         ("parts[#1].surface", "of the union"),
     ),
+    "an array's part with a surface": (
+        PLANE, [ARRAY.replace("radius = 1", 'radius = 1, surface = { rule = "slip" }')],
+        ("bad.toml: wall[#1].of.surface: give the surface of the array",),
+    ),
+    "a part's part with a name": (
+        PLANE, [ARRAY.replace(ONE, f'{{ shape = "union", parts = [{ONE}] }}')
+                .replace("radius = 1", 'radius = 1, name = "a"')],
+        ("bad.toml: wall[#1].of.parts[#1].name: give that of the union",),
+    ),
+    "unknown shape in an array": (
+        PLANE, [ARRAY.replace("disk", "dsk")], ("wall[#1].of.shape = 'dsk'", "did you mean 'disk'?")
+    ),
+    "an array of arrays": (
+        PLANE, [ARRAY.replace('of = { shape = "disk"', 'of = { shape = "array"')],
+        ("wall[#1].of.shape = 'array'", "'disk'"),
+    ),
+    "no shape in an array": (
+        PLANE, [ARRAY.replace('shape = "disk", ', "")], ("wall[#1].of.shape: missing", "'disk'"),
+    ),
+    "an array in a union": (
+        PLANE, [f'shape = "union"\nparts = [{ONE}, {{ shape = "array", repeat = [2, 2] }}]'],
+        ("wall[#1].parts[#2].shape = 'array'", "'disk'"),
+    ),
+    "far too many copies": (
+        PLANE, [ARRAY.replace("[2, 2]", "[1000000, 1000000]")],
+        ("wall[#1].repeat = [1000000, 1000000]", "at most 65536"),
+    ),
+    "copies on copies": (
+        PLANE, [ARRAY.replace("[2, 2]", "[2, 11]")],
+        ("wall[#1].repeat = [2, 11]", "less than a cell apart", "[12, 10]"),
+    ),
     "unknown side": (PLANE, [DISK + 'fluid = "left"'], ("wall[#1].fluid", "'inside'")),
     "unknown surface": (
         PLANE, [DISK + 'surface = { rule = "sticky" }'], ("wall[#1].surface.rule", "'no-slip'"),
@@ -66,6 +99,28 @@ BAD: dict[str, tuple[str, list[str], tuple[str, ...]]] = {
     "no room": (PLANE, [BOX.replace("4, 3", "20, 20")], ("the solids leave", "to the fluid")),
     "nothing inside": (
         PLANE, [DISK.replace("= 2", "= 0.1") + 'fluid = "inside"'], ("the solids leave",),
+    ),
+    "beside the box": (
+        PLANE, [DISK.replace("[6, 5]", "[60, 5]")],
+        ("wall[#1].centre = [60, 5]: no surface in the box [12, 10]",),
+    ),
+    "the second beside the box": (
+        PLANE, [DISK, DISK.replace("[6, 5]", "[60, 5]")], ("wall[#2].centre = [60, 5]",),
+    ),
+    "a vessel around the box": (
+        PLANE, [DISK.replace("= 2", "= 9") + 'fluid = "inside"'],
+        ("wall[#1].radius = 9: no surface in the box", "fluid = 'inside'"),
+    ),
+    "nothing in common": (
+        PLANE, [f'shape = "intersection"\nparts = [{ONE}, {ONE.replace("2, 2", "4.1, 2")}]'],
+        ("wall[#1].parts: no surface in the box", "nothing in common"),
+    ),
+    "a name twice": (
+        PLANE, [DISK + 'name = "a"', DISK.replace("6, 5", "2, 5") + 'name = "a"'],
+        ("wall[#2].name", "'a' is also the name of wall[#1]"),
+    ),
+    "a name that the first has by its number": (
+        PLANE, [DISK, DISK.replace("6, 5", "2, 5") + 'name = "disk-1"'], ("wall[#2].name",),
     ),
     "plates twice": (
         PLANE, ['shape = "plates"\naxis = "y"', 'shape = "plates"\naxis = "y"'],
@@ -197,6 +252,47 @@ GOOD = {
     "mesh": (SPACE, 'shape = "mesh"\nfile = "ball.ply"\nposition = [6, 5, 4]'),
     "section": (PLANE, 'shape = "mesh"\nfile = "ball.ply"\nposition = [6, 5]\nheight = 1'),
 }
+
+
+# name: (the case without its walls, its walls, what a warning says; none is about a solid if empty)
+WARNED: dict[str, tuple[str, list[str], tuple[str, ...]]] = {
+    "one behind another": (PLANE, [DISK, DISK.replace("= 2", "= 1")], ()),
+    "from end to end": (PLANE, ['shape = "rectangle"\ncentre = [6, 5]\nsize = [4, 10]'], ()),
+    "along the box": (PLANE, ['shape = "rectangle"\ncentre = [6, 5]\nsize = [12, 4]'], ()),
+    "a step on a plate": (
+        PLANE, ['shape = "rectangle"\ncentre = [6, 1.5]\nsize = [4, 3]',
+                'shape = "plates"\naxis = "y"'], (),
+    ),
+    "a gap": (PLANE, [BOX.replace("4, 3", "10, 3")], ("the gap at",)),
+    "a thin wall": (PLANE, [BOX.replace("4, 3", "1, 5")], ("cells thick",)),
+    "far too fast": (
+        PLANE, [DISK + "surface = { rotation = 100 }"],
+        ("Mach number", "friction raises the temperature", "run.warmup"),
+    ),
+    "far too fast, with a force": (
+        PLANE + '[fluid]\nforce = { rule = "uniform", acceleration = [0.001, 0] }\n',
+        [DISK + "surface = { rotation = 100 }"],
+        ("surfaces move at Mach number", "friction raises the temperature"),
+    ),
+    "far too fast, between plates": (
+        PLANE, ['shape = "plates"\naxis = "y"', DISK + "surface = { rotation = 100 }"],
+        ("Mach number", "friction raises the temperature", "run.warmup"),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WARNED)
+def test_warnings_about_solids(name: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    start, walls, expected = WARNED[name]
+    text = start + "".join(f"[[wall]]\n{wall.strip()}\n" for wall in walls)
+    (folder / "warned.toml").write_text(text)
+    with pytest.raises(SystemExit) as end:
+        main(["check", str(folder / "warned.toml")])
+    assert end.value.code == 0
+    said = [s for s in capsys.readouterr().out.splitlines() if s.startswith("warning: ")]
+    for words in expected:
+        assert any(words in warning for warning in said), said
+    assert expected or not any("wall" in warning for warning in said), said
 
 
 @pytest.mark.parametrize("name", GOOD)
