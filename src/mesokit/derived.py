@@ -16,6 +16,7 @@ import numpy as np
 from mesokit import theory
 from mesokit.box import AXES
 from mesokit.geometry import Plates
+from mesokit.geometry.from_file import FromFile
 from mesokit.observe import setting
 from mesokit.solids import solids_of
 
@@ -256,7 +257,12 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
 def _solid_warnings(case: Case) -> Iterator[str]:
     if not setting.obstructed(case):
         return
-    thin, narrow = solids_of(case).tight_places()
+    solids = solids_of(case)
+    for i, wall in enumerate(case.walls):
+        if isinstance(wall, FromFile):
+            for note in wall.notes(solids.room, solids.samples(i)):
+                yield f"wall[#{i + 1}].{note}"
+    thin, narrow = solids.tight_places()
     if thin is not None:
         place, size = thin
         yield (

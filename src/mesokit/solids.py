@@ -228,6 +228,12 @@ class Solids:
         """Of the bodies."""
         return [body.name for body in self.bodies]
 
+    def samples(self, wall: int) -> Floats:
+        """The signed distances, smoothed, of a wall that was read from a file, by its number."""
+        found = self.bodies[self.walls.index(wall)].pieces[0].term[0].samples
+        assert found is not None
+        return found
+
     def distance(self, points: Any, plates: bool = True) -> Floats:
         """Signed distance (n,) of points (n, d) from the nearest surface, positive in the fluid.
 

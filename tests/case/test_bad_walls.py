@@ -19,6 +19,7 @@ BALL = 'shape = "sphere"\ncentre = [6, 5, 4]\nradius = 2\n'
 BOX = 'shape = "rectangle"\ncentre = [6, 5]\nsize = [4, 3]\n'
 FLOOR = 'shape = "half-space"\npoint = [0, 3]\nnormal = [0, 1]\n'
 WAVES = 'shape = "cosine-channel"\nwidth = 4\namplitude = 1\n'
+BALL_FILE = 'shape = "mesh"\nfile = "ball.ply"\nposition = [6, 5, 4]\n'
 ONE = '{ shape = "disk", centre = [2, 2], radius = 1 }'
 ARRAY = f'shape = "array"\nrepeat = [2, 2]\nof = {ONE}'
 HEAVY = "[fluid]\nspecies = [{ mass = 1, density = 5 }, { mass = 5, density = 5 }]\n"
@@ -201,6 +202,18 @@ BAD: dict[str, tuple[str, list[str], tuple[str, ...]]] = {
                  ("wall[#1].scale = 0", "above 0")),
     "far too fine": (SPACE, ['shape = "mesh"\nfile = "ball.ply"\nspacing = 0.001'],
                      ("wall[#1].spacing = 0.001", "samples")),
+    "far too coarse": (SPACE, [BALL_FILE + "spacing = 3"],
+                       ("wall[#1].spacing = 3: too coarse", "ball.ply'", "4 x 4 x 4 cells")),
+    "far too small": (SPACE, [BALL_FILE + "scale = 0.001"],
+                      ("wall[#1].spacing = 0.25: too coarse", "ball.ply'", "larger scale")),
+    "far too small a section": (PLANE, ['shape = "mesh"\nfile = "ball.ply"\nscale = 0.001'],
+                                ("wall[#1].spacing = 0.25: too coarse",)),
+    "a section in 3D": (SPACE, [BALL_FILE + "height = 1"],
+                        ("wall[#1].height = 1: only in 2D",)),
+    "ends of an array that differ": (
+        PLANE, ['shape = "sampled"\nfile = "ends.npy"\nspacing = 0.5'],
+        ("wall[#1].file", "first and the last samples along x", "differ by up to"),
+    ),
 }  # fmt: skip
 
 
@@ -220,6 +233,16 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     np.save(path / "ones.npy", np.ones((5, 5)))
     np.save(path / "nan.npy", np.full((5, 5), np.nan))
     np.savez(path / "two.npz", a=post, b=post)
+    x, y = np.meshgrid(np.linspace(0, 12, 25), np.linspace(0, 10, 21), indexing="ij")
+    np.save(path / "turned.npy", (np.hypot(x - 9, y - 5) - 2).T)
+    np.save(path / "ends.npy", 2 - np.hypot(x - 5, y - 5))
+    disk = Image.open(path / "disk.png")
+    disk.save(path / "disk.jpg")
+    disk.resize((24, 20)).save(path / "few.png")
+    disk.point(lambda level: max(level, 100)).save(path / "grey.png")
+    Image.fromarray(np.tile(np.linspace(0, 255, 120).astype(np.uint8), (100, 1))).save(
+        path / "ramp.png"
+    )
     ball = trimesh.creation.icosphere(subdivisions=3, radius=2)
     ball.export(path / "ball.ply")
     ball.update_faces(np.arange(len(ball.faces)) > 3)
@@ -277,6 +300,37 @@ WARNED: dict[str, tuple[str, list[str], tuple[str, ...]]] = {
     "far too fast, between plates": (
         PLANE, ['shape = "plates"\naxis = "y"', DISK + "surface = { rotation = 100 }"],
         ("Mach number", "friction raises the temperature", "run.warmup"),
+    ),
+    "a coarse mesh": (
+        SPACE, [BALL_FILE + "spacing = 1"],
+        ("wall[#1].spacing = 1: the sampled solid has", "the mesh 33."),
+    ),
+    "a mesh longer than the box": (
+        SPACE, [BALL_FILE + "scale = 2.2"], ("wall[#1].file", "by 0.8 cells along z"),
+    ),
+    "a fine mesh": (SPACE, [BALL_FILE], ()),
+    "a good picture": (PLANE, ['shape = "picture"\nfile = "disk.png"'], ()),
+    "few pixels": (
+        PLANE, ['shape = "picture"\nfile = "few.png"'], ("wall[#1].file", "2 pixels a cell"),
+    ),
+    "a grey picture": (
+        PLANE, ['shape = "picture"\nfile = "grey.png"'], ("% of what is drawn is neither black",)
+    ),
+    "a ramp of grey": (
+        PLANE, ['shape = "picture"\nfile = "ramp.png"', 'shape = "plates"\naxis = "x"'],
+        ("% of what is drawn is neither black",),
+    ),
+    "a JPEG": (PLANE, ['shape = "picture"\nfile = "disk.jpg"'], ("a JPEG, which blurs edges",)),
+    "a picture larger than the box": (
+        PLANE, ['shape = "picture"\nfile = "disk.png"\nsize = [18, 15]'],
+        ("wall[#1].size = [18, 15]", "by 5 cells along y"),
+    ),
+    "a turned array": (
+        PLANE, ['shape = "sampled"\nfile = "turned.npy"\nspacing = 0.5'],
+        ("wall[#1].file", "by 2 cells along y", "the first axis of the array is x"),
+    ),
+    "an array over the end": (
+        PLANE, ['shape = "sampled"\nfile = "post.npy"\nspacing = 0.5\norigin = [9, 8]'], (),
     ),
 }  # fmt: skip
 
