@@ -73,10 +73,11 @@ class Probe(Observable):
         """Raise CaseError for a small box that reaches over a plate."""
         place, sides = self.place(case), self.size or (2.0,) * case.box.dimension
         for axis in setting.closed_axes(case):
-            if abs(place[axis] - case.box.size[axis] / 2) > (case.box.size[axis] - sides[axis]) / 2:
+            half = 0.5 * sides[axis] - 1e-9
+            if not half <= place[axis] <= case.box.size[axis] - half:
                 raise CaseError(
-                    f"centre = {show(place)}: with size {show(sides)} it reaches over a plate along "
-                    f"{AXES[axis]}"
+                    f"centre = {show(place)}: with sides {show(sides)} it reaches over a plate "
+                    f"along {AXES[axis]}"
                 )
 
     def place(self, case: Case) -> tuple[float, ...]:
