@@ -70,15 +70,16 @@ class Box:
             return Sheared(size, inverse, speed, speed * time % size[0])
         return oscillating(size, inverse, speed, self.shear_frequency, time)
 
-    def strain(self, time: float) -> float:
-        """Shear strain since time 0.
+    def displacement(self, time: float) -> float:
+        """How far the image above has slid since time 0.
 
-        >>> Box([8, 8], shear_rate=0.1).strain(5.0)
-        0.5
+        >>> Box([8, 8], shear_rate=0.1).displacement(5.0)
+        4.0
         """
+        speed = self.shear_rate * self.size[1]
         if self.shear_frequency == 0.0:
-            return self.shear_rate * time
-        return self.shear_rate / self.shear_frequency * math.sin(self.shear_frequency * time)
+            return speed * time
+        return speed / self.shear_frequency * math.sin(self.shear_frequency * time)
 
 
 class Periodic(NamedTuple):

@@ -208,7 +208,7 @@ def _edges(case: Case, time: float, shape: tuple[int, ...]) -> NDArray[np.float6
     if len(shape) == 1:
         return size
     edges = np.diag(size)
-    slid = case.box.strain(time) * size[1]
+    slid = case.box.displacement(time)
     edges[1, 0] = slid - size[0] * np.round(slid / size[0])
     return edges
 

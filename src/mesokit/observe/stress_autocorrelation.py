@@ -77,7 +77,10 @@ class StressAutocorrelationAccumulator:
         """Time (n,) and G(t) with what each block of time adds to it."""
         case = self.case
         scale = case.box.volume / case.fluid.kT
-        lags, values, residuals, weights = [], [], [], np.zeros(0)
+        lags: list[Array] = []
+        values: list[Array] = []
+        residuals: list[Array] = []
+        weights = np.zeros(0)
         for lag, sums, counts in self.correlator.products(within_blocks=True):
             total = counts.sum(axis=0)
             mean = sums.sum(axis=0) / total

@@ -19,8 +19,8 @@ def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
     use = time > 0
     if ax is None and result.expected is not None and use.any():
         ax, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
-    elif ax is None:
-        ax = figure.subplots()
+    else:
+        ax = figure.subplots() if ax is None else ax
     t = time[use]
     ax.errorbar(
         t, result.value[use], result.error[use], fmt="o", mfc="white", color=COLOURS[0],
@@ -57,11 +57,12 @@ def draw_memory(result: Result, figure: Any, ax: Any) -> None:
 
 def draw_modulus(result: Result, figure: Any, ax: Any) -> None:
     """Relaxation modulus, and what its Fourier transforms say is stored and lost."""
-    given = ax
-    ax, right = figure.subplots(1, 2) if ax is None else (ax, None)
+    right: Any = None
+    if ax is None:
+        ax, right = figure.subplots(1, 2)
     _logarithmic(result, ax)
     ax.set_ylabel(labelled("$|G(t)|$", result.units["value"]))
-    if given is not None or "frequency" not in result.extra:
+    if right is None or "frequency" not in result.extra:
         return
     w = result.extra["frequency"]
     for k, (name, label) in enumerate((("storage", "$G'$"), ("loss", "$G''$"))):
