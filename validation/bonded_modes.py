@@ -119,9 +119,7 @@ def make() -> int:
             late = np.flatnonzero(np.abs(value) > 2 * error[-1])[-1]
             use = t <= t[late]
             laws = {
-                "long waves": theory.transverse_correlation_chain(
-                    k, t, nu, 1 / kind.beads, times
-                ),
+                "long waves": theory.transverse_correlation_chain(k, t, nu, 1 / kind.beads, times),
                 "finite k": theory.transverse_correlation_finite_k(
                     k, t, nu, 1 / kind.beads, modes, slowest.measured, bond, diffusion
                 ),

@@ -41,9 +41,11 @@ if TYPE_CHECKING:
     from mesokit.mpcd.field import NoForce, Sinusoidal, Uniform
     from mesokit.mpcd.fluid import Fluid
     from mesokit.mpcd.initial import Start
+    from mesokit.mpcd.molecule import Molecule
     from mesokit.mpcd.species import Species
     from mesokit.mpcd.thermostat import MaxwellBoltzmann, NoThermostat, Rescale
     from mesokit.observe import (
+        BondLength,
         Comparison,
         Conservation,
         DensityField,
@@ -70,6 +72,7 @@ if TYPE_CHECKING:
         Wake,
         WallStress,
     )
+    from mesokit.potential import FENE, WCA, Bending, Harmonic, LennardJones, Spring
     from mesokit.run import Run
     from mesokit.si import SI, convert
     from mesokit.simulation import Simulation
@@ -105,9 +108,11 @@ _PLACES = {  # module: the public names in it
     "mesokit.mpcd.field": ("NoForce", "Sinusoidal", "Uniform"),
     "mesokit.mpcd.fluid": ("Fluid",),
     "mesokit.mpcd.initial": ("Start",),
+    "mesokit.mpcd.molecule": ("Molecule",),
     "mesokit.mpcd.species": ("Species",),
     "mesokit.mpcd.thermostat": ("MaxwellBoltzmann", "NoThermostat", "Rescale"),
     "mesokit.observe": (
+        "BondLength",
         "Comparison",
         "Conservation",
         "DensityField",
@@ -134,6 +139,7 @@ _PLACES = {  # module: the public names in it
         "Wake",
         "WallStress",
     ),
+    "mesokit.potential": ("FENE", "WCA", "Bending", "Harmonic", "LennardJones", "Spring"),
     "mesokit.run": ("Run",),
     "mesokit.si": ("SI", "convert"),
     "mesokit.simulation": ("Simulation",),
@@ -145,10 +151,14 @@ _HOME["open"] = ("mesokit.io.open", "open_run")
 
 __all__ = [
     "AT",
+    "FENE",
     "SI",
     "SRD",
+    "WCA",
     "ATPlusA",
     "Array",
+    "Bending",
+    "BondLength",
     "Box",
     "Capsule",
     "Case",
@@ -169,12 +179,15 @@ __all__ = [
     "Fluid",
     "Forces",
     "HalfSpace",
+    "Harmonic",
     "Intersection",
+    "LennardJones",
     "LongitudinalModes",
     "MaxwellBoltzmann",
     "MeanSquareDisplacement",
     "Mesh",
     "MesokitError",
+    "Molecule",
     "MoleculeSize",
     "NoForce",
     "NoThermostat",
@@ -197,6 +210,7 @@ __all__ = [
     "Solids",
     "Species",
     "Sphere",
+    "Spring",
     "Start",
     "Stress",
     "StressAutocorrelation",

@@ -17,6 +17,7 @@ from mesokit import theory
 from mesokit.box import AXES
 from mesokit.geometry import Plates
 from mesokit.geometry.from_file import FromFile
+from mesokit.mpcd.molecule import COARSE
 from mesokit.observe import setting
 from mesokit.solids import solids_of
 
@@ -31,6 +32,8 @@ RATES = {
 }  # fmt: skip
 # factors of time, rate
 COSTS = {"thermostat": 1.15, "walls": 1.25, "solids": 1.7, "shear": 1.2, "thread": 0.85}
+# seconds more for each particle-step of a molecule, and for each of its sub-steps
+FLOCK, SUBSTEP = 5e-9, 1e-9
 SAMPLE = 12e-9  # seconds for each particle in each sample of an observable
 BYTES = {"particle 2D": 68, "particle 3D": 88, "cell 2D": 60, "cell 3D": 110, "program": 250e6}
 WIDTHS = {"image": 4, "id": 8}  # bytes of a trajectory field; the others follow the precision
@@ -43,8 +46,8 @@ class Derived:
 
     `flow_speed` is the largest velocity that theory expects of the steady flow, `flow_size` the
     size across it, `reynolds` both over the viscosity, `mach` the speed over that of sound;
-    `steady_time` is the time in which the flow comes within 1/e of its steady state. `seconds`
-    and `memory` (bytes) of the run are estimates, `assumed` says of what.
+    `steady_time` is the time in which the flow comes within 1/e of its steady state. `substeps` are those of
+    molecules. `seconds` and `memory` (bytes) of the run are estimates, `assumed` says of what.
     """
 
     particles: int
@@ -60,6 +63,7 @@ class Derived:
     seconds: float
     memory: int
     trajectory: int
+    substeps: int | None
     assumed: str
     warnings: tuple[str, ...]
 
@@ -88,6 +92,12 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         ("shear", case.box.shear_rate != 0),
     ):
         rate /= COSTS[cost] if applies else 1
+    substeps = None
+    if fluid.molecule is not None:
+        substeps = fluid.molecule.number_of_substeps(
+            dimension, fluid.timestep, fluid.kT, fluid.mass
+        )
+        rate = 1 / (1 / rate + (FLOCK + SUBSTEP * substeps) / threads)
     memory = case.particles * BYTES[f"particle {dimension}D"]
     memory += case.box.volume * BYTES[f"cell {dimension}D"] * threads
     numbers = Derived(
@@ -104,6 +114,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         seconds=case.particles * steps / rate + _observe_seconds(case),
         memory=round(memory + BYTES["program"]),
         trajectory=_trajectory_bytes(case),
+        substeps=substeps,
         assumed=f"{threads} thread{'s' * (threads > 1)}, {rate / 1e6:.0f} million "
         "particle-steps/s between samples",
         warnings=(),
@@ -233,6 +244,14 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
             f"fluid.timestep = {fluid.timestep:g}: the mean free path is {path:.3g} cells; above 1 "
             "the fluid is a dilute gas, with slip at walls"
         )
+    if fluid.molecule is not None and fluid.molecule.propagation == "verlet":
+        phase = fluid.molecule.phase(case.box.dimension, fluid.timestep, fluid.kT, fluid.mass)
+        if fluid.molecule.substeps is not None and phase > COARSE:
+            yield (
+                f"fluid.molecule.substeps = {fluid.molecule.substeps}: the stiffest spring turns "
+                f"by {phase:.2g} rad in each (above {COARSE:g}): its swings read up to "
+                f"{25 * phase**2:.2g} % too large"
+            )
     if fluid.density < 3:
         yield (
             f"fluid.density = {fluid.density:g}: below 3 many cells hold no pair that could "

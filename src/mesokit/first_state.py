@@ -42,7 +42,7 @@ def _last_state(case: Case, path: str) -> tuple[Any, Any]:
     arrays, _ = checkpoint.read(directory.checkpoint_file)
     fluid = CPU(earlier)
     fluid.restore(part(arrays, "fluid/"))
-    return fluid.positions(), fluid.velocities()
+    return fluid.whole_positions(), fluid.velocities()
 
 
 def _kinds(case: Case) -> list[tuple[float, int]]:

@@ -31,6 +31,7 @@ axis = "y"
 ANGLE = 'collision = { rule = "srd", angle = 90 }'
 FORCE = 'force = { rule = "uniform", acceleration = [0.001, 0] }'
 WALL = GOOD[GOOD.index("[[wall]]") : GOOD.index("[[observe]]")]
+BOND = 'bond = { rule = "harmonic", K = 1 }'
 CUBE = {"[20, 10]": "[10, 10, 10]", "[0.001, 0]": "[0.001, 0, 0]", "[0, 0]": "[0, 0, 0]"}
 
 # name: (what is replaced by what in the good case, what the message must say)
@@ -94,6 +95,43 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "compression": ({"[[wall]]": "[trajectory]\nevery = 5\ncompression = 12\n[[wall]]"},
                     ("trajectory.compression = 12", "at most 9")),
     "long timestep": ({"timestep = 0.1": "timestep = 1001"}, ("fluid.timestep", "at most 1000")),
+    "molecule without a bond": ({"density = 5": "molecule = { length = 2 }"},
+                                ("fluid.molecule.bond: missing",)),
+    "bond without a constant": ({"density = 5": 'molecule = { bond = { rule = "harmonic" } }'},
+                                ("fluid.molecule.bond.K: missing",)),
+    "constant of the other convention":
+        ({"density = 5": 'molecule = { bond = { rule = "harmonic", k = 1 } }'},
+         ("fluid.molecule.bond.k: unknown key", "'K'")),
+    "unknown bond": ({"density = 5": 'molecule = { bond = { rule = "harmonics", K = 1 } }'},
+                     ("fluid.molecule.bond.rule = 'harmonics'", "'harmonic'")),
+    "unequal molecules": ({"density = 5": "molecule = { length = 7, " + BOND + " }"},
+                          ("fluid.molecule.length = 7", "2000 particles", "fluid.density = 10.01")),
+    "star without arms": ({"density = 5": 'molecule = { topology = "star", ' + BOND + " }"},
+                          ("fluid.molecule", "arms: missing")),
+    "arms of unequal length":
+        ({"density = 5": 'molecule = { topology = "star", length = 5, arms = 3, ' + BOND + " }"},
+         ("length = 5", "nearest is 4")),
+    "arms of a chain": ({"density = 5": "molecule = { arms = 3, " + BOND + " }"},
+                        ("arms = 3", "star")),
+    "ring of two": ({"density = 5": 'molecule = { topology = "ring", ' + BOND + " }"},
+                    ("length = 2", "at least 3")),
+    "unstable sub-step":
+        ({"density = 5": 'molecule = { substeps = 1, bond = { rule = "harmonic", K = 500 } }'},
+         ("fluid.molecule.substeps = 1", "unstable", "at least")),
+    "bond longer than half the box":
+        ({"density = 5": 'molecule = { bond = { rule = "harmonic", K = 0.01 } }'},
+         ("fluid.molecule.bond", "half of the box", "10")),
+    "molecules and species":
+        ({"density = 5": "species = [{ mass = 1, density = 5 }]\nmolecule = { " + BOND + " }"},
+         ("fluid.species", "fluid.molecule")),
+    "exact chains":
+        ({"density = 5": 'molecule = { length = 4, propagation = "exact", ' + BOND + " }"},
+         ("propagation = 'exact'", "length = 2")),
+    "exact dimers between plates":
+        ({"density = 5": 'molecule = { propagation = "exact", ' + BOND + " }"},
+         ("fluid.molecule.propagation = 'exact'", "walls")),
+    "bond-length without bonds": ({'"velocity-profile"\naxis = "y"': '"bond-length"'},
+                                  ("observe[#1]", "fluid.molecule")),
     "no mass": ({"density = 5": "mass = 1e-4"}, ("fluid.mass = 0.0001", "at least 0.001")),
     "heavy species": ({"density = 5": "species = [{ mass = 1001, density = 5 }]"},
                       ("fluid.species[#1].mass = 1001", "at most 1000")),

@@ -21,9 +21,12 @@ def case_for(observable, make_case, size, **fluid):
     body = Disk(centre=middle, radius=1) if len(size) == 2 else Sphere(centre=middle, radius=1)
     push = {"force": Uniform((0.01,) + (0.0,) * (len(size) - 1))}
     shear = {"shear_rate": 0.01, "shear_frequency": 1.0}
-    slit, molecules = (Plates(axis="y"),), {"molecule": Molecule(bond=Harmonic(K=1.0))}
-    for walls, parts in (((), fluid), (slit, fluid), ((body,), push | fluid), ((), shear | fluid),
-                         ((), molecules | fluid)):  # fmt: skip
+    alone = {key: value for key, value in fluid.items() if key != "species"}
+    pairs = {"density": 9, "molecule": Molecule(bond=Harmonic(K=1.0))} | alone
+    for walls, parts in (
+        ((), fluid), ((Plates(axis="y"),), fluid), ((body,), push | fluid), ((), shear | fluid),
+        ((), pairs),
+    ):  # fmt: skip
         try:
             return make_case(size, [observable], walls=walls, **parts)
         except CaseError as error:
@@ -116,6 +119,12 @@ class FakeFluid:
 
     def masses(self, ids=None):
         return self.m if ids is None else self.m[ids]
+
+    def bond_vectors(self):
+        return np.sqrt(0.5) * self.rng.normal(size=(self.n // 2, self.dimension))
+
+    def potential_energy(self):
+        return float(self.rng.normal(self.n))
 
     def totals(self):
         v = self.velocities()

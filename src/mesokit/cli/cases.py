@@ -82,6 +82,13 @@ def _show_check(case: Case, numbers: Derived) -> None:
     click.echo(case.to_toml())
     transport = numbers.transport
     rows = [("particles", f"{numbers.particles:,}".replace(",", " "), "")]
+    if numbers.substeps is not None:
+        molecule = case.fluid.molecule
+        assert molecule is not None
+        kind = f"{molecule.topology}s of {molecule.length}"
+        number_of = f"{numbers.particles // molecule.length:,}".replace(",", " ")
+        rows.append(("molecules", number_of, kind))
+        rows.append(("sub-steps", str(numbers.substeps), molecule.propagation))
     if transport is not None:
         rows += [
             ("mean free path", number(transport.mean_free_path, "a"), ""),

@@ -115,6 +115,17 @@ class Readings(Memory):
         """From the first to the second particle of each bond (bonds, d)."""
         return self._between(self.bonds())
 
+    def whole_positions(self) -> Floats:
+        """Positions (n, d) by particle id, in the box but for beads that hang over its ends.
+
+        Those are where their molecule has them, next to its first bead, which is in the box.
+        """
+        places = self.positions()
+        if self.beads == 1:
+            return places
+        first = np.repeat(np.arange(0, self.n, self.beads), self.beads)
+        return places[first] + self._between(np.stack([first, np.arange(self.n)], axis=1))
+
     def potential_energy(self) -> float:
         """Of all bonds, angles and pairs of beads."""
         molecule = self.case.fluid.molecule

@@ -2,6 +2,7 @@
 
 /h5md        version, author, creator
 /parameters  case (TOML) and provenance (JSON); units: what a reduced unit is in SI, if known
+/connectivity  bonds (bonds, 2): places, in the rows of particles, of those that are linked
 /particles   fluid: box, position, velocity, image with step, time and value; id, mass, species
 /observables time series, one row for each frame of the trajectory if there is one
 /results     what each observable measured: value, error, expected, fit, x, comparisons
@@ -131,8 +132,11 @@ def _kept(file: Any, path: str | Path) -> bool:
     if not Path(path).exists():
         return False
     with opened(path) as old:
-        if "particles" in old:
-            old.copy("particles", file)
+        for name in ("particles", "connectivity"):
+            if name in old:
+                old.copy(name, file, expand_refs=False)
+        if "connectivity" in file:
+            file["connectivity/bonds"].attrs["particles_group"] = file["particles/fluid"].ref
         return "particles" in old
 
 
@@ -151,6 +155,8 @@ def _particles(
     group.attrs["dimension"] = case.box.dimension
     group["id"] = trajectory.ids
     group["mass"] = np.full(n, case.fluid.mass) if masses is None else masses[:n]
+    if case.fluid.molecule is not None:
+        _bonds(file, group, case, n)
     group["species"] = np.zeros(n, np.int32) if species is None else species[:n]
     group["step"] = steps
     group.create_dataset("time", (frames,), float).attrs["reduced_unit"] = UNITS["time"]
@@ -177,6 +183,19 @@ def _particles(
             row[:, : case.box.dimension] = frame[name]
             data[index] = row
     del group["step"], group["time"]  # the elements have linked them
+
+
+def _bonds(file: Any, group: Any, case: Case, n: int) -> None:
+    """Pairs of particles of the trajectory that are linked, as H5MD has it."""
+    molecule = case.fluid.molecule
+    assert molecule is not None
+    links = np.array(molecule.bonds, np.int64)
+    starts = np.arange(0, case.particles, molecule.length)
+    pairs = (starts[:, None, None] + links).reshape(-1, 2)
+    bonds = file.require_group("connectivity").create_dataset(
+        "bonds", data=pairs[(pairs < n).all(axis=1)], compression=4
+    )
+    bonds.attrs["particles_group"] = group.ref
 
 
 def _element(parent: Any, name: str, clock: Any) -> Any:

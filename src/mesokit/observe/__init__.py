@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import get_args
 
+from mesokit.observe.bond_length import BondLength
 from mesokit.observe.conservation import Conservation
 from mesokit.observe.density_field import DensityField
 from mesokit.observe.density_profile import DensityProfile
@@ -54,6 +55,7 @@ AnyObservable = (
     | SurfaceProfile
     | Wake
     | Probe
+    | BondLength
 )
 OBSERVABLES: tuple[type, ...] = get_args(AnyObservable)
 
@@ -61,6 +63,7 @@ __all__ = [
     "OBSERVABLES",
     "Accumulator",
     "AnyObservable",
+    "BondLength",
     "Comparison",
     "Conservation",
     "DensityField",

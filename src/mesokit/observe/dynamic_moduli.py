@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit import theory
 from mesokit.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.observe import setting
+from mesokit.observe.molecules import rouse_times_of, without_bonds
 from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.observe.stress import PARTS, UNIT
@@ -61,8 +63,10 @@ class DynamicModuliAccumulator:
     def __init__(self, observable: DynamicModuli, case: Case) -> None:
         observable.check(case)
         self.case, self.name = case, observable.label
-        self.blocks = Blocks((len(PARTS), 2))
-        self.squares, self.products = np.zeros((3, 3)), np.zeros((3, len(PARTS)))
+        molecule = case.fluid.molecule
+        self.parts = PARTS[: 2 if molecule is None else 3]
+        self.blocks = Blocks((len(self.parts) + 1, 2))
+        self.squares, self.products = np.zeros((3, 3)), np.zeros((3, len(self.parts) + 1))
         self.began = np.full(1, np.nan)  # time of the first sample of this period
         self.samples = np.zeros(1, np.int64)
 
@@ -78,7 +82,7 @@ class DynamicModuliAccumulator:
         self.samples += 1
         phase = box.shear_frequency * time
         basis = np.array([math.sin(phase), math.cos(phase), 1.0])
-        parts = [fluid.stress[part][0, 1] for part in PARTS[:-1]]
+        parts = [fluid.stress[part][0, 1] for part in self.parts]
         self.squares += np.outer(basis, basis)
         self.products += np.outer(basis, [*parts, sum(parts)])
 
@@ -106,26 +110,37 @@ class DynamicModuliAccumulator:
         return Result(
             quantity="dynamic-moduli",
             name=self.name,
-            x={"part": np.array(PARTS), "modulus": np.array(list(MODULI))},
+            x={"part": np.array([*self.parts, "total"]), "modulus": np.array(list(MODULI))},
             value=self.blocks.mean(),
             error=self.blocks.error(),
             label="modulus",
             units={"value": UNIT[self.case.box.dimension]},
             expected=self.expected(),
-            theory="Newtonian fluid, molecular chaos",
+            theory="Newtonian fluid, molecular chaos"
+            if self.case.fluid.molecule is None
+            else "Rouse molecules, beads with the friction of free particles",
             comparisons=tuple(self.comparisons()) if self.blocks.count else (),
             samples=int(self.samples[0]),
             extra={"frequency": self.case.box.shear_frequency},
         )
 
     def expected(self) -> Array:
-        """eta w for the loss modulus, nothing stored."""
-        expected, c = np.zeros((len(PARTS), 2)), setting.transport(self.case)
+        """eta w for the loss modulus, nothing stored; and what springs add to that."""
+        expected, case = np.zeros((len(self.parts) + 1, 2)), self.case
         expected[:, 1] = np.nan
-        if c is not None:
-            scale = setting.mass_density(self.case) * self.case.box.shear_frequency
+        c, w = setting.transport(case), case.box.shear_frequency
+        if case.fluid.molecule is not None:
+            expected[:, 0] = np.nan
+            c, times = without_bonds(case), rouse_times_of(case)
+            if c is not None and times is not None:
+                modulus = case.fluid.density / case.fluid.molecule.length * case.fluid.kT
+                eta = c.viscosity * setting.mass_density(case)
+                expected[2:, 0] = theory.storage_modulus(w, modulus, times.stress)
+                expected[2, 1] = theory.loss_modulus(w, modulus, times.stress)
+                expected[3, 1] = theory.loss_modulus(w, modulus, times.stress, eta)
+        elif c is not None:
             nu = np.array([c.viscosity_kinetic, c.viscosity_collisional, c.viscosity])
-            expected[:, 1] = nu * scale
+            expected[:, 1] = nu * setting.mass_density(case) * w
         return expected
 
     def comparisons(self) -> list[Comparison]:
@@ -139,12 +154,13 @@ class DynamicModuliAccumulator:
             )
             for k, name in enumerate(MODULI.values())
         ]  # fmt: skip
-        scale = setting.mass_density(self.case) * self.case.box.shear_frequency
-        found.append(
-            Comparison(
-                "viscosity from the loss modulus", float(mean[-1, 1] / scale),
-                float(error[-1, 1] / scale), float(expected[-1, 1] / scale), "a^2/tau",
-                setting.caveat(self.case),
-            )
-        )  # fmt: skip
+        if self.case.fluid.molecule is None:
+            scale = setting.mass_density(self.case) * self.case.box.shear_frequency
+            found.append(
+                Comparison(
+                    "viscosity from the loss modulus", float(mean[-1, 1] / scale),
+                    float(error[-1, 1] / scale), float(expected[-1, 1] / scale), "a^2/tau",
+                    setting.caveat(self.case),
+                )
+            )  # fmt: skip
         return found

@@ -24,10 +24,11 @@ class RunningFluid(Protocol):
     `totals` gives number, momentum (d,) and kinetic energy of all particles. `moments` gives
     number, mass (*bins), momentum (d, *bins) and sum of m v^2 (*bins) in equal bins over the
     whole box along `axes`. `modes` gives sum m e^(-i k r) (K,) and sum m v e^(-i k r) (K, d).
-    `stress` holds "kinetic" and "collisional" (d, d) of the last step if an observer due at it
-    declares `measures = ("stress",)`. `wall_impulse` (surfaces, d + 1 or d + 3) is the momentum and
-    angular momentum given to the lower and the upper plate of a slit, or to each body, during the
-    last `wall_steps` steps, for `measures = ("walls",)`.
+    `bond_vectors` (bonds, d) lead from the first to the second particle of each bond.
+    `stress` holds "kinetic", "collisional" and, of molecules, "bond" (d, d) of the last step if an
+    observer due at it declares `measures = ("stress",)`. `wall_impulse` (surfaces, d + 1 or d + 3)
+    is the momentum and angular momentum given to the lower and the upper plate of a slit, or to
+    each body, during the last `wall_steps` steps, for `measures = ("walls",)`.
     """
 
     n: int
@@ -48,6 +49,8 @@ class RunningFluid(Protocol):
     def velocities(self, ids: NDArray[np.int64] | None = None) -> Array: ...
     def images(self, ids: NDArray[np.int64] | None = None) -> NDArray[np.int32]: ...
     def masses(self, ids: NDArray[np.int64] | None = None) -> Array: ...
+    def bond_vectors(self) -> Array: ...
+    def potential_energy(self) -> float: ...
     @property
     def stress(self) -> Mapping[str, Array]: ...
     @property

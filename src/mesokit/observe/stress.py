@@ -1,4 +1,4 @@
-"""The stress of the fluid, kinetic and collisional: pressure, and viscosity under shear."""
+"""The stress of the fluid, kinetic, collisional, of bonds: pressure, and viscosity under shear."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from mesokit.statistics import Blocks
 if TYPE_CHECKING:
     from mesokit.case import Case
 
-PARTS = ("kinetic", "collisional", "total")
+PARTS = ("kinetic", "collisional", "bond")  # the last one of molecules only
 UNIT = {2: "m/tau^2", 3: "m/(a tau^2)"}  # force per area, by dimension
 
 
 @component
 class Stress(Observable):
-    """Stress tensor: momentum carried by flying particles and moved within cells by collisions.
+    """Stress tensor: momentum carried by flying particles, and moved by collisions and bonds.
 
     Positive under shear, sigma_xy = eta dv_x/dy, so that the pressure is minus its diagonal.
     """
@@ -51,12 +51,15 @@ class StressAccumulator:
         observable.check(case)
         self.case, self.name = case, observable.label
         d = case.box.dimension
-        self.blocks = Blocks((3, d, d))
+        molecule = case.fluid.molecule
+        self.parts = PARTS[: 2 if molecule is None else 3]
+        self.beads = 1 if molecule is None else molecule.length
+        self.blocks = Blocks((len(self.parts) + 1, d, d))
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        kinetic, collisional = fluid.stress["kinetic"], fluid.stress["collisional"]
-        self.blocks.add(np.stack([kinetic, collisional, kinetic + collisional]))
+        parts = [fluid.stress[name] for name in self.parts]
+        self.blocks.add(np.stack([*parts, sum(parts[1:], parts[0])]))
 
     def state(self) -> State:
         """All it has to remember."""
@@ -72,13 +75,13 @@ class StressAccumulator:
         return Result(
             quantity="stress",
             name=self.name,
-            x={"part": np.array(PARTS), "row": axes, "column": axes},
+            x={"part": np.array([*self.parts, "total"]), "row": axes, "column": axes},
             value=self.blocks.mean(),
             error=self.blocks.error(),
             label="stress",
             units={"value": UNIT[self.case.box.dimension]},
             expected=self.expected(),
-            theory="molecular chaos, ideal gas",
+            theory="molecular chaos, ideal gas" + (" of molecules" if self.beads > 1 else ""),
             comparisons=tuple(self.comparisons()) if self.blocks.count else (),
             samples=self.blocks.count,
         )
@@ -86,19 +89,22 @@ class StressAccumulator:
     def expected(self) -> Array:
         """Pressure on the diagonal, eta gdot off it; nan where there is no theory."""
         case, d = self.case, self.case.box.dimension
-        expected = np.zeros((3, d, d))
+        expected = np.zeros((len(self.parts) + 1, d, d))
         known = setting.isothermal(case) or not setting.driven(case)
         pressure = case.fluid.density * case.fluid.kT if known else np.nan
         for axis in range(d):
-            expected[0, axis, axis] = expected[2, axis, axis] = -pressure
+            expected[0, axis, axis] = -pressure
+            expected[-1, axis, axis] = -pressure / self.beads  # bonds pull as if beads were one
+            expected[2:-1, axis, axis] = pressure * (1 - 1 / self.beads)
         rate, coefficients = case.box.shear_rate, setting.transport(case)
         if case.fluid.force.rule != "none":
             expected[:] = np.nan
         elif rate:
             # the parts and the normal stresses are of higher order in the shear rate
             expected[:, range(d), range(d)] = np.nan
+            expected[2:-1] = np.nan
             steady = coefficients and not case.box.shear_frequency
-            for part, nu in enumerate(self.viscosities()):
+            for part, nu in zip((0, 1, -1), self.viscosities(), strict=True):
                 shear = nu * setting.mass_density(case) * rate if steady else np.nan
                 expected[part, 0, 1] = expected[part, 1, 0] = shear
         return expected
@@ -123,7 +129,7 @@ class StressAccumulator:
                 setting.chaos(case, "1 to 2 % high at mean free path 0.1"),
             )
             for part, name, note in zip(
-                (2, 0, 1), ("viscosity", "kinetic part", "collisional part"), notes, strict=True
+                (-1, 0, 1), ("viscosity", "kinetic part", "collisional part"), notes, strict=True
             ):
                 nu = self.viscosities()[part]
                 found.append(
@@ -136,12 +142,19 @@ class StressAccumulator:
                         note,
                     )
                 )
+            if self.beads > 1:
+                found.append(
+                    Comparison(
+                        "bond part from the stress", float(mean[2, 0, 1] / scale),
+                        float(error[2, 0, 1] / abs(scale)), np.nan, "a^2/tau",
+                    )
+                )  # fmt: skip
         known = setting.isothermal(case) or not setting.driven(case)
-        ideal = case.fluid.density * case.fluid.kT
+        ideal = case.fluid.density * case.fluid.kT / self.beads
         found.append(
             Comparison(
                 "pressure",
-                float(-np.trace(mean[2]) / case.box.dimension),
+                float(-np.trace(mean[-1]) / case.box.dimension),
                 setting.with_start(case, float(self.trace_error()), ideal),
                 ideal if known else np.nan,
                 UNIT[self.case.box.dimension],
@@ -154,5 +167,5 @@ class StressAccumulator:
         from mesokit.observe.estimate import Estimate, of_mean
 
         every, d = of_mean(self.blocks), self.case.box.dimension
-        trace = np.trace(every.residuals[:, 2], axis1=1, axis2=2) / d
+        trace = np.trace(every.residuals[:, -1], axis1=1, axis2=2) / d
         return float(Estimate(np.zeros(()), trace, every.weights).error)

@@ -33,6 +33,7 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "stress": tensor.draw,
     "dynamic-moduli": tensor.draw_moduli,
     "stress-autocorrelation": correlation.draw_modulus,
+    "bond-length": tensor.draw,
     "forces": forces.draw,
     "radial-profile": profile.draw,
     "surface-profile": profile.draw,

@@ -14,6 +14,7 @@ SYMBOLS = {
     "stress": r"$\sigma_{\alpha\beta}$",
     "dynamic-moduli": "modulus",
     "molecule-size": r"$\langle x_\alpha x_\beta\rangle$",
+    "bond-length": r"$\langle b_\alpha b_\beta\rangle$",
 }
 
 
