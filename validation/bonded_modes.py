@@ -88,13 +88,13 @@ def make() -> int:
     page = Page("bonded_modes", "Velocity modes of dimers and decamers")
     nu = theory.transport("srd", 3, 10, 0.1, angle=ANGLE, thermostat="maxwell-boltzmann").viscosity
     page.text(
-        f"SRD in 3D at 2.27 rad, density 10, timestep 0.1, nu = {nu:.4f} without bonds; U = K r^2. A "
-        f"helical shear wave of amplitude {AMPLITUDE} decays in a cubic box; what is left of it, the "
-        f"mean of {len(SEEDS)} runs with the standard error of that, up to the time when it falls "
-        "below two standard errors for good. Theory has no free parameter but the normal-mode time, "
-        "which is measured in the fluid at rest (12^3 cells); the stress time is half of it. 'Long "
-        "waves' is the thesis' formula, 'finite k' has the elastic kernel of molecules as long as "
-        "the wave (theory-polymers.md)."
+        f"SRD in 3D at 2.27 rad, density 10, timestep 0.1, nu = {nu:.4f} without bonds; U = K r^2. "
+        f"A helical shear wave of amplitude {AMPLITUDE} decays in a cubic box; what is left of it, "
+        f"the mean of {len(SEEDS)} runs with the standard error of that, up to the time when it "
+        "falls below two standard errors for good. Theory has no free parameter but the "
+        "normal-mode time, which is measured in the fluid at rest (12^3 cells); the stress time is "
+        "half of it. 'Long waves' is the thesis' formula, 'finite k' has the elastic kernel of "
+        "molecules as long as the wave (docs/theory-polymers.md)."
     )
     fig, axes = plt.subplots(2, 2, figsize=(10, 6), sharex="col", height_ratios=[2, 1])
     rows: list[Comparison] = []
@@ -131,7 +131,8 @@ def make() -> int:
                 rows.append(
                     Comparison(
                         f"{kind.name}, |k_n| = {label}: largest deviation, {name}", off[worst],
-                        error[-1], 0.0, "", f"at {t[worst]:.1f} of {t[late]:.0f} tau; rms {rms:.4f}",
+                        error[-1], 0.0, "",
+                        f"at {t[worst]:.1f} of {t[late]:.0f} tau; rms {rms:.4f}",
                     )
                 )  # fmt: skip
                 page.check(

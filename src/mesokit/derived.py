@@ -46,8 +46,9 @@ class Derived:
 
     `flow_speed` is the largest velocity that theory expects of the steady flow, `flow_size` the
     size across it, `reynolds` both over the viscosity, `mach` the speed over that of sound;
-    `steady_time` is the time in which the flow comes within 1/e of its steady state. `substeps` are those of
-    molecules. `seconds` and `memory` (bytes) of the run are estimates, `assumed` says of what.
+    `steady_time` is the time in which the flow comes within 1/e of its steady state. `substeps` are
+    those of molecules. `seconds` and `memory` (bytes) of the run are estimates, `assumed` says of
+    what.
     """
 
     particles: int

@@ -16,7 +16,7 @@ from mesokit.observe import setting
 from mesokit.observe.molecules import rouse_times_of, without_bonds
 from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
-from mesokit.observe.stress import PARTS, UNIT
+from mesokit.observe.stress import PARTS, ROUSE, UNIT
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
@@ -118,7 +118,7 @@ class DynamicModuliAccumulator:
             expected=self.expected(),
             theory="Newtonian fluid, molecular chaos"
             if self.case.fluid.molecule is None
-            else "Rouse molecules, beads with the friction of free particles",
+            else ROUSE,
             comparisons=tuple(self.comparisons()) if self.blocks.count else (),
             samples=int(self.samples[0]),
             extra={"frequency": self.case.box.shear_frequency},

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from mesokit.mpcd.molecule import Molecule
 
 
-def molecule_of(case: Case, quantity: str) -> Molecule:
+def molecule_of(case: Case, quantity: str = "this") -> Molecule:
     """What the fluid is made of. Raises CaseError for a fluid of single particles."""
     if case.fluid.molecule is None:
         raise CaseError(f"{quantity} needs a fluid of molecules; give fluid.molecule")
@@ -28,7 +28,7 @@ def molecule_of(case: Case, quantity: str) -> Molecule:
 
 def beads_of(case: Case, wanted: int | None = None) -> NDArray[np.int64]:
     """Ids of the beads (molecules, length) of all molecules, or of some that are evenly spread."""
-    length = case.fluid.molecule.length
+    length = molecule_of(case).length
     molecules = case.particles // length
     chosen = np.arange(molecules) if wanted is None else spread_ids(wanted, molecules)
     return chosen[:, None] * length + np.arange(length)
@@ -38,7 +38,7 @@ def modes_of(molecule: Molecule) -> theory.NormalModes:
     """Normal modes of its springs."""
     if molecule.topology == "ring":
         return theory.ring_modes(molecule.length)
-    if molecule.topology == "star":
+    if molecule.arms is not None:
         return theory.star_modes(molecule.arms, (molecule.length - 1) // molecule.arms)
     return theory.linear_modes(molecule.length)
 
@@ -63,16 +63,27 @@ def without_bonds(case: Case) -> theory.Transport | None:
 
 def rouse_times_of(case: Case) -> theory.RouseTimes | None:
     """Relaxation times of molecules whose beads have the friction of free particles."""
-    coefficients, spring = without_bonds(case), spring_of(case.fluid.molecule)
+    coefficients, spring = without_bonds(case), spring_of(molecule_of(case))
     if coefficients is None or spring is None:
         return None
     friction = case.fluid.kT / coefficients.diffusion
-    return theory.rouse_times(modes_of(case.fluid.molecule), friction, K=spring.K)
+    return theory.rouse_times(modes_of(molecule_of(case)), friction, K=spring.K)
+
+
+def stress_in_shear(case: Case) -> theory.ShearStress | None:
+    """Viscosity (dynamic) and normal-stress differences of Rouse molecules in steady shear."""
+    c, times = without_bonds(case), rouse_times_of(case)
+    if c is None or times is None:
+        return None
+    fluid = case.fluid
+    modulus = fluid.density / molecule_of(case).length * fluid.kT
+    eta = c.viscosity * setting.mass_density(case)
+    return theory.maxwell_shear(case.box.shear_rate, modulus, times.stress, eta)
 
 
 def free_bond(case: Case) -> float | None:
     """Mean square length of a bond that is not in a ring; None without a theory."""
-    spring = spring_of(case.fluid.molecule)
+    spring = spring_of(molecule_of(case))
     if spring is None:
         return None
     return theory.mean_square_bond(K=spring.K, dimension=case.box.dimension, kT=case.fluid.kT)

@@ -114,7 +114,7 @@ class NormalModesAccumulator:
     def comparisons(self, times: Array | None) -> list[Comparison]:
         """Relaxation times and mean squares of the slowest."""
         found = []
-        spring = spring_of(self.case.fluid.molecule) if self.undisturbed() else None
+        spring = spring_of(molecule_of(self.case)) if self.undisturbed() else None
         for p, correlator in enumerate(self.correlators[:SHOWN]):
             measured = self.relaxation_time(correlator)
             if measured is not None:

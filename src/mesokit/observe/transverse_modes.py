@@ -11,7 +11,13 @@ from mesokit.component import component, tag
 from mesokit.observe import setting
 from mesokit.observe.decay import fit_curve, normalised
 from mesokit.observe.modes import SHOWN, Array, Modes, ModesAccumulator, transverse_units
-from mesokit.observe.molecules import free_bond, modes_of, rouse_times_of, without_bonds
+from mesokit.observe.molecules import (
+    free_bond,
+    modes_of,
+    molecule_of,
+    rouse_times_of,
+    without_bonds,
+)
 from mesokit.observe.result import Comparison, Result
 
 if TYPE_CHECKING:
@@ -88,7 +94,7 @@ class TransverseModesAccumulator(ModesAccumulator):
         coefficients, times, bond = without_bonds(case), rouse_times_of(case), free_bond(case)
         if coefficients is None or times is None or bond is None:
             return None
-        molecule, nu = case.fluid.molecule, coefficients.viscosity
+        molecule, nu = molecule_of(case), coefficients.viscosity
         elasticity = case.fluid.kT / (case.fluid.mass * molecule.length)
         if not finite:
             return theory.transverse_correlation_chain(
