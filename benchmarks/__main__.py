@@ -1,6 +1,6 @@
 """Run all benchmarks, alternating with the peer, and write docs/benchmark.md.
 
-python -m benchmarks [--rounds 5] [--seconds 3] [--only peers,cost,solids,observe,memory,startup]
+python -m benchmarks [--rounds 5] [--seconds 3] [--only peers,cost,solids,bonded,observe,memory,startup]
 """
 
 from __future__ import annotations
@@ -10,12 +10,13 @@ import datetime
 import platform
 from pathlib import Path
 
-from benchmarks import costs, peers, startup
+from benchmarks import bonded, costs, peers, startup
 
 PARTS = {
     "peers": peers.table,
     "cost": costs.rules,
     "solids": costs.solids,
+    "bonded": bonded.table,
     "observe": costs.observables,
     "memory": costs.memory,
     "startup": startup.table,

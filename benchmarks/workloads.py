@@ -47,8 +47,21 @@ def case(name: str) -> Case:
 
     W1@48 is W1 with another length of the box. W5 is a 2D fluid of 400 x 50 cells with a
     thermostat: empty, or a channel with -plates, with -disks that cover 10 % of the area as well,
-    or with these -sampled.
+    or with these -sampled. B-dimers-5 and B-decamers-5 are fluids of molecules, by 5 sub-steps.
     """
+    if name.startswith("B-"):
+        from benchmarks import bonded
+
+        _, kind, substeps = name.split("-")
+        return Case(
+            run=Run(steps=STEPS),
+            box=Box([bonded.LENGTH] * 3),
+            fluid=Fluid(
+                density=bonded.DENSITY,
+                collision=SRD(angle=130),
+                molecule=bonded.molecule(kind, int(substeps)),
+            ),
+        )
     if name.startswith("W5"):
         return _channel(name.partition("-")[2])
     workload, _, variant = name.partition("-")
