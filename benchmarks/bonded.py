@@ -36,7 +36,7 @@ def table(rounds: int, seconds: float) -> Iterator[str]:
     yield (
         f"3D, {LENGTH}^3 cells, density {DENSITY}, harmonic chains with K = 1, one thread; "
         "nanoseconds. A sub-step is what ten cost more than five, over five. LAMMPS runs the same "
-        "chains with `bond_style harmonic` and `fix nve`, without a fluid; its step is one sub-step."
+        "chains with `bond_style harmonic` and `fix nve`, with no fluid; its step is one sub-step."
     )
     yield ""
     yield (
