@@ -1,6 +1,8 @@
 """Run all benchmarks, alternating with the peer, and write docs/benchmark.md.
 
-python -m benchmarks [--rounds 5] [--seconds 3] [--only peers,cost,solids,bonded,...]
+python -m benchmarks [--rounds 5] [--seconds 3] [--only PART,PART]
+
+Parts: peers, cost, solids, bonded, observe, memory, startup.
 """
 
 from __future__ import annotations

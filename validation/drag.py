@@ -110,7 +110,7 @@ def spheres(radius: float, length: int) -> Case:
     nu, concentration = viscosity(3), 4 * math.pi * radius**3 / (3 * length**3)
     push = nu * SPEED / theory.cubic_array_permeability(concentration, length)
     return Case(
-        run=Run(steps=long(1e4), warmup=long(2000), seed=7),
+        run=Run(steps=long(3e4), warmup=long(6000), seed=7),
         box=Box([length] * 3),
         fluid=fluid(3, push),
         walls=[Sphere(centre=[length / 2] * 3, radius=radius)],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -22,6 +23,9 @@ class Box:
     size: tuple[int, ...] = param(doc="length along each axis: two numbers (2D) or three", unit="a")
     shear_rate: float = param(
         0.0, doc="Lees-Edwards shear: flow along x, gradient along y", unit="1/time"
+    )
+    shear_frequency: float = param(
+        0.0, doc="the shear rate is shear_rate * cos(shear_frequency * time)", unit="1/time", ge=0
     )
 
     @field_validator("size")
@@ -51,7 +55,9 @@ class Box:
             cells *= length
         return cells
 
-    def kernel(self, closed: tuple[bool, ...], time: float = 0.0) -> Periodic | Sheared:
+    def kernel(
+        self, closed: tuple[bool, ...], time: float = 0.0
+    ) -> Periodic | Sheared | Oscillating:
         """Parameters for `fold` at a time; `closed` says which axes walls close."""
         size = tuple(float(length) for length in self.size)
         inverse = tuple(
@@ -60,7 +66,20 @@ class Box:
         if self.shear_rate == 0.0:
             return Periodic(size, inverse)
         speed = self.shear_rate * size[1]
-        return Sheared(size, inverse, speed, speed * time % size[0])
+        if self.shear_frequency == 0.0:
+            return Sheared(size, inverse, speed, speed * time % size[0])
+        return oscillating(size, inverse, speed, self.shear_frequency, time)
+
+    def displacement(self, time: float) -> float:
+        """How far the image above has slid since time 0.
+
+        >>> Box([8, 8], shear_rate=0.1).displacement(5.0)
+        4.0
+        """
+        speed = self.shear_rate * self.size[1]
+        if self.shear_frequency == 0.0:
+            return speed * time
+        return speed / self.shear_frequency * math.sin(self.shear_frequency * time)
 
 
 class Periodic(NamedTuple):
@@ -82,6 +101,25 @@ class Sheared(NamedTuple):
     offset: float
 
 
+class Oscillating(NamedTuple):
+    """The same where the speed is `fastest` times the cosine of `frequency` times the time."""
+
+    size: tuple[float, ...]
+    inverse: tuple[float, ...]
+    speed: float
+    offset: float
+    fastest: float
+    frequency: float
+
+
+@scalar
+def oscillating(size, inverse, fastest, frequency, time):
+    """An oscillating box at a time."""
+    phase = frequency * time
+    offset = fastest / frequency * math.sin(phase) % size[0]
+    return Oscillating(size, inverse, fastest * math.cos(phase), offset, fastest, frequency)
+
+
 @generic
 def at_time(box, time):
     """The box at a time: under shear its images have moved."""
@@ -95,6 +133,11 @@ def _(box, time):
 @at_time.register(Sheared)
 def _(box, time):
     return Sheared(box.size, box.inverse, box.speed, box.speed * time % box.size[0])
+
+
+@at_time.register(Oscillating)
+def _(box, time):
+    return oscillating(box.size, box.inverse, box.fastest, box.frequency, time)
 
 
 @scalar
@@ -135,7 +178,7 @@ def _(box, r, v, shift):
     return r, v, n
 
 
-@fold.register(Sheared)
+@fold.register(Sheared, Oscillating)
 def _(box, r, v, shift):
     up = np.floor((r[1] + shift[1]) * box.inverse[1])  # first, because it moves x
     r = tuple_setitem(r, 0, r[0] - up * box.offset)
@@ -153,7 +196,7 @@ def _(box, r, v, crossed):
     return r, v
 
 
-@unfold.register(Sheared)
+@unfold.register(Sheared, Oscillating)
 def _(box, r, v, crossed):
     for k in range(len(r)):
         r = tuple_setitem(r, k, r[k] + crossed[k] * box.size[k])
@@ -166,7 +209,7 @@ def _(box, r, v, shift):
     return r, v, ()
 
 
-@slide.register(Sheared)
+@slide.register(Sheared, Oscillating)
 def _(box, r, v, shift):
     return fold(box, r, v, shift)
 
@@ -181,6 +224,6 @@ def _(box, r, v):
     return v
 
 
-@peculiar.register(Sheared)
+@peculiar.register(Sheared, Oscillating)
 def _(box, r, v):
     return tuple_setitem(v, 0, v[0] - box.speed * (r[1] / box.size[1] - 0.5))

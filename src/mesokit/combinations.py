@@ -14,7 +14,7 @@ from mesokit.geometry import SHAPES, Surface
 from mesokit.mpcd.molecule import COARSE, MOST_SUBSTEPS, UNSTABLE
 from mesokit.observe import setting
 from mesokit.potential.thermal import mean_square
-from mesokit.solids import solids_of
+from mesokit.solids import labels, solids_of
 from mesokit.units import MATCHES
 
 if TYPE_CHECKING:
@@ -123,9 +123,20 @@ def walls(case: Case) -> Iterator[str]:
                 f"{key}.virtual = {show(wall.virtual)}: expected {show(case.walls[0].virtual)} as "
                 "for wall[#1]; all walls have one rule"
             )
+    yield from _same_names(case)
     masses = {kind.mass for kind in case.fluid.species}
     if len(masses) > 1 and any(wall.virtual == "top-up" for wall in case.walls):
         yield "wall[#1].virtual = 'top-up': not with species of different mass; use 'extrapolate'"
+
+
+def _same_names(case: Case) -> Iterator[str]:
+    """Forces are kept by the names of the solids."""
+    seen: dict[str, int] = {}
+    for i, label in enumerate(labels(case.walls)):
+        if label in seen:
+            first = f"wall[#{seen[label]}]"
+            yield f"wall[#{i + 1}].name: {show(label)} is also the name of {first}; rename one"
+        seen[label] = i + 1
 
 
 def _shape(cls: type) -> str:
@@ -149,12 +160,13 @@ def moving_surfaces(case: Case) -> Iterator[str]:
             what = "one number in 2D" if case.box.dimension == 2 else "a number or three"
             yield f"{key}.rotation = {show(surface.rotation)}: expected {what}"
     if any(surface.moves for _, surface, _ in _surfaces(case)):
-        across = solids_of(case).motion_across()
+        motion = solids_of(case).motion
         for i, wall in enumerate(case.walls):
-            if wall.shape != "plates" and across.get(i, 0.0) > 1e-6:
+            speed, across = motion.get(i, (0.0, 0.0))
+            if wall.shape != "plates" and across > 1e-6 * max(1.0, speed):
                 yield (
                     f"wall[#{i + 1}].surface: its surface would move across itself, at "
-                    f"{across[i]:.3g}; expected a motion along the surface, such as the rotation "
+                    f"{across:.3g}; expected a motion along the surface, such as the rotation "
                     "of something round"
                 )
 
@@ -188,6 +200,25 @@ def room(case: Case) -> Iterator[str]:
             )
     if solids.free_volume < 1:
         yield f"wall: the solids leave {solids.free_volume:.3g} cells to the fluid"
+    for i in solids.without_surface():
+        yield f"wall[#{i + 1}].{_absent(case.walls[i], case.box.size)}"
+
+
+def _absent(wall: Any, box: tuple[int, ...]) -> str:
+    """What is wrong with a solid of which no surface is in the box, key first."""
+    known = ("radius", "size", "width", "parts", "of", "file")
+    inside = wall.fluid == "inside"
+    keys = known if inside else ("file", "parts", "of", *wall.vectors(), *known)
+    key = next(key for key in keys if hasattr(wall, key))
+    value = getattr(wall, key)
+    text = f"{key} = {show(value)}" if key not in ("parts", "of") else key
+    if inside:
+        why = "with fluid = 'inside', what is to surround the fluid lies beyond its ends"
+    elif wall.shape == "intersection":
+        why = "the parts have nothing in common there"
+    else:
+        why = "expected it to reach into the box"
+    return f"{text}: no surface in the box {show(box)}; {why}"
 
 
 def collision(case: Case) -> Iterator[str]:
@@ -228,6 +259,11 @@ def shear(case: Case) -> Iterator[str]:
     """Lees-Edwards images along y, flow along x."""
     rate, rule = case.box.shear_rate, case.fluid.force
     if rate == 0:
+        if case.box.shear_frequency:
+            yield (
+                f"box.shear_frequency = {show(case.box.shear_frequency)}: needs box.shear_rate, "
+                "the amplitude of the shear rate"
+            )
         return
     key = f"box.shear_rate = {show(rate)}"
     for i, wall in enumerate(case.walls):

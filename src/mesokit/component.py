@@ -15,6 +15,7 @@ import functools
 import math
 import numbers
 import operator
+import re
 import types
 import typing
 from collections.abc import Iterable, Sequence
@@ -181,7 +182,7 @@ def first_line(
     """The most telling of the errors as one line: key path, value, what was expected."""
     entries = sorted(error.errors(), key=lambda e: not _is_unknown(e))  # a typo explains the rest
     first = entries[0]
-    path, holder = _walk(cls, first["loc"], rename or {}, start)
+    path, holder, here = _walk(cls, first["loc"], rename or {}, start)
     kind, context = first["type"], first.get("ctx", {})
     if _is_unknown(first):
         known = known_keys(holder, rename if holder is cls else None)
@@ -191,13 +192,16 @@ def first_line(
         return f"{path}: missing; it has no default"
     if kind in ("union_tag_not_found", "union_tag_invalid"):
         path += "." + str(context["discriminator"]).strip("'")
-        known = _known_tags(cls, first["loc"])
+        known = [name[1] for name in map(tag_of, _members(here)) if name]
         if kind == "union_tag_not_found":
             return f"{path}: missing; expected {one_of(known)}"
         return f"{path} = {show(context['tag'])}: {_choice(context['tag'], known)}"
+    words = _expected(first)
+    if kind == "value_error" and _names_key_of(here if first["loc"] else cls, words):
+        return f"{path}.{words}" if path else words
     if not first["loc"]:  # a check of the whole component says it all
-        return f"{path}: {_expected(first)}" if path else _expected(first)
-    return f"{path} = {show(first['input'])}: {_expected(first)}"
+        return f"{path}: {words}" if path else words
+    return f"{path} = {show(first['input'])}: {words}"
 
 
 def known_keys(cls: Any, rename: dict[str, str] | None = None) -> list[str]:
@@ -210,6 +214,19 @@ def nearest(given: str, known: Iterable[str]) -> str:
     plain = {name.lower().replace("_", "-"): name for name in known}
     close = difflib.get_close_matches(given.lower().replace("_", "-"), plain, 1, 0.5)
     return f"; did you mean {show(plain[close[0]])}?" if close else ""
+
+
+def require_known(given: Iterable[str], known: Sequence[str]) -> None:
+    """Raise CaseError for a name that is not known.
+
+    >>> require_known(["regoin"], ["region", "window"])
+    Traceback (most recent call last):
+        ...
+    mesokit.errors.CaseError: regoin: unknown; expected 'region' or 'window'; did you mean 'region'?
+    """
+    for name in given:
+        if name not in known:
+            raise CaseError(f"{name}: unknown; expected {one_of(known)}{nearest(name, known)}")
 
 
 def one_of(names: Sequence[str]) -> str:
@@ -245,19 +262,16 @@ def _choice(given: Any, known: Sequence[str]) -> str:
     return f"expected {one_of(known)}{nearest(str(given), known)}"
 
 
-def _known_tags(cls: Any, loc: Sequence[int | str]) -> list[str]:
-    here = cls
-    for item in loc:
-        if isinstance(item, str):
-            owner = next((c for c in _members(here) if item in c.__pydantic_fields__), here)
-            here = owner.__pydantic_fields__[item].annotation
-    return [name[1] for name in map(tag_of, _members(here)) if name]
+def _names_key_of(here: Any, words: str) -> bool:
+    """Whether a message begins with a key of the component that it is about."""
+    key = re.match(r"(\w+)(\[#\d+\])?(\.| = |: )", words)
+    return key is not None and is_component(here) and key[1] in here.__pydantic_fields__
 
 
 def _walk(
     cls: Any, loc: Sequence[int | str], rename: dict[str, str], start: str
-) -> tuple[str, Any]:
-    """Key path as the user wrote it, and the component that holds the last key."""
+) -> tuple[str, Any, Any]:
+    """Key path as the user wrote it, the component that holds the last key, and its type."""
     if loc and isinstance(loc[0], int):  # a positional argument in Python
         names = list(cls.__pydantic_fields__)
         names = [n for n in names if n not in TAGS]
@@ -278,7 +292,7 @@ def _walk(
         path += ("." if path else "") + _printable(shown)
         fields = holder.__pydantic_fields__
         here = fields[item].annotation if item in fields else None
-    return path, holder
+    return path, holder, here
 
 
 def _members(hint: Any) -> list[Any]:

@@ -16,6 +16,7 @@ import numpy as np
 from mesokit import theory
 from mesokit.box import AXES
 from mesokit.geometry import Plates
+from mesokit.geometry.from_file import FromFile
 from mesokit.mpcd.molecule import COARSE
 from mesokit.observe import setting
 from mesokit.solids import solids_of
@@ -132,7 +133,11 @@ def _flow(case: Case) -> tuple[str, int, float | None]:
         if len(plates) == 1 and not plates[0].diffuse:
             bare = dataclasses.replace(case, walls=plates, observe=(), trajectory=None)
             kind, across, speed = _flow(bare)
+            if speed is not None and _surface_speed(case) > speed:
+                return "of moving surfaces", across, _surface_speed(case)
             return kind if kind == "rest" else f"{kind}, as without obstacles", across, speed
+        if _surface_speed(case) and case.fluid.force.rule == "none":
+            return "of moving surfaces", 1, _surface_speed(case)
     kinds, across, squares = [], 1, np.zeros(201)
     for i in range(case.box.dimension):
         flow = setting.flow(case, i)
@@ -144,6 +149,12 @@ def _flow(case: Case) -> tuple[str, int, float | None]:
             across = flow.across
         squares = squares + speeds**2
     return (kinds or ["rest"])[0], across, float(np.sqrt(squares.max()))
+
+
+def _surface_speed(case: Case) -> float:
+    """Of the fastest place on a solid's surface: no place in the fluid that it drags is faster."""
+    motion = solids_of(case).motion.values() if setting.obstructed(case) else ()
+    return max((speed for speed, _ in motion), default=0.0)
 
 
 def _length(case: Case, across: int) -> float:
@@ -166,7 +177,10 @@ def _steady_time(case: Case, across: int, viscosity: float) -> float:
 
 
 def _heating(case: Case, across: int, viscosity: float) -> float | None:
-    """Relative rise of the temperature by viscous heating over the run; None if held."""
+    """Relative rise of the temperature by viscous heating over the run; None if held.
+
+    About solids that move, of a flow that falls to zero over the whole box: they heat it no less.
+    """
     if setting.isothermal(case):
         return None
     length = float(case.box.size[across])
@@ -175,6 +189,7 @@ def _heating(case: Case, across: int, viscosity: float) -> float | None:
     dissipation = sum(
         viscosity * float(np.mean(np.gradient(u(y), y) ** 2)) for u in profiles if u is not None
     )
+    dissipation = max(dissipation, viscosity * (_surface_speed(case) / length) ** 2)
     time = (case.run.warmup + case.run.steps) * case.fluid.timestep
     return 2 / case.box.dimension * case.fluid.mass * dissipation * time / case.fluid.kT
 
@@ -262,7 +277,12 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
 def _solid_warnings(case: Case) -> Iterator[str]:
     if not setting.obstructed(case):
         return
-    thin, narrow = solids_of(case).tight_places()
+    solids = solids_of(case)
+    for i, wall in enumerate(case.walls):
+        if isinstance(wall, FromFile):
+            for note in wall.notes(solids.room, solids.samples(i)):
+                yield f"wall[#{i + 1}].{note}"
+    thin, narrow = solids.tight_places()
     if thin is not None:
         place, size = thin
         yield (
@@ -283,12 +303,19 @@ def _place(coordinates: Sequence[float]) -> str:
 
 def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
     fluid, force = case.fluid, case.fluid.force
-    sheared = numbers.flow == "lees-edwards"
+    sheared = case.box.shear_rate != 0
     if numbers.mach is not None and _above(numbers.mach, 0.2) and not sheared:
         yield (
             f"Mach number {numbers.mach:.2g}: above 0.2 the fluid is compressible; "
-            "lower the force or the plate velocity"
+            "lower the force or the velocity of the surfaces"
         )
+    elif numbers.mach is None and numbers.transport:
+        mach = _surface_speed(case) / numbers.transport.sound_speed
+        if _above(mach, 0.2):
+            yield (
+                f"wall: surfaces move at Mach number {mach:.2g}: above 0.2 the fluid is "
+                "compressible; lower their velocity or rotation"
+            )
     if sheared and numbers.transport:
         cell = abs(case.box.shear_rate) / numbers.transport.sound_speed
         if _above(cell, 0.2):

@@ -14,7 +14,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from mesokit.case import Case
-from mesokit.component import show
+from mesokit.component import require_known, show
 from mesokit.errors import CaseError, CheckpointError, RunError
 from mesokit.execute.cpu import CPU
 from mesokit.first_state import first_state, part
@@ -162,14 +162,16 @@ class Simulation:
 
     def flow(self, kind: str = "four", **choices: Any) -> Any:
         """A picture of the flow so far; `mesokit.report.flow.picture` says what may be chosen."""
-        from mesokit.report.flow import picture
+        from mesokit.report.flow import CHOICES, picture
 
+        require_known(choices, CHOICES)
         return picture(self.case, self.results, None, kind, **choices)
 
     def animate(self, path: str | Path, kind: str = "speed", **choices: Any) -> Film:
         """Write a film of the flow so far (MP4 or GIF by its ending)."""
-        from mesokit.report.flow import animate
+        from mesokit.report.flow import CHOICES, animate
 
+        require_known(choices, [*CHOICES, "fps", "progress"])
         return animate(self.case, self.results, None, path, kind, **choices)
 
     # --- running --------------------------------------------------------------------------------
@@ -177,7 +179,8 @@ class Simulation:
     def run(self, progress: Reporter | None = None) -> None:
         """Run to the end, then write results and figures.
 
-        Ctrl-C or SIGTERM writes a checkpoint and raises KeyboardInterrupt; `resume` goes on.
+        Ctrl-C or SIGTERM raises KeyboardInterrupt after the steps in hand, with a checkpoint where
+        there is a folder; `resume`, or `run` again in the same process, goes on.
         """
         progress = progress or Reporter(quiet=True)
         progress.start(self.last_step, self.fluid.n, "running", self.step)
@@ -218,7 +221,7 @@ class Simulation:
                 self.checkpoint()
                 saved = perf_counter()
             progress.update(self.step)
-        if self._stopped_by is not None:
+        if self._stopped_by is not None and self.directory is not None:
             self.checkpoint()
 
     def _next_stop(self) -> int:
@@ -263,7 +266,7 @@ class Simulation:
         self._save_provenance(record)
         from mesokit.report import save_all
 
-        save_all(results.values(), self.directory.path)
+        save_all(results.values(), self.directory.path, self.case)
         if self.writer is not None:
             self.writer.remove()
 

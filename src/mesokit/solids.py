@@ -41,7 +41,7 @@ from mesokit.geometry.shape import Body, Piece
 from mesokit.pointer import address
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Collection, Sequence
 
     from mesokit.box import Box
     from mesokit.case import Case
@@ -49,6 +49,8 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 THIN, NARROW = 1.5, 3.0  # cells
+SKIN = 0.02  # cells: two surfaces so near each other touch
+TRIES = 30  # steps by which a place near a solid comes onto its surface
 FARTHEST = 8.0  # cells from a surface at which anybody asks
 Tight = tuple[tuple[float, ...], float]
 FINE = 8  # parts of a cell, along each axis, by which volumes are summed
@@ -59,6 +61,16 @@ def slit_of(case: Case) -> Plates | None:
     """The two plates, if these are all walls: the step has a shorter way for them."""
     wall = case.walls[0] if len(case.walls) == 1 else None
     return wall if isinstance(wall, Plates) and not wall.diffuse else None
+
+
+def labels(walls: Sequence[Wall]) -> list[str]:
+    """The names of walls: given, or shape and number."""
+    numbers: dict[str, int] = {}
+    found = []
+    for wall in walls:
+        number = numbers[wall.shape] = numbers.get(wall.shape, 0) + 1
+        found.append(wall.name or f"{wall.shape}-{number}")
+    return found
 
 
 def solids_of(case: Case) -> Solids:
@@ -106,21 +118,21 @@ class Solids:
     87.43
     """
 
-    def __init__(self, walls: Sequence[Wall], box: Box, *, without_plates: bool = False) -> None:
+    def __init__(
+        self, walls: Sequence[Wall], box: Box, *, only: Collection[int] | None = None
+    ) -> None:
         self._walls, self._box = walls, box
         self.size, self.dimension = box.size, box.dimension
         shut = {wall.axis for wall in walls if wall.shape == "plates"}
         self.room = Room(box.size, tuple(axis in shut for axis in box.axes))
         self.bodies: list[Body] = []
         self._tables: list[NDArray[Any]] = []
-        numbers: dict[str, int] = {}
         self.walls: list[int] = []  # of which wall each body is
-        for index, wall in enumerate(walls):
-            number = numbers[wall.shape] = numbers.get(wall.shape, 0) + 1
-            if without_plates and wall.shape == "plates":
+        for index, (wall, label) in enumerate(zip(walls, labels(walls), strict=True)):
+            if only is not None and index not in only:
                 continue
             try:
-                made = wall.bodies(self.room, f"{wall.shape}-{number}")
+                made = wall.bodies(self.room, label)
             except CaseError as error:
                 raise CaseError(f"wall[#{index + 1}].{error}") from None
             self.bodies += made
@@ -179,6 +191,7 @@ class Solids:
             for shut, length in zip(self.room.closed, self.size, strict=True)
         )
         self.body_of_term = np.array([row for _, row in pieces], np.int32)
+        self._body_of = np.array([*self.body_of_term, NOBODY])  # of no term: the last
         self.pivots = pivots
         surfaces = [self._surface(body) for body in self.bodies]
         tables = {
@@ -207,33 +220,51 @@ class Solids:
     @functools.cached_property
     def _others(self) -> Solids:
         """The same without the plates, in the same room."""
-        return Solids(self._walls, self._box, without_plates=True)
+        rest = [i for i, wall in enumerate(self._walls) if wall.shape != "plates"]
+        return Solids(self._walls, self._box, only=rest)
 
     @property
     def names(self) -> list[str]:
         """Of the bodies."""
         return [body.name for body in self.bodies]
 
+    def samples(self, wall: int) -> Floats:
+        """The signed distances, smoothed, of a wall that was read from a file, by its number."""
+        found = self.bodies[self.walls.index(wall)].pieces[0].term[0].samples
+        assert found is not None
+        return found
+
     def distance(self, points: Any, plates: bool = True) -> Floats:
         """Signed distance (n,) of points (n, d) from the nearest surface, positive in the fluid.
 
         Exact near surfaces; elsewhere, and inside of solids made of several, a lower bound of its
-        size. Without `plates`, from the other surfaces.
+        size. Without `plates`, from the other surfaces. Raises ValueError for points that do not
+        have one number for each axis.
         """
         if not plates and any(self.room.closed):
             return self._others.distance(points)
-        points = np.ascontiguousarray(points, float).reshape(-1, self.dimension)
+        points = self._rows(points)
         out = np.zeros(len(points))
         survey.clearances(self.kernel, self.least, self.like, points, out)
         return out
 
+    def _rows(self, points: Any) -> Floats:
+        """Points (n, d), or a grid of them, as rows. Raises ValueError."""
+        given = np.ascontiguousarray(points, float)
+        if given.shape[-1] != self.dimension:
+            raise ValueError(
+                f"points: expected shape (n, {self.dimension}), not {given.shape}: "
+                f"{self.dimension} numbers for each point in a {self.dimension}D box"
+            )
+        return given.reshape(-1, self.dimension)
+
     def nearest(self, points: Any) -> tuple[NDArray[np.int64], Floats, Floats]:
         """Body (-1: none within a cell), distance (n,) and normal (n, d) at points (n, d)."""
-        points = np.ascontiguousarray(points, float).reshape(-1, self.dimension)
+        points = self._rows(points)
         terms = np.zeros(len(points), np.int64)
         distance, normal = np.zeros(len(points)), np.zeros(points.shape)
         survey.who_is_near(self.kernel, self.like, points, terms, distance, normal)
-        return np.where(terms == NOBODY, NOBODY, self.body_of_term[terms]), distance, normal
+        return self._body_of[terms], distance, normal
 
     def depths(self, away: float) -> Callable[[Any], tuple[NDArray[np.int64], Floats, Floats]]:
         """What tells body (-1: none so near), distance (n,) and normal at points (n, d), exact for
@@ -241,11 +272,11 @@ class Solids:
         kernel = self.reaching(away)
 
         def look(points: Any) -> tuple[NDArray[np.int64], Floats, Floats]:
-            points = np.ascontiguousarray(points, float).reshape(-1, self.dimension)
+            points = self._rows(points)
             terms = np.zeros(len(points), np.int64)
             distance, normal = np.zeros(len(points)), np.zeros(points.shape)
             survey.depths(kernel, self.like, float(away), points, terms, distance, normal)
-            return np.where(terms == NOBODY, NOBODY, self.body_of_term[terms]), distance, normal
+            return self._body_of[terms], distance, normal
 
         return look
 
@@ -316,17 +347,18 @@ class Solids:
     def tight_places(self) -> tuple[Tight | None, Tight | None]:
         """Where the solid is thinner than THIN cells, and a gap narrower than NARROW: the tightest
         place of each, and its width; None where there is none."""
-        centres = np.stack(
-            np.meshgrid(*(np.arange(n) + 0.5 for n in self.size), indexing="ij"), -1
-        ).reshape(-1, self.dimension)
+        centres = self._centres()
         body, distance, normal = self.nearest(centres)
         near = (body >= 0) & (np.abs(distance) < 0.5 * math.sqrt(self.dimension))
-        feet = centres[near] - distance[near, None] * normal[near]
+        feet, normal = centres[near] - distance[near, None] * normal[near], normal[near]
+        # where solids touch, such as one and its own image, there is solid on both sides
+        bare = (self.distance(feet + SKIN * normal) > 0) & (self.distance(feet - SKIN * normal) < 0)
+        feet, normal = feet[bare], normal[bare]
         found: list[Tight | None] = []
         for side, limit in ((-1.0, THIN), (1.0, NARROW)):
             tightest = None
             for step in np.arange(0.25, limit, 0.25):
-                there = side * self.distance(feet + side * step * normal[near])
+                there = side * self.distance(feet + side * step * normal)
                 beyond = np.flatnonzero(there < -0.05)
                 if len(beyond):
                     tightest = tuple(feet[beyond[0]] % self.size), float(step)
@@ -334,14 +366,40 @@ class Solids:
             found.append(tightest)
         return found[0], found[1]
 
-    def motion_across(self) -> dict[int, float]:
-        """How fast the surface of each moving wall would move across itself, by its number."""
+    def without_surface(self) -> list[int]:
+        """The walls, by number, of which no surface is in the box, be it behind others."""
+        seen = {self.walls[body] for body in self._bodies_met()}
+        rest = sorted(set(self.walls) - seen)
+        return [i for i in rest if not Solids(self._walls, self._box, only=[i])._bodies_met()]
+
+    def _bodies_met(self) -> set[int]:
+        """The bodies that have a surface which is nearest to the middle of a cell."""
+        r = self._centres()
+        body, distance, _ = self.nearest(r)
+        near = (body >= 0) & (np.abs(distance) <= 0.5 * math.sqrt(self.dimension) + SKIN)
+        r, found = r[near], set()
+        for _ in range(TRIES):
+            body, distance, normal = self.nearest(r)
+            r = r - distance[:, None] * normal
+            there = (body >= 0) & (np.abs(distance) < 1e-6)
+            found |= set(body[there].tolist())
+            if there.all() or len(found) == len(self.bodies):
+                break
+        return found
+
+    def _centres(self) -> Floats:
+        """The middles of all cells (n, d)."""
         grids = np.meshgrid(*(np.arange(n) + 0.5 for n in self.size), indexing="ij")
-        centres = np.stack(grids, -1).reshape(-1, self.dimension)
+        return np.stack(grids, -1).reshape(-1, self.dimension)
+
+    @functools.cached_property
+    def motion(self) -> dict[int, tuple[float, float]]:
+        """How fast the surface of each wall moves, by its number, and would move across itself."""
+        centres = self._centres()
         terms = np.zeros(len(centres), np.int64)
         distance, normal = np.zeros(len(centres)), np.zeros(centres.shape)
         survey.who_is_near(self.kernel, self.like, centres, terms, distance, normal)
-        found: dict[int, float] = {}
+        found: dict[int, tuple[float, float]] = {}
         for term in np.unique(terms[terms >= 0]):
             body = self.bodies[self.body_of_term[term]]
             at = terms == term
@@ -351,7 +409,9 @@ class Solids:
             full[:, : self.dimension] = arm
             u = np.cross(body.rotation, full)[:, : self.dimension]
             u += np.array(body.surface.velocity or (0.0,) * self.dimension)
+            speed = float(np.sqrt((u**2).sum(axis=1)).max())
             across = float(np.abs((u * normal[at]).sum(axis=1)).max())
             wall = self.walls[self.body_of_term[term]]
-            found[wall] = max(found.get(wall, 0.0), across)
+            fastest, most = found.get(wall, (0.0, 0.0))
+            found[wall] = max(fastest, speed), max(most, across)
         return found

@@ -19,6 +19,9 @@ BALL = 'shape = "sphere"\ncentre = [6, 5, 4]\nradius = 2\n'
 BOX = 'shape = "rectangle"\ncentre = [6, 5]\nsize = [4, 3]\n'
 FLOOR = 'shape = "half-space"\npoint = [0, 3]\nnormal = [0, 1]\n'
 WAVES = 'shape = "cosine-channel"\nwidth = 4\namplitude = 1\n'
+BALL_FILE = 'shape = "mesh"\nfile = "ball.ply"\nposition = [6, 5, 4]\n'
+ONE = '{ shape = "disk", centre = [2, 2], radius = 1 }'
+ARRAY = f'shape = "array"\nrepeat = [2, 2]\nof = {ONE}'
 HEAVY = "[fluid]\nspecies = [{ mass = 1, density = 5 }, { mass = 5, density = 5 }]\n"
 
 # name: (the case without its walls, its walls, what the message must say)
@@ -54,6 +57,37 @@ BAD: dict[str, tuple[str, list[str], tuple[str, ...]]] = {
          'surface = { rule = "slip" } }]'],
         ("parts[#1].surface", "of the union"),
     ),
+    "an array's part with a surface": (
+        PLANE, [ARRAY.replace("radius = 1", 'radius = 1, surface = { rule = "slip" }')],
+        ("bad.toml: wall[#1].of.surface: give the surface of the array",),
+    ),
+    "a part's part with a name": (
+        PLANE, [ARRAY.replace(ONE, f'{{ shape = "union", parts = [{ONE}] }}')
+                .replace("radius = 1", 'radius = 1, name = "a"')],
+        ("bad.toml: wall[#1].of.parts[#1].name: give that of the union",),
+    ),
+    "unknown shape in an array": (
+        PLANE, [ARRAY.replace("disk", "dsk")], ("wall[#1].of.shape = 'dsk'", "did you mean 'disk'?")
+    ),
+    "an array of arrays": (
+        PLANE, [ARRAY.replace('of = { shape = "disk"', 'of = { shape = "array"')],
+        ("wall[#1].of.shape = 'array'", "'disk'"),
+    ),
+    "no shape in an array": (
+        PLANE, [ARRAY.replace('shape = "disk", ', "")], ("wall[#1].of.shape: missing", "'disk'"),
+    ),
+    "an array in a union": (
+        PLANE, [f'shape = "union"\nparts = [{ONE}, {{ shape = "array", repeat = [2, 2] }}]'],
+        ("wall[#1].parts[#2].shape = 'array'", "'disk'"),
+    ),
+    "far too many copies": (
+        PLANE, [ARRAY.replace("[2, 2]", "[1000000, 1000000]")],
+        ("wall[#1].repeat = [1000000, 1000000]", "at most 65536"),
+    ),
+    "copies on copies": (
+        PLANE, [ARRAY.replace("[2, 2]", "[2, 11]")],
+        ("wall[#1].repeat = [2, 11]", "less than a cell apart", "[12, 10]"),
+    ),
     "unknown side": (PLANE, [DISK + 'fluid = "left"'], ("wall[#1].fluid", "'inside'")),
     "unknown surface": (
         PLANE, [DISK + 'surface = { rule = "sticky" }'], ("wall[#1].surface.rule", "'no-slip'"),
@@ -66,6 +100,28 @@ BAD: dict[str, tuple[str, list[str], tuple[str, ...]]] = {
     "no room": (PLANE, [BOX.replace("4, 3", "20, 20")], ("the solids leave", "to the fluid")),
     "nothing inside": (
         PLANE, [DISK.replace("= 2", "= 0.1") + 'fluid = "inside"'], ("the solids leave",),
+    ),
+    "beside the box": (
+        PLANE, [DISK.replace("[6, 5]", "[60, 5]")],
+        ("wall[#1].centre = [60, 5]: no surface in the box [12, 10]",),
+    ),
+    "the second beside the box": (
+        PLANE, [DISK, DISK.replace("[6, 5]", "[60, 5]")], ("wall[#2].centre = [60, 5]",),
+    ),
+    "a vessel around the box": (
+        PLANE, [DISK.replace("= 2", "= 9") + 'fluid = "inside"'],
+        ("wall[#1].radius = 9: no surface in the box", "fluid = 'inside'"),
+    ),
+    "nothing in common": (
+        PLANE, [f'shape = "intersection"\nparts = [{ONE}, {ONE.replace("2, 2", "4.1, 2")}]'],
+        ("wall[#1].parts: no surface in the box", "nothing in common"),
+    ),
+    "a name twice": (
+        PLANE, [DISK + 'name = "a"', DISK.replace("6, 5", "2, 5") + 'name = "a"'],
+        ("wall[#2].name", "'a' is also the name of wall[#1]"),
+    ),
+    "a name that the first has by its number": (
+        PLANE, [DISK, DISK.replace("6, 5", "2, 5") + 'name = "disk-1"'], ("wall[#2].name",),
     ),
     "plates twice": (
         PLANE, ['shape = "plates"\naxis = "y"', 'shape = "plates"\naxis = "y"'],
@@ -146,6 +202,18 @@ BAD: dict[str, tuple[str, list[str], tuple[str, ...]]] = {
                  ("wall[#1].scale = 0", "above 0")),
     "far too fine": (SPACE, ['shape = "mesh"\nfile = "ball.ply"\nspacing = 0.001'],
                      ("wall[#1].spacing = 0.001", "samples")),
+    "far too coarse": (SPACE, [BALL_FILE + "spacing = 3"],
+                       ("wall[#1].spacing = 3: too coarse", "ball.ply'", "4 x 4 x 4 cells")),
+    "far too small": (SPACE, [BALL_FILE + "scale = 0.001"],
+                      ("wall[#1].spacing = 0.25: too coarse", "ball.ply'", "larger scale")),
+    "far too small a section": (PLANE, ['shape = "mesh"\nfile = "ball.ply"\nscale = 0.001'],
+                                ("wall[#1].spacing = 0.25: too coarse",)),
+    "a section in 3D": (SPACE, [BALL_FILE + "height = 1"],
+                        ("wall[#1].height = 1: only in 2D",)),
+    "ends of an array that differ": (
+        PLANE, ['shape = "sampled"\nfile = "ends.npy"\nspacing = 0.5'],
+        ("wall[#1].file", "first and the last samples along x", "differ by up to"),
+    ),
 }  # fmt: skip
 
 
@@ -165,6 +233,16 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     np.save(path / "ones.npy", np.ones((5, 5)))
     np.save(path / "nan.npy", np.full((5, 5), np.nan))
     np.savez(path / "two.npz", a=post, b=post)
+    x, y = np.meshgrid(np.linspace(0, 12, 25), np.linspace(0, 10, 21), indexing="ij")
+    np.save(path / "turned.npy", (np.hypot(x - 9, y - 5) - 2).T)
+    np.save(path / "ends.npy", 2 - np.hypot(x - 5, y - 5))
+    disk = Image.open(path / "disk.png")
+    disk.save(path / "disk.jpg")
+    disk.resize((24, 20)).save(path / "few.png")
+    disk.point(lambda level: max(level, 100)).save(path / "grey.png")
+    Image.fromarray(np.tile(np.linspace(0, 255, 120).astype(np.uint8), (100, 1))).save(
+        path / "ramp.png"
+    )
     ball = trimesh.creation.icosphere(subdivisions=3, radius=2)
     ball.export(path / "ball.ply")
     ball.update_faces(np.arange(len(ball.faces)) > 3)
@@ -197,6 +275,78 @@ GOOD = {
     "mesh": (SPACE, 'shape = "mesh"\nfile = "ball.ply"\nposition = [6, 5, 4]'),
     "section": (PLANE, 'shape = "mesh"\nfile = "ball.ply"\nposition = [6, 5]\nheight = 1'),
 }
+
+
+# name: (the case without its walls, its walls, what a warning says; none is about a solid if empty)
+WARNED: dict[str, tuple[str, list[str], tuple[str, ...]]] = {
+    "one behind another": (PLANE, [DISK, DISK.replace("= 2", "= 1")], ()),
+    "from end to end": (PLANE, ['shape = "rectangle"\ncentre = [6, 5]\nsize = [4, 10]'], ()),
+    "along the box": (PLANE, ['shape = "rectangle"\ncentre = [6, 5]\nsize = [12, 4]'], ()),
+    "a step on a plate": (
+        PLANE, ['shape = "rectangle"\ncentre = [6, 1.5]\nsize = [4, 3]',
+                'shape = "plates"\naxis = "y"'], (),
+    ),
+    "a gap": (PLANE, [BOX.replace("4, 3", "10, 3")], ("the gap at",)),
+    "a thin wall": (PLANE, [BOX.replace("4, 3", "1, 5")], ("cells thick",)),
+    "far too fast": (
+        PLANE, [DISK + "surface = { rotation = 100 }"],
+        ("Mach number", "friction raises the temperature", "run.warmup"),
+    ),
+    "far too fast, with a force": (
+        PLANE + '[fluid]\nforce = { rule = "uniform", acceleration = [0.001, 0] }\n',
+        [DISK + "surface = { rotation = 100 }"],
+        ("surfaces move at Mach number", "friction raises the temperature"),
+    ),
+    "far too fast, between plates": (
+        PLANE, ['shape = "plates"\naxis = "y"', DISK + "surface = { rotation = 100 }"],
+        ("Mach number", "friction raises the temperature", "run.warmup"),
+    ),
+    "a coarse mesh": (
+        SPACE, [BALL_FILE + "spacing = 1"],
+        ("wall[#1].spacing = 1: the sampled solid has", "the mesh 33."),
+    ),
+    "a mesh longer than the box": (
+        SPACE, [BALL_FILE + "scale = 2.2"], ("wall[#1].file", "by 0.8 cells along z"),
+    ),
+    "a fine mesh": (SPACE, [BALL_FILE], ()),
+    "a good picture": (PLANE, ['shape = "picture"\nfile = "disk.png"'], ()),
+    "few pixels": (
+        PLANE, ['shape = "picture"\nfile = "few.png"'], ("wall[#1].file", "2 pixels a cell"),
+    ),
+    "a grey picture": (
+        PLANE, ['shape = "picture"\nfile = "grey.png"'], ("% of what is drawn is neither black",)
+    ),
+    "a ramp of grey": (
+        PLANE, ['shape = "picture"\nfile = "ramp.png"', 'shape = "plates"\naxis = "x"'],
+        ("% of what is drawn is neither black",),
+    ),
+    "a JPEG": (PLANE, ['shape = "picture"\nfile = "disk.jpg"'], ("a JPEG, which blurs edges",)),
+    "a picture larger than the box": (
+        PLANE, ['shape = "picture"\nfile = "disk.png"\nsize = [18, 15]'],
+        ("wall[#1].size = [18, 15]", "by 5 cells along y"),
+    ),
+    "a turned array": (
+        PLANE, ['shape = "sampled"\nfile = "turned.npy"\nspacing = 0.5'],
+        ("wall[#1].file", "by 2 cells along y", "the first axis of the array is x"),
+    ),
+    "an array over the end": (
+        PLANE, ['shape = "sampled"\nfile = "post.npy"\nspacing = 0.5\norigin = [9, 8]'], (),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WARNED)
+def test_warnings_about_solids(name: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    start, walls, expected = WARNED[name]
+    text = start + "".join(f"[[wall]]\n{wall.strip()}\n" for wall in walls)
+    (folder / "warned.toml").write_text(text)
+    with pytest.raises(SystemExit) as end:
+        main(["check", str(folder / "warned.toml")])
+    assert end.value.code == 0
+    said = [s for s in capsys.readouterr().out.splitlines() if s.startswith("warning: ")]
+    for words in expected:
+        assert any(words in warning for warning in said), said
+    assert expected or not any("wall" in warning for warning in said), said
 
 
 @pytest.mark.parametrize("name", GOOD)

@@ -115,6 +115,14 @@ def test_from_python() -> None:
     assert run.animate("again.gif", window=(0, 4)).frames == 2
 
 
+def test_a_name_that_is_none_has_a_nearest_one() -> None:
+    run = mesokit.open("run")
+    with pytest.raises(mesokit.CaseError, match=r"regoin: unknown; .*did you mean 'region'"):
+        run.flow("speed", regoin=3)
+    with pytest.raises(mesokit.CaseError, match="did you mean 'fps'"):
+        run.animate("film.gif", fsp=3)
+
+
 def test_from_a_simulation_in_memory() -> None:
     simulation = mesokit.Simulation("case.toml", threads=1)
     simulation.run()

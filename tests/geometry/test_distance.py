@@ -271,3 +271,13 @@ def test_free_volume(name):
     got = solids_of((wall,), d).free_volume
     assert abs(got - expected) < 3e-3 * abs(math.prod(SIZE[d]) - expected)
     assert solids_of(walls_of(wall, d), d).open_cells.sum() == got
+
+
+@pytest.mark.parametrize("points", [[1.0, 2.0, 3.0], np.zeros((4, 3)), np.zeros((2, 0)), 5.0])
+def test_points_have_one_number_for_each_axis(points):
+    solids = solids_of((Disk((5, 5), 2),), 2)
+    for ask in (solids.distance, solids.nearest, solids.depths(2.0)):
+        with pytest.raises(ValueError, match=r"points: expected shape \(n, 2\), not"):
+            ask(points)
+    assert solids.distance([5.0, 8.0]).tolist() == [1.0]
+    assert solids.distance(np.zeros((3, 4, 2))).shape == (12,)

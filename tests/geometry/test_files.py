@@ -137,6 +137,52 @@ def test_a_mesh_may_have_caves(tmp_path):
         assert (np.sign(solids.distance(r)) == sign * np.array([1, -1, 1])).all()
 
 
+@pytest.mark.parametrize("turned", ["outwards", "inwards"])
+def test_bodies_of_a_mesh_may_overlap(turned, tmp_path):
+    """What is in any of them is solid, and what is far inside of it is deep inside."""
+    one, two, three = (trimesh.creation.icosphere(subdivisions=4, radius=2) for _ in range(3))
+    two.apply_translation((1.5, 0, 0))
+    three.apply_translation((-4.5, 0, 0))
+    both = trimesh.util.concatenate([one, two, three])
+    if turned == "inwards":
+        both.invert()
+    both.export(tmp_path / "a.stl")
+    for d in (2, 3):
+        middle = np.array((6.5, 5, 4.5)[:d])
+        solids = solids_of((Mesh(str(tmp_path / "a.stl"), position=tuple(middle)),), d)
+        at = middle + np.outer([-6.75, -2.25, -1.95, 0, 0.75, 1.5, 3.45, 3.6], np.eye(d)[0])
+        assert (np.sign(solids.distance(at)) == [1, 1, -1, -1, -1, -1, -1, 1]).all()
+        assert (solids.distance(at[3:6]) < -0.9).all()
+
+
+def test_a_body_in_a_cave_of_a_mesh(tmp_path):
+    """The file lists the smallest first; its name for the cave is that it is inside out."""
+    core, cave, shell = (
+        trimesh.creation.icosphere(subdivisions=3, radius=r) for r in (0.8, 2.0, 3.0)
+    )
+    r = np.array([[6, 5, 4.5], [6, 5, 5.9], [6, 5, 7.0], [6, 5, 8.5]])
+    for inside_out, expected in ((True, [-1, 1, -1, 1]), (False, [-1, -1, -1, 1])):
+        if inside_out:
+            cave.invert()
+        trimesh.util.concatenate([core, cave, shell]).export(tmp_path / f"{inside_out}.stl")
+        wall = Mesh(str(tmp_path / f"{inside_out}.stl"), position=(6, 5, 4.5))
+        assert (np.sign(solids_of((wall,), 3).distance(r)) == expected).all()
+        cave.invert()
+
+
+@pytest.mark.parametrize("more", [0, 1], ids=["without its image", "with its image"])
+@pytest.mark.parametrize("sign", [1, -1], ids=["post", "vessel"])
+def test_arrays_may_end_with_the_image_of_the_first_samples(more, sign, tmp_path):
+    x, y = np.meshgrid(np.arange(48 + more) / 4, np.arange(40 + more) / 4, indexing="ij")
+    file = tmp_path / "a.npy"
+    wall = Sampled.from_array(sign * (np.hypot(x - 6, y - 5) - 2), file, spacing=0.25)
+    solids = solids_of((wall,), 2)
+    assert len(solids.bodies[0].pieces) == 1  # no images
+    assert max(solids.misfit(axis) for axis in (0, 1)) < 1e-6
+    assert solids.distance([[6, 5]]) * sign < 0
+    assert solids.distance([[11.99, 5], [6, 9.99]]).min() * sign > 0
+
+
 def test_arrays_in_one_line(tmp_path):
     x, y = np.meshgrid(np.arange(24) / 2, np.arange(20) / 2, indexing="ij")
     wall = Sampled.from_array(np.hypot(x - 6, y - 5) - 2, tmp_path / "post.npy", spacing=0.5)

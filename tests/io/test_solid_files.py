@@ -98,3 +98,22 @@ def test_a_kept_file_that_is_lost_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "run" / "wall-1.npy").unlink()
     with pytest.raises(CaseError, match=r"case\.toml: wall\[#1\]\.file = '.*wall-1\.npy'"):
         Simulation.resume(tmp_path / "run")
+
+
+def test_a_start_that_fails_leaves_nothing(tmp_path: Path, monkeypatch) -> None:
+    from mesokit.io import run_directory
+
+    case = Case(run=Run(1), box=Box([10, 10]), walls=(Picture(picture(tmp_path / "a.png", 2.0)),))
+
+    def fails(path: Path, text: str) -> None:
+        raise CaseError("no")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(run_directory, "write_text", fails)
+        (tmp_path / "there").mkdir()
+        for name in ("new", "there"):
+            with pytest.raises(CaseError):
+                Simulation(case, output=tmp_path / name, threads=1)
+    assert not (tmp_path / "new").exists()
+    assert list((tmp_path / "there").iterdir()) == []
+    Simulation(case, output=tmp_path / "there", threads=1)

@@ -29,12 +29,13 @@ def example(component: type, dimension: int) -> Any:
 
 
 def make_case(
-    size=(8, 8), observe=(), walls=(), trajectory=None, shear_rate=0.0, seed=1, **fluid
-) -> Case:
+    size=(8, 8), observe=(), walls=(), trajectory=None, shear_rate=0.0, shear_frequency=0.0, seed=1,
+    **fluid,
+) -> Case:  # fmt: skip
     """A case with one step to run."""
     return Case(
         run=Run(steps=1, seed=seed),
-        box=Box(size, shear_rate=shear_rate),
+        box=Box(size, shear_rate=shear_rate, shear_frequency=shear_frequency),
         fluid=Fluid(**fluid),
         walls=walls,
         observe=observe,

@@ -15,14 +15,17 @@ from mesokit.solids import solids_of
 
 
 def case_for(observable, make_case, size, **fluid):
-    """A case in which it can be measured: without walls, in a slit, or in a flow about a body."""
+    """A case in which it can be measured: without walls, in a slit, in a flow about a body, in a
+    shear that oscillates, or in a fluid of molecules."""
     middle = [length / 2 for length in size]
     body = Disk(centre=middle, radius=1) if len(size) == 2 else Sphere(centre=middle, radius=1)
     push = {"force": Uniform((0.01,) + (0.0,) * (len(size) - 1))}
+    shear = {"shear_rate": 0.01, "shear_frequency": 1.0}
     alone = {key: value for key, value in fluid.items() if key != "species"}
     pairs = {"density": 9, "molecule": Molecule(bond=Harmonic(K=1.0))} | alone
     for walls, parts in (
-        ((), fluid), ((Plates(axis="y"),), fluid), ((body,), push | fluid), ((), pairs)
+        ((), fluid), ((Plates(axis="y"),), fluid), ((body,), push | fluid), ((), shear | fluid),
+        ((), pairs),
     ):  # fmt: skip
         try:
             return make_case(size, [observable], walls=walls, **parts)

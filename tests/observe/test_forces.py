@@ -272,3 +272,14 @@ def test_momentum_of_a_real_flow_is_balanced(make_case):
     share = found["share of disk-1 along x"]
     # own lattice Boltzmann value of this channel, docs/theory.md
     assert share.measured == pytest.approx(43.9, abs=4 * share.error + 2)
+
+
+def test_nothing_is_expected_where_nothing_holds_the_fluid(make_case):
+    slip = Plates(axis="y", lower=Surface(rule="slip"), upper=Surface(rule="slip"))
+    case = make_case((16, 8), [Forces()], [slip], **PUSHED)
+    (found,) = fed(case, Forces(), np.zeros((2, 3)), samples=50).comparisons
+    assert np.isnan(found.expected)
+    assert str(found).endswith("(nothing holds the fluid)")
+    mixed = Plates(axis="y", lower=Surface(rule="slip"))
+    case = make_case((16, 8), [Forces()], [mixed], **PUSHED)
+    assert fed(case, Forces(), np.zeros((2, 3)), samples=50).comparisons[0].expected > 0

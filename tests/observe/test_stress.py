@@ -10,7 +10,14 @@ from mesokit.errors import CaseError
 from mesokit.geometry import Plates, Surface
 from mesokit.mpcd.field import Uniform
 from mesokit.mpcd.thermostat import MaxwellBoltzmann
-from mesokit.observe import Conservation, Stress, WallStress, setting
+from mesokit.observe import (
+    Conservation,
+    DynamicModuli,
+    Stress,
+    StressAutocorrelation,
+    WallStress,
+    setting,
+)
 from mesokit.observe.conservation import ROWS
 
 
@@ -159,3 +166,48 @@ def test_one_wall_stress_is_enough(make_case):
 def test_wall_stress_needs_walls(make_case):
     with pytest.raises(CaseError, match="needs one"):
         make_case((4, 4), [WallStress()])
+
+
+def test_moduli_of_a_known_stress(make_case):
+    """Of a stress that follows the strain and its rate the fit gives both shares back."""
+    shear = {"shear_rate": 0.2, "shear_frequency": 0.7}
+    case = make_case((4, 4), [DynamicModuli()], timestep=0.1, **shear)
+    accumulator, fluid = DynamicModuli().accumulator(case), FakeFluid(case)
+    amplitude = 0.2 / 0.7
+    for step in range(1, 1000):
+        fluid.step = step
+        s, c = np.sin(0.7 * fluid.time), np.cos(0.7 * fluid.time)
+        stress = np.zeros((2, 2))
+        stress[0, 1] = amplitude * (3.0 * s + 5.0 * c) + 0.4
+        fluid.stress = {"kinetic": 0.25 * stress, "collisional": 0.75 * stress}
+        accumulator.observe(fluid)
+    result = accumulator.result()
+    assert result.samples == 999
+    np.testing.assert_allclose(result.value, np.outer([0.25, 0.75, 1.0], [3.0, 5.0]), rtol=1e-9)
+
+
+def test_moduli_need_an_oscillation_with_enough_samples(make_case):
+    with pytest.raises(CaseError, match="shear_frequency"):
+        make_case((4, 4), [DynamicModuli()], shear_rate=0.1)
+    with pytest.raises(CaseError, match="samples in a period"):
+        make_case((4, 4), [DynamicModuli()], shear_rate=0.1, shear_frequency=50.0)
+    with pytest.raises(CaseError, match="shear_frequency = 2"):
+        make_case((4, 4), shear_frequency=2.0)
+
+
+def test_modulus_of_a_known_stress(make_case):
+    """A stress that forgets with a rate: value at lag 0, decay and integral."""
+    case = make_case((4, 4), [StressAutocorrelation()], timestep=0.1)
+    accumulator, fluid = StressAutocorrelation().accumulator(case), FakeFluid(case)
+    rng, kept, stress = np.random.default_rng(2), 0.9, np.zeros((2, 2))
+    for step in range(1, 20_000):
+        fluid.step = step
+        stress = kept * stress + np.sqrt(1 - kept**2) * rng.normal(size=(2, 2))
+        fluid.stress = {"kinetic": 0.25 * stress, "collisional": 0.75 * stress}
+        accumulator.observe(fluid)
+    result = accumulator.result()
+    expected = 16.0 * kept ** np.arange(5)
+    assert (abs(result.value[:5] - expected) < 4 * result.error[:5]).all()
+    (viscosity,) = result.comparisons
+    integral = 16.0 * 0.1 * (0.5 + kept / (1 - kept)) / case.fluid.density
+    assert abs(viscosity.measured - integral) < 4 * viscosity.error + 0.02 * integral

@@ -156,6 +156,15 @@ def test_noise_has_no_frequency(make_case):
     assert "dominant frequency" not in by_name(shaken(case, Probe(), 0.02, amplitude=0.0))
 
 
+def test_a_probe_ends_at_plates_and_goes_on_beyond_periodic_ends(make_case):
+    walls = (Plates("y"),)
+    make_case((8, 8), [Probe(centre=(0, 1))], walls=walls)
+    make_case((8, 8), [Probe(centre=(0, 0))])
+    for centre in ((4, 0.9), (4, 7.1)):
+        with pytest.raises(CaseError, match=r"centre = .*reaches over a plate along y"):
+            make_case((8, 8), [Probe(centre=centre)], walls=walls)
+
+
 def test_probe_remembers_where_nobody_is(make_case):
     case = make_case((8, 8), [Probe(size=(0.05, 0.05))], density=1)
     result = shaken(case, Probe(size=(0.05, 0.05)), 0.02, samples=100)

@@ -105,3 +105,74 @@ def test_comparisons_are_a_table_on_a_terminal():
     assert "measured" in out.getvalue() and "+1.0 s.e. (+1.1 %)" in out.getvalue()
     assert "\x1b[1;33m" in out.getvalue()  # the one that is far off stands out
     print_comparisons([], Console(file=out))
+
+
+def test_plates_have_panels_of_their_own_and_no_torques(make_case):
+    from mesokit.geometry import Disk, Plates
+    from mesokit.observe import Forces
+
+    walls = [Plates(axis="y"), Disk(centre=[8, 4], radius=1.5, name="post")]
+    case = make_case((16, 8), [Forces()], walls)
+    accumulator, fluid = Forces().accumulator(case), FakeFluid(case)
+    for _ in range(5):
+        fluid.wall_impulse, fluid.wall_steps = np.array([[1, -900, 7], [1, 900, 7], [2, 1, 3]]), 1
+        fluid.advance(1)
+        accumulator.observe(fluid)
+    figure = plot(accumulator.result())
+    panels = [ax for ax in figure.axes if ax.axison]
+    solids = [[label.get_text() for label in ax.get_xticklabels()] for ax in panels]
+    assert solids == 3 * [["post"]] + 2 * [["plates-1-lower", "plates-1-upper"]]
+    assert panels[2].get_title().endswith("about (8, 4)")
+
+
+class TestMaps:
+    """The pictures that a run draws of its maps."""
+
+    def results(self, make_case):
+        from flows import FRAMES, MAPS, results_of
+
+        from mesokit.geometry import Disk, Plates
+
+        walls = [Plates(axis="y"), Disk(centre=[6, 5], radius=2)]
+        case = make_case((24, 10), [FRAMES, *MAPS], walls, density=20)
+        return case, results_of(case)
+
+    def test_the_case_adds_the_solids_and_the_page_is_cut_to_the_panels(self, make_case):
+        case, results = self.results(make_case)
+        for result in results.values():
+            bare, full = plot(result), plot(result, case=case)
+            assert full.axes[0].get_ylim()[0] < 0 and bare.axes[0].get_ylim() == (0, 10)
+            outlines = [c for c in full.axes[0].collections if hasattr(c, "levels")]
+            assert len(outlines) == 2
+            width, height = full.get_size_inches()
+            filled = sum(ax.get_position().height for ax in full.axes if ax.get_xlim()[1] > 20)
+            assert filled > 0.5 and width <= 8.3 and height < 5
+
+    def test_a_bin_that_is_mostly_solid_sets_no_colours(self, make_case):
+        case, results = self.results(make_case)
+        result = results["velocity-field"]
+        share = case_share(case)
+        cut = np.argwhere((share > 0) & (share < 0.5))[0]
+        result.value[tuple(cut)] = 50.0
+        image = plot(result, case=case).axes[0].images[0]
+        assert image.norm.vmax < 5
+
+    def test_density_is_that_of_the_open_part_and_names_its_dimension(self, make_case):
+        case, results = self.results(make_case)
+        result, share = results["density-field"], case_share(case)
+        result.value[:] = 20 * share
+        figure = plot(result, case=case)
+        shown = np.ma.masked_invalid(figure.axes[0].images[0].get_array())
+        np.testing.assert_allclose(shown.compressed(), 20)
+        assert shown.mask.T[6, 5] and figure.axes[0].images[0].get_cmap().name == "cividis"
+        labels = [ax.get_ylabel() for ax in figure.axes]
+        assert any("[$a^{-2}$]" in label for label in labels)
+        result.value[:] = np.where(share == 1, 20 + np.arange(10) / 10, 0)
+        image = plot(result).axes[0].images[0]
+        assert image.norm.vmin > 15 and np.ma.masked_invalid(image.get_array()).mask.any()
+
+
+def case_share(case):
+    from mesokit.solids import solids_of
+
+    return solids_of(case).open_share((0, 1), tuple(case.box.size[:2]))

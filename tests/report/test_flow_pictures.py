@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from fake_fluid import FakeFluid
 from flows import FRAMES, MAPS, SPIN, Disk, results_of
 
 from mesokit.errors import CaseError, RunError
@@ -13,6 +15,7 @@ from mesokit.geometry import Plates
 from mesokit.io import h5md
 from mesokit.io.open import TrajectoryReader
 from mesokit.io.trajectory import Trajectory, TrajectoryWriter
+from mesokit.observe import FlowFrames
 from mesokit.report import save_figure
 from mesokit.report.flow import KINDS, picture, solids, speed
 from mesokit.report.flow.data import Flow
@@ -20,7 +23,7 @@ from mesokit.report.flow.quiver import arrows
 from mesokit.report.flow.region import Region, region_of
 from mesokit.report.flow.setting import Setting
 from mesokit.report.flow.source import sources
-from mesokit.report.flow.vorticity import vorticity
+from mesokit.report.flow.vorticity import smoothing, vorticity
 
 SIZE = (12, 10)
 
@@ -154,6 +157,49 @@ class TestNumbers:
         assert image.norm.vmin == -image.norm.vmax < 0
 
 
+class TestNoise:
+    """Vorticity is smoothed until it stands out of the noise, if anything does."""
+
+    def noisy(self, size, noise):
+        flow = exact(
+            (48, 40), lambda x, y: (np.sin(2 * np.pi * y / size), 0 * x), size=(48.0, 40.0)
+        )
+        rng = np.random.default_rng(3)
+        kicks, example = noise * rng.normal(size=(2, *flow.velocity.shape))
+        return replace(flow, velocity=flow.velocity + kicks, noise=example)
+
+    def test_a_clear_flow_stays_as_it_is(self):
+        flow = self.noisy(20, 0.001)
+        assert smoothing([flow], Region((0.0, 0.0), flow.size)) == (0.0, True)
+
+    def test_a_noisy_one_is_smoothed(self):
+        flow = self.noisy(20, 0.3)
+        region = Region((0.0, 0.0), flow.size)
+        width, clear = smoothing([flow], region)
+        assert clear and 0 < width <= 3
+        y = np.arange(40) + 0.5
+        expected = -2 * np.pi / 20 * np.cos(2 * np.pi * y / 20)
+        found = vorticity(replace(flow, smoothing=width))[8:40, 5:35]
+        assert np.std(found - expected[5:35]) < 0.5 * np.std(expected)
+        assert np.std(vorticity(flow)[8:40, 5:35] - expected[5:35]) > np.std(expected)
+
+    def test_noise_alone_is_said_to_be_noise(self, make_case):
+        case = make_case((16, 16), observe=[FRAMES], density=5)
+        results = results_of(case, 20, FakeFluid(case))
+        note = picture(case, results, kind="vorticity").texts[0].get_text()
+        note += picture(case, results, kind="vorticity").texts[1].get_text()
+        assert "noise" in note and "longer" in note
+
+    def test_halves_of_the_frames_know_the_noise(self, make_case):
+        case = make_case((16, 16), observe=[FlowFrames(window=10)], density=5)
+        (source,) = sources(case, results_of(case, 40, FakeFluid(case)), None)
+        for frames in (np.arange(40), np.array([3]), np.array([39])):
+            flow = source.flow(frames)
+            expected = np.sqrt(1 / (5 * len(frames)))
+            assert np.nanstd(flow.noise) == pytest.approx(expected, rel=0.3)
+            assert np.nanstd(flow.velocity) == pytest.approx(expected, rel=0.3)
+
+
 class TestTrajectories:
     """Pictures of a run that kept only particles."""
 
@@ -256,6 +302,21 @@ class TestLooks:
         ]
         assert counts == [0, 2, 0]  # the middle, z = 4, only touches it
 
+    def test_in_3d_it_says_what_is_a_mean_and_what_a_cut(self, make_case):
+        case = make_case((8, 8, 8), observe=[FRAMES], walls=[Plates(axis="y")])
+        texts = [t.get_text() for t in picture(case, results_of(case, 5), kind="speed").texts]
+        assert "mean along z; solids at z = 4" in texts
+
+    def test_maps_over_the_axes_in_the_other_order_are_turned(self, rotation):
+        case, results = rotation
+        images = [
+            picture(case, results, kind=kind, axes=axes).axes[0].images[0].get_array()
+            for kind in ("speed", "vorticity")
+            for axes in (("x", "y"), ("y", "x"))
+        ]
+        np.testing.assert_allclose(images[0], images[1].T)
+        assert images[3].mean() == pytest.approx(-images[2].mean(), rel=0.2)
+
     def test_a_notebook_shows_the_figure(self, rotation):
         case, results = rotation
         assert picture(case, results, kind="speed")._repr_png_()[:4] == b"\x89PNG"
@@ -297,6 +358,12 @@ class TestRefusals:
         case = make_case((8, 8, 8), observe=[FRAMES])
         with pytest.raises(CaseError, match="at = 9: expected a place along z, from 0 to 8"):
             picture(case, results_of(case, 5), kind="speed", at=9)
+
+    def test_maps_over_other_axes(self, make_case):
+        case = make_case((8, 8, 8), observe=[FRAMES])
+        words = r'the run kept maps over x,y, not over x,z; .* axes = \["x", "z"\]'
+        with pytest.raises(RunError, match=words):
+            picture(case, results_of(case, 5), kind="vorticity", axes=("x", "z"))
 
     def test_runs_without_data_say_what_to_add(self, make_case):
         for kind in KINDS:

@@ -89,6 +89,23 @@ def test_a_signal_writes_a_checkpoint(case, ends_alike, tmp_path, number):
     ends_alike(again)
 
 
+def test_a_signal_stops_a_run_without_a_folder(case):
+    """As in a notebook; `run` then goes on to the same bits."""
+    simulation, whole = Simulation(case, threads=1), Simulation(case, threads=1)
+
+    class Press(Reporter):
+        def update(self, step):
+            if step > 150 and simulation._stopped_by is None:
+                signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt, match="SIGINT"):
+        simulation.run(progress=Press(quiet=True))
+    assert 150 < simulation.step < simulation.last_step
+    simulation.run()
+    whole.run()
+    assert simulation.results == whole.results
+
+
 def stops_on(monkeypatch, function):
     def refuse(*arguments, **keywords):
         raise OSError(errno.ENOSPC, "No space left on device")

@@ -201,3 +201,22 @@ def test_products_add_up_to_the_correlation():
     assert correlator.block_length == 4
     short = list(correlator.products(within_blocks=True))
     assert [p.lag[0] for p in short] == [0, 4, 8]  # averages over 1, 2 and 4 samples
+
+
+@pytest.mark.parametrize("kind", [float, complex])
+def test_pooled_axes_are_averaged_over(kind):
+    """Their mean correlation, and what a resume needs, are those of all signals kept apart."""
+    rng = np.random.default_rng(4)
+    apart = MultipleTau((2, 5, 3), dtype=kind)
+    pooled = MultipleTau((2, 5, 3), dtype=kind, pooled=2)
+    for _ in range(500):
+        sample = rng.normal(size=(2, 5, 3)).astype(kind)
+        apart.add(sample)
+        pooled.add(sample)
+        pooled = MultipleTau.from_state(pooled.state())
+    expected, found = apart.correlation(average_over=(1, 2)), pooled.correlation()
+    np.testing.assert_array_equal(found.lag, expected.lag)
+    np.testing.assert_allclose(found.value, expected.value, atol=1e-12)
+    np.testing.assert_allclose(found.error, expected.error, rtol=1e-9)
+    with pytest.raises(ValueError, match="pooled"):
+        MultipleTau((2,), pooled=2)

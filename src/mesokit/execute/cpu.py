@@ -129,7 +129,8 @@ class CPU(Readings):
             reason = (
                 "fluid.start: give slower particles"
                 if self.step == 0
-                else "the fluid heats up: add a thermostat, or lower the force"
+                else "the fluid heats up: add a thermostat, or lower the force or the velocity of "
+                "the surfaces"
             )
             raise RunError(
                 f"step {self.step}: a particle moves at {fastest:g}, beyond the {self.fastest:g} "

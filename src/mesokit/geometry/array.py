@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import itertools
+import math
 from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import field_validator
 
-from mesokit.component import component, param, tag
+from mesokit.component import component, param, show, tag
+from mesokit.errors import CaseError
 from mesokit.geometry import region
 from mesokit.geometry.shape import Piece, Shape, pieces_of
-from mesokit.geometry.together import require_plain
+from mesokit.geometry.together import require_bare
 from mesokit.geometry.union import Union, Whole
 
 if TYPE_CHECKING:
     from mesokit.geometry.region import Room
+
+MOST_COPIES = 2**16
 
 
 @component
@@ -34,13 +38,20 @@ class Array(Shape):
     def _positive(cls, repeat: tuple[int, ...]) -> tuple[int, ...]:
         if not all(n >= 1 for n in repeat):
             raise ValueError("expected at least 1 along each axis")
+        if math.prod(repeat) > MOST_COPIES:
+            raise ValueError(f"{math.prod(repeat)} copies; expected at most {MOST_COPIES}")
         return repeat
 
     def __post_init__(self) -> None:
-        require_plain([self.of], "array")
+        require_bare(self.of, "of", "array")
 
     def places(self, room: Room) -> list[list[float]]:
-        """Where the copies are, relative to the first."""
+        """Where the copies are, relative to the first. Raises CaseError for too many."""
+        if any(n > length for n, length in zip(self.repeat, room.size, strict=True)):
+            raise CaseError(
+                f"repeat = {show(self.repeat)}: copies less than a cell apart; expected at most "
+                f"{show(room.size)} in this box"
+            )
         steps = [length / n for length, n in zip(room.size, self.repeat, strict=True)]
         counts = itertools.product(*(range(n) for n in self.repeat))
         return [[i * step for i, step in zip(count, steps, strict=True)] for count in counts]

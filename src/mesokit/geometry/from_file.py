@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mesokit.component import FileName, component, param, show
 from mesokit.errors import CaseError
-from mesokit.geometry.grid import Grid, fitted
+from mesokit.geometry.grid import Floats, Grid, fitted, slope
 from mesokit.geometry.region import Region
 from mesokit.geometry.shape import Shape
 
@@ -58,10 +60,30 @@ class FromFile(Shape):
         grid = self.grid(room)
         if grid.values.ndim != room.dimension:
             raise self.wrong(f"{grid.values.ndim}D, in a {room.dimension}D box")
+        size = slope(grid)
+        if not 0.5 < size < 2.0:
+            raise self.unfit(room, size)
         try:
-            return fitted(grid, room)
+            found = fitted(grid, room)
         except ValueError as error:
             raise self.wrong(str(error)) from None
+        samples = found[0][0].samples
+        if samples is None or not samples.min() < 0.0:  # what smoothing has left
+            raise self.unfit(room, math.nan)
+        return found
+
+    def unfit(self, room: Room, size: float) -> CaseError:
+        """The error for samples whose gradient at the surface is so large; nan: without surface."""
+        if math.isnan(size):
+            return self.wrong("no surface: all samples have one sign")
+        return self.wrong(
+            f"the gradient at the surface is {size:.3g}; expected a signed distance, for which it "
+            "is 1, in cells"
+        )
+
+    def notes(self, room: Room, samples: Floats) -> Iterator[str]:
+        """What users should know of the solid that the samples describe, key first."""
+        raise NotImplementedError
 
     def kept(self) -> dict[str, Any]:
         """What it shares with the `Sampled` that a run keeps of it."""

@@ -21,6 +21,7 @@ from mesokit.geometry.region import Region, Room
 Floats = NDArray[np.float64]
 STEEPEST = 1.15  # round surfaces, and all others away from their edges, have less
 PASSES = 2
+SAME = 1e-3  # spacings by which samples of one place may differ
 AVERAGE = (0.25, 0.5, 0.25)
 
 
@@ -44,14 +45,24 @@ def spans(count: int, spacing: float, length: int) -> bool:
 def fitted(grid: Grid, room: Room) -> Region:
     """The solid that a grid describes: repeating along open axes that it spans.
 
-    Along an axis that plates close, the outermost points hold up to the plate. Elsewhere there is
-    fluid beyond the grid; raises ValueError if the solid reaches that far.
+    A last point that is the image of the first counts as such if their samples agree. Along an
+    axis that plates close, the outermost points hold up to the plate. Elsewhere there is fluid
+    beyond the grid; raises ValueError if the solid reaches that far.
     """
     values, origin = grid.values, list(grid.origin)
-    repeats = [
-        not shut and spans(count, grid.spacing, length)
-        for count, length, shut in zip(values.shape, room.size, room.closed, strict=True)
-    ]
+    repeats = []
+    for axis, (length, shut) in enumerate(zip(room.size, room.closed, strict=True)):
+        again = not shut and spans(values.shape[axis], grid.spacing, length)
+        if not shut and spans(values.shape[axis] - 1, grid.spacing, length):
+            off = np.abs(values.take(0, axis) - values.take(-1, axis)).max()
+            if off <= SAME * grid.spacing:
+                values, again = values.take(range(values.shape[axis] - 1), axis), True
+            elif values.take([0, -1], axis).min() <= 0.0:
+                raise ValueError(
+                    f"the first and the last samples along {'xyz'[axis]} are of one place in the "
+                    f"periodic box, and differ by up to {off:.3g}; expected the same"
+                )
+        repeats.append(again)
     for axis, shut in enumerate(room.closed):
         if shut:
             end = origin[axis] + (values.shape[axis] - 1) * grid.spacing
@@ -71,7 +82,8 @@ def _require_fluid(values: Floats, axis: int) -> None:
         if values.take(end, axis).min() <= 0.0:
             raise ValueError(
                 f"the solid reaches the {'first' if end == 0 else 'last'} samples along "
-                f"{'xyz'[axis]}; expected fluid around it, or a grid that spans the box"
+                f"{'xyz'[axis]}; expected fluid around it, or a grid that spans the box: the "
+                "length over the spacing as many samples, or one more"
             )
 
 
@@ -91,13 +103,30 @@ def smoothed(values: Floats, spacing: float, repeats: list[bool]) -> Floats:
 
 def slope(grid: Grid) -> float:
     """Size of the gradient where the surface is, in the middle: 1 for a signed distance."""
-    sizes = np.sqrt(sum(np.square(g) for g in np.gradient(grid.values, grid.spacing)))
-    solid = grid.values < 0.0
+    values, solid = grid.values, grid.values < 0.0
     edge = np.zeros(solid.shape, bool)
     for axis in range(solid.ndim):
         change = np.diff(solid, axis=axis)
         edge[tuple(slice(-1) if k == axis else slice(None) for k in range(solid.ndim))] |= change
-    return float(np.median(sizes[edge])) if edge.any() else math.nan
+    places = np.nonzero(edge)
+    square = np.zeros(len(places[0]))
+    for axis, count in enumerate(values.shape):
+        low, high = (np.clip(places[axis] + step, 0, count - 1) for step in (-1, 1))
+        before, after = (values[*places[:axis], x, *places[axis + 1 :]] for x in (low, high))
+        square += ((after - before) / (grid.spacing * (high - low))) ** 2
+    return float(np.median(np.sqrt(square))) if len(square) else math.nan
+
+
+def volume(values: Floats, spacing: float) -> float:
+    """Of the solid, in cells."""
+    return float(np.clip(0.5 - values / spacing, 0.0, 1.0).sum()) * spacing**values.ndim
+
+
+def extent(values: Floats, axis: int) -> tuple[int, int]:
+    """The first and the last points along an axis at which there is solid."""
+    other = tuple(k for k in range(values.ndim) if k != axis)
+    found = np.flatnonzero((values < 0.0).any(axis=other))
+    return int(found[0]), int(found[-1])
 
 
 def checked(values: object, key: str) -> Floats:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 import io
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
@@ -12,7 +14,7 @@ from pydantic import field_validator
 from scipy import ndimage
 from scipy.spatial import KDTree
 
-from mesokit.component import component, param, tag
+from mesokit.component import component, param, show, tag
 from mesokit.geometry.from_file import FromFile
 from mesokit.geometry.grid import Grid, spans
 
@@ -25,6 +27,8 @@ BLUR = 1.0  # pixels by which edges are smoothed
 MARGIN = 2.0  # cells of fluid around a picture that does not span the box
 FINE = 8  # points of the outline per pixel
 LARGEST = 2**26  # pixels
+ENOUGH = 8  # pixels a cell
+PLAIN, FEW = 0.1, 0.02  # off black or white that no one sees, share of pixels that are not
 
 
 @component
@@ -83,6 +87,40 @@ class Picture(FromFile):
             raise self.wrong("no surface: nothing in it is both black and white")
         origin = tuple(x + (0.5 - n) * wide for x, n in zip(corner, ends, strict=True))
         return Grid(wide * distance, origin, wide)
+
+    def notes(self, room: Room, samples: Floats) -> Iterator[str]:
+        """What users should know: few pixels, shades of grey, a picture larger than the box."""
+        name = show(self.file, 500)
+        white, (_, size) = self._white(), self.frame(room)
+        per_cell = white.shape[0] / size[0]
+        if per_cell < ENOUGH:
+            yield (
+                f"file = {name}: {per_cell:.3g} pixel{'s' * (per_cell != 1)} a cell; the surface "
+                f"is smoothed by a pixel: draw with {ENOUGH} or more"
+            )
+        solid, grey = white < 1.0 - PLAIN, (white > PLAIN) & (white < 1.0 - PLAIN)
+        inner = ndimage.binary_erosion(grey, np.ones((3, 3)), border_value=1)
+        share = inner.sum() / max(solid.sum(), 1)
+        if share > FEW:
+            yield (
+                f"file = {name}: {100 * share:.0f} % of what is drawn is neither black nor white, "
+                "beyond the width of an edge; the surface is where it is half white"
+            )
+        if self._format == "JPEG":
+            yield f"file = {name}: a JPEG, which blurs edges; expected a PNG"
+        for axis, (length, whole) in enumerate(zip(size, room.size, strict=True)):
+            if length > whole * (1.0 + 1e-9):
+                yield (
+                    f"size = {show(size)}: the picture reaches over the box by "
+                    f"{length - whole:.4g} cells along {'xyz'[axis]}"
+                )
+
+    @functools.cached_property
+    def _format(self) -> str | None:
+        from PIL import Image
+
+        with Image.open(io.BytesIO(self.contents)) as image:
+            return image.format
 
     def _white(self) -> Floats:
         """How white each pixel is, from 0 to 1, x first and y upwards."""

@@ -52,6 +52,11 @@ class Plates:
         """Whether a plate sends particles out at random."""
         return "diffuse" in (self.lower.rule, self.upper.rule)
 
+    @property
+    def slips(self) -> bool:
+        """Whether both plates let the fluid slide along them."""
+        return self.lower.rule == self.upper.rule == "slip"
+
     def bodies(self, room: Room, label: str) -> list[Body]:
         """The solids behind the plates, for a case that has other walls as well."""
         axis, found, rest = AXES.index(self.axis), [], (0.0, 0.0, 0.0)

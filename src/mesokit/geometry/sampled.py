@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from mesokit.component import component, param, tag
+from mesokit.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.geometry.from_file import FromFile
-from mesokit.geometry.grid import Grid, checked, slope
+from mesokit.geometry.grid import Floats, Grid, checked, extent
 
 if TYPE_CHECKING:
     from mesokit.geometry.region import Room
@@ -76,18 +77,23 @@ class Sampled(FromFile):
             raise self.wrong("expected a .npy file of numbers") from None
         origin = self.origin or (0.0,) * values.ndim
         try:
-            found = Grid(checked(values, "array"), origin, self.spacing)
+            return Grid(checked(values, "array"), origin, self.spacing)
         except ValueError as error:
             raise self.wrong(str(error)) from None
-        size = slope(found)
-        if not size > 0.0:
-            raise self.wrong("no surface: all samples have one sign")
-        if not 0.5 < size < 2.0:
-            raise self.wrong(
-                f"the gradient at the surface is {size:.3g}; expected a signed distance, for which "
-                "it is 1, in cells"
-            )
-        return found
+
+    def notes(self, room: Room, samples: Floats) -> Iterator[str]:
+        """What users should know: a solid that reaches over the box."""
+        values = self.grid(room).values
+        origin = self.origin or (0.0,) * values.ndim
+        for axis, (n, length) in enumerate(zip(values.shape, room.size, strict=True)):
+            beyond = (n - 1) * self.spacing - length
+            first, last = (origin[axis] + self.spacing * i for i in extent(values, axis))
+            if beyond > 0.5 * self.spacing and not 0.0 <= first <= last <= length:
+                yield (
+                    f"file = {show(self.file, 500)}: the samples reach over the box by "
+                    f"{beyond:.4g} cells along {'xyz'[axis]}, and so does the solid; the first "
+                    "axis of the array is x"
+                )
 
     def pivot(self, room: Room) -> tuple[float, ...]:
         """The place about which it turns and torques are taken."""

@@ -15,11 +15,16 @@ if TYPE_CHECKING:
 def require_plain(parts: Sequence[Shape], whole: str) -> None:
     """Raise ValueError for a part with a surface of its own: the whole has one."""
     for i, part in enumerate(parts):
-        if part.surface != Surface():
-            raise ValueError(f"parts[#{i + 1}].surface: give the surface of the {whole} instead")
-        if part.virtual != "extrapolate" or part.name is not None:
-            key = "name" if part.name is not None else "virtual"
-            raise ValueError(f"parts[#{i + 1}].{key}: give that of the {whole} instead")
+        require_bare(part, f"parts[#{i + 1}]", whole)
+
+
+def require_bare(part: Shape, key: str, whole: str) -> None:
+    """The same for one part, under its key."""
+    if part.surface != Surface():
+        raise ValueError(f"{key}.surface: give the surface of the {whole} instead")
+    if part.virtual != "extrapolate" or part.name is not None:
+        own = "name" if part.name is not None else "virtual"
+        raise ValueError(f"{key}.{own}: give that of the {whole} instead")
 
 
 def middle(parts: Sequence[Shape], room: Room) -> tuple[float, ...]:

@@ -214,6 +214,8 @@ def _box(group: Any, case: Case, frames: int) -> Any:
     shape = (frames, 3, 3) if case.box.shear_rate else (frames, 3)
     if case.box.shear_rate:
         box.attrs["lees_edwards_shear_rate"] = case.box.shear_rate
+        if case.box.shear_frequency:
+            box.attrs["lees_edwards_shear_frequency"] = case.box.shear_frequency
     edges = _element(box, "edges", group).create_dataset("value", shape, float)
     edges.attrs["reduced_unit"] = "a"
     return edges
@@ -225,7 +227,7 @@ def _edges(case: Case, time: float, shape: tuple[int, ...]) -> NDArray[np.float6
     if len(shape) == 1:
         return size
     edges = np.diag(size)
-    slid = case.box.shear_rate * size[1] * time
+    slid = case.box.displacement(time)
     edges[1, 0] = slid - size[0] * np.round(slid / size[0])
     return edges
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.component import require_known
 from mesokit.errors import RunError
 from mesokit.io import checkpoint, h5md
 from mesokit.io.frames import require_frames
@@ -76,15 +77,16 @@ class RunFiles:
         """Draw every result into the folder (that of the run unless said)."""
         from mesokit.report import save_all
 
-        return save_all(self.results.values(), self.path if folder is None else folder)
+        return save_all(self.results.values(), folder or self.path, self.case)
 
     def flow(self, kind: str = "four", **choices: Any) -> Any:
         """A picture of the flow; `mesokit.report.flow.picture` says what may be chosen.
 
         `files.flow("speed", region=((0, 20), (0, 10)), window=(50, 90))` is a Matplotlib figure.
         """
-        from mesokit.report.flow import picture
+        from mesokit.report.flow import CHOICES, picture
 
+        require_known(choices, CHOICES)
         return picture(self.case, self.results, self.trajectory, kind, **choices)
 
     def animate(self, path: str | Path, kind: str = "speed", **choices: Any) -> Film:
@@ -92,8 +94,9 @@ class RunFiles:
 
         `files.animate("film.mp4", "vorticity", window=(50, 90), fps=10)` writes the file.
         """
-        from mesokit.report.flow import animate
+        from mesokit.report.flow import CHOICES, animate
 
+        require_known(choices, [*CHOICES, "fps", "progress"])
         return animate(self.case, self.results, self.trajectory, path, kind, **choices)
 
     def _data(self) -> Path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import platform
@@ -84,11 +85,20 @@ class RunDirectory:
             if run.path.is_dir() and any(run.path.iterdir()):
                 hint = "resume that run or " if run.case_file.exists() else ""
                 raise RunError(f"{path}: folder is not empty; {hint}choose another output")
+            made = not run.path.exists()
             run.path.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             reason = (error.strerror or str(error)).lower()
             raise RunError(f"{path}: cannot make the folder: {reason}") from None
-        write_text(run.case_file, keep_solids(case, run).to_toml(run.path))
+        try:
+            write_text(run.case_file, keep_solids(case, run).to_toml(run.path))
+        except BaseException:  # a folder without a case holds no run, and would be in the way
+            for left in run.path.glob(run.wall_file("*").name):
+                left.unlink(missing_ok=True)
+            if made:
+                with contextlib.suppress(OSError):
+                    run.path.rmdir()
+            raise
         return run
 
     @property

@@ -8,16 +8,20 @@ from mesokit.observe.bond_length import BondLength
 from mesokit.observe.conservation import Conservation
 from mesokit.observe.density_field import DensityField
 from mesokit.observe.density_profile import DensityProfile
+from mesokit.observe.dynamic_moduli import DynamicModuli
 from mesokit.observe.flow_frames import FlowFrames
 from mesokit.observe.flow_rate import FlowRate
 from mesokit.observe.forces import Forces
 from mesokit.observe.longitudinal_modes import LongitudinalModes
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
+from mesokit.observe.molecule_size import MoleculeSize
+from mesokit.observe.normal_modes import NormalModes
 from mesokit.observe.probe import Probe
 from mesokit.observe.protocol import Accumulator, Observable, RunningFluid
 from mesokit.observe.radial_profile import RadialProfile
 from mesokit.observe.result import Comparison, Result
 from mesokit.observe.stress import Stress
+from mesokit.observe.stress_autocorrelation import StressAutocorrelation
 from mesokit.observe.surface_profile import SurfaceProfile
 from mesokit.observe.temperature_profile import TemperatureProfile
 from mesokit.observe.transverse_modes import TransverseModes
@@ -38,9 +42,13 @@ AnyObservable = (
     | MeanSquareDisplacement
     | VelocityAutocorrelation
     | TransverseModes
+    | MoleculeSize
+    | NormalModes
     | LongitudinalModes
     | WallStress
     | Stress
+    | DynamicModuli
+    | StressAutocorrelation
     | Forces
     | FlowRate
     | RadialProfile
@@ -60,17 +68,21 @@ __all__ = [
     "Conservation",
     "DensityField",
     "DensityProfile",
+    "DynamicModuli",
     "FlowFrames",
     "FlowRate",
     "Forces",
     "LongitudinalModes",
     "MeanSquareDisplacement",
+    "MoleculeSize",
+    "NormalModes",
     "Observable",
     "Probe",
     "RadialProfile",
     "Result",
     "RunningFluid",
     "Stress",
+    "StressAutocorrelation",
     "SurfaceProfile",
     "TemperatureProfile",
     "TransverseModes",

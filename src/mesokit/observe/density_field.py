@@ -60,5 +60,8 @@ class DensityFieldAccumulator(FieldAccumulator):
             expected=None if pressed else expected,
             theory="uniform",
             samples=self.blocks.count,
-            extra={"bins_per_cell": self.observable.bins_per_cell},
+            extra={
+                "bins_per_cell": self.observable.bins_per_cell,
+                "dimension": self.case.box.dimension,
+            },
         )

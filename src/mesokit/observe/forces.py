@@ -12,6 +12,7 @@ from mesokit import theory
 from mesokit.box import AXES, Axis
 from mesokit.component import component, param, tag
 from mesokit.errors import CaseError
+from mesokit.geometry.plates import Plates
 from mesokit.observe import recognise, setting
 from mesokit.observe.estimate import Estimate, of_mean
 from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
@@ -130,6 +131,12 @@ class ForcesAccumulator:
             extra={
                 "time": self.series.time(),
                 "series": self.series.values().reshape(-1, *self.shape),
+                "plates": np.isin(range(len(self.bodies)), self.obstacles(), invert=True).astype(
+                    int
+                ),
+                "pivot": np.array(
+                    [body.pieces[0].pivot for body in solids_of(self.case).bodies], float
+                ),
             },
         )
 
@@ -138,14 +145,27 @@ class ForcesAccumulator:
         solids = solids_of(self.case)
         return [i for i, wall in enumerate(solids.walls) if self.case.walls[wall].shape != "plates"]
 
+    def plates(self) -> NDArray[np.int64]:
+        """1 for each body that is a plate, 0 for the others."""
+        plates = np.ones(len(self.bodies), np.int64)
+        plates[self.obstacles()] = 0
+        return plates
+
     def total(self) -> Array:
-        """(d,): the force on the fluid, all of which the solids take in a steady flow."""
+        """(d,): the force on the fluid, all of which the solids take in a steady flow.
+
+        nan where there is none, such as along slip plates, which hold nothing.
+        """
         case = self.case
         if case.fluid.force.rule == "sinusoidal":
             rest = np.zeros(self.dimension)
             rest[AXES.index(case.fluid.force.flow)] = np.nan
             return rest
-        return setting.acceleration(case) * setting.mass_density(case) * free_volume(case)
+        total: Array = setting.acceleration(case) * setting.mass_density(case) * free_volume(case)
+        if all(isinstance(wall, Plates) and wall.slips for wall in case.walls):
+            closed = np.isin(range(self.dimension), list(setting.closed_axes(case)))
+            total[~closed & (total != 0)] = np.nan
+        return total
 
     def expected(self) -> Array:
         """What a balance or a theory says of each solid, nan elsewhere."""
@@ -192,9 +212,11 @@ class ForcesAccumulator:
             every[force[:, axis]] = 1.0
             value, error = mean.scalar(every @ mean.value, every)
             note = "the force on the fluid; steady flow"
+            if np.isnan(total[axis]):
+                note = "nothing holds the fluid"
             what = f"force on all solids along {AXES[axis]}"
             found.append(Comparison(what, value, error, float(total[axis]), FORCE, note))
-            if few and len(self.bodies) > 1:
+            if few and len(self.bodies) > 1 and np.isfinite(total[axis]):
                 found += self.shares(mean, force[:, axis], axis, expected)
         for body, column in np.argwhere(expected[:, self.dimension :] != 0) if few else ():
             place = body, self.dimension + column

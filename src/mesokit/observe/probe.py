@@ -35,7 +35,10 @@ class Probe(Observable):
 
     quantity: Literal["probe"] = tag("probe")
     centre: tuple[float, ...] | None = param(
-        None, doc="middle of the small box (that of the box unless said)", unit="a"
+        None,
+        doc="middle of the small box (that of the box unless said); what sticks out of a periodic "
+        "axis is at its other end",
+        unit="a",
     )
     size: tuple[float, ...] | None = param(
         None, doc="its sides (2 cells along each axis unless said)", unit="a"
@@ -57,6 +60,7 @@ class Probe(Observable):
             0 < side <= length for side, length in zip(self.size, case.box.size, strict=True)
         ):
             raise CaseError(f"size = {show(self.size)}: expected lengths that fit the box")
+        self._require_between_plates(case)
         if self.component is not None:
             setting.axis_index(case, self.component, "component")
         if (self.speed is None) != (self.length is None):
@@ -64,6 +68,17 @@ class Probe(Observable):
             raise CaseError(f"{lone}: no effect without {other}; give both or neither")
         if case.walls and solids_of(case).distance(self.place(case))[0] <= 0:
             raise CaseError(f"centre = {show(self.place(case))}: lies in a solid")
+
+    def _require_between_plates(self, case: Case) -> None:
+        """Raise CaseError for a small box that reaches over a plate."""
+        place, sides = self.place(case), self.size or (2.0,) * case.box.dimension
+        for axis in setting.closed_axes(case):
+            half = 0.5 * sides[axis] - 1e-9
+            if not half <= place[axis] <= case.box.size[axis] - half:
+                raise CaseError(
+                    f"centre = {show(place)}: with sides {show(sides)} it reaches over a plate "
+                    f"along {AXES[axis]}"
+                )
 
     def place(self, case: Case) -> tuple[float, ...]:
         """The middle of the small box in this case."""

@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
 
 Array = NDArray[np.floating[Any]]
 
@@ -181,11 +184,14 @@ class Result:
             raise KeyError(f"{self.name}: no coordinate {sorted(unknown)}; there is {list(self.x)}")
         return float(self.value[tuple(index)]), float(self.error[tuple(index)])
 
-    def plot(self, ax: Any = None) -> Any:
-        """Draw it with error bars, theory and the comparisons; returns the Matplotlib figure."""
+    def plot(self, ax: Any = None, case: Case | None = None) -> Any:
+        """Draw it with error bars, theory and the comparisons; returns the Matplotlib figure.
+
+        The `case` of the run adds its solids to a map.
+        """
         from mesokit.report import plot
 
-        return plot(self, ax)
+        return plot(self, ax, case)
 
     def __eq__(self, other: object) -> bool:
         """Every number, text and unit the same (nan equals nan)."""

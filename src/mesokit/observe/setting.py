@@ -216,6 +216,8 @@ def flow(case: Case, component: int) -> Flow:
             return Flow("driven shear", 1, None)
         if component != 0:
             return Flow("rest", 1, np.zeros_like)
+        if box.shear_frequency:
+            return Flow("oscillating shear", 1, None)
         rate, length = box.shear_rate, float(box.size[1])
         return Flow("lees-edwards", 1, lambda y: theory.lees_edwards_velocity(y, length, rate))
     force = case.fluid.force

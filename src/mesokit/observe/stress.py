@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit import theory
 from mesokit.box import AXES
 from mesokit.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.observe import setting
+from mesokit.observe.molecules import stress_in_shear
 from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from mesokit.case import Case
 
 PARTS = ("kinetic", "collisional", "bond")  # the last one of molecules only
+ROUSE = "Rouse molecules, beads with the friction of free particles"
 UNIT = {2: "m/tau^2", 3: "m/(a tau^2)"}  # force per area, by dimension
 
 
@@ -103,8 +106,9 @@ class StressAccumulator:
             # the parts and the normal stresses are of higher order in the shear rate
             expected[:, range(d), range(d)] = np.nan
             expected[2:-1] = np.nan
+            steady = coefficients and not case.box.shear_frequency
             for part, nu in zip((0, 1, -1), self.viscosities(), strict=True):
-                shear = nu * setting.mass_density(case) * rate if coefficients else np.nan
+                shear = nu * setting.mass_density(case) * rate if steady else np.nan
                 expected[part, 0, 1] = expected[part, 1, 0] = shear
         return expected
 
@@ -120,7 +124,7 @@ class StressAccumulator:
         case, found = self.case, []
         mean, error = self.blocks.mean(), self.blocks.error()
         rate = case.box.shear_rate
-        if rate:
+        if rate and not case.box.shear_frequency:
             scale = setting.mass_density(case) * rate
             notes = (
                 setting.caveat(case),
@@ -130,7 +134,9 @@ class StressAccumulator:
             for part, name, note in zip(
                 (-1, 0, 1), ("viscosity", "kinetic part", "collisional part"), notes, strict=True
             ):
-                nu = self.viscosities()[part]
+                nu, bonded = self.viscosities()[part], self.bonded()
+                if part < 0 and bonded is not None:
+                    nu, note = bonded.viscosity / setting.mass_density(case), ROUSE
                 found.append(
                     Comparison(
                         f"{name} from the stress",
@@ -148,8 +154,12 @@ class StressAccumulator:
                         float(error[2, 0, 1] / abs(scale)), np.nan, "a^2/tau",
                     )
                 )  # fmt: skip
+            found += self.normal_differences()
         known = setting.isothermal(case) or not setting.driven(case)
         ideal = case.fluid.density * case.fluid.kT / self.beads
+        if rate and self.beads > 1:  # stretched bonds pull along the flow
+            bonded = None if case.box.shear_frequency else self.bonded()
+            ideal = ideal - bonded.first / case.box.dimension if bonded else np.nan
         found.append(
             Comparison(
                 "pressure",
@@ -161,10 +171,36 @@ class StressAccumulator:
         )
         return found
 
+    def bonded(self) -> theory.ShearStress | None:
+        """What Rouse's theory expects of a sheared fluid of molecules."""
+        return None if self.case.fluid.molecule is None else stress_in_shear(self.case)
+
+    def normal_differences(self) -> list[Comparison]:
+        """First and, in 3D, second normal-stress difference of a sheared fluid."""
+        bonded, d = self.bonded(), self.case.box.dimension
+        known = (bonded.first, bonded.second) if bonded is not None else (np.nan, np.nan)
+        found = []
+        for which, name in enumerate(("first", "second")[: d - 1]):
+            weight = np.zeros((d, d))
+            weight[which, which], weight[which + 1, which + 1] = 1.0, -1.0
+            found.append(
+                Comparison(
+                    f"{name} normal-stress difference",
+                    float((weight * self.blocks.mean()[-1]).sum()),
+                    self.error_of(weight), known[which], UNIT[d], ROUSE if bonded else "",
+                )
+            )  # fmt: skip
+        return found
+
     def trace_error(self) -> float:
         """Standard error of the pressure, whose parts are correlated."""
+        d = self.case.box.dimension
+        return self.error_of(np.eye(d) / d)
+
+    def error_of(self, weight: Array) -> float:
+        """Standard error of a sum of elements of the total stress with these weights (d, d)."""
         from mesokit.observe.estimate import Estimate, of_mean
 
-        every, d = of_mean(self.blocks), self.case.box.dimension
-        trace = np.trace(every.residuals[:, -1], axis1=1, axis2=2) / d
-        return float(Estimate(np.zeros(()), trace, every.weights).error)
+        every = of_mean(self.blocks)
+        summed = (every.residuals[:, -1] * weight).sum(axis=(1, 2))
+        return float(Estimate(np.zeros(()), summed, every.weights).error)

@@ -11,6 +11,13 @@ from mesokit.component import component, tag
 from mesokit.observe import setting
 from mesokit.observe.decay import fit_curve, normalised
 from mesokit.observe.modes import SHOWN, Array, Modes, ModesAccumulator, transverse_units
+from mesokit.observe.molecules import (
+    free_bond,
+    modes_of,
+    molecule_of,
+    rouse_times_of,
+    without_bonds,
+)
 from mesokit.observe.result import Comparison, Result
 
 if TYPE_CHECKING:
@@ -18,6 +25,7 @@ if TYPE_CHECKING:
 
 LOWEST = (0.5, 0.2)  # of the correlation, that the fit looks at: later lags add little but noise
 FEWEST = 4  # lags; the lower limit serves where the sampling is too coarse for the upper one
+DROWNED = 2.0  # standard errors below which a correlation has drowned in noise
 FIRST = 3  # steps left out of the fit: the first collisions do not obey hydrodynamics yet
 
 
@@ -52,7 +60,8 @@ class TransverseModesAccumulator(ModesAccumulator):
         time, value, error = self.curves()
         coefficients = setting.transport(self.case) if self.undisturbed() else None
         first = self.equipartition() if self.undisturbed() else None
-        fits = self.viscosities(coefficients)
+        bonded = self.case.fluid.molecule is not None
+        fits = self.deviations() if bonded else self.viscosities(coefficients)
         return Result(
             quantity="transverse-modes",
             name=self.name,
@@ -62,20 +71,68 @@ class TransverseModesAccumulator(ModesAccumulator):
             label="transverse mode correlation",
             units={"value": "", "time": "tau", "wavenumber": "1/a"},
             expected=self.law(time),
-            theory="exp(-nu k^2 t)",
+            theory="Rouse fluid at finite k" if bonded else "exp(-nu k^2 t)",
             comparisons=tuple([c for c in [*fits, first] if c]),
             samples=self.shells[0].correlator.count,
             extra=self.smooth(time),
         )
 
     def law(self, time: Array) -> Array | None:
-        """exp(-nu k^2 t)."""
+        """exp(-nu k^2 t), or what springs make of it."""
+        if self.case.fluid.molecule is not None:
+            return self.bonded_law(time) if self.undisturbed() else None
         coefficients = setting.transport(self.case) if self.undisturbed() else None
         if coefficients is None:
             return None
         return theory.transverse_correlation(
             self.wavenumbers, time[:, None], coefficients.viscosity
         )
+
+    def bonded_law(self, time: Array, finite: bool = True) -> Array | None:
+        """Of a fluid of Rouse molecules, at finite wave numbers or as for long waves."""
+        case = self.case
+        coefficients, times, bond = without_bonds(case), rouse_times_of(case), free_bond(case)
+        if coefficients is None or times is None or bond is None:
+            return None
+        molecule, nu = molecule_of(case), coefficients.viscosity
+        elasticity = case.fluid.kT / (case.fluid.mass * molecule.length)
+        if not finite:
+            return theory.transverse_correlation_chain(
+                self.wavenumbers, time[:, None], nu, elasticity, times.stress
+            )
+        diffusion = coefficients.diffusion / molecule.length
+        curves = [
+            theory.transverse_correlation_finite_k(
+                k, time, nu, elasticity, modes_of(molecule), times.mode[0], bond, diffusion,
+                case.box.dimension,
+            )
+            for k in self.wavenumbers
+        ]  # fmt: skip
+        return np.stack(curves, axis=1)
+
+    def deviations(self) -> list[Comparison]:
+        """The largest from theory for each of the smallest wave numbers, above noise."""
+        time, value, error = self.curves()
+        found = []
+        for finite, name in ((True, "finite k"), (False, "long waves")):
+            if not self.undisturbed() or not len(time):
+                break
+            law = self.bonded_law(time, finite)
+            if law is None:
+                break
+            for i, k in enumerate(self.wavenumbers[:SHOWN]):
+                drowned = np.flatnonzero(~(np.abs(value[:, i]) > DROWNED * error[:, i]))
+                end = drowned[drowned > FIRST][:1]
+                use = slice(0, int(end[0]) if len(end) else len(time))
+                off = value[use, i] - law[use, i]
+                worst = int(np.argmax(np.abs(off)))
+                found.append(
+                    Comparison(
+                        f"largest deviation at k = {k:.4g}/a, {name}", float(off[worst]),
+                        float(error[worst, i]), 0.0, "", f"at {time[worst]:.3g} tau",
+                    )
+                )  # fmt: skip
+        return found
 
     def viscosities(self, coefficients: theory.Transport | None) -> list[Comparison]:
         """One for each of the smallest wave numbers."""

@@ -19,8 +19,8 @@ def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
     use = time > 0
     if ax is None and result.expected is not None and use.any():
         ax, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
-    elif ax is None:
-        ax = figure.subplots()
+    else:
+        ax = figure.subplots() if ax is None else ax
     t = time[use]
     ax.errorbar(
         t, result.value[use], result.error[use], fmt="o", mfc="white", color=COLOURS[0],
@@ -51,6 +51,34 @@ def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
 def draw_memory(result: Result, figure: Any, ax: Any) -> None:
     """Logarithmic in value and time, as a power law follows an exponential."""
     ax = figure.subplots() if ax is None else ax
+    _logarithmic(result, ax)
+    ax.set_ylabel(labelled(r"$|\langle v_x(0)\, v_x(t)\rangle|$", result.units["value"]))
+
+
+def draw_modulus(result: Result, figure: Any, ax: Any) -> None:
+    """Relaxation modulus, and what its Fourier transforms say is stored and lost."""
+    right: Any = None
+    if ax is None:
+        ax, right = figure.subplots(1, 2)
+    _logarithmic(result, ax)
+    ax.set_ylabel(labelled("$|G(t)|$", result.units["value"]))
+    if right is None or "frequency" not in result.extra:
+        return
+    w = result.extra["frequency"]
+    for k, (name, label) in enumerate((("storage", "$G'$"), ("loss", "$G''$"))):
+        right.errorbar(
+            w, result.extra[name], result.extra[f"{name}_error"], fmt=MARKERS[k], mfc="white",
+            color=COLOURS[k], label=label,
+        )  # fmt: skip
+    right.set_xscale("log")
+    right.set_yscale("log", nonpositive="mask")
+    right.set_xlabel(labelled(r"frequency $\omega$", "1/tau"))
+    right.set_ylabel(labelled("modulus", result.units["value"]))
+    right.legend(loc="best")
+
+
+def _logarithmic(result: Result, ax: Any) -> None:
+    """Size of a correlation, negative values filled."""
     time = result.x["time"]
     late, size = time > 0, abs(result.value)
     signs = {"measured, positive": result.value > 0, "measured, negative": result.value < 0}
@@ -75,9 +103,8 @@ def draw_memory(result: Result, figure: Any, ax: Any) -> None:
         largest = size[late].max()
         ax.set_ylim(0.2 * max(noise, 1e-6 * largest), 3 * largest)
     ax.set_xlabel(labelled("time lag $t$", result.units["time"]))
-    label = r"$|\langle v_x(0)\, v_x(t)\rangle|$"
-    ax.set_ylabel(labelled(label, result.units["value"]))
-    ax.legend(loc="best")
+    if ax.get_legend_handles_labels()[0]:
+        ax.legend(loc="best")
 
 
 def draw_modes(result: Result, figure: Any, ax: Any) -> None:
@@ -105,6 +132,29 @@ def draw_modes(result: Result, figure: Any, ax: Any) -> None:
     kind = "T" if result.quantity.startswith("t") else "L"
     ax.set_ylabel(rf"$C_v^{kind}(k, t)\,/\,C_v^{kind}(k, 0)$")
     ax.legend(loc="upper right", ncols=1 + shown // 4)
+
+
+def draw_normal_modes(result: Result, figure: Any, ax: Any) -> None:
+    """One curve for each of the slowest modes, as far as they are above noise."""
+    ax = figure.subplots() if ax is None else ax
+    time = result.x["time"]
+    for i, p in enumerate(result.x["mode"][:SHOWN]):
+        colour, use = COLOURS[i % len(COLOURS)], result.value[:, i] > 2 * result.error[:, i]
+        ax.errorbar(
+            time[use], result.value[use, i], result.error[use, i], fmt=MARKERS[i % len(MARKERS)],
+            mfc="white", color=colour, lw=0.8, label=f"$p = {p}$", zorder=2,
+        )  # fmt: skip
+        if result.expected is not None:
+            line = result.expected[:, i] > 1e-3
+            label = f"theory: {result.theory}" if i == 0 else None
+            ax.plot(
+                time[line], result.expected[line, i], ls=LINES[i % len(LINES)], color="black",
+                lw=1, label=label,
+            )  # fmt: skip
+    ax.set_yscale("log", nonpositive="mask")
+    ax.set_xlabel(labelled("time lag $t$", result.units["time"]))
+    ax.set_ylabel(r"$\langle X_p(0) X_p(t)\rangle\,/\,\langle X_p^2\rangle$")
+    ax.legend(loc="upper right")
 
 
 def _end(time: NDArray[np.float64], result: Result) -> float:

@@ -1,76 +1,93 @@
-"""Maps: colours for the size, arrows for the direction."""
+"""Maps of a whole run, drawn as pictures of the flow are; with solids where the case is known."""
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mesokit.observe.flow_frames import average
 from mesokit.observe.result import Result
-from mesokit.report.style import labelled
+from mesokit.report.flow import density, quiver, speed
+from mesokit.report.flow.data import Flow
+from mesokit.report.flow.field_source import FieldSource
+from mesokit.report.flow.kinds import Panel
+from mesokit.report.flow.region import region_of
+from mesokit.report.flow.setting import Setting
+from mesokit.report.flow.solids import Section
+from mesokit.report.flow.source import axes_of
+from mesokit.report.style import labelled, symbols
 
-ARROWS = 24  # along the longer axis
+if TYPE_CHECKING:
+    from mesokit.case import Case
 
-
-def draw_velocity(result: Result, figure: Any, ax: Any) -> None:
-    """Speed in the plane of the map, with arrows."""
-    ax = figure.subplots() if ax is None else ax
-    first, second, _ = result.x
-    components = [list(result.x["component"]).index(name) for name in (first, second)]
-    u, v = (result.value[..., c] for c in components)
-    _map(result, figure, ax, np.hypot(u, v), "speed in the plane", "viridis", 0.0)
-    x, y = result.x[first], result.x[second]
-    every = max(1, int(np.ceil(max(len(x), len(y)) / ARROWS)))
-    start = every // 2
-    pick = (slice(start, None, every), slice(start, None, every))
-    ax.quiver(
-        x[pick[0]], y[pick[1]], u[pick].T, v[pick].T, color="white", edgecolor="black",
-        linewidth=0.3, pivot="mid", angles="xy",
-    )  # fmt: skip
-    error = np.nanmedian(result.error) if np.isfinite(result.error).any() else np.nan
-    ax.set_title(f"mean velocity; median standard error {error:.2g}", fontsize=10)
+NO_FLUID = "0.85"  # grey of bins without fluid, where nobody knows the solids
+DENSITIES = 0.5, 99.5  # percent of the bins: from where to where the colours of a density go
+FLAT = 0.5  # of the highest density: where the lowest is above it, colours start there
 
 
-def draw_frames(result: Result, figure: Any, ax: Any) -> None:
-    """The mean over all frames."""
-    draw_velocity(average(result), figure, ax)
+def draw(result: Result, ax: Any, case: Case | None) -> Any:
+    """Speed and arrows, or density, into a new figure; into given axes the colours alone."""
+    if result.quantity == "flow-frames":
+        result = average(result)
+    axes = axes_of(result)
+    setting = _setting(result, axes) if case is None else Setting.of(case, axes)
+    flow = FieldSource(setting, result).flow(np.zeros(0, np.int64))
+    section, region = Section(case, axes), region_of(None, axes, flow.size)
+    panels: tuple[Panel, ...] = (speed, quiver)
+    if flow.density is not None:
+        panels, flow = (density,), _ranged(flow, setting)
+    reaches = [panel.reach(flow, region) for panel in panels]
+    if ax is None:
+        from mesokit.report.flow.canvas import Canvas
+
+        notes = [section.note(), _note(result, flow)]
+        drawn = Canvas(panels, [flow] * len(panels), reaches, region, section, notes=notes)
+        drawn.show([flow] * len(panels))
+        figure, ax = drawn.figure, drawn.axes[0]
+    else:
+        figure, view = ax.figure, section.view(region)
+        scale = panels[0].scale(flow, reaches[0])
+        section.draw(ax, view)
+        panels[0].draw(ax, flow, region, reaches[0])
+        ax.set(xlim=(view.low[0], view.high[0]), ylim=(view.low[1], view.high[1]), aspect="equal")
+        ax.set(xlabel=labelled(f"${axes[0]}$", "a"), ylabel=labelled(f"${axes[1]}$", "a"))
+        assert scale is not None
+        figure.colorbar(scale.mappable(), ax=ax, label=scale.label)
+    if case is None:
+        ax.set_facecolor(NO_FLUID)
+    return figure
 
 
-def draw_density(result: Result, figure: Any, ax: Any) -> None:
-    """Density, with colours that meet in the middle at what is expected."""
-    ax = figure.subplots() if ax is None else ax
-    middle = None if result.expected is None else float(np.nanmean(result.expected))
-    colours = "viridis" if middle is None else "RdBu_r"
-    _map(result, figure, ax, result.value, result.label, colours, None, middle)
-    error = np.nanmedian(result.error) if np.isfinite(result.error).any() else np.nan
-    ax.set_title(f"mean density; median standard error {error:.2g}", fontsize=10)
+def _setting(result: Result, axes: tuple[str, str]) -> Setting:
+    """What a result alone says of its box."""
+    x, y = (result.x[axis] for axis in axes)
+    size = float(x[0] + x[-1]), float(y[0] + y[-1])
+    parts = result.x.get("component")
+    dimension = len(parts) if parts is not None else int(result.extra.get("dimension", 2))
+    return Setting(axes, ["xyz".index(axis) for axis in axes], size, dimension, (False, False))
 
 
-def _map(
-    result: Result,
-    figure: Any,
-    ax: Any,
-    values: Any,
-    label: str,
-    colours: str,
-    lowest: float | None,
-    middle: float | None = None,
-) -> None:
-    first, second = list(result.x)[:2]
-    x, y = result.x[first], result.x[second]
-    limits = {"vmin": lowest}
-    if middle is not None:
-        reach = float(np.nanmax(abs(values - middle))) or 1.0
-        limits = {"vmin": middle - reach, "vmax": middle + reach}
-    image = ax.imshow(
-        values.T, origin="lower", cmap=colours, aspect="equal", interpolation="nearest",
-        extent=(0, x[-1] + x[0], 0, y[-1] + y[0]), **limits,
-    )  # fmt: skip
-    wide = len(x) > len(y)
-    figure.colorbar(
-        image, ax=ax, label=labelled(label, result.units["value"]),
-        location="bottom" if wide and (x[-1] + x[0]) > 1.5 * (y[-1] + y[0]) else "right",
-    )  # fmt: skip
-    ax.set_xlabel(labelled(f"${first}$", result.units[first]))
-    ax.set_ylabel(labelled(f"${second}$", result.units[second]))
+def _ranged(flow: Flow, setting: Setting) -> Flow:
+    """Colours from the lowest density that is no cut cell, as a fluid is hardly compressible."""
+    assert flow.density is not None
+    values = flow.density
+    if setting.case is None:  # a bin that was empty all the time is solid
+        values = np.where(values > 0, values, np.nan)
+    kept = flow.surely(values)
+    kept = kept[np.isfinite(kept)]
+    low, high = np.percentile(kept, DENSITIES) if len(kept) else (0.0, 1.0)
+    return replace(flow, density=values, lowest=float(low) if FLAT * high < low < high else 0.0)
+
+
+def _note(result: Result, flow: Flow) -> str:
+    """What was averaged, and how sure it is."""
+    text = f"mean {'velocity' if flow.density is None else 'density'} of the run"
+    unit = "a/tau" if flow.density is None else f"1/a^{flow.dimension}"
+    error = result.error if flow.sure is None else result.error[flow.sure]
+    if (error > 0).any():
+        text += f"; median standard error {np.nanmedian(error[error > 0]):.2g} {symbols(unit)}"
+    if flow.density is not None and result.expected is not None:
+        text += f"; uniform would be {np.nanmax(result.expected):.4g} {symbols(unit)}"
+    return text

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mesokit.errors import RunError
 from mesokit.io.atomic import replacing
@@ -15,20 +15,24 @@ from mesokit.observe.result import Result
 from mesokit.report import correlation, field, forces, probe, profile, series, tensor, wake
 from mesokit.report.style import HEIGHT, STYLE, WIDTH, below
 
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
 DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "conservation": series.draw,
     "velocity-profile": profile.draw,
     "density-profile": profile.draw,
     "temperature-profile": profile.draw,
-    "velocity-field": field.draw_velocity,
-    "density-field": field.draw_density,
-    "flow-frames": field.draw_frames,
     "mean-square-displacement": correlation.draw_displacement,
     "velocity-autocorrelation": correlation.draw_memory,
+    "molecule-size": tensor.draw,
+    "normal-modes": correlation.draw_normal_modes,
     "transverse-modes": correlation.draw_modes,
     "longitudinal-modes": correlation.draw_modes,
     "wall-stress": tensor.draw,
     "stress": tensor.draw,
+    "dynamic-moduli": tensor.draw_moduli,
+    "stress-autocorrelation": correlation.draw_modulus,
     "bond-length": tensor.draw,
     "forces": forces.draw,
     "radial-profile": profile.draw,
@@ -38,17 +42,22 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "flow-rate": series.draw_flow,
 }
 
+MAPS = ("velocity-field", "density-field", "flow-frames")  # which know their own figure
 
-def plot(result: Result, ax: Any = None) -> Any:
+
+def plot(result: Result, ax: Any = None, case: Case | None = None) -> Any:
     """Draw a result into a new figure, or into the axes `ax`; returns the figure.
 
-    In given axes the main panel alone is drawn, without the comparisons.
+    In given axes the main panel alone is drawn, without the comparisons. The case of the run adds
+    its solids to a map.
     """
     import matplotlib as mpl
 
     from mesokit.report.notebook import ShownFigure
 
     with mpl.rc_context(STYLE):
+        if result.quantity in MAPS:
+            return field.draw(result, ax, case)
         if ax is not None:
             DRAW[result.quantity](result, ax.figure, ax)
             return ax.figure
@@ -59,9 +68,9 @@ def plot(result: Result, ax: Any = None) -> Any:
         return figure
 
 
-def save(result: Result, path: str | Path) -> Path:
+def save(result: Result, path: str | Path, case: Case | None = None) -> Path:
     """Draw a result into a file (PNG, PDF, SVG by its ending). Raises RunError."""
-    return save_figure(plot(result), path)
+    return save_figure(plot(result, case=case), path)
 
 
 def save_figure(figure: Any, path: str | Path) -> Path:
@@ -78,6 +87,6 @@ def save_figure(figure: Any, path: str | Path) -> Path:
     return path
 
 
-def save_all(results: Iterable[Result], folder: str | Path) -> list[Path]:
+def save_all(results: Iterable[Result], folder: str | Path, case: Case | None = None) -> list[Path]:
     """Draw each result that has samples into `folder`/name.png; returns the files."""
-    return [save(r, Path(folder) / f"{r.name}.png") for r in results if r.samples]
+    return [save(r, Path(folder) / f"{r.name}.png", case) for r in results if r.samples]

@@ -12,6 +12,8 @@ from mesokit.report.style import COLOURS, MARKERS, labelled
 
 SYMBOLS = {
     "stress": r"$\sigma_{\alpha\beta}$",
+    "dynamic-moduli": "modulus",
+    "molecule-size": r"$\langle x_\alpha x_\beta\rangle$",
     "bond-length": r"$\langle b_\alpha b_\beta\rangle$",
 }
 
@@ -25,6 +27,13 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     _panel(panels[0], result, across, "shear")
     if panels[1] is not None:
         _panel(panels[1], result, normal, "normal")
+
+
+def draw_moduli(result: Result, figure: Any, ax: Any) -> None:
+    """Storage and loss modulus, by parts."""
+    entries = list(itertools.product(*(range(len(axis)) for axis in result.x.values())))
+    ax = ax if ax is not None else figure.subplots()
+    _panel(ax, result, entries, f"frequency {result.extra['frequency']:g}")
 
 
 def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) -> None:
@@ -50,8 +59,7 @@ def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) 
     ax.set_xlim(-0.6, len(inner) - 0.4)
     ax.set_title(title, fontsize=10)
     ax.margins(y=0.2)
-    symbol = SYMBOLS.get(result.quantity, "force per area")
-    ax.set_ylabel(labelled(symbol, result.units["value"]))
+    ax.set_ylabel(labelled(SYMBOLS.get(result.quantity, "force per area"), result.units["value"]))
     ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=2)  # below: no data there
 
 

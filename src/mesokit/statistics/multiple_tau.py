@@ -34,7 +34,7 @@ class _Level(NamedTuple):
     that the latest `points` entries always lie together, oldest (longest lag) first."""
 
     ring: NDArray[np.float64]  # (2 points, parts, *shape)
-    sums: NDArray[np.float64]  # (blocks, lags, *shape) of products, longest lag first
+    sums: NDArray[np.float64]  # (blocks, lags, *kept) of products, longest lag first
 
 
 class MultipleTau:
@@ -53,6 +53,8 @@ class MultipleTau:
     max_lag: longest lag in samples; None lets levels grow with the logarithm of the run.
     dtype: float for real signals, complex for complex ones.
     blocks: largest number of blocks of time, even and at least 16.
+    pooled: so many of the last axes of `shape` are averaged over at once: only their mean
+        correlation is kept, which takes far less memory.
 
     Raises ValueError for parameters out of range.
     Source: Ramirez et al. (2010).
@@ -76,6 +78,7 @@ class MultipleTau:
         max_lag: int | None = None,
         dtype: DTypeLike = float,
         blocks: int = 32,
+        pooled: int = 0,
     ) -> None:
         if averages < 2 or points < averages or points % averages:
             raise ValueError(
@@ -89,6 +92,10 @@ class MultipleTau:
         if blocks < 16 or blocks % 2:
             raise ValueError(f"blocks must be even and at least 16, got {blocks}")
         self.shape: tuple[int, ...] = (shape,) if isinstance(shape, int) else tuple(shape)
+        if not 0 <= pooled <= len(self.shape):
+            raise ValueError(f"pooled must be from 0 to {len(self.shape)}, got {pooled}")
+        self.pooled = pooled
+        self.kept = self.shape[: len(self.shape) - pooled]
         self.points = points
         self.averages = averages
         self.max_lag = max_lag
@@ -105,7 +112,7 @@ class MultipleTau:
         first = self.points // self.averages if self._levels else 0
         if self.max_lag is None or first * self.averages ** len(self._levels) <= self.max_lag:
             ring = np.zeros((2 * self.points, *self._sample.shape))
-            sums = np.zeros((self.blocks, self.points - first, *self.shape))
+            sums = np.zeros((self.blocks, self.points - first, *self.kept))
             self._levels.append(_Level(ring, sums))
 
     def add(self, value: ArrayLike) -> None:
@@ -128,7 +135,7 @@ class MultipleTau:
             ring[slot] = ring[end - 1] = entry
             products = ring[slot + 1 : slot + 1 + sums.shape[1]] * entry
             for part in range(products.shape[1]):
-                sums[block] += products[:, part]
+                sums[block] += self._pool(products[:, part])
             number += 1
             if number % self.averages:
                 break
@@ -137,6 +144,10 @@ class MultipleTau:
             depth += 1
             if depth == len(self._levels):
                 self._grow()
+
+    def _pool(self, products: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Mean over the pooled axes."""
+        return products.mean(axis=tuple(range(-self.pooled, 0))) if self.pooled else products
 
     def _store(self, value: ArrayLike) -> None:
         if np.shape(value) != self.shape:
@@ -162,8 +173,8 @@ class MultipleTau:
 
         Parameters
         ----------
-        average_over: axis or axes of `shape` to average over; the error is that of the average,
-            correlations between the signals included.
+        average_over: axis or axes of `shape`, without those pooled, to average over; the error is
+            that of the average, correlations between the signals included.
         normalised: divide by the (averaged) value at lag 0, with the error of the ratio.
 
         Returns lag (n,), value and error (n, *shape without the averaged axes). The error is
@@ -176,7 +187,7 @@ class MultipleTau:
         >>> correlator.correlation(normalised=True).value
         array([ 1., -1.])
         """
-        axes = _axes(average_over, len(self.shape))
+        axes = _axes(average_over, len(self.kept))
         lag: list[NDArray[np.int64]] = []
         value, error = [], []
         zero, zero_residuals = np.ones(()), np.zeros(())
@@ -196,7 +207,7 @@ class MultipleTau:
             value.append(mean)
             error.append(plateau_error(residuals, counts))
         if not lag:
-            kept = [n for axis, n in enumerate(self.shape) if axis + 2 not in axes]
+            kept = [n for axis, n in enumerate(self.kept) if axis + 2 not in axes]
             return Correlation(np.zeros(0, np.int64), np.zeros((0, *kept)), np.zeros((0, *kept)))
         return Correlation(np.concatenate(lag), np.concatenate(value), np.concatenate(error))
 
@@ -237,7 +248,9 @@ class MultipleTau:
     def state(self) -> dict[str, NDArray[Any]]:
         """Everything that `from_state` needs to go on with the same bits, as arrays."""
         max_lag = -1 if self.max_lag is None else self.max_lag
-        numbers = [self.count, self.block_length, self.points, self.averages, max_lag]
+        numbers = [
+            self.count, self.block_length, self.points, self.averages, max_lag, self.pooled,
+        ]  # fmt: skip
         state: dict[str, NDArray[Any]] = {"numbers": np.array(numbers, np.int64)}
         for depth, (ring, sums) in enumerate(self._levels):
             state[f"ring_{depth}"] = ring[: self.points].copy()
@@ -253,7 +266,7 @@ class MultipleTau:
         >>> MultipleTau.from_state(correlator.state()).correlation().value
         array([9.])
         """
-        count, block_length, points, averages, max_lag = (int(n) for n in state["numbers"])
+        count, block_length, points, averages, max_lag, pooled = map(int, state["numbers"])
         parts, *shape = state["ring_0"].shape[1:]
         correlator = cls(
             shape=tuple(shape),
@@ -262,6 +275,7 @@ class MultipleTau:
             max_lag=None if max_lag < 0 else max_lag,
             dtype=complex if parts == 2 else float,
             blocks=len(state["sums_0"]),
+            pooled=pooled,
         )
         correlator.count, correlator.block_length = count, block_length
         correlator._levels = []

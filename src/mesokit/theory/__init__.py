@@ -3,6 +3,9 @@
 Nothing here uses the rest of mesokit, so that it can judge it. Lengths are in cell sides a = 1.
 """
 
+from mesokit.theory.chain_diffusion import kirkwood_diffusion, rouse_diffusion, zimm_diffusion
+from mesokit.theory.chain_scaling import ChainExponents, chain_exponents
+from mesokit.theory.chain_size import mean_square_end_to_end, mean_square_gyration
 from mesokit.theory.channel_cylinder import Reference, channel_cylinder, square_wake_length
 from mesokit.theory.couette import couette_velocity
 from mesokit.theory.cubic_array import (
@@ -10,18 +13,29 @@ from mesokit.theory.cubic_array import (
     cubic_array_drag_dilute,
     cubic_array_permeability,
 )
+from mesokit.theory.diffusion_in_box import diffusion_in_box
 from mesokit.theory.finite_size import viscosity_renormalised
 from mesokit.theory.gamma import cell_energy_cdf, cell_energy_pdf, cell_energy_variance
 from mesokit.theory.hagen_poiseuille import (
     hagen_poiseuille_flow_rate,
     hagen_poiseuille_velocity,
 )
+from mesokit.theory.harmonic_spring import Spring, mean_square_bond, spring, spring_of_bond
 from mesokit.theory.held_temperature import shear_warming, temperature_offset
+from mesokit.theory.hookean_shear import (
+    ShearStress,
+    SizeInShear,
+    dumbbell_thinning,
+    maxwell_shear,
+    shear_heating,
+    size_in_shear,
+)
 from mesokit.theory.kolmogorov import (
     kolmogorov_onset_time,
     kolmogorov_velocity,
     kolmogorov_viscosity,
 )
+from mesokit.theory.kremer_grest import BondLength, kremer_grest_bond
 from mesokit.theory.lees_edwards import lees_edwards_relaxation_time, lees_edwards_velocity
 from mesokit.theory.maxwell import (
     maxwell_component_cdf,
@@ -33,8 +47,17 @@ from mesokit.theory.mean_square_displacement import (
     decorrelation_from_diffusion,
     msd_molecular_chaos,
 )
+from mesokit.theory.normal_modes import NormalModes, linear_modes, ring_modes, star_modes
 from mesokit.theory.origin import Origin, origins
 from mesokit.theory.poiseuille import PoiseuilleFit, poiseuille_fit, poiseuille_velocity
+from mesokit.theory.relaxation_modulus import (
+    apparent_viscosity,
+    complex_viscosity,
+    loss_modulus,
+    relaxation_modulus,
+    storage_modulus,
+)
+from mesokit.theory.rouse_times import RouseTimes, rouse_times, rouse_times_from_slowest
 from mesokit.theory.square_array import (
     square_array_drag,
     square_array_drag_dilute,
@@ -46,11 +69,22 @@ from mesokit.theory.taylor_couette import (
     taylor_couette_velocity,
 )
 from mesokit.theory.transport import Transport, transport
+from mesokit.theory.transverse_chain import (
+    TransversePoles,
+    transverse_correlation_chain,
+    transverse_poles,
+)
+from mesokit.theory.transverse_dimer import dimer_oscillation_range, transverse_correlation_dimer
+from mesokit.theory.transverse_finite_k import (
+    gaussian_stress_kernel,
+    transverse_correlation_finite_k,
+)
 from mesokit.theory.transverse_modes import (
     ViscosityFit,
     transverse_correlation,
     transverse_viscosity_fit,
 )
+from mesokit.theory.trimer import trimer_bond_length, trimer_spring_constant
 from mesokit.theory.velocity_autocorrelation import (
     vacf_modes,
     vacf_molecular_chaos,
@@ -62,49 +96,90 @@ from mesokit.theory.water import (
     water_sound_speed,
     water_viscosity,
 )
+from mesokit.theory.zimm_times import zimm_times
 
 __all__ = [
+    "BondLength",
+    "ChainExponents",
+    "NormalModes",
     "Origin",
     "PoiseuilleFit",
     "Reference",
+    "RouseTimes",
+    "ShearStress",
+    "SizeInShear",
+    "Spring",
     "Transport",
+    "TransversePoles",
     "ViscosityFit",
+    "apparent_viscosity",
     "cell_energy_cdf",
     "cell_energy_pdf",
     "cell_energy_variance",
+    "chain_exponents",
     "channel_cylinder",
+    "complex_viscosity",
     "couette_velocity",
     "cubic_array_drag",
     "cubic_array_drag_dilute",
     "cubic_array_permeability",
     "decorrelation_from_diffusion",
+    "diffusion_in_box",
+    "dimer_oscillation_range",
+    "dumbbell_thinning",
+    "gaussian_stress_kernel",
     "hagen_poiseuille_flow_rate",
     "hagen_poiseuille_velocity",
+    "kirkwood_diffusion",
     "kolmogorov_onset_time",
     "kolmogorov_velocity",
     "kolmogorov_viscosity",
+    "kremer_grest_bond",
     "lees_edwards_relaxation_time",
     "lees_edwards_velocity",
+    "linear_modes",
+    "loss_modulus",
     "maxwell_component_cdf",
     "maxwell_component_pdf",
+    "maxwell_shear",
     "maxwell_speed_cdf",
     "maxwell_speed_pdf",
+    "mean_square_bond",
+    "mean_square_end_to_end",
+    "mean_square_gyration",
     "msd_molecular_chaos",
     "origins",
     "poiseuille_fit",
     "poiseuille_velocity",
+    "relaxation_modulus",
+    "ring_modes",
+    "rouse_diffusion",
+    "rouse_times",
+    "rouse_times_from_slowest",
+    "shear_heating",
     "shear_warming",
+    "size_in_shear",
+    "spring",
+    "spring_of_bond",
     "square_array_drag",
     "square_array_drag_dilute",
     "square_array_permeability",
     "square_wake_length",
+    "star_modes",
+    "storage_modulus",
     "taylor_couette_coefficients",
     "taylor_couette_torque",
     "taylor_couette_velocity",
     "temperature_offset",
     "transport",
     "transverse_correlation",
+    "transverse_correlation_chain",
+    "transverse_correlation_dimer",
+    "transverse_correlation_finite_k",
+    "transverse_poles",
     "transverse_viscosity_fit",
+    "trimer_bond_length",
+    "trimer_spring_constant",
     "vacf_modes",
     "vacf_molecular_chaos",
     "vacf_tail",
@@ -113,4 +188,6 @@ __all__ = [
     "water_diffusion",
     "water_sound_speed",
     "water_viscosity",
+    "zimm_diffusion",
+    "zimm_times",
 ]

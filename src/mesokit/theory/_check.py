@@ -23,3 +23,17 @@ def one_of(allowed: Sequence[object], **values: object) -> None:
 def dimension_two_or_three(dimension: int) -> None:
     """Raise ValueError unless the dimension is 2 or 3."""
     one_of((2, 3), dimension=dimension)
+
+
+def not_negative(**values: float) -> None:
+    """Raise ValueError unless every named value is a finite number of 0 or more."""
+    for name, value in values.items():
+        if not (math.isfinite(value) and value >= 0):
+            raise ValueError(f"{name} = {value!r}: expected a finite number of 0 or more")
+
+
+def whole(least: int, **values: int) -> None:
+    """Raise ValueError unless every named value is a whole number, not below the least."""
+    for name, value in values.items():
+        if value != int(value) or value < least:
+            raise ValueError(f"{name} = {value!r}: expected a whole number of {least} or more")

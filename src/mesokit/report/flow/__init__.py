@@ -2,6 +2,6 @@
 
 from mesokit.report.flow.film import Film, animate
 from mesokit.report.flow.kinds import KINDS
-from mesokit.report.flow.still import picture
+from mesokit.report.flow.still import CHOICES, picture
 
-__all__ = ["KINDS", "Film", "animate", "picture"]
+__all__ = ["CHOICES", "KINDS", "Film", "animate", "picture"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from typing import Any
 
@@ -9,7 +10,7 @@ import matplotlib as mpl
 
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.kinds import Panel
-from mesokit.report.flow.layout import Box, layout
+from mesokit.report.flow.layout import LINE, Box, layout
 from mesokit.report.flow.region import Region
 from mesokit.report.flow.scale import Scale
 from mesokit.report.flow.solids import Section
@@ -24,6 +25,7 @@ LOOK = STYLE | {
     "axes.labelsize": 10,
     "hatch.linewidth": 0.4,
 }
+MARGIN, LETTERS = 0.12, 15.0  # of the note: inches at its sides, letters in an inch
 
 
 class Canvas:
@@ -37,6 +39,7 @@ class Canvas:
     region: what is seen of the box.
     section: through its solids.
     stamp: whether a time is written above.
+    notes: written below.
     """
 
     def __init__(
@@ -47,11 +50,16 @@ class Canvas:
         region: Region,
         section: Section,
         stamp: bool = False,
+        notes: Sequence[str] = (),
     ) -> None:
         self.panels, self.reaches, self.region = panels, reaches, region
         scales = [p.scale(f, r) for p, f, r in zip(panels, flows, reaches, strict=True)]
         self.view = section.view(region)
-        self.place = layout(self.view.extent, [scale is not None for scale in scales], stamp)
+        bars = [scale is not None for scale in scales]
+        width = layout(self.view.extent, bars, stamp).size[0] - 2 * MARGIN
+        note = "; ".join(filter(None, notes))
+        lines = textwrap.wrap(note, max(12, int(width * LETTERS)), break_long_words=False)
+        self.place = layout(self.view.extent, bars, stamp, len(lines))
         with mpl.rc_context(LOOK):
             self.figure = ShownFigure(figsize=self.place.size)
             self.axes = [self._add(box) for box in self.place.panels]
@@ -61,6 +69,9 @@ class Canvas:
                 if scale is not None:
                     self._bar(self.place.bars[number], scale)
             top = 1 - 0.06 / self.place.size[1]
+            across, down = self.place.size
+            for number, line in enumerate(reversed(lines)):
+                self.figure.text(MARGIN / across, (0.06 + LINE * number) / down, line, size=8)
             self.stamp = self.figure.text(0.5, top, "", ha="center", va="top")
         self.still = [set(ax.get_children()) for ax in self.axes]
 
@@ -98,7 +109,7 @@ class Canvas:
             return
         self.figure.colorbar(scale.mappable(), cax=ax, orientation="horizontal")
         ax.xaxis.set_ticks_position("top")
-        ax.locator_params(nbins=5)
+        ax.locator_params(nbins=4)
         ax.tick_params(labelsize=8, pad=1, length=2)
         ax.text(-0.03, 0.5, scale.label, transform=ax.transAxes, ha="right", va="center", size=9)
 

@@ -24,6 +24,11 @@ class Flow:
     density: particles per cell (nx, ny), None if not known.
     velocity: components along the two axes (nx, ny, 2), nan where there is no fluid, or None.
     particles: positions (n, 2), or None.
+    error: standard error of the velocity (nx, ny, 2), or None if not known.
+    noise: as the velocity, but without the flow: an example of its noise, or None.
+    sure: bins (nx, ny) that are mostly fluid, which the colours are chosen from, None for all.
+    lowest: density at which its colours start.
+    smoothing: width over which the velocity is smoothed before its slope is taken, in bins.
     """
 
     axes: tuple[str, str]
@@ -33,12 +38,25 @@ class Flow:
     density: Array | None = None
     velocity: Array | None = None
     particles: Array | None = None
+    error: Array | None = None
+    noise: Array | None = None
+    sure: NDArray[np.bool_] | None = None
+    lowest: float = 0.0
+    smoothing: float = 0.0
 
     @property
     def speed(self) -> Array:
         """Speed in the plane of the picture (nx, ny)."""
         assert self.velocity is not None
         return np.hypot(self.velocity[..., 0], self.velocity[..., 1])
+
+    def surely(self, values: Array) -> Array:
+        """Values (nx, ny, ...), nan in the bins that no colour is to be chosen from."""
+        if self.sure is None:
+            return values
+        return np.where(
+            self.sure.reshape(self.sure.shape + (1,) * (values.ndim - 2)), values, np.nan
+        )
 
 
 def spacing(flow: Flow, values: Array) -> tuple[float, float]:

@@ -17,12 +17,12 @@ TITLE = "occupancy"
 def reach(flow: Flow, region: Region) -> float:
     """The highest density in the region."""
     assert flow.density is not None
-    return reach_of(flow.density[region.bins(flow.size, flow.density.shape)])
+    return reach_of(flow.surely(flow.density)[region.bins(flow.size, flow.density.shape)])
 
 
 def scale(flow: Flow, reach: float) -> Scale:
-    """From an empty cell to the fullest."""
-    return Scale(0.0, reach, "cividis", labelled("density", f"1/a^{flow.dimension}"))
+    """To the fullest cell, from an empty one unless the flow says otherwise."""
+    return Scale(flow.lowest, reach, "cividis", labelled("density", f"1/a^{flow.dimension}"))
 
 
 def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:

@@ -6,7 +6,7 @@ import base64
 import numbers
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +18,7 @@ from mesokit.errors import CaseError
 from mesokit.io.atomic import replacing
 from mesokit.progress import FilmReporter, Reporter
 from mesokit.report.flow.encode import ENCODERS, Pixels
-from mesokit.report.flow.kinds import panels_of
+from mesokit.report.flow.kinds import panels_of, quieted
 from mesokit.report.flow.region import Ranges, frames_in, region_of
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import Source, choose_one, sources
@@ -106,27 +106,31 @@ def animate(
 
     some = frames[np.unique(np.linspace(0, len(frames) - 1, SCALED).astype(int))]
     flows = [source.flow(np.array([frame])) for frame in some]
+    width, note = quieted(panels, flows, shown)
+    flows = [replace(flow, smoothing=width) for flow in flows]
     reaches = [max(panel.reach(flow, shown) for flow in flows) for panel in panels]
-    drawn = Canvas(panels, [first] * len(panels), reaches, shown, section, stamp=True)
+    notes = [section.note(), note(flows[0])]
+    drawn = Canvas(panels, [first] * len(panels), reaches, shown, section, True, notes)
     drawn.figure.set_dpi(DPI[ending])
     progress = progress or FilmReporter(quiet=True)
     progress.start(len(frames), case.particles, "drawing")
+    pictures = _pictures(drawn, source, frames, progress, width)
     try:
         with replacing(path) as temporary:
             temporary.touch()  # a folder that cannot be written to says so before long work
-            ENCODERS[ending](temporary, _pictures(drawn, source, frames, progress), float(fps))
+            ENCODERS[ending](temporary, pictures, float(fps))
     finally:
         progress.finish()
     return Film(path, len(frames), float(fps))
 
 
 def _pictures(
-    drawn: Canvas, source: Source, frames: NDArray[np.int64], progress: Reporter
+    drawn: Canvas, source: Source, frames: NDArray[np.int64], progress: Reporter, width: float
 ) -> Iterator[Pixels]:
     """The pictures of a film, one by one."""
     canvas: Any = drawn.figure.canvas
     for done, frame in enumerate(frames, start=1):
-        flow = source.flow(np.array([frame]))
+        flow = replace(source.flow(np.array([frame])), smoothing=width)
         stamp = f"$t = {source.time[frame]:.4g}$ {symbols('tau')}"
         drawn.show([flow] * len(drawn.panels), stamp)
         canvas.draw()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,17 +12,14 @@ from mesokit.observe.result import Result
 from mesokit.report.flow.data import Array, Flow
 from mesokit.report.flow.setting import Setting
 
-if TYPE_CHECKING:
-    from mesokit.case import Case
-
 
 class FrameSource:
     """The frames of one result."""
 
-    def __init__(self, case: Case, result: Result) -> None:
-        time, first, second, _ = result.x
-        self.result, self.axes, self.time = result, (first, second), result.x[time]
-        self.setting = Setting.of(case, self.axes)
+    def __init__(self, setting: Setting, result: Result) -> None:
+        self.setting, self.result, self.axes = setting, result, setting.axes
+        self.time = result.x["time"]
+        self.turned = list(result.x)[1] != self.axes[0]
         self.parts = list(result.x["component"])
         self.samples = result.extra["samples"]
         self.whole = np.flatnonzero(self.samples == self.samples.max(initial=0))
@@ -38,10 +34,10 @@ class FrameSource:
     def flow(self, frames: NDArray[np.int64]) -> Flow:
         """Means over some frames: momentum over mass."""
         value, weight = self.result.value[frames], self.weights[frames]
+        if self.turned:
+            value, weight = value.swapaxes(1, 2), weight.swapaxes(1, 2)
         components = [self.parts.index(f"velocity_{axis}") for axis in self.axes]
-        momentum = np.nan_to_num(value[..., components]) * weight[..., None]
-        with np.errstate(invalid="ignore", divide="ignore"):
-            velocity = momentum.sum(axis=0) / weight.sum(axis=0)[..., None]
+        velocity = _mean(value[..., components], weight)
         density = np.average(
             value[..., self.parts.index("density")], axis=0, weights=self.samples[frames]
         )
@@ -50,4 +46,27 @@ class FrameSource:
             density=density,
             velocity=velocity,
             particles=positions[:, self.setting.columns] if positions.size else None,
+            noise=self._noise(frames, components),
         )
+
+    def _noise(self, frames: NDArray[np.int64], components: list[int]) -> Array | None:
+        """Half the difference of every other frame and those between; of a frame and the next."""
+        alone = len(frames) == 1
+        if alone:
+            frames = frames[0] + np.arange(2) - (frames[0] + 1 == len(self.time))
+        if frames[0] < 0:
+            return None
+        value, weight = self.result.value[frames][..., components], self.weights[frames]
+        if self.turned:
+            value, weight = value.swapaxes(1, 2), weight.swapaxes(1, 2)
+        even, odd = (_mean(value[k::2], weight[k::2]) for k in range(2))
+        noise: Array = (even - odd) / (np.sqrt(2) if alone else 2)
+        return noise
+
+
+def _mean(velocity: Array, weight: Array) -> Array:
+    """Mean over frames, weighted; nan where a bin was empty all the time."""
+    momentum = np.nan_to_num(velocity) * weight[..., None]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean: Array = momentum.sum(axis=0) / weight.sum(axis=0)[..., None]
+    return mean

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 from mesokit.component import nearest, one_of, show
@@ -40,6 +41,16 @@ KINDS: dict[str, tuple[Panel, ...]] = {
     "vorticity": (vorticity,),
     "four": (quiver, streamlines, particles, density),
 }
+
+
+def quieted(
+    panels: Sequence[Panel], flows: Sequence[Flow], region: Region
+) -> tuple[float, Callable[[Flow], str]]:
+    """How wide velocities are smoothed for slopes of these panels, and what to say of it."""
+    if vorticity not in panels:
+        return 0.0, lambda flow: ""
+    width, clear = vorticity.smoothing(flows, region)
+    return width, lambda flow: vorticity.note(flow, clear)
 
 
 def panels_of(kind: str) -> tuple[Panel, ...]:

@@ -16,6 +16,7 @@ SLENDER = 2.2  # ratio of the sides beyond which panels stand in one row or colu
 FLAT_BAR, FLAT_ROOM = 0.09, 0.48  # colour bar above a flat panel
 KEY_BESIDE, KEY_ROOM = 1.9, 0.22  # width of a panel that has title and key above it in one line
 STAMP = 0.22  # for the time, above everything
+LINE = 0.16  # of the note below everything
 
 
 class Box(NamedTuple):
@@ -41,7 +42,9 @@ class Layout:
     columns: int
 
 
-def layout(extent: tuple[float, float], bars: Sequence[bool], stamp: bool) -> Layout:
+def layout(
+    extent: tuple[float, float], bars: Sequence[bool], stamp: bool, lines: int = 0
+) -> Layout:
     """Room for panels that show a region of `extent`.
 
     Parameters
@@ -50,7 +53,9 @@ def layout(extent: tuple[float, float], bars: Sequence[bool], stamp: bool) -> La
     bars: for each panel, whether it has a colour bar. Several stand in pairs, flat ones below one
         another, narrow ones in one row.
     stamp: whether the time is written above.
+    lines: of the note below.
     """
+    bottom = BOTTOM + LINE * lines
     count, flat = len(bars), extent[0] > SLENDER * extent[1]
     narrow = extent[1] > SLENDER * extent[0]
     columns = 1 if flat else count if narrow else min(count, 2)
@@ -67,13 +72,13 @@ def layout(extent: tuple[float, float], bars: Sequence[bool], stamp: bool) -> La
     panels = [
         Box(
             LEFT + column * width + sum(rights[:column]),
-            BOTTOM + (rows - 1 - row) * (height + top),
+            bottom + (rows - 1 - row) * (height + top),
             width,
             height,
         )
         for row, column in (divmod(number, columns) for number in range(count))
     ]
-    size = LEFT + columns * width + sum(rights), BOTTOM + rows * (height + top) + STAMP * stamp
+    size = LEFT + columns * width + sum(rights), bottom + rows * (height + top) + STAMP * stamp
     return Layout(size, panels, [_bar(panel, flat) for panel in panels], flat, columns)
 
 

@@ -24,8 +24,8 @@ def arrows(flow: Flow, region: Region) -> tuple[Array, Array, Array]:
 
     Each arrow is the mean over some bins, as many as leave at most ARROWS along the longer side.
     """
-    velocity = flow.velocity
-    assert velocity is not None
+    assert flow.velocity is not None
+    velocity = flow.surely(flow.velocity)
     (first, side, nx), (below, height, ny) = (
         _blocks(bins, ARROWS * length / max(region.extent))
         for bins, length in zip(region.bins(flow.size, velocity.shape), region.extent, strict=True)

@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from mesokit.observe.setting import obstructed
 from mesokit.report.flow.data import Array, Flow
 from mesokit.report.flow.solids import Section
+from mesokit.solids import solids_of
 
 if TYPE_CHECKING:
     from mesokit.case import Case
+
+SURE, LEAST = 0.5, 0.1  # parts of a bin that are fluid, for its colours to count, to be drawn
+UNUSUAL = 4.0  # times the median error, above which a bin's colours do not count
 
 
 @dataclass(frozen=True)
@@ -21,6 +29,7 @@ class Setting:
     size: tuple[float, float]
     dimension: int
     periodic: tuple[bool, bool]
+    case: Case | None = None
 
     @classmethod
     def of(cls, case: Case, axes: tuple[str, str]) -> Setting:
@@ -31,15 +40,43 @@ class Setting:
             for closed, axis in zip(section.closed(), axes, strict=True)
         )
         size = [float(case.box.size[column]) for column in section.columns]
-        return cls(axes, section.columns, (size[0], size[1]), case.box.dimension, (first, second))
+        return cls(
+            axes, section.columns, (size[0], size[1]), case.box.dimension, (first, second), case
+        )
+
+    def share(self, shape: tuple[int, ...]) -> Array | None:
+        """Part of each bin (nx, ny) that is fluid, None where no solid is in the way."""
+        if self.case is None or not obstructed(self.case):
+            return None
+        kept = self._shares
+        if shape not in kept:
+            columns = self.columns[0], self.columns[1]
+            kept[shape] = solids_of(self.case).open_share(columns, shape)
+        return kept[shape]
+
+    @cached_property
+    def _shares(self) -> dict[tuple[int, ...], Array]:
+        return {}
 
     def flow(
         self,
         density: Array | None = None,
         velocity: Array | None = None,
         particles: Array | None = None,
+        error: Array | None = None,
+        noise: Array | None = None,
     ) -> Flow:
-        """A flow over these axes."""
+        """A flow over these axes; densities become those of the open part of each bin."""
+        shape = next((a.shape[:2] for a in (velocity, density) if a is not None), None)
+        share = None if shape is None else self.share(shape)
+        sure = None if share is None else share > SURE
+        if error is not None and np.isfinite(error).any():
+            largest = np.nan_to_num(error, nan=np.inf).max(axis=-1)
+            usual = largest <= UNUSUAL * np.nanmedian(error)
+            sure = usual if sure is None else usual & sure
+        if density is not None and share is not None:
+            density = np.where(share > LEAST, density / np.maximum(share, LEAST), np.nan)
         return Flow(
-            self.axes, self.size, self.dimension, self.periodic, density, velocity, particles
-        )
+            self.axes, self.size, self.dimension, self.periodic, density, velocity, particles,
+            error, noise, sure,
+        )  # fmt: skip

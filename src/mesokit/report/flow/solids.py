@@ -31,10 +31,15 @@ def solids_of(case: Case) -> Solids | None:
 class Section:
     """The plane of a picture: two axes of the box, and a place `at` along the third.
 
-    Raises CaseError for a place that the box has not.
+    Raises CaseError for a place that the box has not. Without a case nothing is known of solids.
     """
 
-    def __init__(self, case: Case, axes: tuple[str, str], at: float | None = None) -> None:
+    third: int | None = None
+
+    def __init__(self, case: Case | None, axes: tuple[str, str], at: float | None = None) -> None:
+        self.solids = None
+        if case is None:
+            return
         self.case, self.solids = case, solids_of(case)
         self.columns = [case.box.axes.index(axis) for axis in axes]
         self.third = next((k for k in range(case.box.dimension) if k not in self.columns), None)
@@ -48,6 +53,13 @@ class Section:
             raise CaseError(
                 f"at = {show(at)}: expected a place along {AXES[self.third]}, from 0 to {length}"
             )
+
+    def note(self) -> str:
+        """What a 3D picture shows: a mean along the third axis, but a cut of the solids."""
+        if self.third is None:
+            return ""
+        axis = AXES[self.third]
+        return f"mean along {axis}" + f"; solids at {axis} = {self.at:g}" * bool(self.solids)
 
     def distance(self, x: Array, y: Array) -> Array:
         """Signed distance from the nearest surface at points of the plane, negative in a solid."""

@@ -27,6 +27,24 @@ REMEDY = {
 }
 
 
+class Found(list["Source"]):
+    """Sources over two axes, and the axes of the maps that were kept but are over others."""
+
+    def __init__(self, axes: Axes, others: Sequence[Axes] = ()) -> None:
+        super().__init__()
+        self.axes, self.others = axes, list(dict.fromkeys(others))
+
+    def lack(self, needs: str, kept: str) -> str:
+        """What was kept, and what to add to the case; of the case as it is, if it has the maps."""
+        if not self.others or needs == "particles":
+            return f"{kept}; add to the case and run it again: {REMEDY[needs]}"
+        maps = " and ".join(",".join(axes) for axes in self.others)
+        return (
+            f"maps over {maps}, not over {','.join(self.axes)}; add to the case and run it again: "
+            f'{FRAMES}, axes = ["{self.axes[0]}", "{self.axes[1]}"]'
+        )
+
+
 class Source(Protocol):
     """Something that a run has kept and pictures can be drawn from.
 
@@ -49,26 +67,38 @@ def sources(
     results: Mapping[str, Result],
     trajectory: TrajectoryReader | None,
     axes: Axes | None = None,
-) -> list[Source]:
+) -> Found:
     """What there is to draw over two axes (those of the first map unless said), best first.
+
+    A map over the same axes in the other order is turned.
 
     Raises CaseError for axes that the box has not, or of which no map was kept.
     """
     from mesokit.report.flow.field_source import FieldSource
     from mesokit.report.flow.frame_source import FrameSource
+    from mesokit.report.flow.setting import Setting
     from mesokit.report.flow.trajectory_source import TrajectorySource
 
     kept = [result for result in results.values() if result.samples]
-    found: list[Source] = []
-    found += [FrameSource(case, r) for r in kept if r.quantity == "flow-frames"]
-    found += [FieldSource(case, r) for r in kept if r.quantity == "velocity-field"]
-    found += [FieldSource(case, r) for r in kept if r.quantity == "density-field"]
+    maps: list[tuple[Axes, Result]] = []
+    for quantity in ("flow-frames", "velocity-field", "density-field"):
+        maps += [(axes_of(r), r) for r in kept if r.quantity == quantity]
     _check(case, axes)
-    chosen = axes or (found[0].axes if found else ("x", "y"))
-    found = [source for source in found if source.axes == chosen]
+    chosen = axes or (maps[0][0] if maps else ("x", "y"))
+    found = Found(chosen, [axes for axes, _ in maps if set(axes) != set(chosen)])
+    for over, result in maps:
+        if set(over) == set(chosen):
+            make = FrameSource if result.quantity == "flow-frames" else FieldSource
+            found.append(make(Setting.of(case, chosen), result))
     if trajectory is not None and "position" in trajectory.fields and len(trajectory):
         found.append(TrajectorySource(case, trajectory, chosen))
     return found
+
+
+def axes_of(result: Result) -> Axes:
+    """The two axes of a map."""
+    first, second = [axis for axis in result.x if axis not in ("time", "component")]
+    return first, second
 
 
 def _check(case: Case, axes: Axes | None) -> None:
@@ -79,7 +109,7 @@ def _check(case: Case, axes: Axes | None) -> None:
         raise CaseError(f"axes = {show(axes)}: expected two of {', '.join(known)}")
 
 
-def choose(found: Sequence[Source], needs: str, kind: str, in_time: bool) -> Source:
+def choose(found: Found, needs: str, kind: str, in_time: bool) -> Source:
     """The first source that knows what a panel needs, `in_time` one with frames.
 
     Raises RunError that says what to add to the case.
@@ -93,11 +123,11 @@ def choose(found: Sequence[Source], needs: str, kind: str, in_time: bool) -> Sou
     kept = "only their mean over the whole run" if fitting else "none of them"
     raise RunError(
         f"kind = {show(kind)}: it needs {WORDS[needs]}{' in time' * in_time}, and the run kept "
-        f"{kept}; add to the case and run it again: {REMEDY[needs]}"
+        f"{found.lack(needs, kept)}"
     )
 
 
-def choose_one(found: Sequence[Source], needs: set[str], kind: str) -> Source:
+def choose_one(found: Found, needs: set[str], kind: str) -> Source:
     """The first source with frames that knows all that the panels of a film need.
 
     Raises RunError that says what to add to the case.

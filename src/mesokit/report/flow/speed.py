@@ -16,7 +16,7 @@ TITLE = "speed"
 
 def reach(flow: Flow, region: Region) -> float:
     """The highest speed in the region."""
-    speed = flow.speed
+    speed = flow.surely(flow.speed)
     return reach_of(speed[region.bins(flow.size, speed.shape)])
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from mesokit.report.flow.kinds import panels_of
+from mesokit.report.flow.kinds import panels_of, quieted
 from mesokit.report.flow.region import Ranges, frames_in, region_of
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import choose, sources
@@ -14,6 +15,8 @@ if TYPE_CHECKING:
     from mesokit.case import Case
     from mesokit.io.open import TrajectoryReader
     from mesokit.observe.result import Result
+
+CHOICES = ("region", "window", "axes", "at")  # what a user may say of a picture, and of a film
 
 
 def picture(
@@ -55,7 +58,9 @@ def picture(
     shown = region_of(region, flows[0].axes, flows[0].size)
     from mesokit.report.flow.canvas import Canvas
 
+    width, note = quieted(panels, flows, shown)
+    flows = [replace(flow, smoothing=width) for flow in flows]
     reaches = [panel.reach(flow, shown) for panel, flow in zip(panels, flows, strict=True)]
-    drawn = Canvas(panels, flows, reaches, shown, section)
+    drawn = Canvas(panels, flows, reaches, shown, section, notes=[section.note(), note(flows[0])])
     drawn.show(flows)
     return drawn.figure

@@ -20,7 +20,7 @@ class TrajectorySource:
 
     def __init__(self, case: Case, reader: TrajectoryReader, axes: tuple[str, str]) -> None:
         self.reader, self.axes, self.time = reader, axes, reader.time
-        self.setting = Setting.of(case, axes)
+        self.setting, self.kT = Setting.of(case, axes), case.fluid.kT
         self.whole = np.arange(len(reader))
         known = {"particles"}
         if "velocity" in reader.fields:
@@ -46,8 +46,11 @@ class TrajectorySource:
                 total += np.bincount(index, weight, total.size).reshape(self.bins)
         with np.errstate(invalid="ignore", divide="ignore"):
             mean = np.moveaxis(sums[2:] / sums[1], 0, -1)
+            thermal = np.sqrt(self.kT / sums[1])[..., None]
+        noise = np.random.default_rng(0).normal(size=mean.shape) * thermal
         return self.setting.flow(
             density=sums[0] / (len(frames) * self.bin_volume) if "density" in self.gives else None,
             velocity=mean if "velocity" in self.gives else None,
             particles=place,
+            noise=noise,
         )

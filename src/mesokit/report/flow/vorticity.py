@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +18,8 @@ NEEDS = "velocity"
 TITLE = "vorticity"
 LEVEL = 0.4  # of the largest: where the lines run
 SMOOTH = 1.5  # bins
+WIDTHS = (0.0, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0)  # of smoothing against noise, in bins
+CLEAR = 2.5  # times the noise: what a picture should show
 
 
 def vorticity(flow: Flow) -> Array:
@@ -26,6 +30,9 @@ def vorticity(flow: Flow) -> Array:
     """
     velocity = flow.velocity
     assert velocity is not None
+    if flow.smoothing:
+        parts = (_smooth(velocity[..., k], flow.periodic, flow.smoothing) for k in range(2))
+        velocity = np.stack(list(parts), axis=-1)
     h = spacing(flow, velocity)
     turning = _slope(velocity[..., 1], 0, h[0], flow.periodic[0])
     turning -= _slope(velocity[..., 0], 1, h[1], flow.periodic[1])
@@ -42,8 +49,43 @@ def _slope(values: Array, axis: int, h: float, periodic: bool) -> Array:
 
 def reach(flow: Flow, region: Region) -> float:
     """The largest vorticity of either sign in the region."""
-    values = vorticity(flow)
+    values = flow.surely(vorticity(flow))
     return reach_of(values[region.bins(flow.size, values.shape)])
+
+
+def smoothing(flows: Sequence[Flow], region: Region) -> tuple[float, bool]:
+    """Least width of smoothing, in bins, that lifts the vorticity above its noise.
+
+    And whether even the widest did: one eighth of the shorter side of the map, at most WIDTHS[-1].
+    """
+    known = [flow for flow in flows if flow.noise is not None]
+    if not known:
+        return 0.0, True
+    assert known[0].velocity is not None
+    widest, width = max(1.0, min(known[0].velocity.shape[:2]) / 8), 0.0
+    for width in (w for w in WIDTHS if w <= widest):
+        wide = [replace(flow, smoothing=width) for flow in known]
+        signal = np.median([reach(flow, region) for flow in wide])
+        noise = np.median([reach(replace(flow, velocity=flow.noise), region) for flow in wide])
+        if signal >= CLEAR * noise:
+            return width, True
+    return width, False
+
+
+def note(flow: Flow, clear: bool) -> str:
+    """What was done about the noise, and what is left to the user."""
+    assert flow.velocity is not None
+    said = []
+    if flow.smoothing:
+        width = flow.smoothing * max(spacing(flow, flow.velocity))
+        said.append(f"velocity smoothed over {width:.3g} a before its slopes are taken")
+    if not clear:
+        fine = " and bins_per_cell = 1" * (min(spacing(flow, flow.velocity)) < 1)
+        said.append(
+            f"hardly above the noise: a longer run, or flow-frames with a longer window{fine}, "
+            "would show more"
+        )
+    return "; ".join(said)
 
 
 def scale(flow: Flow, reach: float) -> Scale:
@@ -69,11 +111,11 @@ def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
         ax.contour(x, y, smooth.T, [-level, level], **lines)
 
 
-def _smooth(values: Array, periodic: tuple[bool, bool]) -> Array:
+def _smooth(values: Array, periodic: tuple[bool, bool], width: float = SMOOTH) -> Array:
     from scipy.ndimage import gaussian_filter
 
     filled = np.isfinite(values)
     mode = ["wrap" if goes_on else "nearest" for goes_on in periodic]
-    weight = gaussian_filter(filled.astype(float), SMOOTH, mode=mode)
-    sums = gaussian_filter(np.where(filled, values, 0.0), SMOOTH, mode=mode)
+    weight = gaussian_filter(filled.astype(float), width, mode=mode)
+    sums = gaussian_filter(np.where(filled, values, 0.0), width, mode=mode)
     return np.where(filled, sums / np.maximum(weight, 1e-9), np.nan)

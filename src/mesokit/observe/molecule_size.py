@@ -1,0 +1,120 @@
+"""How large molecules are: gyration tensor and, of chains, the end-to-end vector."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.box import AXES
+from mesokit.component import component, param, tag
+from mesokit.observe import setting
+from mesokit.observe.estimate import of_mean
+from mesokit.observe.molecules import beads_of, free_bond, gyration, modes_of, molecule_of
+from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
+from mesokit.observe.result import Array, Comparison, Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+PARTS = ("gyration", "end to end")
+
+
+@component
+class MoleculeSize(Observable):
+    """Mean gyration tensor; of chains also mean R R of the vector R from end to end."""
+
+    quantity: Literal["molecule-size"] = tag("molecule-size")
+    molecules: int = param(2000, doc="molecules looked at", ge=1)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for a fluid of single particles."""
+        molecule_of(case, self.quantity)
+
+    def accumulator(self, case: Case) -> MoleculeSizeAccumulator:
+        """An empty memory for it."""
+        return MoleculeSizeAccumulator(self, case)
+
+
+class MoleculeSizeAccumulator:
+    """Block averages of the tensors."""
+
+    def __init__(self, observable: MoleculeSize, case: Case) -> None:
+        self.molecule = molecule_of(case, observable.quantity)
+        self.case, self.name = case, observable.label
+        self.beads = beads_of(case, observable.molecules)
+        self.parts = PARTS if self.molecule.topology == "chain" else PARTS[:1]
+        d = case.box.dimension
+        self.blocks = Blocks((len(self.parts), d, d))
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        r = fluid.positions(self.beads.ravel(), unwrapped=True).reshape(*self.beads.shape, -1)
+        tensors = [gyration(r).mean(axis=0)]
+        if len(self.parts) > 1:
+            end = r[:, -1] - r[:, 0]
+            tensors.append(np.einsum("ma,mb->ab", end, end) / len(end))
+        self.blocks.add(np.stack(tensors))
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+
+    def result(self) -> Result:
+        """Tensors and their traces."""
+        axes = np.array(AXES[: self.case.box.dimension])
+        return Result(
+            quantity="molecule-size",
+            name=self.name,
+            x={"part": np.array(self.parts), "row": axes, "column": axes},
+            value=self.blocks.mean(),
+            error=self.blocks.error(),
+            label="size of molecules",
+            units={"value": "a^2"},
+            expected=self.expected(),
+            theory="ideal molecules",
+            comparisons=tuple(self.comparisons()) if self.blocks.count else (),
+            samples=self.blocks.count,
+        )
+
+    def squares(self) -> list[float]:
+        """Expected traces; nan where there is no theory."""
+        bond, rest = free_bond(self.case), not (self.case.walls or setting.driven(self.case))
+        if bond is None or not rest:
+            return [np.nan] * len(self.parts)
+        known = [theory.mean_square_gyration(modes_of(self.molecule), bond)]
+        if len(self.parts) > 1:
+            known.append(theory.mean_square_end_to_end(self.molecule.length, bond))
+        return known
+
+    def expected(self) -> Array:
+        """Isotropic tensors."""
+        d = self.case.box.dimension
+        return np.array([square / d * np.eye(d) for square in self.squares()])
+
+    def comparisons(self) -> list[Comparison]:
+        """Mean squares of radius of gyration and end-to-end distance."""
+        every, found = of_mean(self.blocks), []
+        names = ("mean square radius of gyration", "mean square end-to-end distance")
+        d = self.case.box.dimension
+        for part, expected in enumerate(self.squares()):
+            trace = np.zeros(every.value.shape)
+            trace[part] = np.eye(d)
+            value, error = float((trace * every.value).sum()), self._error(every, trace)
+            found.append(Comparison(names[part], value, error, expected, "a^2"))
+        return found
+
+    @staticmethod
+    def _error(every: Any, gradient: Array) -> float:
+        flat = every._replace(
+            value=every.value.ravel(), residuals=every.residuals.reshape(len(every.residuals), -1)
+        )
+        return flat.scalar(0.0, gradient.ravel())[1]

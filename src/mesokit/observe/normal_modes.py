@@ -1,0 +1,154 @@
+"""Normal modes of molecules: how large they are, and how fast each forgets itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.component import component, param, tag
+from mesokit.observe import setting
+from mesokit.observe.decay import fit_curve, normalised
+from mesokit.observe.molecules import beads_of, modes_of, molecule_of, rouse_times_of, spring_of
+from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
+from mesokit.observe.result import Array, Comparison, Result
+from mesokit.observe.transverse_modes import FEWEST, LOWEST, decaying
+from mesokit.statistics import MultipleTau
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+SHOWN = 3  # modes whose times are compared
+
+
+@component
+class NormalModes(Observable):
+    """Correlation in time of the normal modes X_p of molecules, the slowest first.
+
+    Of Rouse molecules each decays as exp(-t/tau_p), with the normal-mode times tau_p; the stress
+    times are half of these. X_p = sum_i v_i r_i with vectors v of unit length.
+    """
+
+    quantity: Literal["normal-modes"] = tag("normal-modes")
+    modes: int = param(5, doc="modes followed, from the slowest", ge=1)
+    molecules: int = param(500, doc="molecules followed", ge=1)
+    max_lag: int | None = param(
+        None, doc="longest lag (as the run allows unless said)", unit="steps", ge=1
+    )
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for a fluid of single particles."""
+        molecule_of(case, self.quantity)
+
+    def accumulator(self, case: Case) -> NormalModesAccumulator:
+        """An empty memory for it."""
+        return NormalModesAccumulator(self, case)
+
+
+class NormalModesAccumulator:
+    """One correlator for each mode, over molecules and axes."""
+
+    def __init__(self, observable: NormalModes, case: Case) -> None:
+        molecule = molecule_of(case, observable.quantity)
+        self.observable, self.case, self.name = observable, case, observable.label
+        self.beads = beads_of(case, observable.molecules)
+        modes = modes_of(molecule)
+        self.count = min(observable.modes, molecule.length - 1)
+        self.vectors = modes.vectors[:, 1 : self.count + 1]
+        self.eigenvalues = modes.eigenvalues[1 : self.count + 1]
+        shape = (len(self.beads), case.box.dimension)
+        max_lag = None if observable.max_lag is None else observable.max_lag // observable.every
+        self.correlators = [MultipleTau(shape, max_lag=max_lag, pooled=2) for _ in self.eigenvalues]
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        r = fluid.positions(self.beads.ravel(), unwrapped=True)
+        r = r.reshape(*self.beads.shape, -1)
+        for correlator, x in zip(
+            self.correlators, np.einsum("mid,ip->pmd", r, self.vectors), strict=True
+        ):
+            correlator.add(x)
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(**{f"mode_{p}": c for p, c in enumerate(self.correlators)})
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.correlators = [
+            MultipleTau.from_state(unpack(state, f"mode_{p}")) for p in range(self.count)
+        ]
+
+    def interval(self) -> float:
+        """Time between two samples."""
+        return self.observable.every * self.case.fluid.timestep
+
+    def undisturbed(self) -> bool:
+        """Whether theory of a fluid at rest without walls applies."""
+        return not (self.case.walls or setting.driven(self.case))
+
+    def result(self) -> Result:
+        """The decay of each mode, its relaxation time and its mean square."""
+        every = [c.correlation(normalised=True) for c in self.correlators]
+        lag = every[0].lag * self.interval()
+        times = rouse_times_of(self.case) if self.undisturbed() else None
+        expected = None
+        if times is not None:
+            expected = np.exp(-lag[:, None] / times.mode[: self.count])
+        return Result(
+            quantity="normal-modes",
+            name=self.name,
+            x={"time": lag, "mode": np.arange(1, self.count + 1)},
+            value=np.stack([c.value for c in every], axis=1),
+            error=np.stack([c.error for c in every], axis=1),
+            label="normal mode correlation",
+            units={"value": "", "time": "tau"},
+            expected=expected,
+            theory="Rouse, exp(-t/tau_p)",
+            comparisons=tuple(self.comparisons(times.mode if times else None)),
+            samples=self.correlators[0].count,
+        )
+
+    def comparisons(self, times: Array | None) -> list[Comparison]:
+        """Relaxation times and mean squares of the slowest."""
+        found = []
+        spring = spring_of(molecule_of(self.case)) if self.undisturbed() else None
+        for p, correlator in enumerate(self.correlators[:SHOWN]):
+            measured = self.relaxation_time(correlator)
+            if measured is not None:
+                expected = float(times[p]) if times is not None else np.nan
+                note = "Rouse; beads with the friction of free particles"
+                what = f"normal-mode time {p + 1}"
+                found.append(Comparison(what, *measured, expected, "tau", note))
+        for p, correlator in enumerate(self.correlators[:SHOWN]):
+            square = correlator.correlation()
+            if len(square.value):
+                d = self.case.box.dimension
+                stiff = spring.k * self.eigenvalues[p] if spring else np.nan
+                found.append(
+                    Comparison(
+                        f"mean square of mode {p + 1}", d * float(square.value[0]),
+                        d * float(square.error[0]), d * self.case.fluid.kT / stiff, "a^2",
+                    )
+                )  # fmt: skip
+        return found
+
+    def relaxation_time(self, correlator: MultipleTau) -> tuple[float, float] | None:
+        """From an exponential through the correlation, as far as it is above noise; its error."""
+        lags, curve = normalised(correlator)
+        time = lags * self.interval()
+        for lowest in LOWEST:
+            below = np.flatnonzero(~(curve.value > lowest))
+            use = (np.arange(len(time)) < (below[0] if len(below) else len(time))) & (lags > 0)
+            if use.sum() >= FEWEST:
+                break
+        if use.sum() < 3 or curve.value[use][-1] >= 1:
+            return None
+        start = [-np.log(curve.value[use][-1]) / time[use][-1], 1.0]
+        fitted = fit_curve(time, curve, decaying, start, use)
+        if fitted is None or not fitted.value[0] > 0:
+            return None
+        rate = fitted.value[0]
+        return fitted.scalar(1 / rate, np.array([-1 / rate**2, 0.0]))

@@ -1,0 +1,142 @@
+"""Relaxation modulus from the fluctuations of the stress at rest, and the moduli that follow."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.component import component, param, tag
+from mesokit.errors import CaseError
+from mesokit.observe import setting
+from mesokit.observe.estimate import Estimate
+from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
+from mesokit.observe.result import Array, Comparison, Result
+from mesokit.observe.stress import UNIT
+from mesokit.statistics import MultipleTau
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+NOISE = 1.0  # standard errors: the integral ends where G first falls below so many
+FREQUENCIES = 40
+
+
+@component
+class StressAutocorrelation(Observable):
+    """G(t) = V/kT <s(t) s(0)> of the shear stresses s of a fluid at rest (Green and Kubo).
+
+    Its integral is the viscosity; half of the value at lag 0 counts, as time is discrete.
+    """
+
+    quantity: Literal["stress-autocorrelation"] = tag("stress-autocorrelation")
+    measures: ClassVar[tuple[str, ...]] = ("stress",)
+    every: int = param(1, doc="steps between two samples", ge=1, kw_only=True)
+    max_lag: int | None = param(
+        None, doc="longest lag (as the run allows unless said)", unit="steps", ge=1
+    )
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError where the fluid is not at rest or has walls."""
+        if case.walls:
+            raise CaseError("stress is measured without walls")
+        if setting.driven(case):
+            raise CaseError("stress-autocorrelation: only of a fluid at rest")
+
+    def accumulator(self, case: Case) -> StressAutocorrelationAccumulator:
+        """An empty memory for it."""
+        return StressAutocorrelationAccumulator(self, case)
+
+
+class StressAutocorrelationAccumulator:
+    """A correlator of the elements off the diagonal."""
+
+    def __init__(self, observable: StressAutocorrelation, case: Case) -> None:
+        observable.check(case)
+        self.observable, self.case, self.name = observable, case, observable.label
+        max_lag = None if observable.max_lag is None else observable.max_lag // observable.every
+        d = case.box.dimension
+        self.correlator = MultipleTau((d * (d - 1),), max_lag=max_lag, pooled=1)
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample. Rules that do not conserve angular momentum have no symmetric stress."""
+        stress = np.sum(list(fluid.stress.values()), axis=0)
+        self.correlator.add(stress[~np.eye(len(stress), dtype=bool)])
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(correlator=self.correlator)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.correlator = MultipleTau.from_state(unpack(state, "correlator"))
+
+    def modulus(self) -> tuple[Array, Estimate]:
+        """Time (n,) and G(t) with what each block of time adds to it."""
+        case = self.case
+        scale = case.box.volume / case.fluid.kT
+        lags: list[Array] = []
+        values: list[Array] = []
+        residuals: list[Array] = []
+        weights = np.zeros(0)
+        for lag, sums, counts in self.correlator.products(within_blocks=True):
+            total = counts.sum(axis=0)
+            mean = sums.sum(axis=0) / total
+            weights = counts[:, 0] if not lags else weights
+            lags.append(lag * self.observable.every * case.fluid.timestep)
+            values.append(scale * mean)
+            residuals.append(scale * (sums - mean * counts) / total)
+        if not lags:
+            return np.zeros(0), Estimate(np.zeros(0), np.zeros((0, 0)), weights)
+        joined = Estimate(np.concatenate(values), np.concatenate(residuals, axis=1), weights)
+        return np.concatenate(lags), joined
+
+    def result(self) -> Result:
+        """G(t), its integral and its Fourier transforms."""
+        time, modulus = self.modulus()
+        extra: dict[str, Any] = {}
+        comparisons: list[Comparison] = []
+        if len(time) > 3:
+            comparisons, extra = self.integrals(time, modulus)
+        return Result(
+            quantity="stress-autocorrelation",
+            name=self.name,
+            x={"time": time},
+            value=modulus.value,
+            error=modulus.error,
+            label="relaxation modulus G",
+            units={"value": UNIT[self.case.box.dimension], "time": "tau"},
+            comparisons=tuple(comparisons),
+            samples=self.correlator.count,
+            extra=extra,
+        )
+
+    def integrals(self, time: Array, modulus: Estimate) -> tuple[list[Comparison], dict[str, Any]]:
+        """Viscosity, and moduli G' = w int G sin wt dt, G'' = w int G cos wt dt with errors."""
+        error = modulus.error
+        quiet = np.flatnonzero(~(modulus.value > NOISE * error))
+        end = quiet[0] if len(quiet) else len(time)
+        weight = np.zeros(len(time))
+        weight[0] = (time[1] - time[0]) / 2 if end == 1 else 0.0
+        weight[: end - 1] += np.diff(time[:end]) / 2
+        weight[1:end] += np.diff(time[:end]) / 2
+        density = setting.mass_density(self.case)
+        value, spread = modulus.scalar(weight @ modulus.value, weight)
+        coefficients = setting.transport(self.case)
+        known = coefficients.viscosity if coefficients else np.nan
+        found = [
+            Comparison(
+                "viscosity from the integral", value / density, spread / density, known, "a^2/tau",
+                setting.caveat(self.case),
+            )
+        ]  # fmt: skip
+        last = time[end - 1] if end > 1 else time[1]
+        frequency = np.geomspace(1 / last, 1 / time[1], FREQUENCIES)
+        extra: dict[str, Any] = {"frequency": frequency}
+        for name, wave in (("storage", np.sin), ("loss", np.cos)):
+            kernel = frequency[:, None] * wave(frequency[:, None] * time) * weight
+            transformed = modulus.linear(kernel)
+            extra[name], extra[f"{name}_error"] = transformed.value, transformed.error
+        return found, extra
