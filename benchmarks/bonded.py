@@ -20,7 +20,7 @@ from mesokit.mpcd.conformation import drawn
 LENGTH, DENSITY = 30, 10
 BEADS = {"dimers": 2, "decamers": 10}
 SUBSTEPS = (1, 5, 10)
-REACH = 8.0  # cells: hardly a bond with K = 1 is longer
+REACH = 5.0  # cells: no bond with K = 1 is longer
 
 
 def molecule(name: str, substeps: int) -> Molecule:
