@@ -51,7 +51,7 @@ def case(kind: Kind, seed: int, steps: int = 1, observe: tuple[Any, ...] = ()) -
 
 def decay(kind: Kind, wave: tuple[int, ...], seed: int) -> tuple[Any, Any]:
     """Time, and what is left of a helical wave, which has no nonlinear term."""
-    fluid = CPU(case(kind, seed), 2)
+    fluid = CPU(case(kind, seed), 1)
     start(fluid)
     fluid.advance(100)  # chains of independent Gaussian bonds at rest are in equilibrium
     k = 2 * math.pi * np.array(wave) / kind.length
