@@ -257,6 +257,7 @@ def test_failures_end_in_one_line(
 INTERRUPT_ON_IMPORT = """
 import runpy, signal, sys
 module = sys.argv.pop(1)
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job has none
 class Interrupt:
     def find_spec(self, name, *rest):
         if name == module:
