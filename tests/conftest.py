@@ -4,6 +4,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("same every time", derandomize=True)
+settings.load_profile("same every time")
 
 HERE = Path(__file__).parent
 # laboratory.py, fake_fluid.py, flows.py, shapes.py
