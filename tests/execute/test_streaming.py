@@ -108,8 +108,6 @@ def test_flights_stay_inside_and_momentum_is_accounted_for(
     h, along, v, a, b, time, lower, upper, u
 ):
     assume(lower == upper == "no-slip" or u == 0)
-    # one pressed to a plate that bounces all its hits away in 1e-11 loses as much of the push
-    assume(v == 0 or abs(v) > 1e-10)
     solid = slit(lower, upper, u)
     r1, v1, low, up = flies(solid, (1.0, h), (along, v), (b, a), time)
     assert 0 <= r1[1] <= WIDTH

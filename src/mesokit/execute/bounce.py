@@ -22,7 +22,12 @@ MOST_HITS = 256  # within one timestep, pieces of a long flight included
 @scalar
 def take(impulse, surface, r, p, scale):
     """Add the momentum p, taken at r relative to the pivot, to what a surface took."""
-    given = p + outer(r, p)
+    take_sum(impulse, surface, p + outer(r, p), scale)
+
+
+@scalar
+def take_sum(impulse, surface, given, scale):
+    """Add momentum and angular momentum to what a surface took, as whole numbers."""
     start = surface * len(given)
     for k in range(len(given)):
         impulse[start + k] += np.int64(np.rint(given[k] * scale))
@@ -39,6 +44,8 @@ def bounce(physics, counter, number, m, r, v, a, impulse, scale):
     start = homed(solid, r)
     away = added_scaled(r, -1.0, start)
     x, u, flying, touched = start, v, True, False
+    # hits on one surface are added before they are rounded: there may be many small ones
+    surface, given = 0, scaled(0.0, v + outer(v, v))
     for n in range(MOST_HITS):
         hit, contact = first_hit(solid, x, u, a, time)
         if hit > time:
@@ -52,12 +59,17 @@ def bounce(physics, counter, number, m, r, v, a, impulse, scale):
             chance = Chance(counter.seed, counter.step, number, n, physics.kT / m)
             left = reflect(solid, contact, x, u, chance)
             lost = scaled(m, added_scaled(u, -1.0, left))
-            take(impulse, surface_of(solid, contact), lever(solid, contact, x), lost, scale)
+            hit_now = surface_of(solid, contact)
+            if hit_now != surface:
+                take_sum(impulse, surface, given, scale)
+                surface, given = hit_now, scaled(0.0, given)
+            given = added(given, lost + outer(lever(solid, contact, x), lost))
             u = left
         at_home = homed(solid, x)
         away = added(away, added_scaled(x, -1.0, at_home))
         x = at_home
     if touched:
+        take_sum(impulse, surface, given, scale)
         x, u = fall(x, u, a, time)
     else:  # the same bits as for a particle that was seen to be far from all solids
         x, u = fall(r, v, a, physics.timestep)
