@@ -88,7 +88,7 @@ class CrashAt(Reporter):
 def no_figures():
     """Figures take most of the time of so small a run; other tests look at them."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("mesokit.report.save_all", lambda results, folder: [])
+        patch.setattr("mesokit.report.save_all", lambda results, folder, case=None: [])
         yield
 
 
