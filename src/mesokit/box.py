@@ -112,6 +112,9 @@ class Oscillating(NamedTuple):
     frequency: float
 
 
+SLIDING = (Sheared, Oscillating)  # boxes whose images move: what is next to what depends on time
+
+
 @scalar
 def oscillating(size, inverse, fastest, frequency, time):
     """An oscillating box at a time."""
@@ -178,7 +181,7 @@ def _(box, r, v, shift):
     return r, v, n
 
 
-@fold.register(Sheared, Oscillating)
+@fold.register(*SLIDING)
 def _(box, r, v, shift):
     up = np.floor((r[1] + shift[1]) * box.inverse[1])  # first, because it moves x
     r = tuple_setitem(r, 0, r[0] - up * box.offset)
@@ -196,7 +199,7 @@ def _(box, r, v, crossed):
     return r, v
 
 
-@unfold.register(Sheared, Oscillating)
+@unfold.register(*SLIDING)
 def _(box, r, v, crossed):
     for k in range(len(r)):
         r = tuple_setitem(r, k, r[k] + crossed[k] * box.size[k])
@@ -209,7 +212,7 @@ def _(box, r, v, shift):
     return r, v, ()
 
 
-@slide.register(Sheared, Oscillating)
+@slide.register(*SLIDING)
 def _(box, r, v, shift):
     return fold(box, r, v, shift)
 
@@ -224,6 +227,6 @@ def _(box, r, v):
     return v
 
 
-@peculiar.register(Sheared, Oscillating)
+@peculiar.register(*SLIDING)
 def _(box, r, v):
     return tuple_setitem(v, 0, v[0] - box.speed * (r[1] / box.size[1] - 0.5))

@@ -9,7 +9,7 @@ coordinate, each component of the velocity, and of the place from which the time
 
 import numpy as np
 
-from mesokit.box import Oscillating, Sheared, unfold
+from mesokit.box import SLIDING, unfold
 from mesokit.execute.rows import load, store
 from mesokit.scalar import added_scaled, by_type, elementwise, for_each, scalar
 
@@ -60,7 +60,7 @@ def take_bead(box, strip, image, leader, bead, like):
     Under shear beads are folded one by one: here they go back to the image of the first bead of
     their molecule, whose counts of boxes are `leader`, and have its counts.
     """
-    return _take_unfolded if box.instance_class in (Sheared, Oscillating) else _take
+    return _take_unfolded if box.instance_class in SLIDING else _take
 
 
 def _take(box, strip, image, leader, bead, like):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.box import Sheared
+from mesokit.box import SLIDING
 from mesokit.execute import measure
 from mesokit.execute.fixed_point import ROUNDER_BITS
 from mesokit.execute.layout import LANES, SCRATCH_ROW, sums_length, zeros
@@ -154,7 +154,7 @@ class Readings(Memory):
         r, _, image = self._gather(None, True)
         first, second = pairs.T
         way = r[second] - r[first]
-        if isinstance(self.box_kernel, Sheared):
+        if isinstance(self.box_kernel, SLIDING):
             way[:, 0] += (image[second, 1] - image[first, 1]) * self.box_kernel.offset
         return way
 

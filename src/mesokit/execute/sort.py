@@ -5,7 +5,7 @@ rarely. The order is that of a stable counting sort, whatever the number of thre
 sorted as a whole, by the cell of their first bead.
 """
 
-from mesokit.box import Sheared, fold, unfold
+from mesokit.box import SLIDING, fold, unfold
 from mesokit.execute.cache import inner, kernel
 from mesokit.execute.layout import (
     LANES,
@@ -57,7 +57,7 @@ def fold_with(filling, box, r, v, leader):
 
     Under shear every bead is folded by itself, for velocities of one cell are those of one image.
     """
-    alone = filling.instance_class is Singles or box.instance_class is Sheared
+    alone = filling.instance_class is Singles or box.instance_class in SLIDING
     return _by_itself if alone else _with_leader
 
 
