@@ -1,89 +1,29 @@
-"""Steady wakes behind a disk and a square in a channel, and vortex shedding."""
+"""Steady wakes behind a disk and a square in a channel, and (see `shedding`) a vortex street."""
 
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from common import BLUE, GREY, RED, Page, found, long, main, plt, renamed
+from channel import PLACE, Flow, begun, fluid, inflow, viscosity_of_theory
+from common import BLUE, RED, Page, found, long, main, plt
+from shedding import shedding
 
 import mesokit
-from mesokit import (
-    SRD,
-    Box,
-    Case,
-    Comparison,
-    Disk,
-    Fluid,
-    MaxwellBoltzmann,
-    Plates,
-    Rectangle,
-    Run,
-    Solids,
-    Uniform,
-    theory,
-)
-from mesokit.theory.channel_cylinder import OFF_CENTRE, ONSET
+from mesokit import Box, Case, Comparison, Disk, Plates, Rectangle, Run, theory
 
 ROOM = 8  # height of the channel over the diameter, as in the reference values
 LENGTH = 4  # of the periodic box over the height
-PLACE = 0.25  # of the body, over the length
-
-
-class Flow(NamedTuple):
-    """A wake: its aim, and the fluid."""
-
-    reynolds: int
-    diameter: int
-    timestep: float
-    steps: float
-    density: int = 16
-
-
-SHEDDING = Flow(100, 24, 1.5, 5e3, density=40)
-HIGH, FAR = 120, 400  # of the channel and the box in which vortices are shed
-FAST = 0.33
-THEIR_BLOCKAGE = 0.1 / 0.41  # of Schafer and Turek
 STEADY = (Flow(10, 8, 0.5, 1e4), Flow(20, 12, 1.0, 6e3), Flow(30, 16, 1.0, 1e4))
 DRAG = {10: 3.29, 20: 2.23, 30: 1.83}  # about, to choose the force
 EXCESS = 1.15  # of the viscosity over that of theory, about, to choose the velocity
-
-
-def fluid(density: int, timestep: float, push: float) -> Fluid:
-    """SRD at 90 degrees: the lowest viscosity there is."""
-    return Fluid(
-        density=density, timestep=timestep, collision=SRD(angle=90),
-        thermostat=MaxwellBoltzmann(), force=Uniform(acceleration=(push, 0)),
-    )  # fmt: skip
-
-
-def viscosity_of_theory(density: int, timestep: float) -> float:
-    """Kinematic."""
-    return theory.transport(
-        "srd", 2, density, timestep, angle=90, thermostat="maxwell-boltzmann"
-    ).viscosity
 
 
 def aim(flow: Flow) -> float:
     """The centre velocity that a flow should have."""
     theirs = viscosity_of_theory(flow.density, flow.timestep)
     return flow.reynolds * EXCESS * theirs / flow.diameter
-
-
-def begun(case: Case, speed: float) -> tuple[Any, Any]:
-    """Positions and velocities of a parabola in the fluid: near the steady state."""
-    random = np.random.default_rng(case.run.seed)
-    size, solids = np.array(case.box.size, float), Solids(case.walls, case.box)
-    r = random.random((case.particles, 2)) * size
-    bad = np.arange(len(r))
-    while len(bad):
-        bad = bad[solids.distance(r[bad]) < 1e-6]
-        r[bad] = random.random((len(bad), 2)) * size
-    v = random.standard_normal(r.shape)
-    v -= v.mean(axis=0)
-    v[:, 0] += 4 * speed * r[:, 1] * (size[1] - r[:, 1]) / size[1] ** 2
-    return r, v
 
 
 def channel(page: Page, flow: Flow) -> Comparison:
@@ -134,22 +74,6 @@ def momentum_change(files: Any) -> float:
     slope = np.polyfit(rate.x["time"], rate.value, 1)[0]
     mass = case.fluid.density * float(np.prod(case.box.size))
     return float(100 * slope * mass / found(files["forces"], "force on all solids").expected)
-
-
-def inflow(field: Any, d: int, where: tuple[float, float] = (4, 6)) -> tuple[float, float, float]:
-    """Highest velocity of the parabola before the body, its error, and in per cent by how much the
-    velocity in the middle differs from it."""
-    x, y = field.x["x"], field.x["y"]
-    place = PLACE * (x[-1] + x[0])
-    before = (x > place - where[1] * d) & (x < place - where[0] * d)
-    u = field.value[before, :, 0].mean(axis=0)
-    # neighbouring bins are correlated: the error of the mean of these is that of one in four
-    error = np.sqrt((field.error[before, :, 0] ** 2).mean(axis=0) / (before.sum() / 4))
-    shape = 4 * (y / (y[-1] + y[0])) * (1 - y / (y[-1] + y[0]))
-    top = float((shape @ u) / (shape @ shape))
-    spread = float(np.sqrt((shape**2 * error**2).sum() * 4) / (shape @ shape))
-    middle = abs(y - (y[-1] + y[0]) / 2) < d / 4
-    return top, spread, 100 * float((u[middle] / (top * shape[middle])).mean() - 1)
 
 
 def wake_length(field: Any, d: int) -> tuple[float, float]:
@@ -317,157 +241,6 @@ def draw(axis: Any, field: Any, d: int, title: str, top: float) -> None:
     axis.add_patch(solid)
     axis.set(title=title, xlabel="x/D", ylabel="y/D", aspect="equal", xlim=(-2, 5))
     axis.figure.colorbar(picture, ax=axis, shrink=0.8)
-
-
-def street() -> Case:
-    """A disk at which vortices are shed."""
-    d, flow = SHEDDING.diameter, SHEDDING
-    nu = 1.05 * viscosity_of_theory(flow.density, flow.timestep)
-    push = 8 * nu * FAST / HIGH**2 + 1.7 * FAST**2 * d / (2 * FAR * HIGH)
-    return Case(
-        run=Run(steps=long(flow.steps), warmup=long(flow.steps / 2), seed=11),
-        box=Box([FAR, HIGH]),
-        fluid=fluid(flow.density, flow.timestep, push),
-        walls=[Plates(axis="y"), Disk(centre=[PLACE * FAR, HIGH / 2], radius=d / 2, name="body")],
-        observe=[
-            mesokit.VelocityField(every=10),
-            mesokit.Forces(length=d, every=2),
-            mesokit.FlowFrames(window=20, every=5),
-        ],
-    )
-
-
-def frequency(time: Any, lift: Any) -> tuple[float, float, float]:
-    """Dominant frequency of a signal, its error, and the share of the variance near it.
-
-    A sine is fitted by least squares at each frequency; the error is that of blocks: the same for
-    each quarter of the signal.
-    """
-
-    def best(t: Any, f: Any, low: float, high: float) -> tuple[float, float]:
-        grid = np.linspace(low, high, 4000)
-        centred = f - f.mean()
-        window = np.hanning(len(f))
-        power = np.abs(np.exp(-2j * np.pi * np.outer(grid, t)) @ (window * centred)) ** 2
-        place = int(power.argmax())
-        return float(grid[place]), float(power[place])
-
-    span = time[-1] - time[0]
-    overall, _ = best(time, lift, 3 / span, 0.25 / (time[1] - time[0]))
-    quarters = [
-        best(time[part], lift[part], 0.5 * overall, 1.5 * overall)[0]
-        for part in np.array_split(np.arange(len(time)), 4)
-    ]
-    error = float(np.std(quarters, ddof=1) / 2)
-    wave = np.stack([np.cos(2 * np.pi * overall * time), np.sin(2 * np.pi * overall * time)], 1)
-    wave -= wave.mean(axis=0)
-    fitted = wave @ np.linalg.lstsq(wave, lift - lift.mean(), rcond=None)[0]
-    return overall, error, float(fitted.var() / lift.var())
-
-
-def strouhal_at(reynolds: float, blockage: float) -> float:
-    """About what it should be: that of the onset, risen as much as it rises from the onset to the
-    flow of Schafer and Turek, at the same Reynolds number relative to the onset's."""
-    (low, a), (high, b) = ((key, ONSET[key]) for key in (0.2, 0.3))
-    theirs = next(r for r in OFF_CENTRE if r.what == "Strouhal number")
-    share = (THEIR_BLOCKAGE - low) / (high - low)
-    began = a.reynolds + share * (b.reynolds - a.reynolds)
-    first = a.value + share * (b.value - a.value)
-    # theirs are with the mean velocity, two thirds of that in the centre
-    risen = (2 / 3 * theirs.value / first - 1) / (1.5 * theirs.reynolds / began - 1)
-    onset = ONSET[blockage]
-    return onset.value * (1 + risen * (reynolds / onset.reynolds - 1))
-
-
-def shedding(page: Page) -> None:
-    """About Reynolds number 100."""
-    d, flow = SHEDDING.diameter, SHEDDING
-    blockage = d / HIGH
-    page.heading("Vortex shedding")
-    nu = viscosity_of_theory(flow.density, flow.timestep)
-    case = street()
-    files = page.run("shedding", case, *begun(case, FAST))
-    field, forces = files["velocity-field"], files["forces"]
-    top, spread, misfit = inflow(field, d, (2.5, 3.5))
-    re = top * d / nu
-    place = list(forces.x["body"]).index("body")
-    time, lift = forces.extra["time"], forces.extra["series"][:, place, 1]
-    f, error, share = frequency(time, lift)
-    strouhal = f * d / top
-    strouhal_error = strouhal * math.hypot(error / f, spread / top)
-    scale = 2 / (flow.density * top**2 * d)
-    drag, drag_error = scale * forces.value[place, 0], scale * forces.error[place, 0]
-    total = found(forces, "force on all solids")
-    onset, expected = ONSET[blockage], strouhal_at(re, blockage)
-    page.text(
-        f"Disk, D = {d}, channel {HIGH} high (blockage {blockage:g}) and {FAR} long, SRD at 90 "
-        f"degrees, density {flow.density}, timestep {flow.timestep}: viscosity {nu:.4f} by theory, "
-        f"some per cent more by fluctuations. Centre velocity 2.5 to 3.5 diameters before the disk "
-        f"{top:.3f} (in the middle {misfit:+.1f} %), Re = {re:.0f}: the Mach number is a third, so "
-        "that some per cent of what is seen is compressibility. The box is periodic: vortices "
-        "come round weakened, and four wavelengths fit the box, which may draw the frequency to "
-        f"itself. At the onset of shedding at this blockage (Re = {onset.reynolds:g}) the Strouhal "
-        f"number is {onset.value} ({onset.source}). It rises with Re: from the onset, between the "
-        "tabulated blockages, to the 0.300 (0.200 with the centre velocity) that Schafer and Turek "
-        "have at a Re of 150 by this definition and a blockage of 0.244. The expected one has "
-        "risen likewise, relative to the Re of the onset."
-    )
-    page.table(
-        [
-            Comparison("Strouhal number f D/U, from the lift", strouhal, strouhal_error,
-                       expected, "", f"at Re = {re:.0f}; {onset.value} at {onset.reynolds:g}"),
-            Comparison("drag coefficient", drag, drag_error, math.nan, "", "with this U"),
-            Comparison("share of the lift's variance at this frequency", 100 * share, 0.0,
-                       math.nan, "%"),
-            renamed(total, total.what, total.note),
-        ]
-    )  # fmt: skip
-    page.check(
-        f"vortices are shed at Re = {re:.0f}: Strouhal number {strouhal:.3f} +- "
-        f"{strouhal_error:.3f}, expected {expected:.3f} (within 15 %)",
-        abs(strouhal - expected) < 0.15 * expected,
-    )
-    page.check(
-        f"shedding: force on the solids {total.percent:+.1f} +- "
-        f"{100 * total.error / total.expected:.1f} % off the body force (within 3 %)",
-        abs(total.percent) < 3,
-    )
-    fig, axes = plt.subplots(1, 2, figsize=(9.5, 3.2))
-    axes[0].plot(time - time[0], scale * lift, color=BLUE, lw=0.7)
-    axes[0].set(xlabel="time", ylabel="lift coefficient")
-    grid = np.fft.rfftfreq(len(time), time[1] - time[0])
-    power = np.abs(np.fft.rfft((lift - lift.mean()) * np.hanning(len(lift)))) ** 2
-    axes[1].semilogy(grid * d / top, power / power.max(), color=BLUE, lw=0.8)
-    axes[1].axvline(expected, color=GREY, ls="--", label="expected Strouhal number")
-    axes[1].set(xlabel="f D/U", ylabel="power of the lift", xlim=(0, 0.6), ylim=(1e-5, 2))
-    axes[1].legend()
-    page.figure(fig, "Lift coefficient, and its spectrum.", "_shedding")
-    page.figure(
-        street_picture(files["flow-frames"]),
-        "Velocity across the channel in the last 60 steps, over U; means of 4 by 4 cells.",
-        "_street",
-    )  # fmt: skip
-
-
-def street_picture(frames: Any) -> Any:
-    """The vortices at the end."""
-    last = frames.value[-3:]
-    density, v = (
-        last[..., 0].mean(axis=0),
-        (last[..., 0] * np.nan_to_num(last[..., 2])).mean(axis=0),
-    )
-    coarse = [a.reshape(FAR // 4, 4, HIGH // 4, 4).mean(axis=(1, 3)) for a in (v, density)]
-    fig, axis = plt.subplots(figsize=(9, 3.2))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        shown = (coarse[0] / coarse[1]).T / FAST
-    picture = axis.pcolormesh(
-        np.arange(0, FAR + 1, 4), np.arange(0, HIGH + 1, 4), shown, cmap="RdBu_r", vmin=-0.5,
-        vmax=0.5,
-    )  # fmt: skip
-    axis.add_patch(plt.Circle((PLACE * FAR, HIGH / 2), SHEDDING.diameter / 2, color=GREY))
-    axis.set(xlabel="x", ylabel="y", aspect="equal")
-    fig.colorbar(picture, ax=axis, shrink=0.7, label="$v_y/U$")
-    return fig
 
 
 def make() -> int:

@@ -7,7 +7,7 @@ import time
 from collections import deque
 from typing import TYPE_CHECKING, TextIO
 
-from mesokit.derived import duration_text
+from mesokit.amounts import duration_text
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID

@@ -14,31 +14,11 @@ from numpy.typing import NDArray
 
 from mesokit.errors import CaseError
 from mesokit.execute import survey
-from mesokit.geometry.bodies import (
-    BODY,
-    DIFFUSE,
-    FIRST,
-    KINDS,
-    NEAR,
-    NO_SLIP,
-    NOBODY,
-    NUMBERS,
-    PIVOT,
-    REACH,
-    SAMPLES,
-    SIGNS,
-    SIZE,
-    SLIP,
-    STARTS,
-    SURFACES,
-    Bodies,
-)
 from mesokit.geometry.from_file import FromFile
 from mesokit.geometry.plates import Plates
-from mesokit.geometry.primitive import WIDTH
 from mesokit.geometry.region import Room
-from mesokit.geometry.shape import Body, Piece
-from mesokit.pointer import address
+from mesokit.geometry.shape import Body
+from mesokit.solid_tables import SolidTables
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
@@ -51,10 +31,8 @@ Floats = NDArray[np.float64]
 THIN, NARROW = 1.5, 3.0  # cells
 SKIN = 0.02  # cells: two surfaces so near each other touch
 TRIES = 30  # steps by which a place near a solid comes onto its surface
-FARTHEST = 8.0  # cells from a surface at which anybody asks
 Tight = tuple[tuple[float, ...], float]
 FINE = 8  # parts of a cell, along each axis, by which volumes are summed
-_RULES = {"no-slip": NO_SLIP, "slip": SLIP, "diffuse": DIFFUSE}
 
 
 def slit_of(case: Case) -> Plates | None:
@@ -91,7 +69,7 @@ def free_volume(case: Case) -> float:
     return float(case.box.volume) if slit else solids_of(case).free_volume
 
 
-class Solids:
+class Solids(SolidTables):
     """The solids of a case, in tables.
 
     Parameters
@@ -122,100 +100,20 @@ class Solids:
         self, walls: Sequence[Wall], box: Box, *, only: Collection[int] | None = None
     ) -> None:
         self._walls, self._box = walls, box
-        self.size, self.dimension = box.size, box.dimension
         shut = {wall.axis for wall in walls if wall.shape == "plates"}
-        self.room = Room(box.size, tuple(axis in shut for axis in box.axes))
-        self.bodies: list[Body] = []
-        self._tables: list[NDArray[Any]] = []
+        room = Room(box.size, tuple(axis in shut for axis in box.axes))
+        bodies: list[Body] = []
         self.walls: list[int] = []  # of which wall each body is
         for index, (wall, label) in enumerate(zip(walls, labels(walls), strict=True)):
             if only is not None and index not in only:
                 continue
             try:
-                made = wall.bodies(self.room, label)
+                made = wall.bodies(room, label)
             except CaseError as error:
                 raise CaseError(f"wall[#{index + 1}].{error}") from None
-            self.bodies += made
+            bodies += made
             self.walls += [index] * len(made)
-        self.like = (0.0,) * self.dimension
-        pieces = [(piece, row) for row, body in enumerate(self.bodies) for piece in body.pieces]
-        self.kernel = self._kernel(pieces)
-        pieces = self._in_reach(pieces)
-        self.kernel = self._kernel(pieces)
-        self.least, self._terms = np.zeros(math.prod(self.size)), len(pieces)
-        self.kernel = self.reaching(REACH)
-
-    def _in_reach(self, pieces: list[tuple[Piece, int]]) -> list[tuple[Piece, int]]:
-        """Those that no place in the box is too far from to matter: most images are not."""
-        middle = tuple(0.5 * length for length in self.size)
-        clearance = np.zeros(len(pieces))
-        survey.term_clearances(self.kernel, middle, clearance)
-        far = 0.5 * math.hypot(*self.size) + FARTHEST
-        return [piece for piece, c in zip(pieces, clearance, strict=True) if c <= far]
-
-    def reaching(self, away: float) -> Bodies:
-        """Parameters for compiled code, with lists of the terms within `away` of each cell."""
-        starts, nothing = np.zeros(len(self.least) + 1, np.int32), np.zeros(0, np.int32)
-        survey.near_cells(self.kernel, self._terms, self.like, away, starts, nothing, self.least)
-        near = np.zeros(max(starts[-1], 1), np.int32)
-        survey.near_cells(self.kernel, self._terms, self.like, away, starts, near, self.least)
-        places = self._places.copy()
-        places[STARTS], places[NEAR] = self._keep(starts), self._keep(near)
-        return self.kernel._replace(tables=self._keep(places, np.int64))
-
-    def _keep(self, table: Any, kind: Any = np.int32) -> int:
-        """Keep a table as long as this object lives; its address."""
-        table = np.ascontiguousarray(table, kind)
-        self._tables.append(table)
-        return address(table)
-
-    def _kernel(self, pieces: list[tuple[Piece, int]]) -> Bodies:
-        """Parameters for compiled code, still without its tables."""
-        parts = [part for piece, _ in pieces for part in piece.term]
-        numbers = np.array([part.numbers for part in parts]).reshape(-1, WIDTH)
-        samples, total = [np.zeros(1)], 1
-        begin: dict[int, int] = {}  # images share their samples
-        for i, part in enumerate(parts):
-            if part.samples is None:
-                continue
-            if id(part.samples) not in begin:
-                begin[id(part.samples)] = total
-                samples.append(part.samples.ravel())
-                total += part.samples.size
-            numbers[i, 7] = begin[id(part.samples)]
-        pivots = np.zeros((len(pieces), 3))
-        for i, (piece, _) in enumerate(pieces):
-            pivots[i, : self.dimension] = piece.pivot
-        inverse = tuple(
-            0.0 if shut else 1.0 / length
-            for shut, length in zip(self.room.closed, self.size, strict=True)
-        )
-        self.body_of_term = np.array([row for _, row in pieces], np.int32)
-        self._body_of = np.array([*self.body_of_term, NOBODY])  # of no term: the last
-        self.pivots = pivots
-        surfaces = [self._surface(body) for body in self.bodies]
-        tables = {
-            KINDS: self._keep([part.code for part in parts]),
-            SIGNS: self._keep([part.sign for part in parts], float),
-            NUMBERS: self._keep(numbers, float),
-            SAMPLES: self._keep(np.concatenate(samples), float),
-            FIRST: self._keep(np.cumsum([0, *(len(piece.term) for piece, _ in pieces)])),
-            BODY: self._keep(self.body_of_term),
-            PIVOT: self._keep(pivots, float),
-            SURFACES: self._keep(surfaces, float),
-        }
-        self._places = np.zeros(SIZE + 3, np.int64)
-        for number, place in tables.items():
-            self._places[number] = place
-        self._places[SIZE : SIZE + self.dimension] = self.size
-        size = tuple(float(length) for length in self.size)
-        unsure = self._keep(np.full(math.prod(self.size), -1.0), np.float32)
-        return Bodies(size, inverse, address(self._places), 0, 0.0, unsure, 1.0, size, size)
-
-    def _surface(self, body: Body) -> list[float]:
-        velocity = list(body.surface.velocity or ()) + [0.0] * 3
-        fills = body.surface.rule != "slip" and body.virtual != "none"
-        return [_RULES[body.surface.rule], *velocity[:3], *body.rotation, float(fills)]
+        super().__init__(room, bodies)
 
     @functools.cached_property
     def _others(self) -> Solids:

@@ -27,12 +27,12 @@ def rule(request):
 def ruled(every, rule):
     """Every solid with every rule: the same tables, but for the numbers of its surfaces."""
     from mesokit.geometry.bodies import COLUMNS, SURFACES
-    from mesokit.solids import _RULES
+    from mesokit.solid_tables import RULES
 
     solids = every[3]
     table = next(t for t in solids._tables if t.ctypes.data == solids._places[SURFACES])
     before = table.copy()
-    table.reshape(-1, COLUMNS)[:, 0] = _RULES[rule]
+    table.reshape(-1, COLUMNS)[:, 0] = RULES[rule]
     yield solids
     table[...] = before
 

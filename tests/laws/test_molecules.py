@@ -139,13 +139,15 @@ def test_a_force_moves_molecules_as_a_whole():
 class TestSheared:
     """Lees-Edwards: images slide, and bonds do not notice."""
 
-    def test_a_boundary_is_no_place(self):
+    @pytest.mark.parametrize("frequency", [0.0, 0.02])
+    def test_a_boundary_is_no_place(self, frequency):
         """Bonds over the sliding boundary are as long as all others, along and across."""
         molecule = Molecule(length=3, bond=Harmonic(K=1.0))
         fluid = make_fluid(
-            (8, 10, 8), shear_rate=0.1, molecule=molecule, thermostat=MaxwellBoltzmann(), density=9
-        )
-        far, near, all_over = [], [], []
+            (8, 10, 8), shear_rate=0.1, shear_frequency=frequency, molecule=molecule,
+            thermostat=MaxwellBoltzmann(), density=9,
+        )  # fmt: skip
+        far, near, all_over, along = [], [], [], []
         for _ in range(40):
             fluid.advance(25)
             way, ends = fluid.bond_vectors(), fluid.bonds()
@@ -153,9 +155,11 @@ class TestSheared:
             over = np.floor(y[ends[:, 0]] / 10) != np.floor(y[ends[:, 1]] / 10)
             far.append((way[over, 2] ** 2).mean())
             near.append((way[~over, 2] ** 2).mean())
+            along.append((way[over, 0] ** 2).mean() / (way[~over, 0] ** 2).mean())
             all_over.append((way[:, 2] ** 2).mean())
         assert np.abs(way).max() < 8
         assert mean(all_over).agrees(0.5, systematic=0.03), mean(all_over)
+        assert mean(along).agrees(1.0, systematic=0.06), mean(along)
         assert mean(far).agrees(0.5, systematic=0.06) and mean(near).agrees(0.5, systematic=0.03)
 
     def test_the_profile_is_linear_and_bonds_lean(self):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from mesokit import (
+    BondLength,
     Box,
     Case,
     DynamicModuli,
@@ -72,15 +74,45 @@ def test_velocity_modes_swing():
     assert abs(worst.measured) < 0.04 + 4 * worst.error, worst
 
 
-def test_shear_and_oscillation():
-    """Springs store what they should, and carry most of the stress."""
-    stored = dimers([DynamicModuli()], 8000, shear_rate=0.1, shear_frequency=0.2)
-    result = stored["dynamic-moduli"]
+OFTEN = {"every": 190}
+SIZES = (  # of all molecules, at the same moments: images are then anywhere
+    BondLength(**OFTEN),
+    MoleculeSize(molecules=3000, **OFTEN),
+    NormalModes(molecules=3000, max_lag=1900, **OFTEN),
+)
+
+
+@pytest.fixture(scope="module")
+def oscillating():
+    return dimers([DynamicModuli(), *SIZES], 8000, shear_rate=0.1, shear_frequency=0.2)
+
+
+@pytest.fixture(scope="module")
+def sheared():
+    return dimers([Stress(), *SIZES], 6000, shear_rate=0.05)
+
+
+def test_springs_store_what_they_should(oscillating):
+    result = oscillating["dynamic-moduli"]
     for name in ("storage", "loss"):
         c = of(result, name)
         assert abs(c.measured - c.expected) < 4.5 * c.error + CHAOS * c.expected, c
-    sheared = dimers([Stress()], 6000, shear_rate=0.05)["stress"]
+
+
+def test_springs_carry_most_of_the_stress(sheared):
+    result = sheared["stress"]
     for name in ("viscosity", "first normal-stress"):
-        c = of(sheared, name)
+        c = of(result, name)
         assert abs(c.measured - c.expected) < 4.5 * c.error + 2 * CHAOS * c.expected, c
-    assert sheared.value[2, 0, 1] > 2 * sheared.value[1, 0, 1]  # bonds over collisions
+    assert result.value[2, 0, 1] > 2 * result.value[1, 0, 1]  # bonds over collisions
+
+
+@pytest.mark.parametrize("run", ["sheared", "oscillating"])
+def test_a_dimer_is_its_bond_where_images_slide(run, request):
+    """Its end-to-end vector R is the bond, and its first mode R/sqrt(2)."""
+    simulation = request.getfixturevalue(run)
+    bond, size = simulation["bond-length"].value[0], simulation["molecule-size"].value
+    np.testing.assert_allclose(size[1], bond, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(size[0], bond / 4, rtol=1e-9, atol=1e-12)
+    mode = of(simulation["normal-modes"], "mean square of mode 1")
+    assert mode.measured == pytest.approx(np.trace(bond) / 2, rel=1e-9)

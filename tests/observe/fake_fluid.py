@@ -123,6 +123,9 @@ class FakeFluid:
     def bond_vectors(self):
         return np.sqrt(0.5) * self.rng.normal(size=(self.n // 2, self.dimension))
 
+    def whole_positions(self, ids=None):
+        return self.positions(ids, unwrapped=True)
+
     def potential_energy(self):
         return float(self.rng.normal(self.n))
 

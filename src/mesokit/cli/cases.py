@@ -77,7 +77,7 @@ def theory(**given: Any) -> None:
 
 
 def _show_check(case: Case, numbers: Derived) -> None:
-    from mesokit.derived import duration_text, size_text
+    from mesokit.amounts import duration_text, size_text
 
     click.echo(case.to_toml())
     transport = numbers.transport

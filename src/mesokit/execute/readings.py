@@ -127,16 +127,17 @@ class Readings(Memory):
             return self.dissolved.bond_vectors()
         return self._between(self.bonds())
 
-    def whole_positions(self) -> Floats:
+    def whole_positions(self, ids: NDArray | None = None) -> Floats:
         """Positions (n, d) by particle id, in the box but for beads that hang over its ends.
 
         Those are where their molecule has them, next to its first bead, which is in the box.
+        `ids`, if given, name molecule after molecule with all of its beads.
         """
-        places = self.positions()
+        r, _, image = self._gather(ids, False)
         if self.beads == 1:
-            return places
-        first = np.repeat(np.arange(0, self.n, self.beads), self.beads)
-        return places[first] + self._between(np.stack([first, np.arange(self.n)], axis=1))
+            return r
+        first = np.repeat(np.arange(0, len(r), self.beads), self.beads)
+        return r[first] + self._way(r, image, first, np.arange(len(r)))
 
     def potential_energy(self) -> float:
         """Of all bonds, angles and pairs of beads, and of solutes near walls."""
@@ -164,12 +165,16 @@ class Readings(Memory):
         return float(out.sum())
 
     def _between(self, pairs: NDArray[np.int64]) -> Floats:
-        """Vectors (n, d) between beads of one molecule, whatever images they lie in."""
-        r, _, image = self._gather(None, True)
-        first, second = pairs.T
-        way = r[second] - r[first]
+        """Vectors (n, d) between beads of one molecule."""
+        r, _, image = self._gather(None, False)
+        return self._way(r, image, *pairs.T)
+
+    def _way(self, r: Floats, image: NDArray, first: NDArray, second: NDArray) -> Floats:
+        """From one bead to another, whatever images they lie in."""
+        boxes = image[second] - image[first]
+        way = r[second] - r[first] + boxes * self.box
         if isinstance(self.box_kernel, SLIDING):
-            way[:, 0] += (image[second, 1] - image[first, 1]) * self.box_kernel.offset
+            way[:, 0] += boxes[:, 1] * self.box_kernel.offset
         return way
 
     def _gather(self, ids: NDArray | None, unwrapped: bool) -> tuple[Floats, Floats, NDArray]:

@@ -53,7 +53,7 @@ class MoleculeSizeAccumulator:
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        r = fluid.positions(self.beads.ravel(), unwrapped=True).reshape(*self.beads.shape, -1)
+        r = fluid.whole_positions(self.beads.ravel()).reshape(*self.beads.shape, -1)
         tensors = [gyration(r).mean(axis=0)]
         if len(self.parts) > 1:
             end = r[:, -1] - r[:, 0]

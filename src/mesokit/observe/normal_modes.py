@@ -64,8 +64,7 @@ class NormalModesAccumulator:
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        r = fluid.positions(self.beads.ravel(), unwrapped=True)
-        r = r.reshape(*self.beads.shape, -1)
+        r = fluid.whole_positions(self.beads.ravel()).reshape(*self.beads.shape, -1)
         for correlator, x in zip(
             self.correlators, np.einsum("mid,ip->pmd", r, self.vectors), strict=True
         ):

@@ -256,6 +256,12 @@ def surface_velocity(surface: object, component: int) -> float:
     return float(velocity[component]) if velocity else 0.0
 
 
+def surface_speed(case: Case) -> float:
+    """Of the fastest place on a solid's surface: no place in the fluid that it drags is faster."""
+    motion = solids_of(case).motion.values() if obstructed(case) else ()
+    return max((speed for speed, _ in motion), default=0.0)
+
+
 def _slit(case: Case, wall: Plates, component: int) -> Flow:
     across = AXES.index(wall.axis)
     if case.box.shear_rate:  # no-slip plates across the vorticity hold it back
