@@ -59,7 +59,8 @@ class Case:
 
     @property
     def particles(self) -> int:
-        """Number of the fluid's particles: density times the volume that walls leave, for each species.
+        """Number of the fluid's particles: density times the volume that walls leave, species by
+        species.
 
         Of molecules there is a whole number, and of a random solvent none.
         """

@@ -105,14 +105,23 @@ class Readings(Memory):
         return self._gather(ids, False)[2]
 
     def masses(self, ids: NDArray | None = None) -> Floats:
-        """Masses (n,) by particle id: kinds are numbered one after the other."""
+        """Masses (n,) by particle id: kinds are numbered one after the other, then come solutes."""
         mass = np.repeat(self.masses_of_kinds, self.counts)
-        return mass if ids is None else mass[ids]
+        if ids is None:
+            return mass
+        if self.dissolved is not None:
+            mass = np.concatenate([mass, self.dissolved.masses()])
+        return mass[ids]
 
     def species(self, ids: NDArray | None = None) -> NDArray[np.int64]:
-        """Kind of each particle (n,), by particle id: its place in fluid.species."""
+        """Kind of each particle (n,), by particle id: its place in fluid.species, then those of
+        solutes.polymers."""
         kind = np.repeat(np.arange(len(self.counts)), self.counts)
-        return kind if ids is None else kind[ids]
+        if ids is None:
+            return kind
+        if self.dissolved is not None:
+            kind = np.concatenate([kind, len(self.counts) + self.dissolved.kinds()])
+        return kind[ids]
 
     def bonds(self) -> NDArray[np.int64]:
         """Particle ids (bonds, 2) of all pairs that are linked; molecule after molecule."""
@@ -133,6 +142,8 @@ class Readings(Memory):
         Those are where their molecule has them, next to its first bead, which is in the box.
         `ids`, if given, name molecule after molecule with all of its beads.
         """
+        if self.dissolved is not None and ids is not None:
+            return self.dissolved.whole()[ids - self.n]
         r, _, image = self._gather(ids, False)
         if self.beads == 1:
             return r

@@ -65,6 +65,15 @@ class SoluteReadings:
             found.append(np.repeat(starts, polymer.length))
         return np.concatenate(found)
 
+    def masses(self) -> Floats:
+        """Masses (beads,)."""
+        return np.full(self.shape[0], self.given.mass)
+
+    def kinds(self) -> NDArray[np.int64]:
+        """The place of each bead's polymer in solutes.polymers."""
+        count = [polymer.number * polymer.length for polymer in self.given.polymers]
+        return np.repeat(np.arange(len(count)), count)
+
     def bond_vectors(self) -> Floats:
         """From the first to the second bead of each bond (bonds, d)."""
         return self.places[self.bonds[:, 1]] - self.places[self.bonds[:, 0]]

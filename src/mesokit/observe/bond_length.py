@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.box import AXES
-from mesokit.component import component, tag
-from mesokit.errors import CaseError
+from mesokit.component import component, param, tag
 from mesokit.observe import setting
 from mesokit.observe.estimate import Estimate, of_mean
+from mesokit.observe.molecules import KIND, bonds_of, molecule_of
 from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
@@ -26,11 +26,11 @@ class BondLength(Observable):
     """Mean of the products of the components of bonds; their sum is the mean square bond length."""
 
     quantity: Literal["bond-length"] = tag("bond-length")
+    kind: int = param(1, doc=KIND, ge=1)
 
     def check(self, case: Case) -> None:
         """Raise CaseError for a fluid without bonds."""
-        if case.fluid.molecule is None:
-            raise CaseError("bond-length is measured in fluids of molecules; give fluid.molecule")
+        molecule_of(case, self.quantity, self.kind)
 
     def accumulator(self, case: Case) -> BondLengthAccumulator:
         """An empty memory for it."""
@@ -43,12 +43,14 @@ class BondLengthAccumulator:
     def __init__(self, observable: BondLength, case: Case) -> None:
         observable.check(case)
         self.case, self.name = case, observable.label
+        self.molecule = molecule_of(case, kind=observable.kind)
+        self.bonds = bonds_of(case, observable.kind)
         d = case.box.dimension
         self.blocks = Blocks((1, d, d))
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        way = fluid.bond_vectors()
+        way = fluid.bond_vectors()[self.bonds]
         products = np.einsum("ij,ik->jk", way, way) / len(way)
         self.blocks.add(products[None])
 
@@ -80,13 +82,12 @@ class BondLengthAccumulator:
     def _expected(self) -> float:
         """Mean square length; nan under shear, between walls, and where other beads matter."""
         case = self.case
-        assert case.fluid.molecule is not None
         at_rest = not setting.driven(case) or (
             setting.isothermal(case) and case.fluid.force.rule == "uniform" and not case.walls
         )
         if case.walls or not at_rest:
             return np.nan
-        found = case.fluid.molecule.mean_square_bond(case.box.dimension, case.fluid.kT)
+        found = self.molecule.mean_square_bond(case.box.dimension, case.fluid.kT)
         return np.nan if found is None else found
 
     def _expected_products(self) -> Array:

@@ -13,7 +13,7 @@ from mesokit.box import AXES
 from mesokit.component import component, param, tag
 from mesokit.observe import setting
 from mesokit.observe.estimate import of_mean
-from mesokit.observe.molecules import beads_of, free_bond, gyration, modes_of, molecule_of
+from mesokit.observe.molecules import KIND, beads_of, free_bond, gyration, modes_of, molecule_of
 from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
@@ -30,10 +30,11 @@ class MoleculeSize(Observable):
 
     quantity: Literal["molecule-size"] = tag("molecule-size")
     molecules: int = param(2000, doc="molecules looked at", ge=1)
+    kind: int = param(1, doc=KIND, ge=1)
 
     def check(self, case: Case) -> None:
-        """Raise CaseError for a fluid of single particles."""
-        molecule_of(case, self.quantity)
+        """Raise CaseError without molecules."""
+        molecule_of(case, self.quantity, self.kind)
 
     def accumulator(self, case: Case) -> MoleculeSizeAccumulator:
         """An empty memory for it."""
@@ -44,9 +45,9 @@ class MoleculeSizeAccumulator:
     """Block averages of the tensors."""
 
     def __init__(self, observable: MoleculeSize, case: Case) -> None:
-        self.molecule = molecule_of(case, observable.quantity)
-        self.case, self.name = case, observable.label
-        self.beads = beads_of(case, observable.molecules)
+        self.molecule = molecule_of(case, observable.quantity, observable.kind)
+        self.case, self.name, self.kind = case, observable.label, observable.kind
+        self.beads = beads_of(case, observable.molecules, observable.kind)
         self.parts = PARTS if self.molecule.topology == "chain" else PARTS[:1]
         d = case.box.dimension
         self.blocks = Blocks((len(self.parts), d, d))
@@ -87,7 +88,8 @@ class MoleculeSizeAccumulator:
 
     def squares(self) -> list[float]:
         """Expected traces; nan where there is no theory."""
-        bond, rest = free_bond(self.case), not (self.case.walls or setting.driven(self.case))
+        bond = free_bond(self.case, self.kind)
+        rest = not (self.case.walls or setting.driven(self.case))
         if bond is None or not rest:
             return [np.nan] * len(self.parts)
         known = [theory.mean_square_gyration(modes_of(self.molecule), bond)]
