@@ -30,13 +30,14 @@ def example(component: type, dimension: int) -> Any:
 
 def make_case(
     size=(8, 8), observe=(), walls=(), trajectory=None, shear_rate=0.0, shear_frequency=0.0, seed=1,
-    **fluid,
+    solutes=None, **fluid,
 ) -> Case:  # fmt: skip
     """A case with one step to run."""
     return Case(
         run=Run(steps=1, seed=seed),
         box=Box(size, shear_rate=shear_rate, shear_frequency=shear_frequency),
         fluid=Fluid(**fluid),
+        solutes=solutes,
         walls=walls,
         observe=observe,
         trajectory=trajectory,

@@ -83,9 +83,11 @@ def advance(
             solutes, thread, threads, physics, counter, cells[1], number, like, c, terms, scales
         )
         # thermostat and collision rule: what the particles of each cell need, at t + dt
-        solve(
-            thread, threads, physics, counter, cells, number, cell_scratch, like, c, terms, scales
-        )
+        if particles[4][0].molecules > 0:  # a random solvent is only where beads are
+            solve(
+                thread, threads, physics, counter, cells, number, cell_scratch, like, c, terms,
+                scales,
+            )  # fmt: skip
         put_answers(solutes, thread, threads, cells[0], number, c)
         wait(gate, threads)
         lap(clock, thread, SOLVE)

@@ -127,7 +127,9 @@ def start(cpu: CPU, positions: Any = None, velocities: Any = None) -> None:
         if velocities is None:
             v = random.standard_normal(cpu.n)
             v *= np.sqrt(case.fluid.kT / mass)
-            v -= np.sum(mass * v) / mass.sum()  # np.dot would depend on the threads of BLAS
+            v -= np.sum(mass * v) / max(
+                mass.sum(), 1e-300
+            )  # np.dot would depend on the threads of BLAS
         else:
             v = velocities[:, k]
         cpu.put(d + k, v)
