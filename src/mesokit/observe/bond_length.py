@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.box import AXES
 from mesokit.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.observe import setting
 from mesokit.observe.estimate import Estimate, of_mean
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
+from mesokit.observe.protocol import BlockAccumulator, Observable, RunningFluid
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -37,7 +35,7 @@ class BondLength(Observable):
         return BondLengthAccumulator(self, case)
 
 
-class BondLengthAccumulator:
+class BondLengthAccumulator(BlockAccumulator):
     """Block averages of the products."""
 
     def __init__(self, observable: BondLength, case: Case) -> None:
@@ -51,14 +49,6 @@ class BondLengthAccumulator:
         way = fluid.bond_vectors()
         products = np.einsum("ij,ik->jk", way, way) / len(way)
         self.blocks.add(products[None])
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
 
     def result(self) -> Result:
         """The products, and the mean square bond length beside that of Boltzmann."""

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.box import AXES
@@ -14,7 +12,7 @@ from mesokit.component import component, param, tag
 from mesokit.observe import setting
 from mesokit.observe.estimate import of_mean
 from mesokit.observe.molecules import beads_of, free_bond, gyration, modes_of, molecule_of
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
+from mesokit.observe.protocol import BlockAccumulator, Observable, RunningFluid
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -40,7 +38,7 @@ class MoleculeSize(Observable):
         return MoleculeSizeAccumulator(self, case)
 
 
-class MoleculeSizeAccumulator:
+class MoleculeSizeAccumulator(BlockAccumulator):
     """Block averages of the tensors."""
 
     def __init__(self, observable: MoleculeSize, case: Case) -> None:
@@ -59,14 +57,6 @@ class MoleculeSizeAccumulator:
             end = r[:, -1] - r[:, 0]
             tensors.append(np.einsum("ma,mb->ab", end, end) / len(end))
         self.blocks.add(np.stack(tensors))
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
 
     def result(self) -> Result:
         """Tensors and their traces."""

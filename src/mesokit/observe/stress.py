@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.box import AXES
@@ -14,7 +12,7 @@ from mesokit.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.observe import setting
 from mesokit.observe.molecules import stress_in_shear
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
+from mesokit.observe.protocol import BlockAccumulator, Observable, RunningFluid
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -47,7 +45,7 @@ class Stress(Observable):
         return StressAccumulator(self, case)
 
 
-class StressAccumulator:
+class StressAccumulator(BlockAccumulator):
     """Block averages of both parts and their sum."""
 
     def __init__(self, observable: Stress, case: Case) -> None:
@@ -63,14 +61,6 @@ class StressAccumulator:
         """Take one sample."""
         parts = [fluid.stress[name] for name in self.parts]
         self.blocks.add(np.stack([*parts, sum(parts[1:], parts[0])]))
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
 
     def result(self) -> Result:
         """Tensors, pressure and viscosities."""
