@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from mesokit.mpcd.fluid import Fluid
     from mesokit.mpcd.initial import Start
     from mesokit.mpcd.molecule import Molecule
+    from mesokit.mpcd.solutes import Polymer, Solutes
     from mesokit.mpcd.species import Species
     from mesokit.mpcd.thermostat import MaxwellBoltzmann, NoThermostat, Rescale
     from mesokit.observe import (
@@ -96,6 +97,7 @@ _PLACES = {  # module: the public names in it
         "Mesh",
         "Picture",
         "Plates",
+        "Polymer",
         "Rectangle",
         "Sampled",
         "Sphere",
@@ -109,6 +111,7 @@ _PLACES = {  # module: the public names in it
     "mesokit.mpcd.fluid": ("Fluid",),
     "mesokit.mpcd.initial": ("Start",),
     "mesokit.mpcd.molecule": ("Molecule",),
+    "mesokit.mpcd.solutes": ("Polymer", "Solutes"),
     "mesokit.mpcd.species": ("Species",),
     "mesokit.mpcd.thermostat": ("MaxwellBoltzmann", "NoThermostat", "Rescale"),
     "mesokit.observe": (
@@ -195,6 +198,7 @@ __all__ = [
     "OtherFluid",
     "Picture",
     "Plates",
+    "Polymer",
     "Probe",
     "RadialProfile",
     "Rectangle",
@@ -208,6 +212,7 @@ __all__ = [
     "Simulation",
     "Sinusoidal",
     "Solids",
+    "Solutes",
     "Species",
     "Sphere",
     "Spring",

@@ -20,6 +20,7 @@ from mesokit.errors import CaseError
 from mesokit.geometry import Wall
 from mesokit.io.trajectory import Trajectory
 from mesokit.mpcd.fluid import Fluid
+from mesokit.mpcd.solutes import Solutes
 from mesokit.observe import AnyObservable
 from mesokit.run import Run
 from mesokit.solids import free_volume
@@ -46,6 +47,7 @@ class Case:
     run: Run = param(doc="how long, and how safe")
     box: Box = param(doc="the box")
     fluid: Fluid = param(Fluid(), doc="the fluid")
+    solutes: Solutes | None = param(None, doc="monomers and polymers in the fluid (none)")
     walls: tuple[Wall, ...] = param((), doc="walls; key `[[wall]]` in a file")
     observe: tuple[AnyObservable, ...] = param((), doc="what is measured; key `[[observe]]`")
     trajectory: Trajectory | None = param(None, doc="particles to write (none unless said)")
@@ -57,10 +59,13 @@ class Case:
 
     @property
     def particles(self) -> int:
-        """Number of particles: density times the volume that walls leave, for each species.
+        """Number of the fluid's particles: density times the volume that walls leave, species by
+        species.
 
-        Of molecules there is a whole number.
+        Of molecules there is a whole number, and of a random solvent none.
         """
+        if self.solutes is not None and self.solutes.solvent == "random":
+            return 0
         kinds = [kind.density for kind in self.fluid.species] or [self.fluid.density]
         volume = free_volume(self)
         if self.fluid.molecule is not None:

@@ -56,6 +56,16 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
                 f"by {phase:.2g} rad in each (above {COARSE:g}): its swings read up to "
                 f"{25 * phase**2:.2g} % too large"
             )
+    if case.solutes is not None and case.solutes.substeps is not None:
+        given = case.solutes
+        frequency = given.frequency(case.box.dimension, fluid.kT)
+        phase = frequency * fluid.timestep / case.solutes.substeps
+        if phase > COARSE:
+            yield (
+                f"solutes.substeps = {given.substeps}: the stiffest potential turns by {phase:.2g} "
+                f"rad in each (above {COARSE:g}): its swings read up to {25 * phase**2:.2g} % too "
+                "large"
+            )
     if fluid.density < 3:
         yield (
             f"fluid.density = {fluid.density:g}: below 3 many cells hold no pair that could "

@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING
 from mesokit.box import AXES
 from mesokit.component import show
 from mesokit.errors import CaseError
+from mesokit.io.trajectory import written
 from mesokit.mpcd.molecule import COARSE, MOST_SUBSTEPS, UNSTABLE
 from mesokit.observe import setting
 from mesokit.potential.thermal import mean_square
+from mesokit.solute_combinations import solutes
 from mesokit.units import MATCHES
 from mesokit.wall_combinations import moving_surfaces, room, surfaces, walls
 
@@ -42,7 +44,7 @@ def size(case: Case) -> Iterator[str]:
     """Neither empty nor beyond what can be numbered."""
     if case.box.volume > MOST_CELLS:
         yield f"box.size = {show(case.box.size)}: expected at most {MOST_CELLS} cells"
-    if case.particles < 2:
+    if case.particles < 2 and (case.solutes is None or case.solutes.solvent == "fluid"):
         yield f"fluid.density = {show(case.fluid.density)}: fewer than 2 particles in this box"
     if case.particles > MOST_PARTICLES:
         yield (
@@ -238,8 +240,13 @@ def trajectory(case: Case) -> Iterator[str]:
     given = case.trajectory
     if given is None:
         return
-    if given.subset is not None and given.subset > case.particles:
-        yield f"trajectory.subset = {given.subset}: there are only {case.particles} particles"
+    number, _ = written(case)
+    if given.of == "solutes" and case.solutes is None:
+        yield "trajectory.of = 'solutes': there are none; give solutes"
+    elif number == 0:
+        yield f"trajectory.of = {show(given.of)}: there is no such particle"
+    elif given.subset is not None and given.subset > number:
+        yield f"trajectory.subset = {given.subset}: there are only {number} particles"
     if len(set(given.fields)) < len(given.fields):
         yield f"trajectory.fields = {show(given.fields)}: expected each field once"
 
@@ -265,7 +272,7 @@ def units(case: Case) -> Iterator[str]:
 
 RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
     axes, vectors, walls, room, moving_surfaces, size, mean_free_path, collision, force, shear,
-    molecule, start, names, bins, trajectory, units,
+    molecule, solutes, start, names, bins, trajectory, units,
 )  # fmt: skip
 
 

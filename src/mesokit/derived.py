@@ -13,6 +13,7 @@ import numpy as np
 from mesokit import theory
 from mesokit.cautions import cautions
 from mesokit.geometry import Plates
+from mesokit.io.trajectory import written
 from mesokit.observe import setting
 
 if TYPE_CHECKING:
@@ -28,8 +29,16 @@ RATES = {
 COSTS = {"thermostat": 1.15, "walls": 1.25, "solids": 1.7, "shear": 1.2, "thread": 0.85}
 # seconds more for each particle-step of a molecule, and for each of its sub-steps
 FLOCK, SUBSTEP = 5e-9, 1e-9
+BEAD, BEAD_SUBSTEP = 100e-9, 45e-9  # and for each step and sub-step of a bead of a solute
 SAMPLE = 12e-9  # seconds for each particle in each sample of an observable
-BYTES = {"particle 2D": 68, "particle 3D": 88, "cell 2D": 60, "cell 3D": 110, "program": 250e6}
+BYTES = {
+    "particle 2D": 68,
+    "particle 3D": 88,
+    "cell 2D": 60,
+    "cell 3D": 110,
+    "program": 250e6,
+    "bead": 500,
+}
 WIDTHS = {"image": 4, "id": 8}  # bytes of a trajectory field; the others follow the precision
 COMPRESSED = 0.9  # thermal noise hardly compresses
 
@@ -93,7 +102,12 @@ def derive(case: Case, threads: int | None = None) -> Derived:
             dimension, fluid.timestep, fluid.kT, fluid.mass
         )
         rate = 1 / (1 / rate + (FLOCK + SUBSTEP * substeps) / threads)
-    memory = case.particles * BYTES[f"particle {dimension}D"]
+    beads, bead_seconds = 0, 0.0
+    if case.solutes is not None:
+        beads = case.solutes.beads
+        substeps = case.solutes.number_of_substeps(dimension, fluid.timestep, fluid.kT)
+        bead_seconds = beads * (BEAD + BEAD_SUBSTEP * substeps) * steps
+    memory = beads * BYTES["bead"] + case.particles * BYTES[f"particle {dimension}D"]
     memory += case.box.volume * BYTES[f"cell {dimension}D"] * threads
     numbers = Derived(
         particles=case.particles,
@@ -106,7 +120,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         mach=speed / transport.sound_speed if speed is not None and transport else None,
         steady_time=_steady_time(case, across, nu) if nu and speed and builds_up else None,
         heating=_heating(case, across, nu) if nu else None,
-        seconds=case.particles * steps / rate + _observe_seconds(case),
+        seconds=case.particles * steps / rate + bead_seconds + _observe_seconds(case),
         memory=round(memory + BYTES["program"]),
         trajectory=_trajectory_bytes(case),
         substeps=substeps,
@@ -201,4 +215,5 @@ def _trajectory_bytes(case: Case) -> int:
     )
     frames = case.run.steps // given.every + 1
     shrink = COMPRESSED if given.compression else 1.0
-    return round(frames * (given.subset or case.particles) * per_particle * shrink)
+    number_of, _ = written(case)
+    return round(frames * min(given.subset or number_of, number_of) * per_particle * shrink)

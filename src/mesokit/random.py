@@ -28,6 +28,7 @@ BODY_POSITION = np.uint64(10)  # of virtual particles in solids of any shape, an
 BODY_VELOCITY = np.uint64(11)
 DIFFUSE_WALL = np.uint64(12)
 BODY_NUMBER = np.uint64(13)
+INITIAL_SOLUTES = np.uint64(14)
 
 _LOW = np.uint64(0xFFFFFFFF)
 _SHIFT = np.uint64(32)

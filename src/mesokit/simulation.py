@@ -21,7 +21,7 @@ from mesokit.first_state import first_state, part
 from mesokit.io import checkpoint, h5md
 from mesokit.io.frames import require_frames
 from mesokit.io.run_directory import RunDirectory, now, provenance
-from mesokit.io.trajectory import TrajectoryWriter
+from mesokit.io.trajectory import TrajectoryWriter, written
 from mesokit.mpcd.initial import start
 from mesokit.progress import Reporter
 
@@ -141,7 +141,7 @@ class Simulation:
         self.directory = directory
         if self.case.trajectory is not None:
             folder = directory.trajectory_folder
-            self.writer = TrajectoryWriter(self.case.trajectory, folder, self.fluid.n)
+            self.writer = TrajectoryWriter(self.case.trajectory, folder, *written(self.case))
 
     @property
     def step(self) -> int:
@@ -261,7 +261,8 @@ class Simulation:
         record = self.directory.read_provenance()
         record |= {"ended": now(), "timings": self.timings}
         results, path = self.results, self.directory.data_file
-        masses, species = self.fluid.masses(), self.fluid.species()
+        ids = self.writer.ids if self.writer is not None else None
+        masses, species = self.fluid.masses(ids), self.fluid.species(ids)
         h5md.write(path, self.case, record, results.values(), self.writer, masses, species)
         self._save_provenance(record)
         from mesokit.report import save_all

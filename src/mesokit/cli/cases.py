@@ -82,13 +82,15 @@ def _show_check(case: Case, numbers: Derived) -> None:
     click.echo(case.to_toml())
     transport = numbers.transport
     rows = [("particles", f"{numbers.particles:,}".replace(",", " "), "")]
-    if numbers.substeps is not None:
-        molecule = case.fluid.molecule
-        assert molecule is not None
-        kind = f"{molecule.topology}s of {molecule.length}"
+    if case.solutes is not None:
+        rows.append(("beads of solutes", f"{case.solutes.beads:,}".replace(",", " "), ""))
+    molecule = case.fluid.molecule
+    if molecule is not None:
         number_of = f"{numbers.particles // molecule.length:,}".replace(",", " ")
-        rows.append(("molecules", number_of, kind))
-        rows.append(("sub-steps", str(numbers.substeps), molecule.propagation))
+        rows.append(("molecules", number_of, f"{molecule.topology}s of {molecule.length}"))
+    if numbers.substeps is not None:
+        how = molecule.propagation if molecule is not None else "verlet"
+        rows.append(("sub-steps", str(numbers.substeps), how))
     if transport is not None:
         rows += [
             ("mean free path", number(transport.mean_free_path, "a"), ""),

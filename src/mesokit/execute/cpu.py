@@ -74,7 +74,7 @@ class CPU(Readings):
             advance, self.clock, steps, self.step, self.case.run.seed, self.case.fluid.grid_shift,
             tuple(float(shut) for shut in self.closed), what,
             (self.case.fluid.density,) if self.virtual == "top-up" else (),
-            (1.0,) if self.virtual == "extrapolate" else (), self.guests,
+            (1.0,) if self.virtual == "extrapolate" else (), self.guests, self.solutes,
             self.physics, self.box_kernel, self.grid, self.particles, self.cell_arrays,
             self.number_of_cells, self.sweep_scratch, self.cell_scratch, self.like, self.c,
             self.terms, self.scales,
@@ -83,6 +83,8 @@ class CPU(Readings):
         self.wall_steps += steps
         self.box_kernel = self.case.box.kernel(self.closed, self.time)
         self._check_bonds()
+        if self.dissolved is not None:
+            self.dissolved.check()
         if measure_stress:
             self._stress()
 
@@ -124,7 +126,7 @@ class CPU(Readings):
     def _check_sums(self, crowd: int) -> None:
         """That a cell of so many particles of the fastest kind cannot make its sums overflow."""
         totals = self._totals()
-        fastest = totals[:, -1].max()
+        fastest = totals[:, -1].max(initial=0.0)
         if not (fastest < self.fastest and np.isfinite(totals).all()):
             reason = (
                 "fluid.start: give slower particles"
@@ -151,6 +153,7 @@ class CPU(Readings):
         """Everything that the next step depends on. Raises RunError if sums have overflowed."""
         self._check_sums(1)
         return {
+            **(self.dissolved.state() if self.dissolved else {}),
             "data": self.data[: self.real_blocks * self.rows * ROW].copy(),
             "ident": self.ident[: self.places].copy(),
             "image": self.image[:, : self.places].copy(),
@@ -174,6 +177,8 @@ class CPU(Readings):
         self.wall_rates[:] = state["wall_rates"]
         self.calm[:] = 0.0
         self.box_kernel = self.case.box.kernel(self.closed, self.time)
+        if self.dissolved is not None:
+            self.dissolved.restore(state)
 
     @property
     def seconds(self) -> dict[str, float]:

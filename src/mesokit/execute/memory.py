@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from mesokit.errors import RunError
 from mesokit.execute.beads import bead_size
 from mesokit.execute.cell_energy import MOST_DENSITY, Column, NotAsked, WithCount, with_count
+from mesokit.execute.dissolve import dissolved
 from mesokit.execute.invite import charted, guests_of
 from mesokit.execute.layout import (
     BLOCK,
@@ -67,12 +68,12 @@ class Memory:
         heaviest = max(mass for mass, _ in kinds)
         self.counts = [round(density * free_volume(case)) for _, density in kinds]
         self.beads = fluid.molecule.length if fluid.molecule else 1
-        if self.beads > 1:
+        if self.beads > 1 or case.particles == 0:
             self.counts = [case.particles]
         self.n = sum(self.counts)
         molecules = self.n // self.beads
         self.filling = Molecules(molecules, self.beads) if fluid.molecule else Singles(molecules)
-        if self.n == 0:
+        if self.n == 0 and case.solutes is None:
             raise RunError(f"fluid.density = {fluid.density:g}: no particle in the box")
         layer = math.prod(s for s, shut in zip(box.size, self.closed, strict=True) if not shut)
         self.n_virtual = (
@@ -122,6 +123,7 @@ class Memory:
         self.sort_every = int(min(max(steps, 10), 100))
         self._allocate(uniform)
         self.box_kernel = box.kernel(self.closed, 0.0)
+        self.solutes = dissolved(case.solutes, self) if case.solutes else ()
         zero, cells = (0.0,) * d, tuple(float(n) for n in self.cells)
         self.grid = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
 

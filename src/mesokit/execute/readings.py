@@ -14,6 +14,7 @@ from mesokit.execute import measure
 from mesokit.execute.fixed_point import ROUNDER_BITS
 from mesokit.execute.layout import LANES, SCRATCH_ROW, sums_length, zeros
 from mesokit.execute.memory import Floats, Memory
+from mesokit.execute.solute_readings import SoluteReadings
 from mesokit.execute.team import Team
 from mesokit.mpcd import topology
 
@@ -34,11 +35,20 @@ class Readings(Memory):
         self._asked: tuple[NDArray, NDArray[np.int32]] | None = None  # ids, and their slots
         self._seen: dict[tuple, Moments] = {}  # moments at this step, for several observables
         self.stress: dict[str, Floats] = {}
+        self.dissolved = SoluteReadings(self) if self.solutes else None
 
     def totals(self) -> tuple[int, Floats, float]:
-        """Number of particles, momentum (d,) and kinetic energy."""
+        """Number of particles, momentum (d,) and kinetic energy, beads of solutes included."""
         total = self._totals().sum(axis=0)
-        return self.n, total[: self.dimension], 0.5 * float(total[self.dimension])
+        number, momentum, energy = (
+            self.n,
+            total[: self.dimension],
+            0.5 * float(total[self.dimension]),
+        )
+        if self.dissolved is not None:
+            beads, theirs, more = self.dissolved.totals()
+            number, momentum, energy = number + beads, momentum + theirs, energy + more
+        return number, momentum, energy
 
     def _totals(self) -> Floats:
         out = np.zeros((self.strips[0], self.dimension + 2))
@@ -95,14 +105,23 @@ class Readings(Memory):
         return self._gather(ids, False)[2]
 
     def masses(self, ids: NDArray | None = None) -> Floats:
-        """Masses (n,) by particle id: kinds are numbered one after the other."""
+        """Masses (n,) by particle id: kinds are numbered one after the other, then come solutes."""
         mass = np.repeat(self.masses_of_kinds, self.counts)
-        return mass if ids is None else mass[ids]
+        if ids is None:
+            return mass
+        if self.dissolved is not None:
+            mass = np.concatenate([mass, self.dissolved.masses()])
+        return mass[ids]
 
     def species(self, ids: NDArray | None = None) -> NDArray[np.int64]:
-        """Kind of each particle (n,), by particle id: its place in fluid.species."""
+        """Kind of each particle (n,), by particle id: its place in fluid.species, then those of
+        solutes.polymers."""
         kind = np.repeat(np.arange(len(self.counts)), self.counts)
-        return kind if ids is None else kind[ids]
+        if ids is None:
+            return kind
+        if self.dissolved is not None:
+            kind = np.concatenate([kind, len(self.counts) + self.dissolved.kinds()])
+        return kind[ids]
 
     def bonds(self) -> NDArray[np.int64]:
         """Particle ids (bonds, 2) of all pairs that are linked; molecule after molecule."""
@@ -113,6 +132,8 @@ class Readings(Memory):
 
     def bond_vectors(self) -> Floats:
         """From the first to the second particle of each bond (bonds, d)."""
+        if self.dissolved is not None:
+            return self.dissolved.bond_vectors()
         return self._between(self.bonds())
 
     def whole_positions(self, ids: NDArray | None = None) -> Floats:
@@ -121,6 +142,8 @@ class Readings(Memory):
         Those are where their molecule has them, next to its first bead, which is in the box.
         `ids`, if given, name molecule after molecule with all of its beads.
         """
+        if self.dissolved is not None and ids is not None:
+            return self.dissolved.whole()[ids - self.n]
         r, _, image = self._gather(ids, False)
         if self.beads == 1:
             return r
@@ -128,7 +151,9 @@ class Readings(Memory):
         return r[first] + self._way(r, image, first, np.arange(len(r)))
 
     def potential_energy(self) -> float:
-        """Of all bonds, angles and pairs of beads."""
+        """Of all bonds, angles and pairs of beads, and of solutes near walls."""
+        if self.dissolved is not None:
+            return self.dissolved.potential_energy()
         molecule = self.case.fluid.molecule
         if molecule is None:
             return 0.0
@@ -164,6 +189,20 @@ class Readings(Memory):
         return way
 
     def _gather(self, ids: NDArray | None, unwrapped: bool) -> tuple[Floats, Floats, NDArray]:
+        """Places, velocities, images by particle id; those of beads of solutes follow the fluid."""
+        if self.dissolved is None or ids is None or (ids < self.n).all():
+            return self._gather_fluid(ids, unwrapped)
+        own = ids < self.n
+        r, v, image = self.dissolved.folded()
+        if unwrapped:
+            r, v = self.dissolved.places, self.dissolved.velocities
+        beads = np.where(own, 0, ids - self.n)
+        r, v, image = r[beads], v[beads], image[beads]
+        if own.any():
+            r[own], v[own], image[own] = self._gather_fluid(ids[own], unwrapped)
+        return r, v, image
+
+    def _gather_fluid(self, ids: NDArray | None, unwrapped: bool) -> tuple[Floats, Floats, NDArray]:
         slots = np.arange(self.n, dtype=np.int32) if ids is None else self._slots(ids)
         shape = self.n if ids is None else len(ids), self.dimension
         out = np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32)

@@ -8,6 +8,8 @@ from mesokit.execute.cells import solve
 from mesokit.execute.clock import lap
 from mesokit.execute.flags import COLLIDE, MEASURE_STRESS, MEASURE_WALLS, STREAM
 from mesokit.execute.guests import fill_guests, recoil, top_up_guests
+from mesokit.execute.solute_cells import join_solutes, put_answers
+from mesokit.execute.solutes import move_solutes
 from mesokit.execute.stages import Grid
 from mesokit.execute.sweep import sweep
 from mesokit.execute.team import wait
@@ -32,8 +34,8 @@ def cells_at(shift, old, closed):
 @kernel
 def advance(
     thread, threads, gate, clock, steps, done, seed, strength, closed, what, density, wanted,
-    guests, physics, box, grid, particles, cells, number, scratch, cell_scratch, like, c, terms,
-    scales,
+    guests, solutes, physics, box, grid, particles, cells, number, scratch, cell_scratch, like, c,
+    terms, scales,
 ):  # fmt: skip
     """Run some steps; velocities are those after the collision of the last when it returns.
 
@@ -56,6 +58,10 @@ def advance(
             thread, threads, flags, physics, box, counter, grid, new, particles, cells, scratch,
             like, c, terms, scales,
         )  # fmt: skip
+        move_solutes(
+            solutes, thread, threads, gate, flags, physics, box, counter, grid, new, cells[0],
+            impulse, like, c, scales,
+        )  # fmt: skip
         fill_guests(
             guests, density, thread, threads, what, physics, counter, new, rows, cells[1][thread],
             gathered, quanta, impulse, like, terms, scales,
@@ -73,10 +79,14 @@ def advance(
         if len(density) + len(wanted) > 0:
             wait(gate, threads)
         lap(clock, thread, SWEEP)
+        join_solutes(
+            solutes, thread, threads, physics, counter, cells[1], number, like, c, terms, scales
+        )
         # thermostat and collision rule: what the particles of each cell need, at t + dt
         solve(
             thread, threads, physics, counter, cells, number, cell_scratch, like, c, terms, scales
         )
+        put_answers(solutes, thread, threads, cells[0], number, c)
         wait(gate, threads)
         lap(clock, thread, SOLVE)
         recoil(
@@ -90,6 +100,10 @@ def advance(
     sweep(
         thread, threads, flags, physics, box, counter, grid, grid, particles, cells, scratch,
         like, c, terms, scales,
+    )  # fmt: skip
+    move_solutes(
+        solutes, thread, threads, gate, flags, physics, box, counter, grid, grid, cells[0], impulse,
+        like, c, scales,
     )  # fmt: skip
     wait(gate, threads)
     lap(clock, thread, FINISH)

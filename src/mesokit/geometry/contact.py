@@ -13,6 +13,7 @@ from mesokit.geometry.bodies import (
     from_pivot,
     in_box,
     nearest,
+    nearest_within,
     part_clearance,
     part_normal,
     sure_clearance,
@@ -24,6 +25,7 @@ from mesokit.geometry.primitive.numbers import length
 from mesokit.geometry.protocol import (
     confine,
     exposed,
+    facing,
     first_hit,
     free,
     happens,
@@ -60,6 +62,17 @@ def _(solid, clear, r, v, a, time):
 def _(solid, r, v, a, time):
     path = (length(v) + 0.5 * length(a) * time) * time
     return sure_clearance(solid, in_box(solid, r)) > path + MARGIN
+
+
+@facing.register(Bodies)
+def _(solid, away, r):
+    x = in_box(solid, r)
+    distance, part, term = nearest_within(solid.tables, away, x)
+    if term == NOBODY:
+        return distance, scaled(0.0, r), 0, r
+    surface = whole(word(solid.tables, BODY), term)
+    out = part_normal(solid.tables, part, x)
+    return distance, out, surface, from_pivot(solid.tables, term, x)
 
 
 @homed.register(Bodies)

@@ -15,6 +15,7 @@ from mesokit.geometry.protocol import (
     closes,
     confine,
     exposed,
+    facing,
     first_hit,
     free,
     happens,
@@ -197,6 +198,14 @@ def _(solid, r):
 @exposed.register(SlitX, SlitY, SlitZ)
 def _(solid):
     return True
+
+
+@facing.register(SlitX, SlitY, SlitZ)
+def _(solid, away, r):
+    k, none = across(solid), scaled(0.0, r)
+    low = r[k] < 0.5 * solid.width
+    distance = r[k] if low else solid.width - r[k]
+    return distance, tuple_setitem(none, k, 1.0 if low else -1.0), 0 if low else 1, none
 
 
 @closes.register(SlitX, SlitY, SlitZ)

@@ -85,6 +85,12 @@ def settled(solid, r):
 
 
 @generic
+def facing(solid, away, r):
+    """Distance of r from the nearest surface, the normal out of it, its number, and r from its
+    pivot; the first is at least `away` where nothing is nearer."""
+
+
+@generic
 def closes(solid, place, shift, lower_rate, upper_rate):
     """Position and mean velocity of a virtual particle, from uniform numbers and the grid shift.
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from mesokit.errors import RunError
 from mesokit.io import h5md
 from mesokit.io.run_directory import RunDirectory
-from mesokit.io.trajectory import TrajectoryWriter
+from mesokit.io.trajectory import TrajectoryWriter, written
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -21,7 +21,7 @@ def require_frames(directory: RunDirectory, case: Case, step: int) -> None:
     if case.trajectory is None:
         return
     place, every = directory.trajectory_folder, case.trajectory.every
-    there = TrajectoryWriter(case.trajectory, place, case.particles).steps()
+    there = TrajectoryWriter(case.trajectory, place, *written(case)).steps()
     if not len(there) and directory.data_file.exists():
         place = directory.data_file
         try:

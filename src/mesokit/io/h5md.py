@@ -61,7 +61,7 @@ def write(
     case, provenance: of the run.
     results: of all observables.
     trajectory: whose frames are copied one by one.
-    masses, species: (n,) by particle id, for the particles of the trajectory.
+    masses, species: (n,), for the particles of the trajectory.
 
     Raises RunError if it cannot be written.
     """
@@ -154,10 +154,10 @@ def _particles(
     group, n, frames = file.create_group("particles/fluid"), len(trajectory.ids), len(steps)
     group.attrs["dimension"] = case.box.dimension
     group["id"] = trajectory.ids
-    group["mass"] = np.full(n, case.fluid.mass) if masses is None else masses[:n]
-    if case.fluid.molecule is not None:
-        _bonds(file, group, case, n)
-    group["species"] = np.zeros(n, np.int32) if species is None else species[:n]
+    group["mass"] = np.full(n, case.fluid.mass) if masses is None else masses
+    if case.fluid.molecule is not None or case.solutes is not None:
+        _bonds(file, group, case, trajectory.ids)
+    group["species"] = np.zeros(n, np.int32) if species is None else species
     group["step"] = steps
     group.create_dataset("time", (frames,), float).attrs["reduced_unit"] = UNITS["time"]
     sets = {}
@@ -185,17 +185,25 @@ def _particles(
     del group["step"], group["time"]  # the elements have linked them
 
 
-def _bonds(file: Any, group: Any, case: Case, n: int) -> None:
-    """Pairs of particles of the trajectory that are linked, as H5MD has it."""
-    molecule = case.fluid.molecule
-    assert molecule is not None
-    links = np.array(molecule.bonds, np.int64)
-    starts = np.arange(0, case.particles, molecule.length)
-    pairs = (starts[:, None, None] + links).reshape(-1, 2)
+def _bonds(file: Any, group: Any, case: Case, ids: NDArray[np.int64]) -> None:
+    """Rows of the trajectory whose particles are linked, as H5MD has it."""
+    pairs = bonds_of(case) - (ids[0] if len(ids) else 0)
+    there = ((pairs >= 0) & (pairs < len(ids))).all(axis=1)
     bonds = file.require_group("connectivity").create_dataset(
-        "bonds", data=pairs[(pairs < n).all(axis=1)], compression=4
+        "bonds", data=pairs[there], compression=4
     )
     bonds.attrs["particles_group"] = group.ref
+
+
+def bonds_of(case: Case) -> NDArray[np.int64]:
+    """Particle ids (bonds, 2) of all that are linked, in molecules of the fluid and of solutes."""
+    if case.solutes is not None:
+        return case.particles + case.solutes.bonds()
+    if case.fluid.molecule is None:
+        return np.zeros((0, 2), np.int64)
+    links = np.array(case.fluid.molecule.bonds, np.int64)
+    starts = np.arange(0, case.particles, case.fluid.molecule.length)
+    return (starts[:, None, None] + links).reshape(-1, 2)
 
 
 def _element(parent: Any, name: str, clock: Any) -> Any:

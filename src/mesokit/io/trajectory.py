@@ -21,6 +21,7 @@ from mesokit.errors import RunError
 from mesokit.io.atomic import replacing
 
 if TYPE_CHECKING:
+    from mesokit.case import Case
     from mesokit.observe.protocol import RunningFluid
 
 Quantity = Literal["position", "velocity", "image", "id"]
@@ -33,6 +34,9 @@ class Trajectory:
     """Particles written to the H5MD file of the run."""
 
     every: int = param(doc="steps between two frames", ge=1)
+    of: Literal["all", "fluid", "solutes"] = param(
+        "all", doc="whose particles: beads of solutes follow those of the fluid"
+    )
     fields: tuple[Quantity, ...] = param(("position",), doc="what is written", min_length=1)
     subset: int | None = param(
         None, doc="only the first particles, so many (all unless said)", ge=1
@@ -41,16 +45,27 @@ class Trajectory:
     compression: int = param(4, doc="gzip level: 0 none, 9 smallest", ge=0, le=9)
 
 
+def written(case: Case) -> tuple[int, int]:
+    """Number of particles that the trajectory of a case may hold, and the id of the first."""
+    beads = case.solutes.beads if case.solutes is not None else 0
+    of = case.trajectory.of if case.trajectory is not None else "all"
+    number = {"all": case.particles + beads, "fluid": case.particles, "solutes": beads}[of]
+    return number, case.particles if of == "solutes" else 0
+
+
 class TrajectoryWriter:
     """Frames of a running fluid, kept in the folder `folder`.
 
-    Particles are stored in the order of their ids. Call `record` where a frame is due, `flush`
+    Particles are stored in the order of their ids. `first` is the id of the first
+    that may be written. Call `record` where a frame is due, `flush`
     before every checkpoint, `resume` before going on from one.
     """
 
-    def __init__(self, trajectory: Trajectory, folder: str | Path, particles: int) -> None:
+    def __init__(
+        self, trajectory: Trajectory, folder: str | Path, particles: int, first: int = 0
+    ) -> None:
         self.trajectory, self.folder = trajectory, Path(folder)
-        self.ids = np.arange(min(trajectory.subset or particles, particles))
+        self.ids = first + np.arange(min(trajectory.subset or particles, particles))
         self._frames: list[Frame] = []
         self._bytes = 0
 

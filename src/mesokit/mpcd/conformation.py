@@ -58,19 +58,19 @@ def _one_draw(
     places[:, 0] = random.random((number, d)) * box
     ring = molecule.topology == "ring"
     links = molecule.bonds[:-1] if ring else molecule.bonds
-    bonds = np.stack([_bonds(molecule, number, kT, d, random) for _ in molecule.bonds])
+    bonds = np.stack([bonds_of(molecule, number, kT, d, random) for _ in molecule.bonds])
     if ring:
         bonds -= bonds.mean(axis=0)  # the last one leads back; Gaussian bonds stay Gaussian
     came: dict[int, int] = {}  # bond by which each bead was reached
     for n, (a, b) in enumerate(links):
         if molecule.bending is not None and a in came and not ring:
-            bonds[n] = _turned(molecule, bonds[came[a]], bonds[n], kT, random)
+            bonds[n] = turned(molecule, bonds[came[a]], bonds[n], kT, random)
         places[:, b] = places[:, a] + bonds[n]
         came[b] = n
     return places
 
 
-def _bonds(
+def bonds_of(
     molecule: Molecule, number: int, kT: float, d: int, random: np.random.Generator
 ) -> Floats:
     """Bond vectors (number, d) in any direction, with the lengths of the temperature."""
@@ -87,7 +87,7 @@ def _directions(number: int, d: int, random: np.random.Generator) -> Floats:
     return vectors / np.linalg.norm(vectors, axis=1)[:, None]
 
 
-def _turned(
+def turned(
     molecule: Molecule, before: Floats, bond: Floats, kT: float, random: np.random.Generator
 ) -> Floats:
     """The bond, as long as it is, at an angle of the temperature to the one before."""
@@ -111,7 +111,7 @@ def _relaxed(molecule: Molecule, places: Floats, kT: float) -> NDArray[np.bool_]
     good = np.ones(len(places), bool)
     pair = molecule.pair.kernel() if molecule.pair is not None else None
     if pair is not None:
-        limit = _nearest(pair, kT)
+        limit = nearest_of(pair, kT)
         for i in range(molecule.length):
             for j in range(i + 1, molecule.length):
                 good &= np.linalg.norm(places[:, j] - places[:, i], axis=1) > limit
@@ -122,7 +122,7 @@ def _relaxed(molecule: Molecule, places: Floats, kT: float) -> NDArray[np.bool_]
     return good
 
 
-def _nearest(pair: object, kT: float) -> float:
+def nearest_of(pair: object, kT: float) -> float:
     """Distance at which two beads have the energy HOT."""
     radii = np.geomspace(1e-3, 1e3, POINTS)
     energy = np.array([central.plain(pair, r * r)[0] for r in radii.tolist()])

@@ -13,13 +13,15 @@ from mesokit.box import AXES
 from mesokit.component import FileName, component, param
 from mesokit.errors import CaseError, MesokitError
 from mesokit.geometry.contact import MARGIN
-from mesokit.mpcd.conformation import connected, drawn
-from mesokit.random import INITIAL_POSITION, INITIAL_VELOCITY
+from mesokit.mpcd.conformation import connected, drawn, nearest_of
+from mesokit.mpcd.growth import grown
+from mesokit.random import INITIAL_POSITION, INITIAL_SOLUTES, INITIAL_VELOCITY
 from mesokit.solids import solids_of
 
 if TYPE_CHECKING:
     from mesokit.case import Case
     from mesokit.execute.cpu import CPU
+    from mesokit.mpcd.solutes import Solutes
 
 Floats = NDArray[np.float64]
 LastState = Callable[["Case", str], tuple[Any, Any]]
@@ -129,9 +131,33 @@ def start(cpu: CPU, positions: Any = None, velocities: Any = None) -> None:
         else:
             v = velocities[:, k]
         cpu.put(d + k, v)
+    if case.solutes is not None:
+        _start_solutes(cpu, case.solutes, velocities is None)
     if velocities is None and case.box.shear_rate != 0.0:
         cpu.row(d)[...] += case.box.shear_rate * (cpu.row(1) - 0.5 * cpu.box[1])
     cpu.sort()
+
+
+def _start_solutes(cpu: CPU, solutes: Solutes, at_rest: bool) -> None:
+    """Beads where there is room, with thermal velocities; if wanted, the fluid takes up their
+    momentum, so that the whole is at rest."""
+    assert cpu.dissolved is not None
+    case, d, beads = cpu.case, cpu.dimension, cpu.dissolved
+    random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_SOLUTES))))
+    clear = nearest_of(solutes.wall.kernel(), case.fluid.kT) if solutes.wall else MARGIN
+    kT, room = case.fluid.kT, _stays_out(cpu, clear)
+    beads.places[:] = grown(solutes, kT, cpu.box, _periods(cpu), random, room)
+    v = np.sqrt(kT / solutes.mass) * random.standard_normal(beads.shape)
+    if at_rest:
+        momentum = solutes.mass * v.sum(axis=0)
+        drift = momentum / (solutes.mass * len(v) + cpu.masses().sum())
+        v -= drift
+        for k in range(d):
+            cpu.row(d + k)[...] -= drift[k]
+        if case.box.shear_rate != 0.0:
+            v[:, 0] += case.box.shear_rate * (beads.places[:, 1] - 0.5 * cpu.box[1])
+    beads.velocities[:] = v
+    beads.forget_lists()
 
 
 def _uniform(cpu: CPU, random: np.random.Generator) -> Floats:
@@ -146,13 +172,13 @@ def _uniform(cpu: CPU, random: np.random.Generator) -> Floats:
     return places
 
 
-def _stays_out(cpu: CPU) -> Callable[[Floats], NDArray[np.bool_]]:
-    """Which of places (..., d) are in the fluid."""
+def _stays_out(cpu: CPU, clear: float = 0.0) -> Callable[[Floats], NDArray[np.bool_]]:
+    """Which of places (..., d) are in the fluid, so far from its surfaces."""
     if cpu.solids is None:
         return lambda places: np.ones(places.shape[:-1], bool)
     if cpu.slit is not None:
         axis, length = AXES.index(cpu.slit.axis), cpu.box[AXES.index(cpu.slit.axis)]
-        return lambda places: (places[..., axis] > 0) & (places[..., axis] < length)
+        return lambda places: (places[..., axis] > clear) & (places[..., axis] < length - clear)
     solids, d = cpu.solids, cpu.dimension
 
     def outside(places: Floats) -> NDArray[np.bool_]:
@@ -161,10 +187,10 @@ def _stays_out(cpu: CPU) -> Callable[[Floats], NDArray[np.bool_]]:
         for k, shut in enumerate(cpu.closed):
             x = inside_box[:, k]
             if shut:
-                good &= (x > 0) & (x < cpu.box[k])
+                good &= (x > clear) & (x < cpu.box[k] - clear)
             else:
                 x -= np.floor(x / cpu.box[k]) * cpu.box[k]
-        good[good] = solids.distance(inside_box[good]) >= MARGIN
+        good[good] = solids.distance(inside_box[good]) >= max(clear, MARGIN)
         return good.reshape(places.shape[:-1])
 
     return outside

@@ -92,9 +92,13 @@ class Molecule:
         square = mean_square(self.bond_potentials, dimension, kT, self.bond.longest)
         return square * (1.0 - 1.0 / self.length) if self.topology == "ring" else square
 
+    def frequency(self, dimension: int, kT: float, mass: float) -> float:
+        """Angular frequency of the fastest oscillation."""
+        return _frequency(self, dimension, kT, mass)
+
     def phase(self, dimension: int, timestep: float, kT: float, mass: float) -> float:
         """Of the fastest oscillation in one sub-step, in radians."""
-        return _frequency(self, dimension, kT, mass) * timestep / (self.substeps or 1)
+        return self.frequency(dimension, kT, mass) * timestep / (self.substeps or 1)
 
     def number_of_substeps(self, dimension: int, timestep: float, kT: float, mass: float) -> int:
         """Those given, or those that it needs."""
@@ -102,7 +106,7 @@ class Molecule:
 
     def needed_substeps(self, dimension: int, timestep: float, kT: float, mass: float) -> int:
         """So many that the fastest oscillation turns by PHASE in each."""
-        return max(1, math.ceil(_frequency(self, dimension, kT, mass) * timestep / PHASE))
+        return max(1, math.ceil(self.frequency(dimension, kT, mass) * timestep / PHASE))
 
     def _dimers(self, timestep: float, mass: float) -> Dimers:
         K = self.bond.K  # type: ignore[union-attr]  # harmonic: see `_check_exact`

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from mesokit.component import component, tag
-from mesokit.errors import CaseError
+from mesokit.component import component, param, tag
 from mesokit.observe import setting
+from mesokit.observe.molecules import KIND, bonds_of, molecule_of
 from mesokit.observe.protocol import Observable, RunningFluid
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.observe.tensor import TensorAccumulator
@@ -22,11 +22,11 @@ class BondLength(Observable):
     """Mean of the products of the components of bonds; their sum is the mean square bond length."""
 
     quantity: Literal["bond-length"] = tag("bond-length")
+    kind: int = param(1, doc=KIND, ge=1)
 
     def check(self, case: Case) -> None:
         """Raise CaseError for a fluid without bonds."""
-        if case.fluid.molecule is None:
-            raise CaseError("bond-length is measured in fluids of molecules; give fluid.molecule")
+        molecule_of(case, self.quantity, self.kind)
 
     def accumulator(self, case: Case) -> BondLengthAccumulator:
         """An empty memory for it."""
@@ -39,10 +39,12 @@ class BondLengthAccumulator(TensorAccumulator):
     def __init__(self, observable: BondLength, case: Case) -> None:
         observable.check(case)
         super().__init__(observable, case, ("bonds",))
+        self.molecule = molecule_of(case, kind=observable.kind)
+        self.bonds = bonds_of(case, observable.kind)
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        way = fluid.bond_vectors()
+        way = fluid.bond_vectors()[self.bonds]
         products = np.einsum("ij,ik->jk", way, way) / len(way)
         self.blocks.add(products[None])
 
@@ -54,13 +56,12 @@ class BondLengthAccumulator(TensorAccumulator):
     def square(self) -> float:
         """Mean square length; nan under shear, between walls, and where other beads matter."""
         case = self.case
-        assert case.fluid.molecule is not None
         at_rest = not setting.driven(case) or (
             setting.isothermal(case) and case.fluid.force.rule == "uniform" and not case.walls
         )
         if case.walls or not at_rest:
             return np.nan
-        found = case.fluid.molecule.mean_square_bond(case.box.dimension, case.fluid.kT)
+        found = self.molecule.mean_square_bond(case.box.dimension, case.fluid.kT)
         return np.nan if found is None else found
 
     def expected(self) -> Array:

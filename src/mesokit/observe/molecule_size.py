@@ -9,7 +9,7 @@ import numpy as np
 from mesokit import theory
 from mesokit.component import component, param, tag
 from mesokit.observe import setting
-from mesokit.observe.molecules import beads_of, free_bond, gyration, modes_of, molecule_of
+from mesokit.observe.molecules import KIND, beads_of, free_bond, gyration, modes_of, molecule_of
 from mesokit.observe.protocol import Observable, RunningFluid
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.observe.tensor import TensorAccumulator
@@ -26,10 +26,11 @@ class MoleculeSize(Observable):
 
     quantity: Literal["molecule-size"] = tag("molecule-size")
     molecules: int = param(2000, doc="molecules looked at", ge=1)
+    kind: int = param(1, doc=KIND, ge=1)
 
     def check(self, case: Case) -> None:
-        """Raise CaseError for a fluid of single particles."""
-        molecule_of(case, self.quantity)
+        """Raise CaseError without molecules."""
+        molecule_of(case, self.quantity, self.kind)
 
     def accumulator(self, case: Case) -> MoleculeSizeAccumulator:
         """An empty memory for it."""
@@ -40,10 +41,11 @@ class MoleculeSizeAccumulator(TensorAccumulator):
     """Block averages of the tensors."""
 
     def __init__(self, observable: MoleculeSize, case: Case) -> None:
-        self.molecule = molecule_of(case, observable.quantity)
+        self.molecule = molecule_of(case, observable.quantity, observable.kind)
         parts = PARTS if self.molecule.topology == "chain" else PARTS[:1]
         super().__init__(observable, case, parts)
-        self.beads = beads_of(case, observable.molecules)
+        self.kind = observable.kind
+        self.beads = beads_of(case, observable.molecules, observable.kind)
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
@@ -60,7 +62,8 @@ class MoleculeSizeAccumulator(TensorAccumulator):
 
     def squares(self) -> list[float]:
         """Expected traces; nan where there is no theory."""
-        bond, rest = free_bond(self.case), not (self.case.walls or setting.driven(self.case))
+        bond = free_bond(self.case, self.kind)
+        rest = not (self.case.walls or setting.driven(self.case))
         if bond is None or not rest:
             return [np.nan] * len(self.parts)
         known = [theory.mean_square_gyration(modes_of(self.molecule), bond)]

@@ -19,19 +19,50 @@ if TYPE_CHECKING:
     from mesokit.mpcd.molecule import Molecule
 
 
-def molecule_of(case: Case, quantity: str = "this") -> Molecule:
-    """What the fluid is made of. Raises CaseError for a fluid of single particles."""
-    if case.fluid.molecule is None:
-        raise CaseError(f"{quantity} needs a fluid of molecules; give fluid.molecule")
-    return case.fluid.molecule
+KIND = "which molecules: the kind of solutes.polymers, from 1; 1 where the fluid is of molecules"
 
 
-def beads_of(case: Case, wanted: int | None = None) -> NDArray[np.int64]:
-    """Ids of the beads (molecules, length) of all molecules, or of some that are evenly spread."""
-    length = molecule_of(case).length
-    molecules = case.particles // length
+def molecule_of(case: Case, quantity: str = "this", kind: int = 1) -> Molecule:
+    """What the fluid is made of, or a kind of solutes. Raises CaseError if there is no such."""
+    solutes = case.solutes
+    if solutes is None:
+        if case.fluid.molecule is None:
+            raise CaseError(f"{quantity} needs molecules; give fluid.molecule or solutes")
+        if kind != 1:
+            raise CaseError(f"kind = {kind}: expected 1 in a fluid of molecules")
+        return case.fluid.molecule
+    if kind > len(solutes.polymers):
+        raise CaseError(f"kind = {kind}: expected 1 to {len(solutes.polymers)} (solutes.polymers)")
+    molecule = solutes.molecule(kind - 1)
+    if molecule is None:
+        raise CaseError(f"{quantity} needs molecules; solutes.polymers[#{kind}] are monomers")
+    return molecule
+
+
+def beads_of(case: Case, wanted: int | None = None, kind: int = 1) -> NDArray[np.int64]:
+    """Ids of the beads (molecules, length) of all molecules, or of some that are evenly spread.
+
+    Beads of solutes are numbered after the particles of the fluid.
+    """
+    first, length, molecules = 0, molecule_of(case, kind=kind).length, 0
+    if case.solutes is None:
+        molecules = case.particles // length
+    else:
+        first = case.particles + case.solutes.first_bead(kind - 1)
+        molecules = case.solutes.polymers[kind - 1].number
     chosen = np.arange(molecules) if wanted is None else spread_ids(wanted, molecules)
-    return chosen[:, None] * length + np.arange(length)
+    return first + chosen[:, None] * length + np.arange(length)
+
+
+def bonds_of(case: Case, kind: int = 1) -> slice:
+    """Where the bonds of a kind are among all `bond_vectors`."""
+    if case.solutes is None:
+        return slice(None)
+    count, first = 0, 0
+    for k in range(kind):
+        molecule, first = case.solutes.molecule(k), first + count
+        count = len(molecule.bonds) * case.solutes.polymers[k].number if molecule else 0
+    return slice(first, first + count)
 
 
 def modes_of(molecule: Molecule) -> theory.NormalModes:
@@ -56,18 +87,39 @@ def spring_of(molecule: Molecule) -> theory.Spring | None:
 
 
 def without_bonds(case: Case) -> theory.Transport | None:
-    """Transport coefficients of the same fluid of single particles."""
+    """Transport coefficients of the same fluid of single particles; None if it has solutes."""
+    if case.solutes is not None:
+        return None
     fluid = dataclasses.replace(case.fluid, molecule=None)
     return setting.transport(dataclasses.replace(case, fluid=fluid, observe=(), trajectory=None))
 
 
-def rouse_times_of(case: Case) -> theory.RouseTimes | None:
+def rouse_times_of(case: Case, kind: int = 1) -> theory.RouseTimes | None:
     """Relaxation times of molecules whose beads have the friction of free particles."""
-    coefficients, spring = without_bonds(case), spring_of(molecule_of(case))
-    if coefficients is None or spring is None:
+    molecule, friction = molecule_of(case, kind=kind), friction_of(case)
+    spring = spring_of(molecule)
+    if friction is None or spring is None:
         return None
-    friction = case.fluid.kT / coefficients.diffusion
-    return theory.rouse_times(modes_of(molecule_of(case)), friction, K=spring.K)
+    return theory.rouse_times(modes_of(molecule), friction, K=spring.K)
+
+
+def friction_of(case: Case) -> float | None:
+    """kT over the diffusion coefficient of a bead alone, without hydrodynamics; None if unknown."""
+    fluid, solutes = case.fluid, case.solutes
+    if solutes is None:
+        coefficients = without_bonds(case)
+        return None if coefficients is None else fluid.kT / coefficients.diffusion
+    rule = fluid.collision
+    if solutes.solvent != "random" or fluid.thermostat.rule != "none":
+        return None
+    angle = getattr(rule, "angle", None)
+    if getattr(rule, "angle_distribution", "fixed") == "uniform":
+        angle = 90.0  # whose cosine is that mean
+    diffusion = theory.bead_diffusion(
+        rule.rule, case.box.dimension, fluid.density, fluid.timestep, angle, solutes.mass,
+        kT=fluid.kT, solvent_mass=fluid.mass,
+    )  # fmt: skip
+    return fluid.kT / diffusion
 
 
 def stress_in_shear(case: Case) -> theory.ShearStress | None:
@@ -81,9 +133,9 @@ def stress_in_shear(case: Case) -> theory.ShearStress | None:
     return theory.maxwell_shear(case.box.shear_rate, modulus, times.stress, eta)
 
 
-def free_bond(case: Case) -> float | None:
+def free_bond(case: Case, kind: int = 1) -> float | None:
     """Mean square length of a bond that is not in a ring; None without a theory."""
-    spring = spring_of(molecule_of(case))
+    spring = spring_of(molecule_of(case, kind=kind))
     if spring is None:
         return None
     return theory.mean_square_bond(K=spring.K, dimension=case.box.dimension, kT=case.fluid.kT)

@@ -11,7 +11,14 @@ from numpy.typing import NDArray
 from mesokit.component import component, param, tag
 from mesokit.observe import setting
 from mesokit.observe.decay import fit_curve, normalised
-from mesokit.observe.molecules import beads_of, modes_of, molecule_of, rouse_times_of, spring_of
+from mesokit.observe.molecules import (
+    KIND,
+    beads_of,
+    modes_of,
+    molecule_of,
+    rouse_times_of,
+    spring_of,
+)
 from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.observe.transverse_modes import FEWEST, LOWEST, decaying
@@ -34,13 +41,14 @@ class NormalModes(Observable):
     quantity: Literal["normal-modes"] = tag("normal-modes")
     modes: int = param(5, doc="modes followed, from the slowest", ge=1)
     molecules: int = param(500, doc="molecules followed", ge=1)
+    kind: int = param(1, doc=KIND, ge=1)
     max_lag: int | None = param(
         None, doc="longest lag (as the run allows unless said)", unit="steps", ge=1
     )
 
     def check(self, case: Case) -> None:
-        """Raise CaseError for a fluid of single particles."""
-        molecule_of(case, self.quantity)
+        """Raise CaseError without molecules."""
+        molecule_of(case, self.quantity, self.kind)
 
     def accumulator(self, case: Case) -> NormalModesAccumulator:
         """An empty memory for it."""
@@ -51,9 +59,9 @@ class NormalModesAccumulator:
     """One correlator for each mode, over molecules and axes."""
 
     def __init__(self, observable: NormalModes, case: Case) -> None:
-        molecule = molecule_of(case, observable.quantity)
+        molecule = molecule_of(case, observable.quantity, observable.kind)
         self.observable, self.case, self.name = observable, case, observable.label
-        self.beads = beads_of(case, observable.molecules)
+        self.beads = beads_of(case, observable.molecules, observable.kind)
         modes = modes_of(molecule)
         self.count = min(observable.modes, molecule.length - 1)
         self.vectors = modes.vectors[:, 1 : self.count + 1]
@@ -92,7 +100,7 @@ class NormalModesAccumulator:
         """The decay of each mode, its relaxation time and its mean square."""
         every = [c.correlation(normalised=True) for c in self.correlators]
         lag = every[0].lag * self.interval()
-        times = rouse_times_of(self.case) if self.undisturbed() else None
+        times = rouse_times_of(self.case, self.observable.kind) if self.undisturbed() else None
         expected = None
         if times is not None:
             expected = np.exp(-lag[:, None] / times.mode[: self.count])
@@ -113,7 +121,8 @@ class NormalModesAccumulator:
     def comparisons(self, times: Array | None) -> list[Comparison]:
         """Relaxation times and mean squares of the slowest."""
         found = []
-        spring = spring_of(molecule_of(self.case)) if self.undisturbed() else None
+        molecule = molecule_of(self.case, kind=self.observable.kind)
+        spring = spring_of(molecule) if self.undisturbed() else None
         for p, correlator in enumerate(self.correlators[:SHOWN]):
             measured = self.relaxation_time(correlator)
             if measured is not None:

@@ -55,6 +55,8 @@ def caveat(case: Case) -> str:
         return "no theory of a mixture"
     if case.fluid.molecule is not None:
         return "no theory of a fluid of molecules"
+    if case.solutes is not None:
+        return "no theory of a fluid with solutes"
     return "theory needs the full grid shift" if case.fluid.grid_shift < 1 else ""
 
 

@@ -3,6 +3,7 @@
 Nothing here uses the rest of mesokit, so that it can judge it. Lengths are in cell sides a = 1.
 """
 
+from mesokit.theory.bead_diffusion import bead_diffusion
 from mesokit.theory.chain_diffusion import kirkwood_diffusion, rouse_diffusion, zimm_diffusion
 from mesokit.theory.chain_scaling import ChainExponents, chain_exponents
 from mesokit.theory.chain_size import mean_square_end_to_end, mean_square_gyration
@@ -113,6 +114,7 @@ __all__ = [
     "TransversePoles",
     "ViscosityFit",
     "apparent_viscosity",
+    "bead_diffusion",
     "cell_energy_cdf",
     "cell_energy_pdf",
     "cell_energy_variance",

@@ -1,0 +1,224 @@
+"""Which beads are near which: lists that hold for as long as nobody has gone half a skin.
+
+A list is in the order of the beads' numbers and reaches beyond the potential: what it holds too
+much adds nothing, so that forces have the same bits whenever it was made. A bead with more
+neighbours than its list has room for looks at all beads.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba.cpython.unsafe.tuple import tuple_setitem
+
+from mesokit.box import SLIDING, fold
+from mesokit.execute.rows import fetch, put
+from mesokit.execute.team import wait
+from mesokit.scalar import added_scaled, by_type, dot, scalar, scaled, seldom
+
+CROWDED = -1  # the length of a list that did not fit
+GAP = 8  # numbers between those of two threads: each has a cache line of its own
+
+
+class Neighbours(NamedTuple):
+    """Lists, and what they were made from.
+
+    reach: how far the potential and the skin go; skin: how far the list goes beyond the potential.
+    cells (d,), inverse (d,): their number along each axis, and per length of the box.
+    head (cells,), following (beads,): the beads of each cell, one leading to the next, -1 last.
+    count (beads,), near (beads, most): the lists.
+    made_at (beads, d), boxes (beads,): where beads were then, and in which image along y.
+    offset (2,): of the images then, and whether there is a list at all.
+    moved (threads, GAP): square of the farthest that a bead of each thread has gone.
+    """
+
+    reach: float
+    skin: float
+    cells: tuple[int, ...]
+    inverse: tuple[float, ...]
+    head: Any
+    following: Any
+    count: Any
+    near: Any
+    made_at: Any
+    boxes: Any
+    offset: Any
+    moved: Any
+
+
+@by_type
+def apart(box, r, other):
+    """The vector from r to the nearest image of the other."""
+    return _apart_sliding if box.instance_class in SLIDING else _apart
+
+
+def _apart(box, r, other):
+    return nearest_way(box, r, other)
+
+
+@scalar
+def nearest_way(box, r, other):
+    """That of a box whose images stand still."""
+    way = added_scaled(other, -1.0, r)
+    for k in range(len(r)):
+        boxes = np.rint(way[k] * box.inverse[k])
+        way = tuple_setitem(way, k, way[k] - boxes * box.size[k])
+    return way
+
+
+def _apart_sliding(box, r, other):
+    up = np.rint((other[1] - r[1]) * box.inverse[1])
+    return nearest_way(box, r, tuple_setitem(other, 0, other[0] - up * box.offset))
+
+
+@by_type
+def offset_of_images(box):
+    """How far the image above is displaced now."""
+    return (lambda box: box.offset) if box.instance_class in SLIDING else (lambda box: 0.0)
+
+
+@scalar
+def cell_along(lists, k, x):
+    """Number of the cell along an axis of a coordinate in the box."""
+    return min(max(int(np.floor(x * lists.inverse[k])), 0), lists.cells[k] - 1)
+
+
+@scalar
+def slipped(lists, box):
+    """How far the images have slid since the lists were made."""
+    way = offset_of_images(box) - lists.offset[0]
+    return way - np.rint(way * box.inverse[0]) * box.size[0]
+
+
+@scalar
+def note_moves(lists, box, thread, places, first, last, like):
+    """Find how far the beads of this thread have gone against what is next to them."""
+    slip, farthest = slipped(lists, box), 0.0
+    for i in range(first, last):
+        at = np.uint64(i * len(like))
+        way = added_scaled(fetch(places, at, like), -1.0, fetch(lists.made_at, at, like))
+        way = tuple_setitem(way, 0, way[0] - lists.boxes[i] * slip)
+        square = dot(way, way)
+        farthest = max(farthest, square if square >= 0.0 else np.inf)  # lost beads too
+    lists.moved[thread, 0] = farthest
+
+
+@scalar
+def stale(lists, box, threads):
+    """Whether the lists must be made anew; the answer is the same in all threads."""
+    farthest = 0.0
+    for t in range(threads):
+        farthest = max(farthest, lists.moved[t, 0])
+    gone = 2.0 * math.sqrt(farthest) + abs(slipped(lists, box))
+    return lists.offset[1] == 0.0 or gone > lists.skin
+
+
+@by_type
+def refresh(lists, box, thread, threads, gate, places, first, last, like):
+    """Make the lists anew if they may miss somebody; nothing without a pair potential."""
+    return _refresh if len(lists) else lambda *_: None
+
+
+def _refresh(lists, box, thread, threads, gate, places, first, last, like):
+    note_moves(lists[0], box, thread, places, first, last, like)
+    wait(gate, threads)
+    if stale(lists[0], box, threads):
+        wait(gate, threads)  # all have seen that
+        if thread == 0:
+            sort_into_cells(lists[0], box, places, like)
+        wait(gate, threads)
+        for i in range(first, last):
+            make_list(lists[0], box, places, i, like)
+
+
+@seldom
+def sort_into_cells(lists, box, places, like):
+    """The beads of each cell, and where all of them are."""
+    lists.head[:] = -1
+    still = scaled(0.0, like)
+    for i in range(len(lists.following)):
+        at = np.uint64(i * len(like))
+        r = fetch(places, at, like)
+        put(lists.made_at, at, r)
+        lists.boxes[i] = np.floor(r[1] * box.inverse[1])
+        r, _, _ = fold(box, r, still, still)
+        cell = cell_of(lists, r)
+        lists.following[i] = lists.head[cell]
+        lists.head[cell] = i
+    lists.offset[0], lists.offset[1] = offset_of_images(box), 1.0
+
+
+@scalar
+def cell_of(lists, r):
+    """Number of the cell of a place in the box."""
+    cell, stride = 0, 1
+    for k in range(len(r)):
+        cell += cell_along(lists, k, r[k]) * stride
+        stride *= lists.cells[k]
+    return cell
+
+
+@seldom
+def make_list(lists, box, places, i, like):
+    """All within reach of bead i, in order."""
+    d, still = len(like), scaled(0.0, like)
+    mine = fetch(places, np.uint64(i * d), like)
+    r, _, _ = fold(box, mine, still, still)
+    slide, square, found = offset_of_images(box), lists.reach * lists.reach, 0
+    most = lists.near.shape[1]
+    for m in range(3**d):
+        cell, inside = neighbour_cell(lists, box, r, slide, m)
+        j = lists.head[cell] if inside else -1
+        while j >= 0:
+            way = apart(box, mine, fetch(places, np.uint64(j * d), like))
+            if j != i and dot(way, way) <= square:
+                if found < most:
+                    put_in_order(lists.near, i, found, j)
+                found += 1
+            j = lists.following[j]
+    lists.count[i] = found if found <= most else CROWDED
+
+
+@scalar
+def neighbour_cell(lists, box, r, slide, m):
+    """Number of the m-th of the cells round r, and whether there is such a cell."""
+    d = len(r)
+    inside, part = True, m // 3  # along y first: there the image may be displaced along x
+    step = part % 3 - 1
+    cell, up = next_along(lists, box, 1, r[1], step)
+    inside &= cell >= 0
+    index = cell * lists.cells[0]
+    x = r[0] - up * slide
+    x -= math.floor(x * box.inverse[0]) * box.size[0]
+    cell, _ = next_along(lists, box, 0, x, m % 3 - 1)
+    inside &= cell >= 0
+    index += cell
+    if d == 3:
+        cell, _ = next_along(lists, box, d - 1, r[d - 1], m // 9 - 1)
+        inside &= cell >= 0
+        index += cell * lists.cells[0] * lists.cells[1]
+    return index, inside
+
+
+@scalar
+def next_along(lists, box, k, x, step):
+    """The cell a step on along an axis, -1 for none, and how many boxes that crosses."""
+    cells = lists.cells[k]
+    if cells == 1:
+        return (0 if step == 0 else -1), 0.0
+    cell = cell_along(lists, k, x) + step
+    if cell < 0:
+        return (cells - 1 if box.inverse[k] > 0.0 else -1), -1.0
+    if cell >= cells:
+        return (0 if box.inverse[k] > 0.0 else -1), 1.0
+    return cell, 0.0
+
+
+@scalar
+def put_in_order(near, i, found, j):
+    """Insert j into the list of i."""
+    place = found
+    while place > 0 and near[i, place - 1] > j:
+        near[i, place] = near[i, place - 1]
+        place -= 1
+    near[i, place] = j
