@@ -42,7 +42,11 @@ PLAIN = {
 PLAIN[3] += [(collision.SRD, rule, BARE, "periodic", 1) for rule in thermostat.RULES]
 PLAIN[3] += [(collision.AT, FREE, rule, "periodic", 1) for rule in field.RULES]
 CANONICAL = thermostat.MaxwellBoltzmann
-PLAIN[3] += [(collision.SRD, CANONICAL, BARE, "sheared", 1)]
+for dimension in (2, 3):
+    PLAIN[dimension] += [
+        (rule, FREE if rule().rule.startswith("at") else CANONICAL, BARE, "sheared", 1)
+        for rule in collision.RULES
+    ]
 PLAIN[2] += [
     (collision.SRD, CANONICAL, field.Uniform, boundary, 1)
     for boundary in ("slit", "topped-up slit")

@@ -30,6 +30,7 @@ CASES = {
     "stars about a disk": {
         "size": (16, 12), "density": 8, "thermostat": MaxwellBoltzmann(),
         "molecule": Molecule(topology="star", length=4, arms=3, bond=Harmonic(K=1.0), substeps=2),
+        "force": Uniform(acceleration=(0.05, -0.02)),
         "walls": [Disk(centre=(8, 6), radius=3, surface=Surface("diffuse"))],
     },
 }  # fmt: skip

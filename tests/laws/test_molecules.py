@@ -130,10 +130,11 @@ def test_pressure_is_that_of_an_ideal_gas_of_molecules(propagation):
 
 def test_a_force_moves_molecules_as_a_whole():
     g, molecule = 0.05, Molecule(length=4, bond=Harmonic(K=1.0))
-    fluid = make_fluid((8, 8), density=4, molecule=molecule, force=Uniform(acceleration=(g, 0.0)))
+    force = Uniform(acceleration=(g, 0.0, 0.0))
+    fluid = make_fluid((4, 4, 4), density=4, molecule=molecule, force=force)
     fluid.advance(100)
     _, momentum, _ = fluid.totals()
-    assert momentum == pytest.approx([fluid.n * g * 100 * fluid.timestep, 0.0], abs=1e-8)
+    assert momentum == pytest.approx([fluid.n * g * 100 * fluid.timestep, 0.0, 0.0], abs=1e-8)
 
 
 class TestSheared:
@@ -220,8 +221,9 @@ class TestAmongSolids:
         """Those of beads that feel nothing of one another are as long as without plates."""
         molecule = Molecule(bond=Harmonic(K=1.0), substeps=3)
         fluid = make_fluid(
-            (20, 16), molecule=molecule, thermostat=MaxwellBoltzmann(), walls=[Plates(axis="y")]
-        )
+            (20, 16), molecule=molecule, thermostat=MaxwellBoltzmann(), walls=[Plates(axis="y")],
+            force=Uniform(acceleration=(0.0, 0.0)),  # the kernels of a force, without one
+        )  # fmt: skip
         along = []
         for _ in range(30):
             fluid.advance(80)
@@ -242,10 +244,11 @@ def test_start_from_arrays_takes_folded_ones():
 
 def test_a_torn_bond_stops_the_run():
     molecule = Molecule(length=2, bond=FENE(k=3.0, R0=2.0), substeps=2)
-    fluid = make_fluid((8, 8), density=2, molecule=molecule)
+    parts = {"density": 2, "molecule": molecule, "thermostat": MaxwellBoltzmann()}
+    fluid = make_fluid((8, 8), **parts)
     r, v = fluid.positions(), fluid.velocities()
     v[11] += 40.0
-    fluid = make_fluid((8, 8), r, v, density=2, molecule=molecule)
+    fluid = make_fluid((8, 8), r, v, **parts)
     with pytest.raises(RunError, match=r"^step 1: the bond of particles 10 and 11 is longer than"):
         fluid.advance(100)
 

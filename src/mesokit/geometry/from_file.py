@@ -9,6 +9,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import math
+from abc import abstractmethod
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -51,9 +52,9 @@ class FromFile(Shape):
         """The error that says what is wrong with the file."""
         return CaseError(f"file = {show(self.file, 500)}: {reason}")
 
+    @abstractmethod
     def grid(self, room: Room) -> Grid:
         """Its signed distance, positive outside."""
-        raise NotImplementedError
 
     def body(self, room: Room) -> Region:
         """What lies within the surface."""
@@ -81,9 +82,9 @@ class FromFile(Shape):
             "is 1, in cells"
         )
 
+    @abstractmethod
     def notes(self, room: Room, samples: Floats) -> Iterator[str]:
         """What users should know of the solid that the samples describe, key first."""
-        raise NotImplementedError
 
     def kept(self) -> dict[str, Any]:
         """What it shares with the `Sampled` that a run keeps of it."""

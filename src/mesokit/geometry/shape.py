@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
@@ -51,7 +52,7 @@ class Body(NamedTuple):
 
 
 @component
-class Shape:
+class Shape(ABC):
     """A solid: where it is, what its surface does, and on which side of it the fluid is."""
 
     dimensions: ClassVar[tuple[int, ...]] = (2, 3)
@@ -68,13 +69,13 @@ class Shape:
         """The solid, given what lies within the surface."""
         return complement(within) if self.fluid == "inside" else within
 
+    @abstractmethod
     def body(self, room: Room) -> Region:
         """What lies within the surface."""
-        raise NotImplementedError
 
+    @abstractmethod
     def pivot(self, room: Room) -> tuple[float, ...]:
         """The place about which it turns and torques are taken."""
-        raise NotImplementedError
 
     def pieces(self, room: Room) -> list[Piece]:
         """The solid in this box, in pieces, with what its images put into the box."""

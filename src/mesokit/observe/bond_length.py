@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from mesokit.box import AXES
 from mesokit.component import component, param, tag
 from mesokit.observe import setting
-from mesokit.observe.estimate import Estimate, of_mean
 from mesokit.observe.molecules import KIND, bonds_of, molecule_of
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
+from mesokit.observe.protocol import Observable, RunningFluid
 from mesokit.observe.result import Array, Comparison, Result
-from mesokit.statistics import Blocks
+from mesokit.observe.tensor import TensorAccumulator
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -37,16 +33,14 @@ class BondLength(Observable):
         return BondLengthAccumulator(self, case)
 
 
-class BondLengthAccumulator:
+class BondLengthAccumulator(TensorAccumulator):
     """Block averages of the products."""
 
     def __init__(self, observable: BondLength, case: Case) -> None:
         observable.check(case)
-        self.case, self.name = case, observable.label
+        super().__init__(observable, case, ("bonds",))
         self.molecule = molecule_of(case, kind=observable.kind)
         self.bonds = bonds_of(case, observable.kind)
-        d = case.box.dimension
-        self.blocks = Blocks((1, d, d))
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
@@ -54,32 +48,12 @@ class BondLengthAccumulator:
         products = np.einsum("ij,ik->jk", way, way) / len(way)
         self.blocks.add(products[None])
 
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
-
     def result(self) -> Result:
         """The products, and the mean square bond length beside that of Boltzmann."""
-        axes = np.array(AXES[: self.case.box.dimension])
-        return Result(
-            quantity="bond-length",
-            name=self.name,
-            x={"part": np.array(["bonds"]), "row": axes, "column": axes},
-            value=self.blocks.mean(),
-            error=self.blocks.error(),
-            label="products of bond components",
-            units={"value": "a^2"},
-            expected=self._expected_products(),
-            theory="Boltzmann's distribution of a bond at rest",
-            comparisons=tuple(self._comparisons()) if self.blocks.count else (),
-            samples=self.blocks.count,
-        )
+        theory = "Boltzmann's distribution of a bond at rest"
+        return self.tensors("bond-length", "products of bond components", "a^2", theory)
 
-    def _expected(self) -> float:
+    def square(self) -> float:
         """Mean square length; nan under shear, between walls, and where other beads matter."""
         case = self.case
         at_rest = not setting.driven(case) or (
@@ -90,17 +64,15 @@ class BondLengthAccumulator:
         found = self.molecule.mean_square_bond(case.box.dimension, case.fluid.kT)
         return np.nan if found is None else found
 
-    def _expected_products(self) -> Array:
+    def expected(self) -> Array:
+        """Isotropic products."""
         d = self.case.box.dimension
-        expected = self._expected() / d * np.eye(d)
-        return expected[None]
+        return self.square() / d * np.eye(d)[None]
 
-    def _comparisons(self) -> list[Comparison]:
-        mean = float(np.trace(self.blocks.mean()[0]))
-        every = of_mean(self.blocks)
-        trace = np.trace(every.residuals[:, 0], axis1=1, axis2=2)
-        error = float(Estimate(np.zeros(()), trace, every.weights).error)
-        expected = self._expected()
+    def comparisons(self) -> list[Comparison]:
+        """Mean square and root mean square length."""
+        mean, error = self.summed(0, np.eye(self.case.box.dimension))
+        expected = self.square()
         root = max(mean, 0.0) ** 0.5
         error = setting.with_start(self.case, error, mean)
         return [

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from mesokit.box import Axis
 from mesokit.component import component, param
 from mesokit.errors import CaseError
 from mesokit.observe import setting
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
+from mesokit.observe.protocol import BlockAccumulator, Observable, RunningFluid
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class Field(Observable):
             raise CaseError(f"axes = {list(self.axes)}: expected two different axes")
 
 
-class FieldAccumulator:
+class FieldAccumulator(BlockAccumulator):
     """Block sums of `width` numbers for each bin."""
 
     def __init__(self, observable: Field, case: Case, width: int) -> None:
@@ -59,14 +59,6 @@ class FieldAccumulator:
         """Take one sample."""
         self.blocks.add(self.sample(*fluid.moments(self.axes, self.bins)))
 
+    @abstractmethod
     def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
         """The (width, *bins) numbers to add up."""
-        raise NotImplementedError
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -67,7 +68,7 @@ class Shell(NamedTuple):
     correlator: MultipleTau
 
 
-class ModesAccumulator:
+class ModesAccumulator(ABC):
     """One correlator for each length of wave vector; `polarisations` (K, p, d) say what it sees."""
 
     def __init__(self, observable: Modes, case: Case) -> None:
@@ -85,9 +86,9 @@ class ModesAccumulator:
             correlator = MultipleTau(shape, dtype=complex, max_lag=max_lag)
             self.shells.append(Shell(float(length), members, correlator))
 
+    @abstractmethod
     def polarise(self, wavevector: Array) -> Array:
         """Unit vectors (p, d)."""
-        raise NotImplementedError
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
@@ -141,9 +142,9 @@ class ModesAccumulator:
         error = setting.with_start(self.case, float(error), 1.0)
         return Comparison("mean square of the modes", float(mean), error, 1.0, "N m kT")
 
+    @abstractmethod
     def law(self, time: Array) -> Array | None:
         """The normalised correlation expected, (n, shells); None without a theory."""
-        raise NotImplementedError
 
     def smooth(self, time: Array) -> dict[str, Array]:
         """The law on a fine grid, for a figure."""

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit import theory
-from mesokit.box import AXES
 from mesokit.component import component, param, tag
 from mesokit.observe import setting
-from mesokit.observe.estimate import of_mean
 from mesokit.observe.molecules import KIND, beads_of, free_bond, gyration, modes_of, molecule_of
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
+from mesokit.observe.protocol import Observable, RunningFluid
 from mesokit.observe.result import Array, Comparison, Result
-from mesokit.statistics import Blocks
+from mesokit.observe.tensor import TensorAccumulator
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -41,16 +37,15 @@ class MoleculeSize(Observable):
         return MoleculeSizeAccumulator(self, case)
 
 
-class MoleculeSizeAccumulator:
+class MoleculeSizeAccumulator(TensorAccumulator):
     """Block averages of the tensors."""
 
     def __init__(self, observable: MoleculeSize, case: Case) -> None:
         self.molecule = molecule_of(case, observable.quantity, observable.kind)
-        self.case, self.name, self.kind = case, observable.label, observable.kind
+        parts = PARTS if self.molecule.topology == "chain" else PARTS[:1]
+        super().__init__(observable, case, parts)
+        self.kind = observable.kind
         self.beads = beads_of(case, observable.molecules, observable.kind)
-        self.parts = PARTS if self.molecule.topology == "chain" else PARTS[:1]
-        d = case.box.dimension
-        self.blocks = Blocks((len(self.parts), d, d))
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
@@ -61,30 +56,9 @@ class MoleculeSizeAccumulator:
             tensors.append(np.einsum("ma,mb->ab", end, end) / len(end))
         self.blocks.add(np.stack(tensors))
 
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
-
     def result(self) -> Result:
         """Tensors and their traces."""
-        axes = np.array(AXES[: self.case.box.dimension])
-        return Result(
-            quantity="molecule-size",
-            name=self.name,
-            x={"part": np.array(self.parts), "row": axes, "column": axes},
-            value=self.blocks.mean(),
-            error=self.blocks.error(),
-            label="size of molecules",
-            units={"value": "a^2"},
-            expected=self.expected(),
-            theory="ideal molecules",
-            comparisons=tuple(self.comparisons()) if self.blocks.count else (),
-            samples=self.blocks.count,
-        )
+        return self.tensors("molecule-size", "size of molecules", "a^2", "ideal molecules")
 
     def squares(self) -> list[float]:
         """Expected traces; nan where there is no theory."""
@@ -104,19 +78,9 @@ class MoleculeSizeAccumulator:
 
     def comparisons(self) -> list[Comparison]:
         """Mean squares of radius of gyration and end-to-end distance."""
-        every, found = of_mean(self.blocks), []
         names = ("mean square radius of gyration", "mean square end-to-end distance")
-        d = self.case.box.dimension
-        for part, expected in enumerate(self.squares()):
-            trace = np.zeros(every.value.shape)
-            trace[part] = np.eye(d)
-            value, error = float((trace * every.value).sum()), self._error(every, trace)
-            found.append(Comparison(names[part], value, error, expected, "a^2"))
-        return found
-
-    @staticmethod
-    def _error(every: Any, gradient: Array) -> float:
-        flat = every._replace(
-            value=every.value.ravel(), residuals=every.residuals.reshape(len(every.residuals), -1)
-        )
-        return flat.scalar(0.0, gradient.ravel())[1]
+        trace = np.eye(self.case.box.dimension)
+        return [
+            Comparison(names[part], *self.summed(part, trace), expected, "a^2")
+            for part, expected in enumerate(self.squares())
+        ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from mesokit.box import Axis
 from mesokit.component import component, param
 from mesokit.observe import setting
 from mesokit.observe.estimate import Estimate, mode_chi_square
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
+from mesokit.observe.protocol import BlockAccumulator, Observable, RunningFluid
 from mesokit.observe.result import Comparison
 from mesokit.statistics import Blocks
 
@@ -34,7 +34,7 @@ class Profile(Observable):
         setting.axis_index(case, self.axis)
 
 
-class ProfileAccumulator:
+class ProfileAccumulator(BlockAccumulator):
     """Block sums of `width` numbers for each slice."""
 
     def __init__(self, observable: Profile, case: Case, width: int) -> None:
@@ -42,6 +42,8 @@ class ProfileAccumulator:
         self.observable, self.case, self.name = observable, case, observable.label
         self.axis = setting.axis_index(case, observable.axis)
         self.bins = int(case.box.size[self.axis]) * observable.bins_per_cell
+        self.axes: tuple[int, ...] = (self.axis,)  # along which sums are in bins
+        self.counts: tuple[int, ...] = (self.bins,)
         self.edges = np.linspace(0.0, case.box.size[self.axis], self.bins + 1)
         self.centres = (self.edges[1:] + self.edges[:-1]) / 2
         self.periodic = self.axis not in setting.closed_axes(case)
@@ -49,19 +51,11 @@ class ProfileAccumulator:
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        self.blocks.add(self.sample(*fluid.moments((self.axis,), (self.bins,))))
+        self.blocks.add(self.sample(*fluid.moments(self.axes, self.counts)))
 
+    @abstractmethod
     def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
-        """The (width, bins) numbers to add up."""
-        raise NotImplementedError
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        """The (width, *counts) numbers to add up."""
 
     def chi_square(self, estimate: Estimate, expected: Array, note: str) -> list[Comparison]:
         """Chi-square of the whole profile per degree of freedom, as a comparison with 1."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from mesokit.component import component, param
 from mesokit.observe.result import Result
+from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -79,7 +81,7 @@ class Accumulator(Protocol):
 
 
 @component
-class Observable:
+class Observable(ABC):
     """Something measured while the fluid runs."""
 
     measures: ClassVar[tuple[str, ...]] = ()  # "stress" or "walls": what the step has to sum for it
@@ -93,12 +95,12 @@ class Observable:
         """The name under which its results are kept."""
         return self.name or str(self.quantity)  # type: ignore[attr-defined]
 
-    def check(self, case: Case) -> None:
+    def check(self, case: Case) -> None:  # noqa: B027  # most can be measured anywhere
         """Raise CaseError if it cannot be measured in this case."""
 
+    @abstractmethod
     def accumulator(self, case: Case) -> Accumulator:
         """An empty memory for it."""
-        raise NotImplementedError
 
 
 def pack(**parts: Any) -> State:
@@ -124,3 +126,17 @@ def unpack(state: Mapping[str, NDArray[Any]], name: str) -> State:
     """
     start = name + "/"
     return {key[len(start) :]: value for key, value in state.items() if key.startswith(start)}
+
+
+class BlockAccumulator(ABC):
+    """An accumulator that remembers block averages and nothing else."""
+
+    blocks: Blocks
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.observe.estimate import Estimate, mode_chi_square, of_mean, of_ratio
-from mesokit.observe.protocol import RunningFluid, State, pack, unpack
+from mesokit.observe.protocol import BlockAccumulator, RunningFluid
 from mesokit.observe.result import Comparison
 from mesokit.statistics import Blocks
 
@@ -20,7 +20,7 @@ Array = NDArray[np.floating[Any]]
 NUMBER, MASS, ENERGY, MOMENTUM = 0, 1, 2, 3  # rows of the sums; momentum and what follows it
 
 
-class ShellAccumulator:
+class ShellAccumulator(BlockAccumulator):
     """Block sums of number, mass, m v^2 and momentum along some directions in each shell."""
 
     def __init__(self, case: Case, edges: Array, directions: int) -> None:
@@ -28,13 +28,13 @@ class ShellAccumulator:
         self.centres, self.bins = (edges[1:] + edges[:-1]) / 2, len(edges) - 1
         self.blocks = Blocks((MOMENTUM + directions, self.bins))
 
+    @abstractmethod
     def locate(self, r: Array) -> tuple[Array, Array]:
         """The distance (n,) of each particle, and what `along` has to know of its place (n, d)."""
-        raise NotImplementedError
 
+    @abstractmethod
     def along(self, place: Array, v: Array) -> Array:
         """Velocities (directions, n), the first d of them along directions at right angles."""
-        raise NotImplementedError
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
@@ -47,14 +47,6 @@ class ShellAccumulator:
         velocities = self.along(place[inside], v)
         terms = [np.ones(len(m)), m, m * (v**2).sum(axis=1), *(m * velocities)]
         self.blocks.add(np.stack([np.bincount(shell, term, self.bins) for term in terms]))
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
 
     def velocity(self, direction: int) -> Estimate:
         """Mean velocity along one direction in each shell: momentum over mass."""

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit import theory
-from mesokit.box import AXES
 from mesokit.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.observe import setting
 from mesokit.observe.molecules import stress_in_shear
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
+from mesokit.observe.protocol import Observable, RunningFluid
 from mesokit.observe.result import Array, Comparison, Result
-from mesokit.statistics import Blocks
+from mesokit.observe.tensor import TensorAccumulator
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -47,52 +44,30 @@ class Stress(Observable):
         return StressAccumulator(self, case)
 
 
-class StressAccumulator:
+class StressAccumulator(TensorAccumulator):
     """Block averages of both parts and their sum."""
 
     def __init__(self, observable: Stress, case: Case) -> None:
         observable.check(case)
-        self.case, self.name = case, observable.label
-        d = case.box.dimension
         molecule = case.fluid.molecule
-        self.parts = PARTS[: 2 if molecule is None else 3]
+        self.given = PARTS[: 2 if molecule is None else 3]
         self.beads = 1 if molecule is None else molecule.length
-        self.blocks = Blocks((len(self.parts) + 1, d, d))
+        super().__init__(observable, case, (*self.given, "total"))
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        parts = [fluid.stress[name] for name in self.parts]
+        parts = [fluid.stress[name] for name in self.given]
         self.blocks.add(np.stack([*parts, sum(parts[1:], parts[0])]))
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
 
     def result(self) -> Result:
         """Tensors, pressure and viscosities."""
-        axes = np.array(AXES[: self.case.box.dimension])
-        return Result(
-            quantity="stress",
-            name=self.name,
-            x={"part": np.array([*self.parts, "total"]), "row": axes, "column": axes},
-            value=self.blocks.mean(),
-            error=self.blocks.error(),
-            label="stress",
-            units={"value": UNIT[self.case.box.dimension]},
-            expected=self.expected(),
-            theory="molecular chaos, ideal gas" + (" of molecules" if self.beads > 1 else ""),
-            comparisons=tuple(self.comparisons()) if self.blocks.count else (),
-            samples=self.blocks.count,
-        )
+        theory = "molecular chaos, ideal gas" + (" of molecules" if self.beads > 1 else "")
+        return self.tensors("stress", "stress", UNIT[self.case.box.dimension], theory)
 
     def expected(self) -> Array:
         """Pressure on the diagonal, eta gdot off it; nan where there is no theory."""
         case, d = self.case, self.case.box.dimension
-        expected = np.zeros((len(self.parts) + 1, d, d))
+        expected = np.zeros((len(self.parts), d, d))
         known = setting.isothermal(case) or not setting.driven(case)
         pressure = case.fluid.density * case.fluid.kT if known else np.nan
         for axis in range(d):
@@ -160,15 +135,11 @@ class StressAccumulator:
         if rate and self.beads > 1:  # stretched bonds pull along the flow
             bonded = None if case.box.shear_frequency else self.bonded()
             ideal = ideal - bonded.first / case.box.dimension if bonded else np.nan
-        found.append(
-            Comparison(
-                "pressure",
-                float(-np.trace(mean[-1]) / case.box.dimension),
-                setting.with_start(case, float(self.trace_error()), ideal),
-                ideal if known else np.nan,
-                UNIT[self.case.box.dimension],
-            )
-        )
+        d = case.box.dimension
+        pressure, spread = self.summed(-1, -np.eye(d) / d)
+        spread = setting.with_start(case, spread, ideal)
+        ideal = ideal if known else np.nan
+        found.append(Comparison("pressure", pressure, spread, ideal, UNIT[d]))
         return found
 
     def bonded(self) -> theory.ShearStress | None:
@@ -185,22 +156,8 @@ class StressAccumulator:
             weight[which, which], weight[which + 1, which + 1] = 1.0, -1.0
             found.append(
                 Comparison(
-                    f"{name} normal-stress difference",
-                    float((weight * self.blocks.mean()[-1]).sum()),
-                    self.error_of(weight), known[which], UNIT[d], ROUSE if bonded else "",
+                    f"{name} normal-stress difference", *self.summed(-1, weight), known[which],
+                    UNIT[d], ROUSE if bonded else "",
                 )
             )  # fmt: skip
         return found
-
-    def trace_error(self) -> float:
-        """Standard error of the pressure, whose parts are correlated."""
-        d = self.case.box.dimension
-        return self.error_of(np.eye(d) / d)
-
-    def error_of(self, weight: Array) -> float:
-        """Standard error of a sum of elements of the total stress with these weights (d, d)."""
-        from mesokit.observe.estimate import Estimate, of_mean
-
-        every = of_mean(self.blocks)
-        summed = (every.residuals[:, -1] * weight).sum(axis=(1, 2))
-        return float(Estimate(np.zeros(()), summed, every.weights).error)

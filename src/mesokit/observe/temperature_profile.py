@@ -11,7 +11,6 @@ from mesokit.component import component, tag
 from mesokit.observe import setting
 from mesokit.observe.estimate import Estimate, of_ratio
 from mesokit.observe.profile import Array, Profile, ProfileAccumulator
-from mesokit.observe.protocol import RunningFluid
 from mesokit.observe.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -50,17 +49,14 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
         self.flows = [flow for flow in flows if flow.kind != "rest"]
         others = {flow.across for flow in self.flows} - {self.axis}
         self.across = min(others) if others else None
-        self.axes: tuple[int, ...] = (self.axis,)
-        self.counts: tuple[int, ...] = (self.bins,)
         if self.across is not None:
             self.axes += (self.across,)
             self.counts += (int(case.box.size[self.across]) * observable.bins_per_cell,)
-        self.blocks = Blocks((width, self.bins, *self.counts[1:]))
+        self.blocks = Blocks((width, *self.counts))
 
-    def observe(self, fluid: RunningFluid) -> None:
-        """Take one sample."""
-        number, mass, momentum, energy = fluid.moments(self.axes, self.counts)
-        self.blocks.add(np.concatenate([[number, mass, energy], momentum]))
+    def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
+        """Number, mass, sum of m v^2 and momentum."""
+        return np.concatenate([[number, mass, energy], momentum])
 
     def about_flow(self) -> tuple[Array, Array, NDArray[np.int64]]:
         """Sum of m (v - u)^2 and number (blocks, bins), samples (blocks,)."""

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.box import AXES
 from mesokit.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.observe import setting
 from mesokit.observe.estimate import of_mean
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
+from mesokit.observe.protocol import BlockAccumulator, Observable, RunningFluid
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.observe.walls import require_counted
 from mesokit.solids import slit_of
@@ -47,7 +45,7 @@ class WallStress(Observable):
         return WallStressAccumulator(self, case)
 
 
-class WallStressAccumulator:
+class WallStressAccumulator(BlockAccumulator):
     """Mean force per area since the sample before."""
 
     def __init__(self, observable: WallStress, case: Case) -> None:
@@ -64,14 +62,6 @@ class WallStressAccumulator:
         if steps:
             taken = fluid.wall_impulse[:, : self.case.box.dimension]
             self.blocks.add(taken / (steps * self.case.fluid.timestep * self.area))
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
 
     def result(self) -> Result:
         """Every component at both plates."""
