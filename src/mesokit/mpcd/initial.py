@@ -71,6 +71,7 @@ def read_arrays(case: Case, positions: Any, velocities: Any, **states: State) ->
         if velocities is None and given.velocities is not None:
             velocities = _load("velocities", given.velocities)
     if positions is not None:
+        _no_conformation(case)
         positions = _checked(case, keys[0], positions)
         _inside(case, keys[0], positions)
         _near(case, keys[0], positions)
@@ -86,6 +87,16 @@ def _once(given: Start, **arrays: Any) -> None:
             said = getattr(given, key)
             if array is not None and said is not None:
                 raise CaseError(f"fluid.start.{key} = {said!r}: not with an array of {name} beside")
+
+
+def _no_conformation(case: Case) -> None:
+    """Nothing about how molecules are drawn where they are not."""
+    molecule = case.fluid.molecule
+    if molecule is not None and molecule.conformation != "thermal":
+        raise CaseError(
+            f"fluid.molecule.conformation = {molecule.conformation!r}: no effect beside positions "
+            "to start from; leave it out"
+        )
 
 
 def _load(name: str, path: str) -> Any:
