@@ -127,8 +127,8 @@ class MeanSquareDisplacementAccumulator:
         coefficients = without_bonds(self.case)
         curve = None
         comparisons: list[Comparison] = []
-        memory = self.memory_time(coefficients)
-        late = steps * dt >= 5 * memory if memory else steps > 0
+        first = self.diffusive_from(coefficients)
+        late = steps * dt >= first if first else steps > 0
         if late.sum() >= 3:
             curve, comparisons = self.fit_diffusion(steps * dt, moved, late, coefficients)
         return Result(
@@ -173,14 +173,21 @@ class MeanSquareDisplacementAccumulator:
         modes = modes_of(molecule).eigenvalues
         return theory.msd_rouse_beads(steps, dt, g, modes, spring.k, d, kT, mass)
 
-    def memory_time(self, coefficients: theory.Transport | None) -> float:
-        """How long a particle remembers its velocity, m D/kT, or a bead where its molecule is."""
+    def diffusive_from(self, coefficients: theory.Transport | None) -> float:
+        """The lag from which on the displacement is a straight line.
+
+        That is when a particle has forgotten its velocity, which it does in m D/kT; in a molecule,
+        when a bead has forgotten where in the molecule it is. What drags beads along changes as
+        the molecule turns, so that its centre is in no hurry either.
+        """
         fluid = self.case.fluid
-        inertia = coefficients.diffusion * fluid.mass / fluid.kT if coefficients else 0.0
-        if fluid.molecule is None or self.centres:
+        inertia = 5 * coefficients.diffusion * fluid.mass / fluid.kT if coefficients else 0.0
+        if fluid.molecule is None:
             return inertia
         times = rouse_times_of(self.case)
-        return np.inf if times is None else max(inertia, float(times.mode[0]))
+        if self.centres:
+            return inertia if times is None else max(inertia, float(times.mode[0]))
+        return np.inf if times is None else max(inertia, 5 * float(times.mode[0]))
 
     def fit_diffusion(
         self,
