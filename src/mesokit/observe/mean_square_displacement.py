@@ -205,7 +205,7 @@ class MeanSquareDisplacementAccumulator:
         expected = coefficients.diffusion if coefficients else np.nan
         note = setting.chaos(self.case, "correlated collisions add 10 to 18 %")
         if self.case.fluid.molecule is not None:
-            expected /= self.case.fluid.molecule.length
+            expected /= np.nan if self.case.walls else self.case.fluid.molecule.length
             note = "Rouse; beads with the friction of free particles"
             if setting.mean_free_path(self.case) < 1:
                 note = "approximate: Rouse; beads drag one another along"
