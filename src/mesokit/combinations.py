@@ -211,10 +211,14 @@ def molecule(case: Case) -> Iterator[str]:
 
 
 def start(case: Case) -> Iterator[str]:
-    """Arrays or an earlier run."""
+    """Arrays, an earlier run or a file."""
     given = case.fluid.start
-    if given.run is not None and (given.positions or given.velocities):
-        yield f"fluid.start.run = {show(given.run)}: not with positions or velocities"
+    for key in ("run", "file"):
+        value = getattr(given, key)
+        if value is not None and (given.positions or given.velocities):
+            yield f"fluid.start.{key} = {show(value)}: not with positions or velocities"
+    if given.run is not None and given.file is not None:
+        yield f"fluid.start.file = {show(given.file)}: not with run"
 
 
 def names(case: Case) -> Iterator[str]:

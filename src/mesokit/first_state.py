@@ -8,7 +8,9 @@ from mesokit.component import show
 from mesokit.errors import CaseError
 from mesokit.io import checkpoint
 from mesokit.io.run_directory import RunDirectory
+from mesokit.io.snapshot_file import read_snapshot
 from mesokit.mpcd.initial import read_arrays
+from mesokit.mpcd.snapshot import fitted
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -20,7 +22,12 @@ def first_state(case: Case, positions: Any = None, velocities: Any = None) -> tu
     None stands for what is to be drawn. Raises CaseError for arrays that do not fit the case, and
     for files and runs that cannot be read.
     """
-    return read_arrays(case, positions, velocities, _last_state)
+    return read_arrays(case, positions, velocities, run=_last_state, file=_from_file)
+
+
+def _from_file(case: Case, path: str) -> tuple[Any, Any]:
+    """Positions and velocities, by particle id, of a file that another program has written."""
+    return fitted(case, read_snapshot(path))
 
 
 def _last_state(case: Case, path: str) -> tuple[Any, Any]:

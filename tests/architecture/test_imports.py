@@ -41,7 +41,13 @@ NOT = {
     "execute": ("mesokit.io", "mesokit.report", "mesokit.observe", "mesokit.cli", "h5py"),
 }
 # module: the only places in the package that import it, at most one once a backend exists
-HOMES = {"h5py": ("io/",), "gsd": ("io/",), "mpi4py": (), "numba.cuda": (), "MDAnalysis": ()}
+HOMES = {
+    "h5py": ("io/",),
+    "gsd": ("io/",),
+    "MDAnalysis": ("io/",),
+    "mpi4py": (),
+    "numba.cuda": (),
+}
 
 
 def imports(path: Path) -> Iterator[str]:

@@ -4,9 +4,10 @@ import dataclasses
 
 import numpy as np
 import pytest
-from laboratory import make_fluid, mean
+from laboratory import make_case, make_fluid, mean
 
-from mesokit.errors import RunError
+from mesokit.errors import CaseError, RunError
+from mesokit.first_state import first_state
 from mesokit.geometry import Disk, Plates, Surface
 from mesokit.mpcd.collision import SRD
 from mesokit.mpcd.field import Uniform
@@ -259,3 +260,41 @@ def test_energy_does_not_drift():
     first = total_energy(fluid)
     fluid.advance(500)
     assert total_energy(fluid) == pytest.approx(first, rel=2e-3)
+
+
+class TestOctant:
+    """The start of the thesis: bonds of the right size, all of which point one way."""
+
+    OCTANT = Molecule(length=5, bond=Harmonic(K=1.0), conformation="octant")
+
+    @pytest.mark.parametrize("d", [2, 3])
+    def test_bonds_are_uniform_in_the_octant(self, d):
+        fluid = make_fluid((20, 20) if d == 2 else (9, 10, 8), density=10, molecule=self.OCTANT)
+        bonds, s = fluid.bond_vectors(), np.sqrt(1.5)  # d s^2/3 = d kT/2K
+        assert bonds.min() >= 0 and bonds.max() < s
+        assert mean((bonds**2).sum(axis=1)).agrees(0.5 * d)
+        assert mean(bonds.ravel()).agrees(0.5 * s) and mean(bonds.ravel() ** 4).agrees(s**4 / 5)
+        assert abs(fluid.totals()[1]).max() < 1e-9 * fluid.n
+
+    def test_molecules_forget_it(self):
+        """After some relaxation times bonds point anywhere, as long as Boltzmann has them."""
+        fluid = make_fluid((9, 10, 8), molecule=self.OCTANT, thermostat=MaxwellBoltzmann())
+        fluid.advance(1500)  # seven times the longest normal-mode time
+        bonds = fluid.bond_vectors().reshape(-1, 4, 3)
+        assert all(mean(bonds[:, :, k].mean(axis=1)).agrees(0.0) for k in range(3))
+        assert mean((bonds**2).sum(axis=2).mean(axis=1)).agrees(1.5)
+
+    def test_it_stays_below_the_longest_bond(self):
+        molecule = Molecule(length=5, bond=FENE(), pair=WCA(), conformation="octant")
+        fluid = make_fluid((8, 8, 8), density=10, molecule=molecule)
+        bonds = fluid.bond_vectors()
+        assert bonds.min() >= 0 and np.linalg.norm(bonds, axis=1).max() < 0.9 * 1.5
+
+    def test_where_it_has_no_meaning_it_is_refused(self):
+        with pytest.raises(CaseError, match="close no ring"):
+            Molecule(topology="ring", length=3, bond=Harmonic(K=1.0), conformation="octant")
+        with pytest.raises(CaseError, match="not with bending"):
+            dataclasses.replace(self.OCTANT, bending=Bending(kappa=1.0))
+        case = make_case((6, 6), density=5, molecule=self.OCTANT)
+        with pytest.raises(CaseError, match=r"conformation = 'octant': no effect beside positions"):
+            first_state(case, positions=np.zeros((180, 2)))

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mesokit import theory
 from mesokit.theory import (
     decorrelation_from_diffusion,
     msd_molecular_chaos,
@@ -81,3 +82,27 @@ def test_vacf_tail_integrates_to_a_mode_coupling_diffusion(nu, rho):
     c = vacf_tail(t, nu, 0.1, rho, 3)
     integral = np.sum((c[1:] + c[:-1]) / 2 * np.diff(t))
     assert integral == pytest.approx(2 * c[0], rel=2e-3)
+
+
+def test_beads_of_molecules_between_two_limits():
+    """Without springs a bead is alone, with stiff ones as heavy as its molecule."""
+    n, modes = np.arange(0, 60, 7), theory.linear_modes(4).eigenvalues
+    alone = theory.msd_molecular_chaos(n, 0.5, 0.3, 3)
+    heavy = theory.msd_molecular_chaos(n, 0.5, 0.3, 3, 1.0, 4.0)
+    soft = theory.msd_rouse_beads(n, 0.5, 0.3, modes, 1e-8, 3)
+    stiff = theory.msd_rouse_beads(n, 0.5, 0.3, modes, 1e8, 3)
+    np.testing.assert_allclose(soft, alone, rtol=1e-4)
+    np.testing.assert_allclose(stiff, heavy, rtol=1e-4, atol=1e-4)
+
+
+def test_beads_with_much_friction_are_those_of_rouse():
+    """2 d D t/N and the sum over exp(-t/tau_p), where inertia and timestep are short."""
+    dt, g, k, n = 0.01, 0.5, 1.0, np.array([3000, 200, 9000])
+    friction = 1 / (dt * (1 / g - 0.5))
+    modes = theory.linear_modes(5)
+    times = theory.rouse_times(modes, friction, K=k / 2).mode
+    t = n * dt
+    inner = (2 / 5 * 3 / (k * modes.eigenvalues[1:])) @ (1 - np.exp(-t / times[:, None]))
+    expected = 6 * t / (5 * friction) + inner
+    found = theory.msd_rouse_beads(n, dt, g, modes.eigenvalues, k, 3)
+    np.testing.assert_allclose(found, expected, rtol=0.01)

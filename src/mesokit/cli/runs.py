@@ -1,4 +1,4 @@
-"""Commands on runs: run, resume, info."""
+"""Commands on runs: run, resume, info, export."""
 
 from __future__ import annotations
 
@@ -83,6 +83,18 @@ def info(run: Path) -> None:
 
     require_run(run)
     click.echo(mesokit.open(run))
+
+
+@cli.command()
+@click.argument("run", type=RUN)
+@click.option("--to", "path", type=click.Path(dir_okay=False, path_type=Path), required=True,
+              help="The file: .gsd, .lammpstrj or .xyz.")  # fmt: skip
+def export(run: Path, path: Path) -> None:
+    """Write the trajectory of RUN as a file for OVITO, HOOMD-blue, VMD or LAMMPS."""
+    import mesokit
+
+    require_run(run)
+    click.echo(mesokit.open(run).export(path))
 
 
 def _claim(output: Path, overwrite: bool) -> None:

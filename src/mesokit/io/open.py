@@ -99,6 +99,15 @@ class RunFiles:
         require_known(choices, [*CHOICES, "fps", "progress"])
         return animate(self.case, self.results, self.trajectory, path, kind, **choices)
 
+    def export(self, path: str | Path) -> Path:
+        """Write the trajectory as GSD, LAMMPS dump or extended XYZ: see `mesokit.io.export`.
+
+        `files.export("film.gsd")` is for OVITO and HOOMD-blue; `.lammpstrj` and `.xyz` are text.
+        """
+        from mesokit.io.export import export
+
+        return export(self, path)
+
     def _data(self) -> Path:
         if not self.directory.data_file.exists():
             raise RunError(f"{self.path}: the run {self._state()}")

@@ -1,4 +1,11 @@
-"""How molecules lie at the start: bonds of the right temperature, everywhere in the fluid."""
+"""How molecules lie at the start: bonds of the right temperature, everywhere in the fluid.
+
+`thermal` bonds have lengths and angles of the temperature. `octant` bonds have each component
+uniform in [0, s), with s such that their mean square length is that of the temperature: of right
+size in the mean, but all in one octant, so that molecules are far from equilibrium for some
+relaxation times. They are those of D. Toneian, diploma thesis, TU Wien (2015), section 4.2.2, to
+compare with.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +17,7 @@ from numpy.typing import NDArray
 
 from mesokit.errors import RunError
 from mesokit.potential.protocol import angular, central
-from mesokit.potential.thermal import lengths
+from mesokit.potential.thermal import lengths, mean_square
 
 if TYPE_CHECKING:
     from mesokit.mpcd.molecule import Molecule
@@ -32,8 +39,9 @@ def drawn(
     """Places (particles, d) of the beads, molecule after molecule, whole: bonds may leave the box.
 
     The first bead is anywhere in the box, the others follow bond by bond, with lengths and angles
-    of the temperature: for harmonic bonds these are Gaussian. Molecules that reach into a solid or
-    have beads that repel one another strongly are drawn again. Raises RunError if that is in vain.
+    of the temperature (for harmonic bonds these are Gaussian), or as `octant` has them. Molecules
+    that reach into a solid or have beads that repel one another strongly are drawn again. Raises
+    RunError if that is in vain.
     """
     d, beads = len(box), molecule.length
     places = np.empty((particles // beads, beads, d))
@@ -73,7 +81,10 @@ def _one_draw(
 def bonds_of(
     molecule: Molecule, number: int, kT: float, d: int, random: np.random.Generator
 ) -> Floats:
-    """Bond vectors (number, d) in any direction, with the lengths of the temperature."""
+    """Bond vectors (number, d) as the conformation has them, thermal but for angles."""
+    if molecule.conformation == "octant":
+        square = mean_square(molecule.bond_potentials, d, kT, molecule.bond.longest)
+        return np.sqrt(3.0 * square / d) * random.random((number, d))
     if molecule.bond.rule == "harmonic" and molecule.pair is None:
         return np.sqrt(0.5 * kT / molecule.bond.K) * random.standard_normal((number, d))
     radii, _, density = lengths(molecule.bond_potentials, d, kT, molecule.bond.longest)
@@ -107,7 +118,8 @@ def turned(
 
 
 def _relaxed(molecule: Molecule, places: Floats, kT: float) -> NDArray[np.bool_]:
-    """Molecules none of whose beads have too much energy, by bonds that close or by repulsion."""
+    """Molecules none of whose beads have too much energy, by bonds not drawn by their energy (those
+    that close a ring, and those of an octant) or by repulsion."""
     good = np.ones(len(places), bool)
     pair = molecule.pair.kernel() if molecule.pair is not None else None
     if pair is not None:
@@ -115,7 +127,7 @@ def _relaxed(molecule: Molecule, places: Floats, kT: float) -> NDArray[np.bool_]
         for i in range(molecule.length):
             for j in range(i + 1, molecule.length):
                 good &= np.linalg.norm(places[:, j] - places[:, i], axis=1) > limit
-    if molecule.topology == "ring":
+    if molecule.topology == "ring" or molecule.conformation == "octant":
         for a, b in molecule.bonds:
             length = np.linalg.norm(places[:, b] - places[:, a], axis=1)
             good &= length < 0.9 * molecule.bond.longest

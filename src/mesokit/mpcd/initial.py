@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from mesokit.mpcd.solutes import Solutes
 
 Floats = NDArray[np.float64]
-LastState = Callable[["Case", str], tuple[Any, Any]]
+State = Callable[["Case", str], tuple[Any, Any]]
 MOST_IMAGES = 2**30  # boxes away from the primary one: image counts are 32-bit
 
 
@@ -40,33 +40,38 @@ class Start:
         None, doc="file .npy or .npz with an (n, d) array", unit="a/time"
     )
     run: FileName | None = param(None, doc="folder of an earlier run: go on from its last state")
+    file: FileName | None = param(
+        None, doc="GSD file (its last frame) or LAMMPS data file, with the bonds of the molecules"
+    )
 
 
-def read_arrays(
-    case: Case, positions: Any, velocities: Any, last_state: LastState
-) -> tuple[Any, Any]:
+def read_arrays(case: Case, positions: Any, velocities: Any, **states: State) -> tuple[Any, Any]:
     """The arrays to start from: those given, or those that the case names; None where none.
 
-    `last_state` gives positions and velocities of an earlier run that suits the case. Raises
-    CaseError if an array is given twice, holds no real numbers, has the wrong shape, is not finite,
-    or has particles outside the walls or too far away.
+    `states` gives for each key that names a whole state (`run`, `file`) what reads positions and
+    velocities that suit the case. Raises CaseError if an array is given twice, holds no real
+    numbers, has the wrong shape, is not finite, or has particles outside the walls or too far away.
     """
     given = case.fluid.start
     _once(given, positions=positions, velocities=velocities)
-    if given.run is not None:
-        key = f"fluid.start.run = {given.run!r}"
+    keys = "fluid.start.positions", "fluid.start.velocities"
+    for name, read in states.items():
+        if getattr(given, name) is None:
+            continue
+        key = f"fluid.start.{name} = {getattr(given, name)!r}"
         try:
-            positions, velocities = last_state(case, given.run)
+            positions, velocities = read(case, getattr(given, name))
         except MesokitError as error:
             raise CaseError(f"{key}: {error}") from None
         keys = f"{key}: positions", f"{key}: velocities"
+        break
     else:
-        keys = "fluid.start.positions", "fluid.start.velocities"
         if positions is None and given.positions is not None:
             positions = _load("positions", given.positions)
         if velocities is None and given.velocities is not None:
             velocities = _load("velocities", given.velocities)
     if positions is not None:
+        _no_conformation(case)
         positions = _checked(case, keys[0], positions)
         _inside(case, keys[0], positions)
         _near(case, keys[0], positions)
@@ -78,10 +83,20 @@ def read_arrays(
 def _once(given: Start, **arrays: Any) -> None:
     """No array beside a file or run that says the same."""
     for name, array in arrays.items():
-        for key in ("run", name):
+        for key in ("run", "file", name):
             said = getattr(given, key)
             if array is not None and said is not None:
                 raise CaseError(f"fluid.start.{key} = {said!r}: not with an array of {name} beside")
+
+
+def _no_conformation(case: Case) -> None:
+    """Nothing about how molecules are drawn where they are not."""
+    molecule = case.fluid.molecule
+    if molecule is not None and molecule.conformation != "thermal":
+        raise CaseError(
+            f"fluid.molecule.conformation = {molecule.conformation!r}: no effect beside positions "
+            "to start from; leave it out"
+        )
 
 
 def _load(name: str, path: str) -> Any:

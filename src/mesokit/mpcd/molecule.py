@@ -41,6 +41,9 @@ class Molecule:
     propagation: Literal["verlet", "exact"] = param(
         "verlet", doc='"exact": closed form, for harmonic dimers'
     )
+    conformation: Literal["thermal", "octant"] = param(
+        "thermal", doc='how molecules start; "octant": all bonds in the positive octant'
+    )
 
     def __post_init__(self) -> None:
         if self.topology == "ring" and self.length < 3:
@@ -58,6 +61,12 @@ class Molecule:
             )
         if self.propagation == "exact":
             self._check_exact()
+        if self.conformation == "octant":
+            key = "conformation = 'octant'"
+            if self.topology == "ring":
+                raise ValueError(f"{key}: bonds that all point one way close no ring")
+            if self.bending is not None:
+                raise ValueError(f"{key}: not with bending; its bonds know nothing of angles")
 
     def _check_exact(self) -> None:
         key = "propagation = 'exact'"

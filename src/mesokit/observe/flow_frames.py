@@ -15,7 +15,7 @@ from mesokit.errors import CaseError
 from mesokit.observe import setting
 from mesokit.observe.estimate import of_ratio
 from mesokit.observe.field import Array, Field
-from mesokit.observe.mean_square_displacement import spread_ids
+from mesokit.observe.origins import spread_ids
 from mesokit.observe.protocol import RunningFluid, State
 from mesokit.observe.result import Result
 

@@ -1,4 +1,4 @@
-"""Mean square displacement of fluid particles, and their diffusion coefficient."""
+"""Mean square displacement of particles or of molecules, and their diffusion coefficient."""
 
 from __future__ import annotations
 
@@ -14,33 +14,37 @@ from mesokit.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.observe import setting
 from mesokit.observe.estimate import Estimate, fit
-from mesokit.observe.origins import Origins
+from mesokit.observe.molecules import (
+    beads_of,
+    modes_of,
+    molecule_of,
+    rouse_times_of,
+    spring_of,
+    without_bonds,
+)
+from mesokit.observe.origins import GROUPS, Origins, spread_ids
 from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
     from mesokit.case import Case
 
-
-def spread_ids(wanted: int, n: int) -> NDArray[np.int64]:
-    """`wanted` ids (or all) spread evenly over 0 .. n - 1.
-
-    >>> spread_ids(3, 9)
-    array([0, 3, 6])
-    """
-    count = min(wanted, n)
-    return np.arange(count) * n // max(count, 1)
+Integers = NDArray[np.int64]
 
 
 @component
 class MeanSquareDisplacement(Observable):
     """Mean square displacement at lags from one sample to `max_lag`, about equally spaced in log.
 
-    Axes along which the fluid flows or that a wall closes are left out unless given.
+    Axes along which the fluid flows or that a wall closes are left out unless given. In a fluid of
+    molecules whole molecules are followed: all their beads, or their centres of mass.
     """
 
     quantity: Literal["mean-square-displacement"] = tag("mean-square-displacement")
-    particles: int = param(2000, doc="particles followed", ge=1)
+    of: Literal["particles", "centres"] = param(
+        "particles", doc='"centres": centres of mass of molecules'
+    )
+    particles: int = param(2000, doc="particles (or molecules) followed", ge=1)
     max_lag: int = param(1000, doc="longest lag", unit="steps", ge=1)
     components: tuple[Axis, ...] | None = param(
         None, doc="axes that count (all without flow and walls unless said)", min_length=1
@@ -59,8 +63,10 @@ class MeanSquareDisplacement(Observable):
         return axes
 
     def check(self, case: Case) -> None:
-        """Raise CaseError without an axis to follow."""
+        """Raise CaseError without an axis or a molecule to follow."""
         self.axes(case)
+        if self.of == "centres":
+            molecule_of(case, "of = 'centres'")
 
     def accumulator(self, case: Case) -> MeanSquareDisplacementAccumulator:
         """An empty memory for it."""
@@ -78,13 +84,31 @@ class MeanSquareDisplacementAccumulator:
     def __init__(self, observable: MeanSquareDisplacement, case: Case) -> None:
         self.observable, self.case, self.name = observable, case, observable.label
         self.axes = observable.axes(case)
-        self.ids = spread_ids(observable.particles, case.particles)
         max_lag = max(1, observable.max_lag // observable.every)
-        self.origins = Origins(len(self.ids), len(self.axes), max_lag)
+        if case.fluid.molecule is None:
+            self.ids = spread_ids(observable.particles, case.particles)
+            self.origins = Origins(len(self.ids), len(self.axes), max_lag)
+            return
+        length = case.fluid.molecule.length
+        wanted = observable.particles if self.centres else -(-observable.particles // length)
+        followed = min(wanted, case.particles // length)
+        followed -= followed % GROUPS if followed > GROUPS else 0
+        # bead after bead, so that one molecule is in one group: its beads are not independent
+        self.ids = beads_of(case, followed).T.ravel()
+        rows = followed if self.centres else len(self.ids)
+        self.origins = Origins(rows, len(self.axes), max_lag, min(GROUPS, followed))
+
+    @property
+    def centres(self) -> bool:
+        """Whether centres of mass are followed."""
+        return self.observable.of == "centres"
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         position = fluid.positions(self.ids, unwrapped=True)[:, list(self.axes)]
+        if self.centres:
+            length = molecule_of(self.case).length
+            position = position.reshape(length, -1, len(self.axes)).mean(axis=0)
         self.origins.add(position, _square_distance)
 
     def state(self) -> State:
@@ -100,21 +124,11 @@ class MeanSquareDisplacementAccumulator:
         steps = self.origins.sampled() * self.observable.every
         moved = self.origins.estimate()
         dt = self.case.fluid.timestep
-        coefficients = setting.transport(self.case)
-        quiet = set(self.axes) <= set(setting.quiet_axes(self.case))
-        expected, curve = None, None
+        coefficients = without_bonds(self.case)
+        curve = None
         comparisons: list[Comparison] = []
-        if coefficients is not None and quiet:
-            expected = theory.msd_molecular_chaos(
-                steps,
-                dt,
-                self.decorrelation(coefficients.diffusion),
-                len(self.axes),
-                self.case.fluid.kT,
-                self.case.fluid.mass,
-            )
-        memory = self.memory_time(coefficients)
-        late = steps * dt >= 5 * memory if memory else steps > 0
+        first = self.diffusive_from(coefficients)
+        late = steps * dt >= first if first else steps > 0
         if late.sum() >= 3:
             curve, comparisons = self.fit_diffusion(steps * dt, moved, late, coefficients)
         return Result(
@@ -123,25 +137,57 @@ class MeanSquareDisplacementAccumulator:
             x={"time": steps * dt},
             value=moved.value,
             error=moved.error,
-            label="mean square displacement",
+            label="mean square displacement" + " of centres of mass" * self.centres,
             units={"value": "a^2", "time": "tau"},
-            expected=expected,
+            expected=self.expected(steps, coefficients),
             fit=curve,
-            theory=setting.chaos_label(self.case),
+            theory=self.legend(),
             comparisons=tuple(comparisons),
             samples=self.origins.count,
             extra={"components": "".join("xyz"[axis] for axis in self.axes)},
         )
 
-    def decorrelation(self, diffusion: float) -> float:
-        """What a collision takes of a velocity."""
-        fluid = self.case.fluid
-        return theory.decorrelation_from_diffusion(diffusion, fluid.timestep, fluid.kT, fluid.mass)
+    def legend(self) -> str:
+        """What the theory is called in a figure."""
+        label = setting.chaos_label(self.case)
+        return (
+            label if self.case.fluid.molecule is None else label.replace("molecular chaos", "Rouse")
+        )
 
-    def memory_time(self, coefficients: theory.Transport | None) -> float:
-        """How long a particle remembers its velocity, m D/kT."""
+    def expected(self, steps: Integers, coefficients: theory.Transport | None) -> Array | None:
+        """Molecular chaos, of molecules Rouse's; None without a theory."""
+        fluid, molecule = self.case.fluid, self.case.fluid.molecule
+        if coefficients is None or not set(self.axes) <= set(setting.quiet_axes(self.case)):
+            return None
+        d, dt, kT, mass = len(self.axes), fluid.timestep, fluid.kT, fluid.mass
+        g = theory.decorrelation_from_diffusion(coefficients.diffusion, dt, kT, mass)
+        if molecule is None:
+            return theory.msd_molecular_chaos(steps, dt, g, d, kT, mass)
+        if self.case.walls:
+            return None
+        if self.centres:
+            return theory.msd_molecular_chaos(steps, dt, g, d, kT, mass * molecule.length)
+        spring = spring_of(molecule)
+        if spring is None:
+            return None
+        modes = modes_of(molecule).eigenvalues
+        return theory.msd_rouse_beads(steps, dt, g, modes, spring.k, d, kT, mass)
+
+    def diffusive_from(self, coefficients: theory.Transport | None) -> float:
+        """The lag from which on the displacement is a straight line.
+
+        That is when a particle has forgotten its velocity, which it does in m D/kT; in a molecule,
+        when a bead has forgotten where in the molecule it is. What drags beads along changes as
+        the molecule turns, so that its centre is in no hurry either.
+        """
         fluid = self.case.fluid
-        return coefficients.diffusion * fluid.mass / fluid.kT if coefficients else 0.0
+        inertia = 5 * coefficients.diffusion * fluid.mass / fluid.kT if coefficients else 0.0
+        if fluid.molecule is None:
+            return inertia
+        times = rouse_times_of(self.case)
+        if self.centres:
+            return inertia if times is None else max(inertia, float(times.mode[0]))
+        return np.inf if times is None else max(inertia, 5 * float(times.mode[0]))
 
     def fit_diffusion(
         self,
@@ -157,13 +203,13 @@ class MeanSquareDisplacementAccumulator:
         scale = 1 / (2 * len(self.axes))
         value, error = line.scalar(line.value[1] * scale, np.array([0.0, scale]))
         expected = coefficients.diffusion if coefficients else np.nan
+        note = setting.chaos(self.case, "correlated collisions add 10 to 18 %")
+        if self.case.fluid.molecule is not None:
+            expected /= np.nan if self.case.walls else self.case.fluid.molecule.length
+            note = "Rouse; beads with the friction of free particles"
+            if setting.mean_free_path(self.case) < 1:
+                note = "approximate: Rouse; beads drag one another along"
+        what = "diffusion coefficient"
         return np.where(late, basis @ line.value, np.nan), [
-            Comparison(
-                "diffusion coefficient",
-                value,
-                error,
-                expected,
-                "a^2/tau",
-                setting.chaos(self.case, "correlated collisions add 10 to 18 %"),
-            )
+            Comparison(what, value, error, expected, "a^2/tau", note)
         ]

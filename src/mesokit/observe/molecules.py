@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.errors import CaseError
 from mesokit.observe import setting
-from mesokit.observe.mean_square_displacement import spread_ids
+from mesokit.observe.origins import spread_ids
 from mesokit.observe.result import Array
 
 if TYPE_CHECKING:

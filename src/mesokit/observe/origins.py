@@ -16,6 +16,16 @@ POINTS = 16  # kept per level; lags are at most 1/8 apart
 GROUPS = 32  # of particles, for the error bars
 
 
+def spread_ids(wanted: int, n: int) -> NDArray[np.int64]:
+    """`wanted` ids (or all) spread evenly over 0 .. n - 1.
+
+    >>> spread_ids(3, 9)
+    array([0, 3, 6])
+    """
+    count = min(wanted, n)
+    return np.arange(count) * n // max(count, 1)
+
+
 class Origins:
     """Averages over particles and origins of a function of a quantity at two times.
 
@@ -29,10 +39,11 @@ class Origins:
     particles: how many.
     dimension: numbers per particle.
     max_lag: longest lag in samples.
+    groups: how many, particle i in group i modulo them.
     """
 
-    def __init__(self, particles: int, dimension: int, max_lag: int) -> None:
-        self.groups = min(GROUPS, particles)
+    def __init__(self, particles: int, dimension: int, max_lag: int, groups: int = GROUPS) -> None:
+        self.groups = min(groups, particles)
         self.particles = particles // self.groups * self.groups
         self.max_lag, self.count, levels = max_lag, 0, 1
         while POINTS // 2 << levels <= max_lag:

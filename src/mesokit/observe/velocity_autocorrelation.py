@@ -13,8 +13,7 @@ from mesokit.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.observe import setting
 from mesokit.observe.estimate import Estimate
-from mesokit.observe.mean_square_displacement import spread_ids
-from mesokit.observe.origins import Origins
+from mesokit.observe.origins import Origins, spread_ids
 from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
 

@@ -36,7 +36,8 @@ def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
         ax.set_xscale("log")
         ax.set_yscale("log")
     components = result.extra.get("components", "")
-    label = "mean square\ndisplacement" + (f" along {', '.join(components)}" if components else "")
+    label = result.label.replace(" displacement", "\ndisplacement").replace(" of mass", "\nof mass")
+    label += f" along {', '.join(components)}" if components else ""
     ax.set_ylabel(labelled(label, result.units["value"]))
     ax.legend(loc="upper left")
     if below is not None:

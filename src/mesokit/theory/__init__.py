@@ -5,6 +5,8 @@ Nothing here uses the rest of mesokit, so that it can judge it. Lengths are in c
 
 from mesokit.theory.bead_diffusion import bead_diffusion
 from mesokit.theory.chain_diffusion import kirkwood_diffusion, rouse_diffusion, zimm_diffusion
+from mesokit.theory.chain_displacement import msd_rouse_beads
+from mesokit.theory.chain_in_slit import beads_in_slit, centre_in_slit
 from mesokit.theory.chain_scaling import ChainExponents, chain_exponents
 from mesokit.theory.chain_size import mean_square_end_to_end, mean_square_gyration
 from mesokit.theory.channel_cylinder import Reference, channel_cylinder, square_wake_length
@@ -115,9 +117,11 @@ __all__ = [
     "ViscosityFit",
     "apparent_viscosity",
     "bead_diffusion",
+    "beads_in_slit",
     "cell_energy_cdf",
     "cell_energy_pdf",
     "cell_energy_variance",
+    "centre_in_slit",
     "chain_exponents",
     "channel_cylinder",
     "complex_viscosity",
@@ -150,6 +154,7 @@ __all__ = [
     "mean_square_end_to_end",
     "mean_square_gyration",
     "msd_molecular_chaos",
+    "msd_rouse_beads",
     "origins",
     "poiseuille_fit",
     "poiseuille_velocity",

@@ -1,0 +1,99 @@
+"""GSD files, those of HOOMD-blue, OVITO and others: the schema `hoomd` of the package gsd.
+
+Their box has its middle at the origin. A field that a file leaves out has a default; for
+velocities, which are 0 then, that is as good as none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from string import ascii_uppercase
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mesokit.errors import CaseError
+from mesokit.io.optional import package
+from mesokit.mpcd.snapshot import Snapshot
+
+if TYPE_CHECKING:
+    from mesokit.io.export import Moment, Particles
+
+
+def require() -> ModuleType:
+    """The package that reads and writes them. Raises CaseError where it is not installed."""
+    return package("gsd.hoomd", "GSD files")
+
+
+def read(path: str) -> Snapshot:
+    """The particles of the last frame. Raises CaseError for a file that cannot be read."""
+    hoomd = require()
+    try:
+        with hoomd.open(path, mode="r") as file:
+            if not len(file):
+                raise CaseError("it has no frame")
+            return _snapshot(file[len(file) - 1], file.file, len(file) - 1)
+    except (OSError, RuntimeError, ValueError, KeyError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise CaseError(f"cannot be read as a GSD file: {reason}") from None
+
+
+def _snapshot(frame: Any, file: Any, index: int) -> Snapshot:
+    box = np.asarray(frame.configuration.box, float)
+    particles, bonds = frame.particles, frame.bonds
+    n = int(particles.N)
+
+    def stored(name: str) -> bool:
+        chunk = f"particles/{name}"
+        return bool(file.chunk_exists(index, chunk) or file.chunk_exists(0, chunk))
+
+    links = np.zeros((0, 2), int) if not bonds.N else np.asarray(bonds.group, int)
+    if links.size and not 0 <= links.min() <= links.max() < n:
+        raise CaseError(f"it links particle {links.max()}, of {n}")
+    return Snapshot(
+        positions=np.asarray(particles.position, float),
+        velocities=np.asarray(particles.velocity, float) if stored("velocity") else None,
+        images=np.asarray(particles.image, np.int64) if stored("image") else None,
+        masses=np.asarray(particles.mass, float) if stored("mass") else None,
+        bonds=links,
+        numbers=np.arange(n),
+        low=-0.5 * box[:3],
+        lengths=box[:3],
+        tilts=box[3:],
+    )
+
+
+def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
+    """All frames, with box, kinds, masses, bonds and, where they are known, velocities and images.
+
+    In 2D the box is one cell deep, which HOOMD-blue makes flat. `log/time` is the time.
+    """
+    hoomd = require()
+    kinds, size = particles.kind, particles.size
+    frame = hoomd.Frame()
+    frame.configuration.dimensions = particles.dimension
+    frame.particles.N = len(kinds)
+    frame.particles.types = list(ascii_uppercase[: int(kinds.max(initial=0)) + 1])
+    frame.particles.typeid, frame.particles.mass = kinds, particles.mass
+    if len(particles.bonds):
+        frame.bonds.N, frame.bonds.types = len(particles.bonds), ["bond"]
+        frame.bonds.typeid, frame.bonds.group = np.zeros(len(particles.bonds)), particles.bonds
+    with hoomd.open(str(path), mode="w") as file:
+        for now in moments:
+            middle = 0.5 * size + [0.5 * now.tilt, 0.0, 0.0]
+            middle[particles.dimension :] = 0.0
+            frame.configuration.step = now.step
+            frame.configuration.box = [*size, now.tilt / size[1], 0.0, 0.0]
+            faces = np.where(now.tilt == 0.0, 0.5 * size, np.inf)  # a leaning one has no one x
+            frame.particles.position = _rounded(now.position - middle, faces)
+            frame.particles.velocity, frame.particles.image = now.velocity, now.image
+            frame.log = {"time": np.array([now.time])}
+            file.append(frame)
+
+
+def _rounded(position: Any, half: Any) -> Any:
+    """In single precision, below the upper faces (3,): on them HOOMD-blue takes it for outside."""
+    edge = np.nextafter(np.asarray(half, np.float32), np.float32(0))
+    return np.minimum(position.astype(np.float32), edge)

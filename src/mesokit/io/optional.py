@@ -1,0 +1,23 @@
+"""Packages that only some files need."""
+
+from __future__ import annotations
+
+import importlib
+import warnings
+from types import ModuleType
+
+from mesokit.errors import CaseError
+
+
+def package(module: str, what: str) -> ModuleType:
+    """A module of a package that may not be there.
+
+    Raises CaseError that says how to install it; `what` names the files that need it.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of what these packages import themselves
+            return importlib.import_module(module)
+    except ImportError:
+        name = module.split(".")[0]
+        raise CaseError(f"{what} need the package {name}: pip install 'mesokit[files]'") from None

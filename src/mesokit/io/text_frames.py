@@ -1,0 +1,71 @@
+"""Frames as text: dumps of LAMMPS and extended XYZ. Both are long; bonds have no place in them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from string import ascii_uppercase
+from typing import TYPE_CHECKING, Any, TextIO
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from mesokit.io.export import Moment, Particles
+
+FIGURES = "%.9g"  # of a number: all that single precision has
+
+
+def dump(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
+    """A text dump of LAMMPS: numbers from 1, wrapped positions, images and velocities if known."""
+    marks = " ".join("ff" if shut else "pp" for shut in particles.closed)
+    with path.open("w", encoding="utf-8") as file:
+        for now in moments:
+            bounds = np.stack([np.zeros(3), particles.size], axis=1)
+            head, tilts = f"ITEM: BOX BOUNDS {marks}", ["", "", ""]
+            if now.tilt:  # the bounds are those of a box that holds the leaning one
+                bounds[0] += min(0.0, now.tilt), max(0.0, now.tilt)
+                head, tilts = f"ITEM: BOX BOUNDS xy xz yz {marks}", [f" {now.tilt:.9g}", " 0", " 0"]
+            file.write(f"ITEM: TIMESTEP\n{now.step}\nITEM: NUMBER OF ATOMS\n")
+            file.write(f"{len(particles.number)}\n{head}\n")
+            for (low, high), tilt in zip(bounds.tolist(), tilts, strict=True):
+                file.write(f"{low:.9g} {high:.9g}{tilt}\n")
+            columns: list[tuple[str, str, Any]] = [
+                ("id", "%d", particles.number + 1), ("type", "%d", particles.kind + 1),
+                ("mass", FIGURES, particles.mass), *_vector("x y z", FIGURES, now.position),
+                *_vector("ix iy iz", "%d", now.image), *_vector("vx vy vz", FIGURES, now.velocity),
+            ]  # fmt: skip
+            file.write(f"ITEM: ATOMS {' '.join(name for name, _, _ in columns)}\n")
+            _table(file, columns)
+
+
+def xyz(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
+    """Extended XYZ: kinds are A, B, ...; velocities if known; images have no place."""
+    kinds = np.array(list(ascii_uppercase))[particles.kind % 26]
+    open_axes = " ".join("F" if shut else "T" for shut in particles.closed)
+    with path.open("w", encoding="utf-8") as file:
+        for now in moments:
+            edges = np.diag(particles.size)
+            edges[1, 0] = now.tilt
+            lattice = " ".join(f"{number:.9g}" for number in edges.ravel())
+            velocity = "" if now.velocity is None else ":velo:R:3"
+            file.write(
+                f'{len(kinds)}\nLattice="{lattice}" Properties=species:S:1:pos:R:3:id:I:1{velocity}'
+                f' Time={now.time:.9g} Step={now.step} pbc="{open_axes}"\n'
+            )
+            _table(file, [
+                ("species", "%s", kinds), *_vector("x y z", FIGURES, now.position),
+                ("id", "%d", particles.number + 1), *_vector("vx vy vz", FIGURES, now.velocity),
+            ])  # fmt: skip
+
+
+def _vector(names: str, form: str, values: Any) -> Iterator[tuple[str, str, Any]]:
+    """Three columns, or none."""
+    for column, name in enumerate(names.split() if values is not None else ()):
+        yield name, form, values[:, column]
+
+
+def _table(file: TextIO, columns: list[tuple[str, str, Any]]) -> None:
+    """A line for each particle."""
+    line = " ".join(form for _, form, _ in columns) + "\n"
+    rows = zip(*(values.tolist() for _, _, values in columns), strict=True)
+    file.writelines(line % row for row in rows)

@@ -1,0 +1,158 @@
+"""Particles as another program has written them, and whether they are those of a case."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.box import AXES
+from mesokit.component import show
+from mesokit.errors import CaseError
+from mesokit.mpcd.bead_order import bead_order
+from mesokit.solids import free_volume
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+
+Floats = NDArray[np.float64]
+ROUNDING = 1e-5  # relative, of numbers in single precision and in texts
+
+
+class Snapshot(NamedTuple):
+    """Particles of a file, in its own order, in three dimensions.
+
+    `positions` (n, 3); `velocities` (n, 3), `images` (n, 3) and `masses` (n,) or None where the
+    file has none; `bonds` (b, 2), rows of the particles that are linked; `numbers` (n,), what the
+    file calls them; `low` and `lengths` (3,) of the box, `tilts` (3,) of its edges.
+    """
+
+    positions: Floats
+    velocities: Floats | None
+    images: NDArray[np.int64] | None
+    masses: Floats | None
+    bonds: NDArray[np.int64]
+    numbers: NDArray[np.int64]
+    low: Floats
+    lengths: Floats
+    tilts: Floats
+
+
+def fitted(case: Case, there: Snapshot) -> tuple[Floats, Floats | None]:
+    """Positions and velocities (n, d) by the particle ids of the case, from the corner of its box.
+
+    Raises CaseError unless box, number, masses and bonds are those of the case.
+    """
+    d, n = case.box.dimension, len(there.positions)
+    _require_box(case, there)
+    if n != case.particles:
+        raise CaseError(_other_number(case, n))
+    order = _by_mass(case, there)
+    if case.fluid.molecule is not None:
+        if not len(there.bonds):
+            raise CaseError("it has no bonds; expected those of fluid.molecule")
+        order = bead_order(there.bonds, n, case.fluid.molecule)
+        places = _whole(case, there)
+    else:
+        if len(there.bonds):
+            raise CaseError(f"it has {len(there.bonds)} bonds, this case no fluid.molecule")
+        places = (there.positions - there.low)[:, :d]
+    velocities = None if there.velocities is None else there.velocities[order, :d]
+    return places[order], velocities
+
+
+def _require_box(case: Case, there: Snapshot) -> None:
+    """The same lengths and right angles; in 2D all particles in one plane."""
+    d, size = case.box.dimension, np.array(case.box.size, float)
+    if np.abs(there.tilts).max() > ROUNDING:
+        raise CaseError(
+            f"its box leans by {show(there.tilts.tolist())}; expected right angles, as images have "
+            "not slid at the start"
+        )
+    if not np.allclose(there.lengths[:d], size, rtol=ROUNDING, atol=0):
+        raise CaseError(
+            f"it has a box of {show(there.lengths[:d].tolist())}, this case {show(case.box.size)} "
+            "(box.size)"
+        )
+    if d == 2 and np.ptp(there.positions[:, 2]) > ROUNDING:
+        raise CaseError("its particles differ in z; expected a 2D box as in this case")
+
+
+def _other_number(case: Case, n: int) -> str:
+    """How many there are, and what would make the case fit."""
+    density = f"fluid.density = {show(case.fluid.density)}"
+    whole = case.fluid.molecule is None or n % case.fluid.molecule.length == 0
+    hint = ""
+    if whole and not case.fluid.species:
+        hint = f"; fluid.density = {show(case.fluid.density * n / case.particles)} makes so many"
+    return f"it has {n} particles, this case {case.particles} ({density}){hint}"
+
+
+def _by_mass(case: Case, there: Snapshot) -> NDArray[np.int64]:
+    """The particle (n,) of the file for each particle id, so that kinds have their masses."""
+    volume = free_volume(case)
+    kinds = [(kind.mass, round(kind.density * volume)) for kind in case.fluid.species]
+    masses, counts = zip(*kinds or [(case.fluid.mass, case.particles)], strict=True)
+    wanted, order = np.repeat(masses, counts), np.arange(case.particles)
+    if there.masses is None:
+        if len(set(masses)) > 1:
+            raise CaseError("it has no masses; expected those of fluid.species")
+        return order
+    order[np.argsort(wanted, kind="stable")] = np.argsort(there.masses, kind="stable")
+    off = ~np.isclose(there.masses[order], wanted, rtol=ROUNDING, atol=0)
+    if off.any():
+        one = int(np.argmax(off))
+        raise CaseError(
+            f"particle {there.numbers[order[one]]} has mass {there.masses[order[one]]:.6g}; "
+            f"expected {wanted[one]:.6g} as in this case"
+        )
+    return order
+
+
+def _whole(case: Case, there: Snapshot) -> Floats:
+    """Places (n, d), as if the box had no bounds where the file says in which image they are.
+
+    Raises CaseError for a bond so long that nobody could tell which images it links.
+    """
+    d = case.box.dimension
+    closed = {wall.axis for wall in case.walls if wall.shape == "plates"}
+    open_axes = np.array([axis not in closed for axis in AXES[:d]])
+    size, places = there.lengths[:d], (there.positions - there.low)[:, :d]
+    told = there.images is not None and bool(there.images[:, :d][:, open_axes].any())
+    if told:
+        assert there.images is not None
+        places = places + np.where(open_axes, there.images[:, :d] * size, 0.0)
+    way = places[there.bonds[:, 1]] - places[there.bonds[:, 0]]
+    if told:
+        far = (np.abs(way) > 0.5 * size)[:, open_axes].any(axis=1)
+    else:
+        way -= np.where(open_axes, np.rint(way / size) * size, 0.0)
+        far = np.linalg.norm(way, axis=1) > 0.5 * size.min()
+    if far.any():
+        one = int(np.argmax(far))
+        raise CaseError(_too_long(there, one, way[one], size))
+    return np.asarray(places)
+
+
+def _too_long(there: Snapshot, bond: int, way: Floats, size: Floats) -> str:
+    first, second = there.numbers[there.bonds[bond]]
+    return (
+        f"the bond of particles {first} and {second} is {np.linalg.norm(way):.4g} long, more than "
+        f"half of the box {show(size.tolist())}; expected shorter bonds or a larger box"
+    )
+
+
+def rows_of(numbers: NDArray[Any], wanted: NDArray[Any]) -> NDArray[np.int64]:
+    """Rows in which these numbers of particles are. Raises CaseError for one that is not there.
+
+    >>> rows_of(np.array([7, 5]), np.array([[5, 7]])).tolist()
+    [[1, 0]]
+    """
+    order = np.argsort(numbers, kind="stable")
+    place = np.searchsorted(numbers, wanted, sorter=order)
+    rows = order[np.minimum(place, len(order) - 1)]
+    missing = numbers[rows] != wanted
+    if missing.any():
+        raise CaseError(f"it links particle {wanted[missing][0]}, which is not there")
+    return np.asarray(rows)

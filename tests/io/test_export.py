@@ -1,0 +1,245 @@
+"""What `export` writes is what other programs read: GSD, dumps of LAMMPS, extended XYZ."""
+
+from __future__ import annotations
+
+import warnings
+
+import gsd.hoomd
+import numpy as np
+import pytest
+
+import mesokit
+from mesokit.box import Box
+from mesokit.case import Case
+from mesokit.cli import main
+from mesokit.errors import CaseError, RunError
+from mesokit.geometry import Plates
+from mesokit.io.trajectory import Trajectory
+from mesokit.mpcd.field import Uniform
+from mesokit.mpcd.fluid import Fluid
+from mesokit.mpcd.initial import Start
+from mesokit.mpcd.molecule import Molecule
+from mesokit.mpcd.species import Species
+from mesokit.mpcd.thermostat import MaxwellBoltzmann
+from mesokit.potential import Harmonic
+from mesokit.run import Run
+from mesokit.simulation import Simulation
+
+TRIMERS = Molecule(length=3, bond=Harmonic(K=2.0))
+ALL = ("position", "velocity", "image")
+
+
+@pytest.fixture(autouse=True)
+def no_figures(monkeypatch):
+    monkeypatch.setattr("mesokit.report.save_all", lambda results, folder, case=None: [])
+
+
+class Watched(Simulation):
+    """A run that remembers what it was like at each frame."""
+
+    def _observe(self, due):
+        super()._observe(due)
+        trajectory = self.case.trajectory
+        if trajectory and self.step and self.step % trajectory.every == 0:
+            self.__dict__.setdefault("seen", {})[self.step] = (
+                self.fluid.positions(), self.fluid.velocities(), self.fluid.images(),
+                self.fluid.bond_vectors(),
+            )  # fmt: skip
+
+
+def run_of(folder, size=(6, 6, 6), steps=40, walls=(), fields=ALL, subset=None, **parts):
+    """A run that has ended, in the folder."""
+    box = {key: parts.pop(key) for key in ("shear_rate",) if key in parts}
+    parts.setdefault("molecule", TRIMERS)
+    case = Case(
+        run=Run(steps=steps, seed=5),
+        box=Box(size, **box),
+        fluid=Fluid(density=9, **parts),
+        walls=walls,
+        trajectory=Trajectory(every=10, fields=fields, subset=subset),
+    )
+    simulation = Watched(case, output=folder, threads=1)
+    simulation.run()
+    return simulation
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A run of trimers in a box whose lengths differ."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("mesokit.report.save_all", lambda results, folder, case=None: [])
+        folder = tmp_path_factory.mktemp("runs") / "run"
+        return run_of(folder, (6, 5, 7))
+
+
+def read(path):
+    with gsd.hoomd.open(str(path)) as file:
+        return list(file)
+
+
+@pytest.mark.parametrize("size", [(6, 8), (6, 5, 7)])
+def test_gsd_has_all_that_the_run_has(size, tmp_path):
+    simulation = run_of(tmp_path / "run", size, kT=2.0, mass=3.0)
+    frames = read(mesokit.open(tmp_path / "run").export(tmp_path / "run.gsd"))
+    d, n = len(size), simulation.fluid.n
+    deep = [1.0] * (3 - d)
+    assert [frame.configuration.step for frame in frames] == [10, 20, 30, 40]
+    assert [frame.log["time"][0] for frame in frames] == pytest.approx([1, 2, 3, 4])
+    for frame, (r, v, image, bonds) in zip(frames, simulation.seen.values(), strict=True):
+        frame.validate()
+        assert frame.configuration.dimensions == d
+        assert frame.configuration.box.tolist() == [*size, *deep, 0, 0, 0]
+        x = frame.particles.position
+        np.testing.assert_allclose(x[:, :d] + 0.5 * np.array(size), r, atol=2e-6)
+        assert (np.abs(x) <= 0.5 * frame.configuration.box[:3]).all() and (x[:, d:] == 0).all()
+        np.testing.assert_allclose(frame.particles.velocity[:, :d], v, atol=1e-5)
+        np.testing.assert_array_equal(frame.particles.image[:, :d], image)
+        np.testing.assert_array_equal(frame.particles.mass, np.full(n, 3.0))
+        np.testing.assert_array_equal(frame.bonds.group, simulation.fluid.bonds())
+        whole = x[:, :d] + frame.particles.image[:, :d] * np.array(size)
+        way = whole[frame.bonds.group[:, 1]] - whole[frame.bonds.group[:, 0]]
+        np.testing.assert_allclose(way, bonds, atol=1e-5)
+
+
+def test_a_sheared_box_leans_and_bonds_keep_their_length(tmp_path):
+    """Images slide by more than a box here: unwrapped beads still hang together."""
+    simulation = run_of(tmp_path / "run", (6, 6, 6), steps=60, shear_rate=0.4)
+    frames = read(mesokit.open(tmp_path / "run").export(tmp_path / "run.gsd"))
+    tilts = []
+    for frame, (r, _, image, bonds) in zip(frames, simulation.seen.values(), strict=True):
+        box, x = frame.configuration.box.astype(float), frame.particles.position
+        slid = 0.4 * 6 * frame.log["time"][0]
+        tilts.append(box[3] * 6)
+        assert tilts[-1] == pytest.approx((slid + 3) % 6 - 3, abs=1e-5)
+        edges = np.array([[6, 0, 0], [6 * box[3], 6, 0], [0, 0, 6]])
+        share = x @ np.linalg.inv(edges)
+        assert np.abs(share).max() < 0.5 + 1e-6
+        whole = x + frame.particles.image @ edges
+        a, b = frame.bonds.group.T
+        np.testing.assert_allclose(whole[b] - whole[a], bonds, atol=1e-4)
+        assert (image[:, 1] == frame.particles.image[:, 1]).all()
+        off = (x[:, 0] + 0.5 * (6 + tilts[-1]) - r[:, 0]) / 6
+        np.testing.assert_allclose(off, np.rint(off), atol=1e-5)
+    assert min(tilts) < -0.5 and max(tilts) > 0.5 and slid > 12
+
+
+def test_mdanalysis_reads_all_three(whole, tmp_path):
+    files = mesokit.open(whole.directory.path)
+    size = np.array([6, 5, 7])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        import MDAnalysis
+
+        for ending, shift in ((".gsd", 0.5 * size), (".lammpstrj", 0), (".xyz", 0)):
+            path = str(files.export(tmp_path / f"run{ending}"))
+            universe = MDAnalysis.Universe(
+                path, **({"format": "LAMMPSDUMP"} if ending == ".lammpstrj" else {})
+            )
+            assert universe.trajectory.n_frames == 4
+            for now, (r, *_) in zip(universe.trajectory, whole.seen.values(), strict=True):
+                np.testing.assert_allclose(now.positions + shift, r, atol=1e-5)
+                if ending != ".xyz":
+                    assert now.dimensions.tolist() == [6, 5, 7, 90, 90, 90]
+            if ending == ".gsd":
+                np.testing.assert_array_equal(universe.bonds.to_indices(), whole.fluid.bonds())
+
+
+def test_a_dump_says_box_images_and_velocities(whole, tmp_path):
+    path = mesokit.open(whole.directory.path).export(tmp_path / "run.lammpstrj")
+    lines = path.read_text().splitlines()
+    assert lines[4] == "ITEM: BOX BOUNDS pp pp pp" and lines[5:8] == ["0 6", "0 5", "0 7"]
+    assert lines[8] == "ITEM: ATOMS id type mass x y z ix iy iz vx vy vz"
+    n, (r, v, image, _) = whole.fluid.n, whole.seen[10]
+    rows = np.array([line.split() for line in lines[9 : 9 + n]], float)
+    np.testing.assert_allclose(rows[:, 3:6], r, atol=1e-5)
+    np.testing.assert_array_equal(rows[:, 6:9], image)
+    np.testing.assert_allclose(rows[:, 9:], v, atol=1e-5)
+    assert rows[:, :3].tolist() == [[i + 1, 1, 1] for i in range(n)]
+    head = mesokit.open(whole.directory.path).export(tmp_path / "a.xyz").read_text().splitlines()[1]
+    assert 'Lattice="6 0 0 0 5 0 0 0 7"' in head and 'pbc="T T T"' in head
+
+
+def test_plates_close_an_axis(tmp_path):
+    run_of(
+        tmp_path / "run", (6, 5), walls=[Plates(axis="y")], molecule=None, fields=("position",),
+        thermostat=MaxwellBoltzmann(), force=Uniform((0.01, 0.0)),
+    )  # fmt: skip
+    files = mesokit.open(tmp_path / "run")
+    assert "ITEM: BOX BOUNDS pp ff pp" in files.export(tmp_path / "a.lammpstrj").read_text()
+    assert 'pbc="T F T"' in files.export(tmp_path / "a.xyz").read_text()
+
+
+def test_a_sheared_dump_leans(tmp_path):
+    run_of(tmp_path / "run", (6, 6, 6), shear_rate=0.4)
+    path = mesokit.open(tmp_path / "run").export(tmp_path / "run.lammpstrj")
+    lines = path.read_text().splitlines()
+    assert lines[4:8] == ["ITEM: BOX BOUNDS xy xz yz pp pp pp", "0 8.4 2.4", "0 6 0", "0 6 0"]
+
+
+def test_a_run_that_goes_on_gives_what_it_has_so_far(whole, tmp_path):
+    """Up to its last checkpoint; the frames are those of the run that was never stopped."""
+    simulation = Simulation(whole.case, output=tmp_path / "run", threads=1)
+    with pytest.raises(RunError, match="has not ended"):
+        mesokit.open(tmp_path / "run").export(tmp_path / "a.gsd")
+    assert not (tmp_path / "a.gsd").exists()
+    while simulation.step < 20:
+        simulation.fluid.advance(10)
+        simulation._observe([])
+    simulation.checkpoint()
+    early = read(mesokit.open(tmp_path / "run").export(tmp_path / "a.gsd"))
+    simulation.run()
+    late = mesokit.open(tmp_path / "run").export(tmp_path / "a.gsd").read_bytes()
+    assert late == mesokit.open(whole.directory.path).export(tmp_path / "b.gsd").read_bytes()
+    assert len(early) == 2
+    for frame, other in zip(early, read(tmp_path / "b.gsd"), strict=False):
+        np.testing.assert_array_equal(frame.particles.position, other.particles.position)
+        np.testing.assert_array_equal(frame.bonds.group, other.bonds.group)
+
+
+def test_an_export_is_a_start(whole, tmp_path):
+    """Out and in again: places to single precision, and whole molecules."""
+    path = mesokit.open(whole.directory.path).export(tmp_path / "melt.gsd")
+    case = Case(
+        run=Run(steps=1), box=whole.case.box,
+        fluid=Fluid(density=9, molecule=TRIMERS, start=Start(file=str(path))),
+    )  # fmt: skip
+    other = Simulation(case, threads=1)
+    np.testing.assert_allclose(other.fluid.positions(), whole.fluid.positions(), atol=1e-5)
+    np.testing.assert_allclose(other.fluid.velocities(), whole.fluid.velocities(), atol=1e-5)
+    np.testing.assert_allclose(other.fluid.bond_vectors(), whole.fluid.bond_vectors(), atol=1e-5)
+
+
+def test_kinds_and_subsets(tmp_path):
+    kinds = (Species(mass=4.0, density=1.0), Species(mass=1.0, density=8.0))
+    run_of(tmp_path / "run", (6, 6), fields=("position",), subset=50, molecule=None, species=kinds)
+    frame = read(mesokit.open(tmp_path / "run").export(tmp_path / "a.gsd"))[0]
+    assert frame.particles.types == ["A", "B"]
+    np.testing.assert_array_equal(frame.particles.typeid, np.repeat([0, 1], [36, 14]))
+    np.testing.assert_array_equal(frame.particles.mass, np.repeat([4, 1], [36, 14]))
+    assert (frame.particles.velocity == 0).all() and frame.bonds.N == 0
+    run_of(tmp_path / "chains", (6, 6), subset=7)
+    frame = read(mesokit.open(tmp_path / "chains").export(tmp_path / "a.gsd"))[0]
+    assert frame.bonds.group.tolist() == [[0, 1], [1, 2], [3, 4], [4, 5]]
+
+
+def test_the_command(whole, tmp_path, capsys):
+    with pytest.raises(SystemExit) as end:
+        main(["export", str(whole.directory.path), "--to", str(tmp_path / "film.gsd")])
+    assert end.value.code == 0 and capsys.readouterr().out.strip() == str(tmp_path / "film.gsd")
+    assert len(read(tmp_path / "film.gsd")) == 4
+
+
+def test_what_cannot_be_exported_is_one_line(whole, tmp_path):
+    files = mesokit.open(whole.directory.path)
+    with pytest.raises(CaseError, match=r"^[^\n]*ending '\.dcd': expected '\.gsd', '\.lammpstrj'"):
+        files.export(tmp_path / "run.dcd")
+    with pytest.raises(RunError, match="cannot write"):
+        files.export(tmp_path / "nowhere" / "run.gsd")
+    case = Case(run=Run(steps=5), box=Box([4, 4]))
+    Simulation(case, output=tmp_path / "bare", threads=1).run()
+    with pytest.raises(RunError, match="keeps no trajectory"):
+        mesokit.open(tmp_path / "bare").export(tmp_path / "a.gsd")
+    run_of(tmp_path / "short", (6, 6), steps=5)
+    with pytest.raises(RunError, match="has no frame; the run ended"):
+        mesokit.open(tmp_path / "short").export(tmp_path / "a.gsd")
+    assert not list(tmp_path.glob("*.gsd"))

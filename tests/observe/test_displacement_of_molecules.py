@@ -1,0 +1,97 @@
+"""Mean square displacement of beads and centres of mass, beside Rouse's theory."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from laboratory import make_case, make_fluid
+
+from mesokit import theory
+from mesokit.errors import CaseError
+from mesokit.mpcd.collision import SRD
+from mesokit.mpcd.molecule import Molecule
+from mesokit.mpcd.thermostat import MaxwellBoltzmann
+from mesokit.observe import MeanSquareDisplacement
+from mesokit.observe.origins import GROUPS
+from mesokit.potential import FENE, Harmonic
+
+SOFT = Harmonic(K=1 / 6)  # three cells long: beads seldom meet their neighbours in a cell
+THIN = {"timestep": 1.0, "collision": SRD(angle=90)}  # they fly a cell between two collisions
+MOLECULES = {
+    "dimers": (Molecule(bond=SOFT), 5),
+    "chains": (Molecule(length=4, bond=SOFT), 5),
+    "rings": (Molecule(topology="ring", length=3, bond=SOFT), 10),
+    "stars": (Molecule(topology="star", length=4, arms=3, bond=SOFT), 10),
+}
+
+
+def moved(of, density, molecule, steps=300, shear_rate=0.0, **fluid):
+    """The displacement in a fluid that runs for so many steps."""
+    observable = MeanSquareDisplacement(of=of, particles=100_000, every=2, max_lag=60)
+    parts = {"density": density, "molecule": molecule, "shear_rate": shear_rate} | THIN | fluid
+    fluid = make_fluid((12, 12, 12), **parts)
+    accumulator = observable.accumulator(fluid.case)
+    accumulator.observe(fluid)
+    for _ in range(steps // 2):
+        fluid.advance(2)
+        accumulator.observe(fluid)
+    return accumulator.result()
+
+
+@pytest.mark.parametrize("of", ["particles", "centres"])
+@pytest.mark.parametrize(("molecule", "density"), MOLECULES.values(), ids=MOLECULES.keys())
+def test_it_is_that_of_rouse(molecule, density, of):
+    """At every lag, from the first flight on; collisions that are not quite independent: 2 %."""
+    result = moved(of, density, molecule)
+    assert result.expected is not None and "Rouse" in result.theory
+    off = np.abs(result.value - result.expected)[1:]
+    assert (off < 3 * result.error[1:] + 0.02 * result.expected[1:]).all()
+    found = result.comparisons[0]
+    assert found.expected == pytest.approx(
+        theory.transport("srd", 3, density, 1.0, 90.0).diffusion / molecule.length
+    )
+    assert abs(found.measured - found.expected) < 3 * found.error + 0.02 * found.expected
+    assert found.error < 0.02 * found.expected
+
+
+def test_across_a_shear_it_is_the_same():
+    """Along gradient and vorticity; along the flow, where images slide, it is refused."""
+    molecule, density = MOLECULES["dimers"]
+    result = moved("centres", density, molecule, shear_rate=0.02, thermostat=MaxwellBoltzmann())
+    assert result.extra["components"] == "yz" and result.expected is not None
+    off = np.abs(result.value - result.expected)[1:]
+    assert (off < 3 * result.error[1:] + 0.03 * result.expected[1:]).all()
+    with pytest.raises(CaseError, match=r"not 'x' under box\.shear_rate"):
+        make_case(
+            (8, 8), [MeanSquareDisplacement(of="centres", components=["x"])], density=4,
+            molecule=molecule, shear_rate=0.1,
+        )  # fmt: skip
+
+
+@pytest.mark.parametrize("particles", [40, 999, 10**6])
+@pytest.mark.parametrize("of", ["particles", "centres"])
+def test_groups_hold_whole_molecules(of, particles):
+    """Beads of one molecule move together: error bars must not take them for independent."""
+    molecule = MOLECULES["chains"][0]
+    case = make_case((10, 10), density=4, molecule=molecule)
+    accumulator = MeanSquareDisplacement(of=of, particles=particles).accumulator(case)
+    groups, ids = accumulator.origins.groups, accumulator.ids
+    assert accumulator.origins.particles == len(ids) // (4 if of == "centres" else 1)
+    assert groups == min(GROUPS, len(ids) // 4)
+    group = np.arange(len(ids)) % groups
+    for number in np.unique(ids // 4):
+        assert len(set(group[ids // 4 == number])) == 1 and (ids // 4 == number).sum() == 4
+
+
+def test_slow_beads_have_no_diffusion_coefficient_yet():
+    """Beads diffuse only when their molecule has forgotten its shape; when, FENE does not say."""
+    molecule = Molecule(length=40, bond=Harmonic(K=1.0))
+    assert moved("particles", 10, molecule, 100, timestep=0.1).comparisons == ()
+    fene = Molecule(length=2, bond=FENE(k=6.0, R0=2.0))
+    assert moved("particles", 5, fene, 20).expected is None
+    assert moved("centres", 5, fene, 20).expected is not None
+
+
+def test_single_particles_have_no_centres():
+    with pytest.raises(CaseError, match=r"observe\[#1\].of = 'centres' needs a fluid of molecules"):
+        make_case((8, 8), [MeanSquareDisplacement(of="centres")])
