@@ -93,5 +93,5 @@ def test_slow_beads_have_no_diffusion_coefficient_yet():
 
 
 def test_single_particles_have_no_centres():
-    with pytest.raises(CaseError, match=r"observe\[#1\].of = 'centres' needs a fluid of molecules"):
+    with pytest.raises(CaseError, match=r"observe\[#1\].of = 'centres' needs molecules"):
         make_case((8, 8), [MeanSquareDisplacement(of="centres")])

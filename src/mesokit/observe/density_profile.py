@@ -11,7 +11,7 @@ from mesokit.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.observe import setting
 from mesokit.observe.estimate import Estimate, of_mean
-from mesokit.observe.molecules import beads_of, molecule_of, spring_of
+from mesokit.observe.molecules import KIND, Group, group_of, spring_of
 from mesokit.observe.profile import Array, Profile, ProfileAccumulator
 from mesokit.observe.protocol import RunningFluid
 from mesokit.observe.result import Comparison, Result
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 LABELS = {
     "particles": "density",
+    "beads": "density of beads",
     "centres": "density of centres of mass",
     "ends": "density of end beads",
 }
@@ -34,17 +35,17 @@ class DensityProfile(Profile):
     """
 
     quantity: Literal["density-profile"] = tag("density-profile")
-    of: Literal["particles", "centres", "ends"] = param(
-        "particles", doc='"centres": centres of mass of molecules; "ends": beads with one bond'
+    of: Literal["particles", "beads", "centres", "ends"] = param(
+        "particles",
+        doc='"beads": of solutes or molecules; "centres": of mass; "ends": beads with one bond',
     )
+    kind: int = param(1, doc=KIND, ge=1)
 
     def check(self, case: Case) -> None:
         """Raise CaseError for an axis that the box has not, and for what molecules have not."""
         super().check(case)
-        if self.of == "particles":
-            return
-        molecule = molecule_of(case, f"of = '{self.of}'")
-        if self.of == "ends" and molecule.topology == "ring":
+        molecule = group_of(case, self.of, self.kind).molecule
+        if self.of == "ends" and molecule and molecule.topology == "ring":
             raise CaseError("of = 'ends': rings have none")
         if self.of == "centres" and self.axis == "x" and case.box.shear_rate:
             raise CaseError(
@@ -63,10 +64,10 @@ class DensityProfileAccumulator(ProfileAccumulator):
         super().__init__(observable, case, width=1)
         size = case.box.size
         self.slice_volume = np.prod(size) / self.bins
-        self.of = observable.of
+        self.of, self.group = observable.of, group_of(case, observable.of, observable.kind)
         if self.of != "particles":
-            beads = beads_of(case)
-            self.beads = beads[:, _ends(case)] if self.of == "ends" else beads
+            beads = self.group.beads()
+            self.beads = beads[:, _ends(self.group)] if self.of == "ends" else beads
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
@@ -118,17 +119,21 @@ class DensityProfileAccumulator(ProfileAccumulator):
 
     def legend(self) -> str:
         """What the theory is called in a figure."""
-        walls = self.case.fluid.molecule is not None and not self.periodic
+        walls = self.group.molecule is not None and not self.periodic
         return "ideal molecules between walls" if walls else "ideal gas"
 
     def expected(self) -> Array | None:
         """Uniform where nothing is in the way; else that of a gas or of ideal molecules."""
-        case, density = self.case, self.case.fluid.density
+        case, group = self.case, self.group
+        density = group.number * group.length / float(np.prod(case.box.size))
         if setting.obstructed(case):
             return None
         weight = 0.0 if self.periodic else float(setting.acceleration(case)[self.axis])
-        decay = case.fluid.mass * weight / case.fluid.kT
-        if case.fluid.molecule is not None:
+        solutes = case.solutes if self.of != "particles" else None
+        decay = (solutes.mass if solutes else case.fluid.mass) * weight / case.fluid.kT
+        if solutes and (solutes.pair or solutes.wall) and not self.periodic:
+            return None  # beads that are not ideal
+        if group.molecule is not None:
             return self.expected_of_molecules(decay)
         if decay == 0:
             return np.full(self.bins, density)
@@ -140,10 +145,12 @@ class DensityProfileAccumulator(ProfileAccumulator):
 
     def expected_of_molecules(self, decay: float) -> Array | None:
         """Of ideal molecules; None for other bonds, and where the sums would take too long."""
-        molecule, spring = molecule_of(self.case), spring_of(molecule_of(self.case))
-        ends = _ends(self.case)
-        share = {"particles": molecule.length, "centres": 1, "ends": len(ends)}[self.of]
-        mean = self.case.fluid.density * share / molecule.length
+        molecule = self.group.molecule
+        assert molecule is not None
+        spring, ends = spring_of(molecule), _ends(self.group)
+        shares = {"centres": 1, "ends": len(ends)}
+        number = self.group.number * shares.get(self.of, molecule.length)
+        mean = number / float(np.prod(self.case.box.size))
         if self.periodic:
             return np.full(self.bins, mean)
         if spring is None:
@@ -159,7 +166,9 @@ class DensityProfileAccumulator(ProfileAccumulator):
         return mean * (beads[ends] if self.of == "ends" else beads).mean(axis=0)
 
 
-def _ends(case: Case) -> list[int]:
+def _ends(group: Group) -> list[int]:
     """Beads of a molecule that have one bond."""
-    number = np.bincount(np.ravel(molecule_of(case).bonds))
+    if group.molecule is None:
+        return [0]
+    number = np.bincount(np.ravel(group.molecule.bonds))
     return np.flatnonzero(number == 1).tolist()

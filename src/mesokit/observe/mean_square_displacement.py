@@ -15,14 +15,14 @@ from mesokit.errors import CaseError
 from mesokit.observe import setting
 from mesokit.observe.estimate import Estimate, fit
 from mesokit.observe.molecules import (
-    beads_of,
+    KIND,
+    free_diffusion,
+    group_of,
+    kirkwood,
     modes_of,
-    molecule_of,
-    rouse_times_of,
     spring_of,
-    without_bonds,
 )
-from mesokit.observe.origins import GROUPS, Origins, spread_ids
+from mesokit.observe.origins import GROUPS, Origins
 from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
 
@@ -41,9 +41,10 @@ class MeanSquareDisplacement(Observable):
     """
 
     quantity: Literal["mean-square-displacement"] = tag("mean-square-displacement")
-    of: Literal["particles", "centres"] = param(
-        "particles", doc='"centres": centres of mass of molecules'
+    of: Literal["particles", "beads", "centres"] = param(
+        "particles", doc='"beads": of solutes or molecules; "centres": their centres of mass'
     )
+    kind: int = param(1, doc=KIND, ge=1)
     particles: int = param(2000, doc="particles (or molecules) followed", ge=1)
     max_lag: int = param(1000, doc="longest lag", unit="steps", ge=1)
     components: tuple[Axis, ...] | None = param(
@@ -65,8 +66,7 @@ class MeanSquareDisplacement(Observable):
     def check(self, case: Case) -> None:
         """Raise CaseError without an axis or a molecule to follow."""
         self.axes(case)
-        if self.of == "centres":
-            molecule_of(case, "of = 'centres'")
+        group_of(case, self.of, self.kind)
 
     def accumulator(self, case: Case) -> MeanSquareDisplacementAccumulator:
         """An empty memory for it."""
@@ -85,16 +85,17 @@ class MeanSquareDisplacementAccumulator:
         self.observable, self.case, self.name = observable, case, observable.label
         self.axes = observable.axes(case)
         max_lag = max(1, observable.max_lag // observable.every)
-        if case.fluid.molecule is None:
-            self.ids = spread_ids(observable.particles, case.particles)
+        self.group = group_of(case, observable.of, observable.kind)
+        length, number = self.group.length, self.group.number
+        if length == 1:
+            self.ids = self.group.beads(observable.particles).ravel()
             self.origins = Origins(len(self.ids), len(self.axes), max_lag)
             return
-        length = case.fluid.molecule.length
         wanted = observable.particles if self.centres else -(-observable.particles // length)
-        followed = min(wanted, case.particles // length)
+        followed = min(wanted, number)
         followed -= followed % GROUPS if followed > GROUPS else 0
         # bead after bead, so that one molecule is in one group: its beads are not independent
-        self.ids = beads_of(case, followed).T.ravel()
+        self.ids = self.group.beads(followed).T.ravel()
         rows = followed if self.centres else len(self.ids)
         self.origins = Origins(rows, len(self.axes), max_lag, min(GROUPS, followed))
 
@@ -107,8 +108,7 @@ class MeanSquareDisplacementAccumulator:
         """Take one sample."""
         position = fluid.positions(self.ids, unwrapped=True)[:, list(self.axes)]
         if self.centres:
-            length = molecule_of(self.case).length
-            position = position.reshape(length, -1, len(self.axes)).mean(axis=0)
+            position = position.reshape(self.group.length, -1, len(self.axes)).mean(axis=0)
         self.origins.add(position, _square_distance)
 
     def state(self) -> State:
@@ -124,13 +124,12 @@ class MeanSquareDisplacementAccumulator:
         steps = self.origins.sampled() * self.observable.every
         moved = self.origins.estimate()
         dt = self.case.fluid.timestep
-        coefficients = without_bonds(self.case)
         curve = None
         comparisons: list[Comparison] = []
-        first = self.diffusive_from(coefficients)
+        first = self.diffusive_from()
         late = steps * dt >= first if first else steps > 0
         if late.sum() >= 3:
-            curve, comparisons = self.fit_diffusion(steps * dt, moved, late, coefficients)
+            curve, comparisons = self.fit_diffusion(steps * dt, moved, late)
         return Result(
             quantity="mean-square-displacement",
             name=self.name,
@@ -139,7 +138,7 @@ class MeanSquareDisplacementAccumulator:
             error=moved.error,
             label="mean square displacement" + " of centres of mass" * self.centres,
             units={"value": "a^2", "time": "tau"},
-            expected=self.expected(steps, coefficients),
+            expected=self.expected(steps),
             fit=curve,
             theory=self.legend(),
             comparisons=tuple(comparisons),
@@ -150,17 +149,32 @@ class MeanSquareDisplacementAccumulator:
     def legend(self) -> str:
         """What the theory is called in a figure."""
         label = setting.chaos_label(self.case)
-        return (
-            label if self.case.fluid.molecule is None else label.replace("molecular chaos", "Rouse")
-        )
+        return label if self.group.molecule is None else label.replace("molecular chaos", "Rouse")
 
-    def expected(self, steps: Integers, coefficients: theory.Transport | None) -> Array | None:
-        """Molecular chaos, of molecules Rouse's; None without a theory."""
-        fluid, molecule = self.case.fluid, self.case.fluid.molecule
-        if coefficients is None or not set(self.axes) <= set(setting.quiet_axes(self.case)):
+    @property
+    def mass(self) -> float:
+        """Of one bead."""
+        solutes = self.case.solutes
+        if solutes is None or self.observable.of == "particles":
+            return self.case.fluid.mass
+        return solutes.mass
+
+    def alone(self) -> float | None:
+        """Diffusion coefficient of one bead alone; None where what it drags along drags it."""
+        of = self.observable.of
+        if self.case.solutes is None:
+            return free_diffusion(self.case)
+        if of == "particles":
             return None
-        d, dt, kT, mass = len(self.axes), fluid.timestep, fluid.kT, fluid.mass
-        g = theory.decorrelation_from_diffusion(coefficients.diffusion, dt, kT, mass)
+        return free_diffusion(self.case) if self.case.solutes.solvent == "random" else None
+
+    def expected(self, steps: Integers) -> Array | None:
+        """Molecular chaos, of molecules Rouse's; None without a theory."""
+        fluid, molecule, alone = self.case.fluid, self.group.molecule, self.alone()
+        if alone is None or not set(self.axes) <= set(setting.quiet_axes(self.case)):
+            return None
+        d, dt, kT, mass = len(self.axes), fluid.timestep, fluid.kT, self.mass
+        g = theory.decorrelation_from_diffusion(alone, dt, kT, mass)
         if molecule is None:
             return theory.msd_molecular_chaos(steps, dt, g, d, kT, mass)
         if self.case.walls:
@@ -173,7 +187,7 @@ class MeanSquareDisplacementAccumulator:
         modes = modes_of(molecule).eigenvalues
         return theory.msd_rouse_beads(steps, dt, g, modes, spring.k, d, kT, mass)
 
-    def diffusive_from(self, coefficients: theory.Transport | None) -> float:
+    def diffusive_from(self) -> float:
         """The lag from which on the displacement is a straight line.
 
         That is when a particle has forgotten its velocity, which it does in m D/kT; in a molecule,
@@ -181,20 +195,48 @@ class MeanSquareDisplacementAccumulator:
         the molecule turns, so that its centre is in no hurry either.
         """
         fluid = self.case.fluid
-        inertia = 5 * coefficients.diffusion * fluid.mass / fluid.kT if coefficients else 0.0
-        if fluid.molecule is None:
+        alone = free_diffusion(self.case, self.observable.of)
+        inertia = 5 * alone * self.mass / fluid.kT if alone else 0.0
+        if self.group.molecule is None:
             return inertia
-        times = rouse_times_of(self.case)
+        slowest = self.slowest(alone)
         if self.centres:
-            return inertia if times is None else max(inertia, float(times.mode[0]))
-        return np.inf if times is None else max(inertia, 5 * float(times.mode[0]))
+            return max(inertia, slowest or 0.0)
+        return np.inf if slowest is None else max(inertia, 5 * slowest)
+
+    def slowest(self, alone: float | None) -> float | None:
+        """The longest relaxation time of the molecules, by Rouse's theory; None without one."""
+        spring = spring_of(self.group.molecule) if self.group.molecule else None
+        if spring is None or alone is None or self.group.molecule is None:
+            return None
+        friction = self.case.fluid.kT / alone
+        times = theory.rouse_times(modes_of(self.group.molecule), friction, K=spring.K)
+        return float(times.mode[0])
+
+    def coefficient(self) -> tuple[float, str]:
+        """The diffusion coefficient of theory, nan if there is none, and what to say of it."""
+        nothing, alone = float("nan"), self.alone()
+        note = setting.chaos(self.case, "correlated collisions add 10 to 18 %")
+        solutes, molecule = self.case.solutes, self.group.molecule
+        if solutes is not None and alone is None:
+            dragged = kirkwood(self.case, self.observable.kind) if self.centres else None
+            return dragged or nothing, "ideal chain of Kirkwood, less what its images take"
+        if alone is None:
+            return nothing, note
+        if molecule is None:
+            return alone, "molecular chaos, exact for a bead alone" if solutes else note
+        if self.case.walls:
+            return nothing, note
+        note = "Rouse; beads with the friction of free particles"
+        if solutes is None and setting.mean_free_path(self.case) < 1:
+            note = "approximate: Rouse; beads drag one another along"
+        return alone / molecule.length, note
 
     def fit_diffusion(
         self,
         time: Array,
         moved: Estimate,
         late: NDArray[np.bool_],
-        coefficients: theory.Transport | None,
     ) -> tuple[Array, list[Comparison]]:
         """Straight line through the late part, weighted by 1/t^2 as the errors grow like t."""
         basis = np.stack([np.ones_like(time), time], axis=1)
@@ -202,13 +244,7 @@ class MeanSquareDisplacementAccumulator:
         line = fit(moved, basis, weight)
         scale = 1 / (2 * len(self.axes))
         value, error = line.scalar(line.value[1] * scale, np.array([0.0, scale]))
-        expected = coefficients.diffusion if coefficients else np.nan
-        note = setting.chaos(self.case, "correlated collisions add 10 to 18 %")
-        if self.case.fluid.molecule is not None:
-            expected /= np.nan if self.case.walls else self.case.fluid.molecule.length
-            note = "Rouse; beads with the friction of free particles"
-            if setting.mean_free_path(self.case) < 1:
-                note = "approximate: Rouse; beads drag one another along"
+        expected, note = self.coefficient()
         what = "diffusion coefficient"
         return np.where(late, basis @ line.value, np.nan), [
             Comparison(what, value, error, expected, "a^2/tau", note)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,19 +40,50 @@ def molecule_of(case: Case, quantity: str = "this", kind: int = 1) -> Molecule:
     return molecule
 
 
+class Group(NamedTuple):
+    """Particles of one kind: the id of the first, beads of a molecule, molecules, what they are."""
+
+    first: int
+    length: int
+    number: int
+    molecule: Molecule | None
+
+    def beads(self, wanted: int | None = None) -> NDArray[np.int64]:
+        """Ids (molecules, length) of all molecules, or of some that are evenly spread."""
+        chosen = np.arange(self.number) if wanted is None else spread_ids(wanted, self.number)
+        return self.first + chosen[:, None] * self.length + np.arange(self.length)
+
+
+def group_of(case: Case, of: str, kind: int = 1) -> Group:
+    """Those that an observable of "particles" (of the fluid), "beads", "centres" or "ends" follows.
+
+    Raises CaseError if there are none.
+    """
+    molecule, solutes = case.fluid.molecule, case.solutes
+    if of == "particles" and (solutes is None or solutes.solvent == "fluid"):
+        length = molecule.length if molecule else 1
+        return Group(0, length, case.particles // length, molecule)
+    if solutes is None:
+        found = molecule_of(case, f"of = {of!r}", kind)
+        return Group(0, found.length, case.particles // found.length, found)
+    if of == "particles":
+        raise CaseError("of = 'particles': a random solvent has none; expected 'beads'")
+    if kind > len(solutes.polymers):
+        raise CaseError(f"kind = {kind}: expected 1 to {len(solutes.polymers)} (solutes.polymers)")
+    polymer = solutes.polymers[kind - 1]
+    if of == "ends":
+        molecule_of(case, f"of = {of!r}", kind)
+    first = case.particles + solutes.first_bead(kind - 1)
+    return Group(first, polymer.length, polymer.number, solutes.molecule(kind - 1))
+
+
 def beads_of(case: Case, wanted: int | None = None, kind: int = 1) -> NDArray[np.int64]:
     """Ids of the beads (molecules, length) of all molecules, or of some that are evenly spread.
 
     Beads of solutes are numbered after the particles of the fluid.
     """
-    first, length, molecules = 0, molecule_of(case, kind=kind).length, 0
-    if case.solutes is None:
-        molecules = case.particles // length
-    else:
-        first = case.particles + case.solutes.first_bead(kind - 1)
-        molecules = case.solutes.polymers[kind - 1].number
-    chosen = np.arange(molecules) if wanted is None else spread_ids(wanted, molecules)
-    return first + chosen[:, None] * length + np.arange(length)
+    molecule_of(case, kind=kind)
+    return group_of(case, "beads", kind).beads(wanted)
 
 
 def bonds_of(case: Case, kind: int = 1) -> slice:
@@ -104,22 +136,48 @@ def rouse_times_of(case: Case, kind: int = 1) -> theory.RouseTimes | None:
 
 
 def friction_of(case: Case) -> float | None:
-    """kT over the diffusion coefficient of a bead alone, without hydrodynamics; None if unknown."""
+    """kT over the diffusion coefficient of a bead alone; None where the fluid remembers it."""
+    diffusion = free_diffusion(case)
+    if diffusion is None or (case.solutes is not None and case.solutes.solvent == "fluid"):
+        return None
+    return case.fluid.kT / diffusion
+
+
+def free_diffusion(case: Case, of: str = "beads") -> float | None:
+    """Diffusion coefficient of a particle or bead alone by molecular chaos; None if unknown."""
     fluid, solutes = case.fluid, case.solutes
-    if solutes is None:
-        coefficients = without_bonds(case)
-        return None if coefficients is None else fluid.kT / coefficients.diffusion
+    if solutes is None or of == "particles":
+        alone = without_bonds(dataclasses.replace(case, solutes=None, observe=(), trajectory=None))
+        return None if alone is None else alone.diffusion
     rule = fluid.collision
-    if solutes.solvent != "random" or fluid.thermostat.rule != "none":
+    if fluid.species or fluid.thermostat.rule == "rescale" or rule.rule not in ("srd", "at"):
         return None
     angle = getattr(rule, "angle", None)
     if getattr(rule, "angle_distribution", "fixed") == "uniform":
         angle = 90.0  # whose cosine is that mean
-    diffusion = theory.bead_diffusion(
+    return theory.bead_diffusion(
         rule.rule, case.box.dimension, fluid.density, fluid.timestep, angle, solutes.mass,
         kT=fluid.kT, solvent_mass=fluid.mass,
     )  # fmt: skip
-    return fluid.kT / diffusion
+
+
+def kirkwood(case: Case, kind: int) -> float | None:
+    """Diffusion coefficient of ideal chains that drag the fluid along, in this cubic box; None
+    for other molecules and boxes."""
+    assert case.solutes is not None
+    fluid, size, molecule = case.fluid, case.box.size, case.solutes.molecule(kind - 1)
+    bond, alone = free_bond(case, kind) if molecule else None, free_diffusion(case)
+    solvent = without_bonds(dataclasses.replace(case, solutes=None, observe=(), trajectory=None))
+    cubic = len(size) == 3 and len(set(size)) == 1 and not case.walls
+    if molecule is None or bond is None or alone is None or solvent is None or not cubic:
+        return None
+    if molecule.topology != "chain":
+        return None
+    eta = solvent.viscosity * setting.mass_density(case)
+    free = theory.kirkwood_diffusion(
+        molecule.length, fluid.kT / alone, eta, math.sqrt(bond), fluid.kT
+    )
+    return theory.diffusion_in_box(free, size[0], eta, fluid.kT)
 
 
 def stress_in_shear(case: Case) -> theory.ShearStress | None:
