@@ -109,10 +109,13 @@ class Case:
 
     def missing_files(self) -> list[str]:
         """'key = file' for each file or folder that the start needs and that is not there."""
-        start = dataclasses.asdict(self.fluid.start)
+        starts = {"fluid.start": self.fluid.start}
+        if self.solutes is not None:
+            starts["solutes.start"] = self.solutes.start
         return [
-            f"fluid.start.{key} = {show(name, 500)}: no such {'folder' if key == 'run' else 'file'}"
-            for key, name in start.items()
+            f"{where}.{key} = {show(name, 500)}: no such {'folder' if key == 'run' else 'file'}"
+            for where, start in starts.items()
+            for key, name in dataclasses.asdict(start).items()
             if name is not None and not Path(name).exists()
         ]
 

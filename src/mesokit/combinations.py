@@ -212,13 +212,16 @@ def molecule(case: Case) -> Iterator[str]:
 
 def start(case: Case) -> Iterator[str]:
     """Arrays, an earlier run or a file."""
-    given = case.fluid.start
-    for key in ("run", "file"):
-        value = getattr(given, key)
-        if value is not None and (given.positions or given.velocities):
-            yield f"fluid.start.{key} = {show(value)}: not with positions or velocities"
-    if given.run is not None and given.file is not None:
-        yield f"fluid.start.file = {show(given.file)}: not with run"
+    for owner in ("fluid", "solutes"):
+        if getattr(case, owner) is None:
+            continue
+        given, where = getattr(case, owner).start, f"{owner}.start"
+        for key in ("run", "file"):
+            value = getattr(given, key)
+            if value is not None and (given.positions or given.velocities):
+                yield f"{where}.{key} = {show(value)}: not with positions or velocities"
+        if given.run is not None and given.file is not None:
+            yield f"{where}.file = {show(given.file)}: not with run"
 
 
 def names(case: Case) -> Iterator[str]:

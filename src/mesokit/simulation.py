@@ -46,7 +46,7 @@ class Simulation:
         Folder to write to; nothing is written without it.
     threads : int, optional
         Threads to use (all cores unless said). Results do not depend on it.
-    positions, velocities : array (n, d), optional
+    positions, velocities, beads, bead_velocities : array (n, d), optional
         Start from these, by particle id, in cells and cells per unit of time.
 
     Raises
@@ -73,14 +73,17 @@ class Simulation:
         threads: int | None = None,
         positions: Any = None,
         velocities: Any = None,
+        beads: Any = None,
+        bead_velocities: Any = None,
         **parts: Any,
     ) -> None:
         if (case is None) == (not parts):
             raise CaseError("Simulation: expected a case, or its parts by name")
         self.case = Case(**parts) if case is None else _case(case)
         self.threads = _threads(threads)
-        given = positions is not None or velocities is not None
-        state = first_state(self.case, positions, velocities)
+        arrays = positions, velocities, beads, bead_velocities
+        given = any(array is not None for array in arrays)
+        state = first_state(self.case, *arrays)
         self._build()
         start(self.fluid, *state)
         self.directory: RunDirectory | None = None

@@ -74,7 +74,7 @@ def write_data(path, r, box, bonds=(), v=None, low=(-3.0, 2.0, 0.5), numbers=Non
 
 def started(path, size=SIZE, **parts):
     """Positions and velocities that a case takes from a file."""
-    return first_state(make_case(size, start=Start(file=str(path)), **parts))
+    return first_state(make_case(size, start=Start(file=str(path)), **parts))[:2]
 
 
 def melt(molecule, size=SIZE):

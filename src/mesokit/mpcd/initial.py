@@ -13,15 +13,14 @@ from mesokit.box import AXES
 from mesokit.component import FileName, component, param
 from mesokit.errors import CaseError, MesokitError
 from mesokit.geometry.contact import MARGIN
-from mesokit.mpcd.conformation import connected, drawn, nearest_of
-from mesokit.mpcd.growth import grown
-from mesokit.random import INITIAL_POSITION, INITIAL_SOLUTES, INITIAL_VELOCITY
+from mesokit.mpcd.conformation import connected, drawn
+from mesokit.mpcd.solute_start import start_solutes
+from mesokit.random import INITIAL_POSITION, INITIAL_VELOCITY
 from mesokit.solids import solids_of
 
 if TYPE_CHECKING:
     from mesokit.case import Case
     from mesokit.execute.cpu import CPU
-    from mesokit.mpcd.solutes import Solutes
 
 Floats = NDArray[np.float64]
 State = Callable[["Case", str], tuple[Any, Any]]
@@ -45,20 +44,24 @@ class Start:
     )
 
 
-def read_arrays(case: Case, positions: Any, velocities: Any, **states: State) -> tuple[Any, Any]:
+def read_arrays(
+    case: Case, owner: str, positions: Any, velocities: Any, **states: State
+) -> tuple[Any, Any]:
     """The arrays to start from: those given, or those that the case names; None where none.
 
-    `states` gives for each key that names a whole state (`run`, `file`) what reads positions and
-    velocities that suit the case. Raises CaseError if an array is given twice, holds no real
-    numbers, has the wrong shape, is not finite, or has particles outside the walls or too far away.
+    `owner` is "fluid" or "solutes". `states` gives for each key that names a whole state (`run`,
+    `file`) what reads positions and velocities that suit the case. Raises CaseError if an array is
+    given twice, holds no real numbers, has the wrong shape, is not finite, or has particles outside
+    the walls or too far away.
     """
-    given = case.fluid.start
-    _once(given, positions=positions, velocities=velocities)
-    keys = "fluid.start.positions", "fluid.start.velocities"
+    given: Start = getattr(case, owner).start
+    where = f"{owner}.start"
+    _once(where, given, positions=positions, velocities=velocities)
+    keys = f"{where}.positions", f"{where}.velocities"
     for name, read in states.items():
         if getattr(given, name) is None:
             continue
-        key = f"fluid.start.{name} = {getattr(given, name)!r}"
+        key = f"{where}.{name} = {getattr(given, name)!r}"
         try:
             positions, velocities = read(case, getattr(given, name))
         except MesokitError as error:
@@ -67,26 +70,26 @@ def read_arrays(case: Case, positions: Any, velocities: Any, **states: State) ->
         break
     else:
         if positions is None and given.positions is not None:
-            positions = _load("positions", given.positions)
+            positions = _load(where, "positions", given.positions)
         if velocities is None and given.velocities is not None:
-            velocities = _load("velocities", given.velocities)
+            velocities = _load(where, "velocities", given.velocities)
     if positions is not None:
         _no_conformation(case)
-        positions = _checked(case, keys[0], positions)
+        positions = _checked(case, owner, keys[0], positions)
         _inside(case, keys[0], positions)
         _near(case, keys[0], positions)
     if velocities is not None:
-        velocities = _checked(case, keys[1], velocities)
+        velocities = _checked(case, owner, keys[1], velocities)
     return positions, velocities
 
 
-def _once(given: Start, **arrays: Any) -> None:
+def _once(where: str, given: Start, **arrays: Any) -> None:
     """No array beside a file or run that says the same."""
     for name, array in arrays.items():
         for key in ("run", "file", name):
             said = getattr(given, key)
             if array is not None and said is not None:
-                raise CaseError(f"fluid.start.{key} = {said!r}: not with an array of {name} beside")
+                raise CaseError(f"{where}.{key} = {said!r}: not with an array of {name} beside")
 
 
 def _no_conformation(case: Case) -> None:
@@ -99,9 +102,9 @@ def _no_conformation(case: Case) -> None:
         )
 
 
-def _load(name: str, path: str) -> Any:
+def _load(where: str, name: str, path: str) -> Any:
     """An array from a .npy file, or the only one (or the one of that name) from a .npz file."""
-    key = f"fluid.start.{name} = {path!r}"
+    key = f"{where}.{name} = {path!r}"
     try:
         found = np.load(path, allow_pickle=False)
     except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
@@ -114,7 +117,13 @@ def _load(name: str, path: str) -> Any:
     return found[name if name in found.files else found.files[0]]
 
 
-def start(cpu: CPU, positions: Any = None, velocities: Any = None) -> None:
+def start(
+    cpu: CPU,
+    positions: Any = None,
+    velocities: Any = None,
+    beads: Any = None,
+    bead_velocities: Any = None,
+) -> None:
     """Give the particles their first positions and velocities.
 
     Parameters
@@ -123,6 +132,8 @@ def start(cpu: CPU, positions: Any = None, velocities: Any = None) -> None:
         The fluid in memory; its case says how to draw what is not given.
     positions, velocities : array (n, d), optional
         In cells, and in cells per unit of time, by particle id, as `read_arrays` has checked them.
+    beads, bead_velocities : array (n, d), optional
+        The same of the beads of solutes.
     """
     case, d = cpu.case, cpu.dimension
     random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_POSITION))))
@@ -130,9 +141,9 @@ def start(cpu: CPU, positions: Any = None, velocities: Any = None) -> None:
     _put_masses(cpu, mass)
     molecule = case.fluid.molecule
     if molecule is not None and positions is not None:
-        positions = connected(positions, molecule, _periods(cpu))
+        positions = connected(positions, molecule, periods(cpu))
     elif molecule is not None:
-        positions = drawn(molecule, cpu.n, case.fluid.kT, cpu.box, random, _stays_out(cpu))
+        positions = drawn(molecule, cpu.n, case.fluid.kT, cpu.box, random, stays_out(cpu))
     elif positions is None:
         positions = _uniform(cpu, random)
     for k in range(d):
@@ -142,39 +153,16 @@ def start(cpu: CPU, positions: Any = None, velocities: Any = None) -> None:
         if velocities is None:
             v = random.standard_normal(cpu.n)
             v *= np.sqrt(case.fluid.kT / mass)
-            v -= np.sum(mass * v) / max(
-                mass.sum(), 1e-300
-            )  # np.dot would depend on the threads of BLAS
+            whole = max(mass.sum(), 1e-300)
+            v -= np.sum(mass * v) / whole  # np.dot would depend on the threads of BLAS
         else:
             v = velocities[:, k]
         cpu.put(d + k, v)
     if case.solutes is not None:
-        _start_solutes(cpu, case.solutes, velocities is None)
+        start_solutes(cpu, case.solutes, beads, bead_velocities, velocities is None)
     if velocities is None and case.box.shear_rate != 0.0:
         cpu.row(d)[...] += case.box.shear_rate * (cpu.row(1) - 0.5 * cpu.box[1])
     cpu.sort()
-
-
-def _start_solutes(cpu: CPU, solutes: Solutes, at_rest: bool) -> None:
-    """Beads where there is room, with thermal velocities; if wanted, the fluid takes up their
-    momentum, so that the whole is at rest."""
-    assert cpu.dissolved is not None
-    case, d, beads = cpu.case, cpu.dimension, cpu.dissolved
-    random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_SOLUTES))))
-    clear = nearest_of(solutes.wall.kernel(), case.fluid.kT) if solutes.wall else MARGIN
-    kT, room = case.fluid.kT, _stays_out(cpu, clear)
-    beads.places[:] = grown(solutes, kT, cpu.box, _periods(cpu), random, room)
-    v = np.sqrt(kT / solutes.mass) * random.standard_normal(beads.shape)
-    if at_rest:
-        momentum = solutes.mass * v.sum(axis=0)
-        drift = momentum / (solutes.mass * len(v) + cpu.masses().sum())
-        v -= drift
-        for k in range(d):
-            cpu.row(d + k)[...] -= drift[k]
-        if case.box.shear_rate != 0.0:
-            v[:, 0] += case.box.shear_rate * (beads.places[:, 1] - 0.5 * cpu.box[1])
-    beads.velocities[:] = v
-    beads.forget_lists()
 
 
 def _uniform(cpu: CPU, random: np.random.Generator) -> Floats:
@@ -189,7 +177,7 @@ def _uniform(cpu: CPU, random: np.random.Generator) -> Floats:
     return places
 
 
-def _stays_out(cpu: CPU, clear: float = 0.0) -> Callable[[Floats], NDArray[np.bool_]]:
+def stays_out(cpu: CPU, clear: float = 0.0) -> Callable[[Floats], NDArray[np.bool_]]:
     """Which of places (..., d) are in the fluid, so far from its surfaces."""
     if cpu.solids is None:
         return lambda places: np.ones(places.shape[:-1], bool)
@@ -213,7 +201,7 @@ def _stays_out(cpu: CPU, clear: float = 0.0) -> Callable[[Floats], NDArray[np.bo
     return outside
 
 
-def _periods(cpu: CPU) -> Floats:
+def periods(cpu: CPU) -> Floats:
     """Lengths of the box, infinite where walls close it."""
     return np.where(cpu.closed, np.inf, cpu.box)
 
@@ -230,7 +218,7 @@ def _put_masses(cpu: CPU, mass: Floats) -> None:
         virtual[j // virtual.shape[1], j % virtual.shape[1]] = m
 
 
-def _checked(case: Case, key: str, values: Any) -> Floats:
+def _checked(case: Case, owner: str, key: str, values: Any) -> Floats:
     """Numbers for each particle."""
     if np.ma.isMaskedArray(values):
         raise CaseError(f"{key}: expected an array of numbers without a mask")
@@ -241,11 +229,12 @@ def _checked(case: Case, key: str, values: Any) -> Floats:
     if array.dtype.kind not in "iuf":
         raise CaseError(f"{key}: expected an array of numbers, not of {array.dtype.name}")
     array = array.astype(float)
-    shape = case.particles, case.box.dimension
+    beads = case.solutes.beads if owner == "solutes" and case.solutes else case.particles
+    shape = beads, case.box.dimension
     if array.shape != shape:
         raise CaseError(
-            f"{key}: shape {array.shape}: expected {shape}, one row for each of the fluid's "
-            "particles"
+            f"{key}: shape {array.shape}: expected {shape}, one row for each of the "
+            + ("solutes' beads" if owner == "solutes" else "fluid's particles")
         )
     if not np.isfinite(array).all():
         row = int(np.argwhere(~np.isfinite(array))[0][0])

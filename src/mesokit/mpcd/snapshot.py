@@ -11,6 +11,7 @@ from mesokit.box import AXES
 from mesokit.component import show
 from mesokit.errors import CaseError
 from mesokit.mpcd.bead_order import bead_order
+from mesokit.mpcd.conformation import connected
 from mesokit.solids import free_volume
 
 if TYPE_CHECKING:
@@ -60,6 +61,55 @@ def fitted(case: Case, there: Snapshot) -> tuple[Floats, Floats | None]:
         places = (there.positions - there.low)[:, :d]
     velocities = None if there.velocities is None else there.velocities[order, :d]
     return places[order], velocities
+
+
+def fitted_beads(case: Case, there: Snapshot) -> tuple[Floats, Floats | None]:
+    """The same for the beads of solutes. Several kinds of molecules must be in the case's order."""
+    assert case.solutes is not None
+    solutes, d, n = case.solutes, case.box.dimension, len(there.positions)
+    _require_box(case, there)
+    if n != solutes.beads:
+        raise CaseError(f"it has {n} particles, this case {solutes.beads} beads of solutes")
+    if there.masses is not None:
+        off = ~np.isclose(there.masses, solutes.mass, rtol=ROUNDING, atol=0)
+        if off.any():
+            one = int(np.argmax(off))
+            raise CaseError(
+                f"particle {there.numbers[one]} has mass {there.masses[one]:.6g}; expected "
+                f"{solutes.mass:.6g} (solutes.mass)"
+            )
+    molecule = solutes.molecule(0)
+    if len(solutes.polymers) == 1 and molecule is not None:
+        if not len(there.bonds):
+            raise CaseError("it has no bonds; expected those of solutes.polymers")
+        order = bead_order(there.bonds, n, molecule)
+    else:
+        order, wanted = np.arange(n), np.sort(solutes.bonds(), axis=1)
+        found = np.unique(np.sort(there.bonds.reshape(-1, 2), axis=1), axis=0)
+        if not np.array_equal(found, np.unique(wanted, axis=0).reshape(-1, 2)):
+            raise CaseError(
+                "its bonds are not those of solutes.polymers, kind after kind, bead after bead"
+            )
+    places = _whole(case, there)[order]
+    if there.images is None:
+        places = _connected(case, places)
+    velocities = None if there.velocities is None else there.velocities[order, :d]
+    return places, velocities
+
+
+def _connected(case: Case, places: Floats) -> Floats:
+    """Each bead in the image that is nearest to the one that it hangs on."""
+    assert case.solutes is not None
+    closed = {wall.axis for wall in case.walls if wall.shape == "plates"}
+    axes = AXES[: case.box.dimension]
+    periods = np.where([axis in closed for axis in axes], np.inf, np.array(case.box.size, float))
+    whole = places.copy()
+    for kind, polymer in enumerate(case.solutes.polymers):
+        molecule, first = case.solutes.molecule(kind), case.solutes.first_bead(kind)
+        part = slice(first, first + polymer.number * polymer.length)
+        if molecule is not None:
+            whole[part] = connected(places[part], molecule, periods)
+    return whole
 
 
 def _require_box(case: Case, there: Snapshot) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from mesokit.component import component, param
 from mesokit.mpcd import topology as links
+from mesokit.mpcd.initial import Start
 from mesokit.mpcd.molecule import MOST_SUBSTEPS, PHASE, Molecule
 from mesokit.potential import Angle, Bond, Pair
 from mesokit.potential.thermal import stiffness
@@ -53,6 +54,7 @@ class Solutes:
     skin: float = param(
         0.4, doc="by how much neighbour lists reach beyond the pair potential", unit="a", gt=0
     )
+    start: Start = param(Start(), doc="first places and velocities of the beads (drawn)")
     solvent: Literal["fluid", "random"] = param(
         "fluid", doc="what the beads collide with; 'random': without hydrodynamics"
     )
