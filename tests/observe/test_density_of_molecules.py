@@ -95,7 +95,7 @@ def test_where_there_is_no_theory():
 
 def test_what_has_no_meaning_is_refused():
     chains, rings = MOLECULES["chains"], MOLECULES["rings"]
-    with pytest.raises(CaseError, match=r"of = 'ends' needs a fluid of molecules"):
+    with pytest.raises(CaseError, match=r"of = 'ends' needs molecules"):
         make_case((8, 8), [DensityProfile(of="ends")])
     with pytest.raises(CaseError, match=r"observe\[#1\].of = 'ends': rings have none"):
         make_case((8, 8), [DensityProfile(of="ends")], density=10, molecule=rings)

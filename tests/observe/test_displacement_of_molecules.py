@@ -7,13 +7,20 @@ import pytest
 from laboratory import make_case, make_fluid
 
 from mesokit import theory
+from mesokit.box import Box
+from mesokit.case import Case
 from mesokit.errors import CaseError
+from mesokit.execute.cpu import CPU
 from mesokit.mpcd.collision import SRD
+from mesokit.mpcd.fluid import Fluid
+from mesokit.mpcd.initial import start
 from mesokit.mpcd.molecule import Molecule
+from mesokit.mpcd.solutes import Polymer, Solutes
 from mesokit.mpcd.thermostat import MaxwellBoltzmann
 from mesokit.observe import MeanSquareDisplacement
 from mesokit.observe.origins import GROUPS
 from mesokit.potential import FENE, Harmonic
+from mesokit.run import Run
 
 SOFT = Harmonic(K=1 / 6)  # three cells long: beads seldom meet their neighbours in a cell
 THIN = {"timestep": 1.0, "collision": SRD(angle=90)}  # they fly a cell between two collisions
@@ -92,6 +99,32 @@ def test_slow_beads_have_no_diffusion_coefficient_yet():
     assert moved("centres", 5, fene, 20).expected is not None
 
 
+def test_solutes_in_a_random_solvent_obey_it():
+    """Friction of their own, no hydrodynamics: Rouse is exact, for beads and centres."""
+    chains = Solutes(
+        polymers=(Polymer(number=5), Polymer(number=400, length=4)), mass=5.0,
+        bond=Harmonic(K=1.0), solvent="random",
+    )  # fmt: skip
+    observables = [
+        MeanSquareDisplacement(of=of, kind=2, every=5, max_lag=200)
+        for of in ("centres", "particles")
+    ]
+    case = Case(run=Run(steps=3000), box=Box([10, 10, 10]), fluid=Fluid(), solutes=chains)
+    fluid = CPU(case)
+    start(fluid)
+    accumulators = [observable.accumulator(case) for observable in observables]
+    for _ in range(600):
+        fluid.advance(5)
+        for accumulator in accumulators:
+            accumulator.observe(fluid)
+    for accumulator in accumulators:
+        result = accumulator.result()
+        off = np.abs(result.value - result.expected)[1:]
+        assert (off < 4 * result.error[1:] + 0.02 * result.expected[1:]).all()
+    with pytest.raises(CaseError, match="are monomers"):
+        MeanSquareDisplacement(of="centres").accumulator(case)
+
+
 def test_single_particles_have_no_centres():
-    with pytest.raises(CaseError, match=r"observe\[#1\].of = 'centres' needs a fluid of molecules"):
+    with pytest.raises(CaseError, match=r"observe\[#1\].of = 'centres' needs molecules"):
         make_case((8, 8), [MeanSquareDisplacement(of="centres")])

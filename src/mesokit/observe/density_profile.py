@@ -11,13 +11,14 @@ from mesokit.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.observe import setting
 from mesokit.observe.estimate import Estimate, of_mean
-from mesokit.observe.molecules import beads_of, molecule_of, spring_of
+from mesokit.observe.molecules import KIND, beads_of, molecule_of, spring_of
 from mesokit.observe.profile import Array, Profile, ProfileAccumulator
 from mesokit.observe.protocol import RunningFluid
 from mesokit.observe.result import Comparison, Result
 
 if TYPE_CHECKING:
     from mesokit.case import Case
+    from mesokit.mpcd.molecule import Molecule
 
 LABELS = {
     "particles": "density",
@@ -37,13 +38,14 @@ class DensityProfile(Profile):
     of: Literal["particles", "centres", "ends"] = param(
         "particles", doc='"centres": centres of mass of molecules; "ends": beads with one bond'
     )
+    kind: int = param(1, doc=KIND, ge=1)
 
     def check(self, case: Case) -> None:
         """Raise CaseError for an axis that the box has not, and for what molecules have not."""
         super().check(case)
         if self.of == "particles":
             return
-        molecule = molecule_of(case, f"of = '{self.of}'")
+        molecule = molecule_of(case, f"of = '{self.of}'", self.kind)
         if self.of == "ends" and molecule.topology == "ring":
             raise CaseError("of = 'ends': rings have none")
         if self.of == "centres" and self.axis == "x" and case.box.shear_rate:
@@ -64,9 +66,11 @@ class DensityProfileAccumulator(ProfileAccumulator):
         size = case.box.size
         self.slice_volume = np.prod(size) / self.bins
         self.of = observable.of
+        self.molecule = case.fluid.molecule
         if self.of != "particles":
-            beads = beads_of(case)
-            self.beads = beads[:, _ends(case)] if self.of == "ends" else beads
+            self.molecule = molecule = molecule_of(case, kind=observable.kind)
+            beads = beads_of(case, kind=observable.kind)
+            self.beads = beads[:, np.array(_ends(molecule))] if self.of == "ends" else beads
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
@@ -118,7 +122,7 @@ class DensityProfileAccumulator(ProfileAccumulator):
 
     def legend(self) -> str:
         """What the theory is called in a figure."""
-        walls = self.case.fluid.molecule is not None and not self.periodic
+        walls = self.molecule is not None and not self.periodic
         return "ideal molecules between walls" if walls else "ideal gas"
 
     def expected(self) -> Array | None:
@@ -128,8 +132,8 @@ class DensityProfileAccumulator(ProfileAccumulator):
             return None
         weight = 0.0 if self.periodic else float(setting.acceleration(case)[self.axis])
         decay = case.fluid.mass * weight / case.fluid.kT
-        if case.fluid.molecule is not None:
-            return self.expected_of_molecules(decay)
+        if self.molecule is not None:
+            return self.expected_of_molecules(self.molecule, decay)
         if decay == 0:
             return np.full(self.bins, density)
         if len({kind.mass for kind in case.fluid.species}) > 1:
@@ -138,12 +142,15 @@ class DensityProfileAccumulator(ProfileAccumulator):
         scale = density * height * decay / np.expm1(decay * height)
         return scale * setting.bin_average(lambda y: np.exp(decay * y), self.edges)
 
-    def expected_of_molecules(self, decay: float) -> Array | None:
+    def expected_of_molecules(self, molecule: Molecule, decay: float) -> Array | None:
         """Of ideal molecules; None for other bonds, and where the sums would take too long."""
-        molecule, spring = molecule_of(self.case), spring_of(molecule_of(self.case))
-        ends = _ends(self.case)
+        ends, spring, solutes = _ends(molecule), spring_of(molecule), self.case.solutes
         share = {"particles": molecule.length, "centres": 1, "ends": len(ends)}[self.of]
         mean = self.case.fluid.density * share / molecule.length
+        if solutes is not None:
+            mean = share * len(self.beads) / self.case.box.volume
+            if solutes.pair is not None or solutes.wall is not None or decay:
+                return None
         if self.periodic:
             return np.full(self.bins, mean)
         if spring is None:
@@ -159,7 +166,6 @@ class DensityProfileAccumulator(ProfileAccumulator):
         return mean * (beads[ends] if self.of == "ends" else beads).mean(axis=0)
 
 
-def _ends(case: Case) -> list[int]:
+def _ends(molecule: Molecule) -> list[int]:
     """Beads of a molecule that have one bond."""
-    number = np.bincount(np.ravel(molecule_of(case).bonds))
-    return np.flatnonzero(number == 1).tolist()
+    return np.flatnonzero(np.bincount(np.ravel(molecule.bonds)) == 1).tolist()
