@@ -100,16 +100,16 @@ def test_slow_beads_have_no_diffusion_coefficient_yet():
 
 
 def test_solutes_in_a_random_solvent_obey_it():
-    """Friction of their own, no hydrodynamics: Rouse is exact, for beads and centres."""
+    """Friction without hydrodynamics is Rouse's; beads that seldom share a cell: 2 %."""
     chains = Solutes(
-        polymers=(Polymer(number=5), Polymer(number=400, length=4)), mass=5.0,
-        bond=Harmonic(K=1.0), solvent="random",
+        polymers=(Polymer(number=5), Polymer(number=100, length=4)), mass=5.0,
+        bond=Harmonic(K=0.02), solvent="random",
     )  # fmt: skip
     observables = [
         MeanSquareDisplacement(of=of, kind=2, every=5, max_lag=200)
         for of in ("centres", "particles")
     ]
-    case = Case(run=Run(steps=3000), box=Box([10, 10, 10]), fluid=Fluid(), solutes=chains)
+    case = Case(run=Run(steps=3000), box=Box([20, 20, 20]), fluid=Fluid(), solutes=chains)
     fluid = CPU(case)
     start(fluid)
     accumulators = [observable.accumulator(case) for observable in observables]
@@ -120,7 +120,7 @@ def test_solutes_in_a_random_solvent_obey_it():
     for accumulator in accumulators:
         result = accumulator.result()
         off = np.abs(result.value - result.expected)[1:]
-        assert (off < 4 * result.error[1:] + 0.02 * result.expected[1:]).all()
+        assert (off < 3 * result.error[1:] + 0.02 * result.expected[1:]).all()
     with pytest.raises(CaseError, match="are monomers"):
         MeanSquareDisplacement(of="centres").accumulator(case)
 
