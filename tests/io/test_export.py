@@ -19,6 +19,7 @@ from mesokit.mpcd.field import Uniform
 from mesokit.mpcd.fluid import Fluid
 from mesokit.mpcd.initial import Start
 from mesokit.mpcd.molecule import Molecule
+from mesokit.mpcd.solutes import Polymer, Solutes
 from mesokit.mpcd.species import Species
 from mesokit.mpcd.thermostat import MaxwellBoltzmann
 from mesokit.potential import Harmonic
@@ -220,6 +221,33 @@ def test_kinds_and_subsets(tmp_path):
     run_of(tmp_path / "chains", (6, 6), subset=7)
     frame = read(mesokit.open(tmp_path / "chains").export(tmp_path / "a.gsd"))[0]
     assert frame.bonds.group.tolist() == [[0, 1], [1, 2], [3, 4], [4, 5]]
+
+
+def test_solutes_come_after_the_fluid(tmp_path):
+    """Kinds and masses are the same from the segments of a run as from its data file."""
+    solutes = Solutes(polymers=(Polymer(), Polymer(2, 3)), mass=7.0, bond=Harmonic(K=1.0))
+    case = Case(
+        run=Run(steps=20), box=Box([6, 6, 6]), fluid=Fluid(), solutes=solutes,
+        trajectory=Trajectory(every=10),
+    )  # fmt: skip
+    simulation = Simulation(case, output=tmp_path / "run", threads=1)
+    simulation.fluid.advance(10)
+    simulation._observe([])
+    simulation.checkpoint()
+    files, seen = mesokit.open(tmp_path / "run"), []
+    seen.append(read(files.export(tmp_path / "a.gsd"))[0])
+    simulation.run()
+    seen.append(read(mesokit.open(tmp_path / "run").export(tmp_path / "a.gsd"))[0])
+    for frame in seen:
+        assert frame.particles.types == ["A", "B", "C"] and frame.particles.N == 2167
+        assert frame.particles.typeid[2160:].tolist() == [1, 2, 2, 2, 2, 2, 2]
+        assert frame.particles.mass[2159:].tolist() == [1, 7, 7, 7, 7, 7, 7, 7]
+        assert frame.bonds.group.tolist() == [
+            [2161, 2162],
+            [2162, 2163],
+            [2164, 2165],
+            [2165, 2166],
+        ]
 
 
 def test_the_command(whole, tmp_path, capsys):

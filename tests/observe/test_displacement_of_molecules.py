@@ -7,13 +7,20 @@ import pytest
 from laboratory import make_case, make_fluid
 
 from mesokit import theory
+from mesokit.box import Box
+from mesokit.case import Case
 from mesokit.errors import CaseError
+from mesokit.execute.cpu import CPU
 from mesokit.mpcd.collision import SRD
+from mesokit.mpcd.fluid import Fluid
+from mesokit.mpcd.initial import start
 from mesokit.mpcd.molecule import Molecule
+from mesokit.mpcd.solutes import Polymer, Solutes
 from mesokit.mpcd.thermostat import MaxwellBoltzmann
 from mesokit.observe import MeanSquareDisplacement
 from mesokit.observe.origins import GROUPS
 from mesokit.potential import FENE, Harmonic
+from mesokit.run import Run
 
 SOFT = Harmonic(K=1 / 6)  # three cells long: beads seldom meet their neighbours in a cell
 THIN = {"timestep": 1.0, "collision": SRD(angle=90)}  # they fly a cell between two collisions
@@ -90,6 +97,32 @@ def test_slow_beads_have_no_diffusion_coefficient_yet():
     fene = Molecule(length=2, bond=FENE(k=6.0, R0=2.0))
     assert moved("particles", 5, fene, 20).expected is None
     assert moved("centres", 5, fene, 20).expected is not None
+
+
+def test_solutes_in_a_random_solvent_obey_it():
+    """Friction without hydrodynamics is Rouse's; beads that seldom share a cell: 2 %."""
+    chains = Solutes(
+        polymers=(Polymer(number=5), Polymer(number=100, length=4)), mass=5.0,
+        bond=Harmonic(K=0.02), solvent="random",
+    )  # fmt: skip
+    observables = [
+        MeanSquareDisplacement(of=of, kind=2, every=5, max_lag=200)
+        for of in ("centres", "beads")
+    ]
+    case = Case(run=Run(steps=3000), box=Box([20, 20, 20]), fluid=Fluid(), solutes=chains)
+    fluid = CPU(case)
+    start(fluid)
+    accumulators = [observable.accumulator(case) for observable in observables]
+    for _ in range(600):
+        fluid.advance(5)
+        for accumulator in accumulators:
+            accumulator.observe(fluid)
+    for accumulator in accumulators:
+        result = accumulator.result()
+        off = np.abs(result.value - result.expected)[1:]
+        assert (off < 3 * result.error[1:] + 0.02 * result.expected[1:]).all()
+    with pytest.raises(CaseError, match="a random solvent has none"):
+        MeanSquareDisplacement().accumulator(case)
 
 
 def test_single_particles_have_no_centres():

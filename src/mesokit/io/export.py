@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from mesokit.component import one_of, show
 from mesokit.errors import CaseError, RunError
 from mesokit.io.atomic import replacing
-from mesokit.io.trajectory import TrajectoryWriter
+from mesokit.io.h5md import bonds_of
+from mesokit.io.trajectory import TrajectoryWriter, written
 from mesokit.solids import free_volume
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ Array = NDArray[Any]
 class Particles(NamedTuple):
     """What does not change from frame to frame: (n,) numbers from 0, kinds from 0, masses.
 
-    `bonds` (b, 2) of numbers; `size` (3,) of the box, one cell deep in 2D; `closed` by plates.
+    `bonds` (b, 2) of rows; `size` (3,) of the box, one cell deep in 2D; `closed` by plates.
     """
 
     number: NDArray[np.int64]
@@ -88,10 +89,12 @@ def _contents(files: RunFiles, case: Case) -> tuple[Particles, Iterator[dict[str
     assert case.trajectory is not None
     if not files.directory.data_file.exists():
         folder = files.directory.trajectory_folder
-        writer = TrajectoryWriter(case.trajectory, folder, case.particles)
+        writer = TrajectoryWriter(case.trajectory, folder, *written(case))
         if writer.segments():
-            kind = _kinds(case)[writer.ids]
-            return _particles(case, writer.ids, kind, _masses(case)[kind]), writer.frames()
+            mass, kind = _kinds(case)
+            return _particles(case, writer.ids, kind[writer.ids], mass[kind[writer.ids]]), (
+                writer.frames()
+            )
     reader = files.trajectory  # says what is missing where a run has not come so far
     if reader is None or not len(reader):
         raise RunError(f"{files.path}: its trajectory has no frame; the run ended before the first")
@@ -99,23 +102,21 @@ def _contents(files: RunFiles, case: Case) -> tuple[Particles, Iterator[dict[str
     return _particles(case, reader.id, reader.species, reader.mass), frames
 
 
-def _kinds(case: Case) -> NDArray[np.int64]:
-    """Kind of each fluid particle: its place in fluid.species."""
+def _kinds(case: Case) -> tuple[Array, NDArray[np.int64]]:
+    """Mass of each kind, and the kind of each particle: those of the fluid, then solutes."""
     volume = free_volume(case)
+    masses = [kind.mass for kind in case.fluid.species] or [case.fluid.mass]
     counts = [round(kind.density * volume) for kind in case.fluid.species] or [case.particles]
-    return np.repeat(np.arange(len(counts)), counts)
-
-
-def _masses(case: Case) -> Array:
-    return np.array([kind.mass for kind in case.fluid.species] or [case.fluid.mass])
+    if case.solutes is not None:
+        kinds = case.solutes.polymers
+        masses += [case.solutes.mass] * len(kinds)
+        counts += [kind.number * kind.length for kind in kinds]
+    return np.array(masses), np.repeat(np.arange(len(counts)), counts)
 
 
 def _particles(case: Case, number: Array, kind: Array, mass: Array) -> Particles:
-    bonds, molecule = np.zeros((0, 2), np.int64), case.fluid.molecule
-    if molecule is not None:
-        starts = np.arange(0, case.particles, molecule.length)[:, None, None]
-        bonds = (starts + np.array(molecule.bonds)).reshape(-1, 2)
-        bonds = bonds[(bonds < len(number)).all(axis=1)]
+    bonds = bonds_of(case) - (number[0] if len(number) else 0)
+    bonds = bonds[((bonds >= 0) & (bonds < len(number))).all(axis=1)]
     size = np.ones(3)
     size[: case.box.dimension] = case.box.size
     plates = {wall.axis for wall in case.walls if wall.shape == "plates"}

@@ -134,7 +134,7 @@ def _other_number(case: Case, n: int) -> str:
     density = f"fluid.density = {show(case.fluid.density)}"
     whole = case.fluid.molecule is None or n % case.fluid.molecule.length == 0
     hint = ""
-    if whole and not case.fluid.species:
+    if whole and case.particles and not case.fluid.species:
         hint = f"; fluid.density = {show(case.fluid.density * n / case.particles)} makes so many"
     return f"it has {n} particles, this case {case.particles} ({density}){hint}"
 
