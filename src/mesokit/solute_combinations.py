@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 MOST_BEADS = 2**31 - 1  # their numbers are 32-bit
 OF_SOLUTES = ("molecule-size", "normal-modes", "bond-length", "mean-square-displacement",
               "velocity-autocorrelation", "conservation")  # fmt: skip
-WITHOUT_SOLUTES = ("stress", "stress-autocorrelation", "dynamic-moduli", "wall-stress")
 
 
 def solutes(case: Case) -> Iterator[str]:
@@ -31,12 +30,6 @@ def solutes(case: Case) -> Iterator[str]:
         yield f"solutes.polymers: {given.beads} beads; expected at most {MOST_BEADS}"
     yield from _sizes(case, given)
     yield from _substeps(case, given)
-    for i, observable in enumerate(case.observe):
-        if observable.quantity in WITHOUT_SOLUTES:
-            yield (
-                f"observe[#{i + 1}].quantity = {show(observable.quantity)}: not with solutes, "
-                "whose part in the stress is not measured"
-            )
     if given.solvent == "random":
         yield from _random_solvent(case)
 

@@ -238,3 +238,42 @@ def test_a_lost_bead_stops_the_run():
     fluid.dissolved.velocities[1] = np.nan
     with pytest.raises(RunError, match=r"step 1: bead 2 is lost"):
         fluid.advance(1)
+
+
+class TestStress:
+    """Beads carry momentum and hand it over: the whole has the pressure of its molecules."""
+
+    def test_pressure_of_ideal_chains(self):
+        solutes = Solutes(
+            (Polymer(60, length=7),), mass=3.0, bond=Harmonic(K=2.0), bending=Bending(kappa=1.0),
+            substeps=20,
+        )  # fmt: skip
+        fluid = make_fluid(
+            (7, 7, 7), solutes=solutes, density=3, measures=("stress",),
+            thermostat=MaxwellBoltzmann(),
+        )  # fmt: skip
+        fluid.advance(100)
+        found = {"kinetic": [], "collisional": [], "bond": []}
+        for _ in range(600):
+            fluid.advance(3, measure_stress=True)
+            for name, values in found.items():
+                values.append(-np.trace(fluid.stress[name]) / 3)
+        beads, molecules = 420 / 343, 60 / 343
+        total = mean(np.sum(list(found.values()), axis=0).reshape(60, -1).mean(axis=1))
+        kinetic = mean(np.reshape(found["kinetic"], (60, -1)).mean(axis=1))
+        assert kinetic.agrees(3 + beads) and kinetic.error < 0.01
+        assert total.agrees(3 + molecules) and total.error < 0.03
+
+    def test_pairs_push_by_the_virial(self):
+        """Two beads that fly apart: the mean over the flight of way times force."""
+        pair = Solutes((Polymer(2),), mass=2.0, pair=WCA(sigma=3.0), substeps=20)
+        fluid = make_fluid((12, 10, 12), solutes=pair, density=2 / 1440, measures=("stress",))
+        places = np.array([[6.0, 8.7, 6.0], [6.3, 11.8, 6.2]])  # over the boundary
+        fluid.dissolved.places[:], fluid.dissolved.velocities[:] = places, 0.0
+        fluid.dissolved.forget_lists()
+        fluid.advance(1, measure_stress=True)
+        way = places[1] - places[0]
+        sixth = (9.0 / (way @ way)) ** 3
+        force = 24.0 * (2 * sixth**2 - sixth) / (way @ way) * way
+        expected = -np.outer(way, force) / 1440
+        np.testing.assert_allclose(fluid.stress["bond"], expected, rtol=0.05, atol=1e-6)

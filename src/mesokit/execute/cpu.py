@@ -70,6 +70,8 @@ class CPU(Readings):
         what = MEASURE_WALLS * ("walls" in self.measures) + MEASURE_STRESS * measure_stress
         if measure_stress:
             self.tensor[:] = 0.0
+            if self.dissolved is not None:
+                self.dissolved.state_of.tensor[:] = 0.0
         self.team.run(
             advance, self.clock, steps, self.step, self.case.run.seed, self.case.fluid.grid_shift,
             tuple(float(shut) for shut in self.closed), what,

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.execute.neighbours import GAP, Neighbours
-from mesokit.execute.solutes import SoluteState
+from mesokit.execute.solutes import GROUP, SoluteState
 
 if TYPE_CHECKING:
     from mesokit.execute.memory import Memory
@@ -45,6 +45,7 @@ def dissolved(given: Solutes, memory: Memory) -> SoluteState:
         answers=np.zeros(beads * memory.coefficient_count),
         leads=np.zeros(beads, np.bool_),
         solvent=(fluid.density, fluid.mass) if given.solvent == "random" else (),
+        tensor=np.zeros((3, -(-beads // GROUP), 2 * d * d)),
     )
 
 

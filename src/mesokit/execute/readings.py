@@ -226,7 +226,11 @@ class Readings(Memory):
         Bond: momentum handed over within molecules, the mean over the flight.
         """
         d = self.dimension
-        before, after, *bond = self.tensor.sum(axis=1).reshape(-1, 2, d, d)
+        parts = self.tensor.sum(axis=1)
+        if self.dissolved is not None:
+            theirs = self.dissolved.state_of.tensor.sum(axis=1)
+            parts = np.concatenate([parts[:2] + theirs[:2], theirs[2:]])
+        before, after, *bond = parts.reshape(-1, 2, d, d)
         volume = math.prod(self.case.box.size)
         self.stress = {
             "kinetic": -0.5 * (before[0] + after[0]) / volume,

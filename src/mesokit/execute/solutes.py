@@ -13,10 +13,11 @@ import numpy as np
 from mesokit.box import at_time, fold, unfold
 from mesokit.execute.bounce import bounce, take
 from mesokit.execute.cache import inner
-from mesokit.execute.flags import COLLIDE, STREAM
+from mesokit.execute.flags import COLLIDE, MEASURE_STRESS, STREAM
 from mesokit.execute.layout import record_length, share
 from mesokit.execute.neighbours import CROWDED, apart, refresh
 from mesokit.execute.rows import fetch, put
+from mesokit.execute.solute_stress import add_bead_virial, add_flux
 from mesokit.execute.stages import cell_index, in_cell, kind_of_solid
 from mesokit.execute.team import wait
 from mesokit.execute.verlet import SUBSTEP_BITS, within
@@ -31,7 +32,8 @@ from mesokit.potential.protocol import central, torn
 from mesokit.random import Counter
 from mesokit.scalar import added, added_scaled, by_type, dot, scalar, scaled
 
-LEAST = 256  # beads for a thread: fewer do not pay for the gate
+GROUP = 64  # beads whose part in the stress is added up by itself
+LEAST = 4  # groups for a thread: fewer do not pay for the gate
 FIRST_NUMBER = 2**31  # of a bead in random streams, beyond those of all particles
 
 
@@ -48,6 +50,8 @@ class SoluteState(NamedTuple):
     given: what each bead adds to the sums of its cell, as long as `terms`, side by side.
     answers: what the cells of beads need to collide; leads (beads,): whose cell has one.
     solvent: (mean number, mass of a particle) for random solvent, or ().
+    tensor (3, groups, 2 d d): what groups of beads add to the stress (see `solute_stress`): before
+    and after the collision, and by forces.
     """
 
     mass: float
@@ -69,6 +73,7 @@ class SoluteState(NamedTuple):
     answers: Any
     leads: Any
     solvent: tuple
+    tensor: Any
 
 
 @by_type
@@ -92,20 +97,28 @@ def move_beads(
     solutes, thread, threads, gate, what, physics, box, counter, old, grid, coefficients, impulse,
     like, c, scales,
 ):  # fmt: skip
-    beads = len(solutes.cell)
-    together = threads if beads >= LEAST * threads else 1
+    groups = (len(solutes.cell) + GROUP - 1) // GROUP
+    together = threads if groups >= LEAST * threads else 1
     if thread >= together:
         return
-    first, last = share(beads, thread, together)
+    first, last = share(groups, thread, together)
+    first, last = first * GROUP, min(last * GROUP, len(solutes.cell))
+    measured = what & MEASURE_STRESS
     if what & COLLIDE:  # v: the collision at t
         now = at_time(box, (counter.step - (1 if what & STREAM else 0)) * physics.timestep)
         for i in range(first, last):
             collide_bead(solutes, i, physics, now, old, coefficients, like, c)
+        if measured and not what & STREAM:
+            for i in range(first, last):
+                add_flux(solutes, i, box, old.shift, solutes.tensor[1, i // GROUP], like)
     if what & STREAM:  # r, v: t -> t + dt; cells at t + dt
         fly_beads(
-            solutes, thread, together, gate, physics, box, counter, impulse, first, last, like,
-            scales,
+            solutes, thread, together, gate, physics, box, counter, impulse, first, last, measured,
+            like, scales,
         )  # fmt: skip
+        if measured:
+            for i in range(first, last):
+                add_flux(solutes, i, box, grid.shift, solutes.tensor[0, i // GROUP], like)
         for i in range(first, last):
             bin_bead(solutes, i, physics, box, counter, grid, like)
 
@@ -135,8 +148,9 @@ def bin_bead(solutes, i, physics, box, counter, grid, like):
 
 @scalar
 def fly_beads(
-    solutes, thread, threads, gate, physics, box, counter, impulse, first, last, like, scales
-):
+    solutes, thread, threads, gate, physics, box, counter, impulse, first, last, measured, like,
+    scales,
+):  # fmt: skip
     """Places and velocities a timestep later."""
     substeps = solutes.potentials.substeps
     time = physics.timestep / substeps
@@ -152,6 +166,9 @@ def fly_beads(
         refresh(solutes.neighbours, now, thread, threads, gate, solutes.r, first, last, like)
         # v: the second half of the kick of that sub-step, and the first half of the next one's
         span = time if 0 < n < substeps else 0.5 * time
+        if measured:
+            for i in range(first, last):
+                add_bead_virial(solutes, i, now, span, solutes.tensor[2, i // GROUP], like)
         for i in range(first, last):
             kick_bead(solutes, i, physics, now, span, counter.step, thread, impulse, like, scales)
 

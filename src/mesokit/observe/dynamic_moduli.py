@@ -63,8 +63,8 @@ class DynamicModuliAccumulator:
     def __init__(self, observable: DynamicModuli, case: Case) -> None:
         observable.check(case)
         self.case, self.name = case, observable.label
-        molecule = case.fluid.molecule
-        self.parts = PARTS[: 2 if molecule is None else 3]
+        bonded = case.fluid.molecule is not None or case.solutes is not None
+        self.parts = PARTS[: 3 if bonded else 2]
         self.blocks = Blocks((len(self.parts) + 1, 2))
         self.squares, self.products = np.zeros((3, 3)), np.zeros((3, len(self.parts) + 1))
         self.began = np.full(1, np.nan)  # time of the first sample of this period
@@ -138,6 +138,8 @@ class DynamicModuliAccumulator:
                 expected[2:, 0] = theory.storage_modulus(w, modulus, times.stress)
                 expected[2, 1] = theory.loss_modulus(w, modulus, times.stress)
                 expected[3, 1] = theory.loss_modulus(w, modulus, times.stress, eta)
+        elif case.solutes is not None:
+            expected[:, 0] = np.nan
         elif c is not None:
             nu = np.array([c.viscosity_kinetic, c.viscosity_collisional, c.viscosity])
             expected[:, 1] = nu * setting.mass_density(case) * w

@@ -112,8 +112,23 @@ def temperature_note(case: Case) -> str:
 
 
 def mass_density(case: Case) -> float:
-    """Mass per cell."""
-    return case.fluid.density * case.fluid.mass
+    """Mass per cell, of solutes too."""
+    solutes = 0.0 if case.solutes is None else case.solutes.beads * case.solutes.mass
+    return case.fluid.density * case.fluid.mass + solutes / case.box.volume
+
+
+def carriers(case: Case) -> tuple[float, float]:
+    """Particles and beads per cell, and how many of these move as one: molecules count once.
+
+    The latter is nan where beads of different molecules feel one another.
+    """
+    density, molecule, solutes = case.fluid.density, case.fluid.molecule, case.solutes
+    if solutes is None:
+        return density, density / (1 if molecule is None else molecule.length)
+    wholes = sum(polymer.number for polymer in solutes.polymers) / case.box.volume
+    if solutes.pair is not None:
+        wholes = float("nan")
+    return density + solutes.beads / case.box.volume, density + wholes
 
 
 def isothermal(case: Case) -> bool:

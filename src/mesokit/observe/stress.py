@@ -49,9 +49,10 @@ class StressAccumulator(TensorAccumulator):
 
     def __init__(self, observable: Stress, case: Case) -> None:
         observable.check(case)
-        molecule = case.fluid.molecule
-        self.given = PARTS[: 2 if molecule is None else 3]
-        self.beads = 1 if molecule is None else molecule.length
+        self.bonded_beads = case.fluid.molecule is not None or case.solutes is not None
+        self.given = PARTS[: 3 if self.bonded_beads else 2]
+        # numbers per cell of all that carries momentum, and of what moves as one
+        self.carriers, self.wholes = setting.carriers(case)
         super().__init__(observable, case, (*self.given, "total"))
 
     def observe(self, fluid: RunningFluid) -> None:
@@ -61,7 +62,7 @@ class StressAccumulator(TensorAccumulator):
 
     def result(self) -> Result:
         """Tensors, pressure and viscosities."""
-        theory = "molecular chaos, ideal gas" + (" of molecules" if self.beads > 1 else "")
+        theory = "molecular chaos, ideal gas" + (" of molecules" if self.bonded_beads else "")
         return self.tensors("stress", "stress", UNIT[self.case.box.dimension], theory)
 
     def expected(self) -> Array:
@@ -69,11 +70,11 @@ class StressAccumulator(TensorAccumulator):
         case, d = self.case, self.case.box.dimension
         expected = np.zeros((len(self.parts), d, d))
         known = setting.isothermal(case) or not setting.driven(case)
-        pressure = case.fluid.density * case.fluid.kT if known else np.nan
+        kT = case.fluid.kT if known else np.nan
         for axis in range(d):
-            expected[0, axis, axis] = -pressure
-            expected[-1, axis, axis] = -pressure / self.beads  # bonds pull as if beads were one
-            expected[2:-1, axis, axis] = pressure * (1 - 1 / self.beads)
+            expected[0, axis, axis] = -self.carriers * kT
+            expected[-1, axis, axis] = -self.wholes * kT  # bonds pull as if beads were one
+            expected[2:-1, axis, axis] = (self.carriers - self.wholes) * kT
         rate, coefficients = case.box.shear_rate, setting.transport(case)
         if case.fluid.force.rule != "none":
             expected[:] = np.nan
@@ -122,7 +123,7 @@ class StressAccumulator(TensorAccumulator):
                         note,
                     )
                 )
-            if self.beads > 1:
+            if self.bonded_beads:
                 found.append(
                     Comparison(
                         "bond part from the stress", float(mean[2, 0, 1] / scale),
@@ -131,8 +132,8 @@ class StressAccumulator(TensorAccumulator):
                 )  # fmt: skip
             found += self.normal_differences()
         known = setting.isothermal(case) or not setting.driven(case)
-        ideal = case.fluid.density * case.fluid.kT / self.beads
-        if rate and self.beads > 1:  # stretched bonds pull along the flow
+        ideal = self.wholes * case.fluid.kT
+        if rate and self.bonded_beads:  # stretched bonds pull along the flow
             bonded = None if case.box.shear_frequency else self.bonded()
             ideal = ideal - bonded.first / case.box.dimension if bonded else np.nan
         d = case.box.dimension
