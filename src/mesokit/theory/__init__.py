@@ -14,6 +14,11 @@ from mesokit.theory.cubic_array import (
     cubic_array_permeability,
 )
 from mesokit.theory.diffusion_in_box import diffusion_in_box
+from mesokit.theory.dumbbell_shear import (
+    dumbbell_viscosity,
+    fene_p_thinning,
+    pair_friction,
+)
 from mesokit.theory.finite_size import viscosity_renormalised
 from mesokit.theory.gamma import cell_energy_cdf, cell_energy_pdf, cell_energy_variance
 from mesokit.theory.hagen_poiseuille import (
@@ -127,6 +132,8 @@ __all__ = [
     "diffusion_in_box",
     "dimer_oscillation_range",
     "dumbbell_thinning",
+    "dumbbell_viscosity",
+    "fene_p_thinning",
     "gaussian_stress_kernel",
     "hagen_poiseuille_flow_rate",
     "hagen_poiseuille_velocity",
@@ -149,6 +156,7 @@ __all__ = [
     "mean_square_gyration",
     "msd_molecular_chaos",
     "origins",
+    "pair_friction",
     "poiseuille_fit",
     "poiseuille_velocity",
     "relaxation_modulus",
