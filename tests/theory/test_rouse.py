@@ -12,12 +12,15 @@ from mesokit.theory import (
     apparent_viscosity,
     complex_viscosity,
     dumbbell_thinning,
+    dumbbell_viscosity,
+    fene_p_thinning,
     linear_modes,
     loss_modulus,
     maxwell_shear,
     mean_square_bond,
     mean_square_end_to_end,
     mean_square_gyration,
+    pair_friction,
     relaxation_modulus,
     ring_modes,
     rouse_times,
@@ -26,6 +29,7 @@ from mesokit.theory import (
     size_in_shear,
     star_modes,
     storage_modulus,
+    zimm_times,
 )
 
 TAU = [20.0, 6.0, 1.5]
@@ -181,6 +185,42 @@ def test_thinning_goes_as_the_rate_to_minus_two_thirds():
     )
     root = brentq(lambda x: x * x * (x - 1) - 2 / 3 * 0.7**2, 1, 2)
     assert dumbbell_thinning(0.07, 10) == pytest.approx(1 / root)
+
+
+@pytest.mark.parametrize("rate", [0.0, 0.3])
+def test_hookean_dumbbells_by_their_size_across_the_flow(rate):
+    zeta, k, kT = 17.0, 0.4, 1.2
+    times = rouse_times(linear_modes(2), zeta, k=k).stress
+    expected = maxwell_shear(rate, 5 * kT, times, 8.7).viscosity
+    assert dumbbell_viscosity(5, zeta, kT / k, 8.7) == pytest.approx(expected)
+
+
+def test_fene_dumbbells_at_rest():
+    """phi kT tau b/(b + 5), Bird et al. (1987), by quadrature of Boltzmann's distribution."""
+    zeta, k, R0 = 17.0, 1 / 3, 6.0
+    b = k * R0**2
+    radial = [quad(lambda r, n=n: r**n * (1 - (r / R0) ** 2) ** (b / 2), 0, R0)[0] for n in (2, 4)]
+    across = radial[1] / radial[0] / 3
+    assert dumbbell_viscosity(5, zeta, across) == pytest.approx(5 * zeta / (4 * k) * b / (b + 5))
+
+
+@given(rate=st.floats(0, 1e3), b=st.floats(1, 1e3), d=st.sampled_from([2, 3]))
+@settings(deadline=None)
+def test_fene_p_springs_are_as_stiff_as_their_mean_square_makes_them(rate, b, d):
+    tau, k = 10.0, 0.5
+    factor = (1 + d / b) / fene_p_thinning(rate, tau, b, d)
+    size = size_in_shear(linear_modes(2), rate, tau / factor, d / (k * factor), d).bond
+    assert 1 - size / (b / k) == pytest.approx(1 / factor, rel=1e-8)
+
+
+def test_pairs_relax_as_with_zimm():
+    zeta, k, radius = 17.0, 1 / 3, 0.104
+    friction = pair_friction(zeta, radius, np.sqrt(6 / np.pi) / 3)
+    viscosity = zeta / (6 * np.pi * radius)
+    expected = zimm_times(2, zeta, viscosity, bond_length=3.0).mode[0]
+    assert friction / (2 * k) == pytest.approx(expected)
+    with pytest.raises(ValueError, match="hydrodynamic_radius = 2"):
+        pair_friction(1, 2, 1)
 
 
 def test_heating_is_the_work_over_the_heat_capacity():

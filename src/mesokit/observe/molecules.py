@@ -191,6 +191,46 @@ def stress_in_shear(case: Case) -> theory.ShearStress | None:
     return theory.maxwell_shear(case.box.shear_rate, modulus, times.stress, eta)
 
 
+def bond_viscosity(case: Case) -> float | None:
+    """What bonds add to the viscosity (dynamic) of slow flow; None without a theory.
+
+    Of springs without a length of their own it is that of any flow.
+    """
+    c = without_bonds(case)
+    if c is None:
+        return None
+    molecule, times = molecule_of(case), rouse_times_of(case)
+    molecules = case.fluid.density / molecule.length
+    if times is not None:
+        return molecules * case.fluid.kT * float(times.stress.sum())
+    d, kT = case.box.dimension, case.fluid.kT
+    square = molecule.mean_square_bond(d, kT) if molecule.length == 2 else None
+    if square is None:
+        return None
+    return theory.dumbbell_viscosity(molecules, kT / c.diffusion, square / d)
+
+
+def bond_in_shear(case: Case) -> float | None:
+    """Mean square bond length in steady shear: Rouse, of trimers with hydrodynamic interaction."""
+    c = without_bonds(case)
+    if c is None:
+        return None
+    times, bond = rouse_times_of(case), free_bond(case)
+    if times is None or bond is None:
+        return None
+    molecule, rate, kT = molecule_of(case), case.box.shear_rate, case.fluid.kT
+    spring = spring_of(molecule)
+    if molecule.topology == "chain" and molecule.length == 3 and case.box.dimension == 3 and spring:
+        eta = c.viscosity * setting.mass_density(case)
+        radius = kT / (6 * math.pi * eta * c.diffusion)
+        try:
+            return theory.trimer_bond_length(spring.K, rate, eta, radius, kT) ** 2
+        except ValueError:  # bonds shorter than beads are large
+            return None
+    modes, dimension = modes_of(molecule), case.box.dimension
+    return theory.size_in_shear(modes, rate, float(times.stress[0]), bond, dimension).bond
+
+
 def free_bond(case: Case, kind: int = 1) -> float | None:
     """Mean square length of a bond that is not in a ring; None without a theory."""
     spring = spring_of(molecule_of(case, kind=kind))

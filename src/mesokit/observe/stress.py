@@ -10,7 +10,7 @@ from mesokit import theory
 from mesokit.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.observe import setting
-from mesokit.observe.molecules import stress_in_shear
+from mesokit.observe.molecules import bond_viscosity, stress_in_shear
 from mesokit.observe.protocol import Observable, RunningFluid
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.observe.tensor import TensorAccumulator
@@ -123,12 +123,7 @@ class StressAccumulator(TensorAccumulator):
                     )
                 )
             if self.beads > 1:
-                found.append(
-                    Comparison(
-                        "bond part from the stress", float(mean[2, 0, 1] / scale),
-                        float(error[2, 0, 1] / abs(scale)), np.nan, "a^2/tau",
-                    )
-                )  # fmt: skip
+                found.append(self.bond_part(scale))
             found += self.normal_differences()
         known = setting.isothermal(case) or not setting.driven(case)
         ideal = case.fluid.density * case.fluid.kT / self.beads
@@ -141,6 +136,16 @@ class StressAccumulator(TensorAccumulator):
         ideal = ideal if known else np.nan
         found.append(Comparison("pressure", pressure, spread, ideal, UNIT[d]))
         return found
+
+    def bond_part(self, scale: float) -> Comparison:
+        """What bonds add to the viscosity; `scale` is the mass density times the shear rate."""
+        value, error = self.blocks.mean()[2, 0, 1] / scale, self.blocks.error()[2, 0, 1] / scale
+        known, expected, note = bond_viscosity(self.case), np.nan, ""
+        if known is not None:
+            expected = known / setting.mass_density(self.case)
+            note = ROUSE if self.bonded() else f"approximate: at zero shear rate; {ROUSE}"
+        what = "bond part from the stress"
+        return Comparison(what, float(value), float(abs(error)), expected, "a^2/tau", note)
 
     def bonded(self) -> theory.ShearStress | None:
         """What Rouse's theory expects of a sheared fluid of molecules."""

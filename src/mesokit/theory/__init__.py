@@ -17,6 +17,11 @@ from mesokit.theory.cubic_array import (
     cubic_array_permeability,
 )
 from mesokit.theory.diffusion_in_box import diffusion_in_box
+from mesokit.theory.dumbbell_shear import (
+    dumbbell_viscosity,
+    fene_p_thinning,
+    pair_friction,
+)
 from mesokit.theory.finite_size import viscosity_renormalised
 from mesokit.theory.gamma import cell_energy_cdf, cell_energy_pdf, cell_energy_variance
 from mesokit.theory.hagen_poiseuille import (
@@ -133,6 +138,8 @@ __all__ = [
     "diffusion_in_box",
     "dimer_oscillation_range",
     "dumbbell_thinning",
+    "dumbbell_viscosity",
+    "fene_p_thinning",
     "gaussian_stress_kernel",
     "hagen_poiseuille_flow_rate",
     "hagen_poiseuille_velocity",
@@ -156,6 +163,7 @@ __all__ = [
     "msd_molecular_chaos",
     "msd_rouse_beads",
     "origins",
+    "pair_friction",
     "poiseuille_fit",
     "poiseuille_velocity",
     "relaxation_modulus",
