@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from mesokit import (
+    FENE,
     BondLength,
     Box,
     Case,
@@ -25,17 +26,18 @@ from mesokit import (
 # Beads are taken to have the friction of free particles, which molecular chaos gives 10 to 18 % too
 # high where particles meet again before they have flown a cell; relaxation times have that error.
 CHAOS = 0.15
+SPRING = Harmonic(K=0.5)  # mean square length 3
 
 
-def dimers(observe, steps, length=2, K=0.5, **box):
-    """Run it; the mean square bond is 3 for K = 1/2."""
+def dimers(observe, steps, length=2, bond=SPRING, size=(8, 8, 8), **box):
+    """Run it."""
     simulation = Simulation(
         Case(
             run=Run(steps=steps, warmup=400, seed=4),
-            box=Box((8, 8, 8), **box),
+            box=Box(size, **box),
             fluid=Fluid(
                 density=10, timestep=0.1, thermostat=MaxwellBoltzmann(),
-                molecule=Molecule(length=length, bond=Harmonic(K=K)),
+                molecule=Molecule(length=length, bond=bond),
             ),
             observe=observe,
         )
@@ -116,3 +118,24 @@ def test_a_dimer_is_its_bond_where_images_slide(run, request):
     np.testing.assert_allclose(size[0], bond / 4, rtol=1e-9, atol=1e-12)
     mode = of(simulation["normal-modes"], "mean square of mode 1")
     assert mode.measured == pytest.approx(np.trace(bond) / 2, rel=1e-9)
+
+
+@pytest.mark.parametrize(("length", "size"), [(2, (8, 8, 8)), (3, (6, 8, 8))])
+def test_flow_stretches_bonds(length, size):
+    """Beyond their length at rest as Rouse has it, trimers as with hydrodynamic interaction."""
+    bond = dimers([BondLength()], 4000, length, size=size, shear_rate=0.2)["bond-length"]
+    c, at_rest = of(bond, "mean square"), 3.0
+    assert c.expected > 1.3 * at_rest
+    # the elongation goes as the square of a relaxation time
+    assert abs(c.measured - c.expected) < 4.5 * c.error + 2 * CHAOS * (c.expected - at_rest), c
+
+
+def test_finitely_extensible_dumbbells_thin():
+    """Slow flow as theory has it at zero shear rate; less in fast flow."""
+    bond = FENE(k=0.5, R0=5.0)
+    slow, fast = (
+        of(dimers([Stress()], steps, bond=bond, shear_rate=rate)["stress"], "bond part")
+        for steps, rate in ((8000, 0.03), (2000, 0.3))
+    )
+    assert abs(slow.measured - slow.expected) < 4.5 * slow.error + CHAOS * slow.expected, slow
+    assert fast.measured + 4.5 * fast.error < 0.8 * slow.measured
