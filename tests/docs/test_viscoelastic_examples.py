@@ -1,4 +1,4 @@
-"""Every figure of the thesis on viscoelastic fluids is a case that runs and ends in a comparison."""
+"""Every figure of the thesis on viscoelastic fluids is a case that runs and compares."""
 
 import dataclasses
 import math
