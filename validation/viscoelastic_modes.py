@@ -10,12 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from common import BLUE, GREEN, GREY, PURPLE, RED, Page, plt
 
-import mesokit
 from mesokit import Case, Comparison, theory
 from mesokit.observe.molecules import without_bonds
 
 COLOURS, MARKS = (BLUE, RED, GREY), ("o", "s", "^")
+LONG_WAVES = ("5.3", "5.4", "5.5", "5.9")  # what the thesis draws in
 SIMPLE = ("figure 5.1", "figure 5.2")
+BEST, BASE = "finite k", "finite k, background of free particles"
 FINE = 400  # points of a line
 DROWNED = 2.0  # standard errors below which theory has drowned in noise
 
@@ -39,8 +40,12 @@ def mode_time(files: Any) -> Comparison:
     return next(c for c in files["normal-modes"].comparisons if "time 1" in c.what)
 
 
-def laws(case: Case, slowest: float, k: float, t: Any) -> dict[str, Any]:
-    """Rouse theory at finite k and for long waves, with a measured time of the slowest mode."""
+def laws(case: Case, slowest: float, background: float, k: float, t: Any) -> dict[str, Any]:
+    """Rouse theory with a measured time of the slowest mode.
+
+    At finite k with the measured background viscosity and with that of free particles (BASE); and
+    for long waves with the latter.
+    """
     molecule, nu = case.fluid.molecule, without_bonds(case).viscosity
     modes = theory.linear_modes(molecule.length)
     times = theory.rouse_times_from_slowest(modes, mode_time=slowest).stress
@@ -48,9 +53,12 @@ def laws(case: Case, slowest: float, k: float, t: Any) -> dict[str, Any]:
     diffusion = bond / 3 / (slowest * modes.eigenvalues[1]) / molecule.length
     share = 1 / molecule.length
     return {
-        "finite k": theory.transverse_correlation_finite_k(
-            k, t, nu, share, modes, slowest, bond, diffusion
-        ),
+        **{
+            name: theory.transverse_correlation_finite_k(
+                k, t, viscosity, share, modes, slowest, bond, diffusion
+            )
+            for name, viscosity in ((BEST, background), (BASE, nu))
+        },
         "long waves": theory.transverse_correlation_chain(k, t, nu, share, times),
     }
 
@@ -60,15 +68,17 @@ def simple_law(viscosity: float, k: float, t: Any) -> dict[str, Any]:
     return {"theory": theory.transverse_correlation(k, t, viscosity)}
 
 
-def curves(figure: str, case: Case, files: Any) -> list[Curve]:
+def curves(figure: str, case: Case, files: Any, background: Comparison | None) -> list[Curve]:
     """All measured correlations of a run."""
     result, found = files["transverse-modes"], []
     t = result.x["time"]
     for i, k in enumerate(result.x["wavenumber"]):
-        if case.fluid.molecule is None:
+        if background is None:
             beside = functools.partial(simple_law, without_bonds(case).viscosity, k)
         else:
-            beside = functools.partial(laws, case, mode_time(files).measured, k)
+            beside = functools.partial(
+                laws, case, mode_time(files).measured, background.measured, k
+            )
         n = k * case.box.size[0] / (2 * math.pi)
         found.append(Curve(figure, n, t, result.value[:, i], result.error[:, i], beside))
     return found
@@ -106,8 +116,8 @@ def draw(ax: Any, curve: Curve, number: int, until: float, name: str) -> None:
     fine = np.linspace(0, until, FINE)
     beside = curve.laws(fine)
     ax.plot(fine, beside[name], "-", color=colour, lw=1)
-    if "long waves" in beside:
-        ax.plot(fine, beside["long waves"], ":", color=colour, lw=1)
+    if BASE in beside:
+        ax.plot(fine, beside[BASE], ":", color=colour, lw=1)
     ax.axhline(0, color="k", lw=0.4)
 
 
@@ -124,7 +134,7 @@ def picture(
     fig, axes = plt.subplots(1, len(panels), figsize=(4.4 * len(panels), 3.8), squeeze=False)
     for ax, (title, shown, until) in zip(axes[0], panels, strict=True):
         for number, curve in enumerate(shown):
-            draw(ax, curve, number, until, "theory" if title in SIMPLE else "finite k")
+            draw(ax, curve, number, until, "theory" if title in SIMPLE else BEST)
         dressed(ax, title, until)
     page.figure(fig, text, suffix)
 
@@ -143,7 +153,7 @@ def dimer_panels(all_of: dict[str, list[Curve]], case: Case, slowest: float) -> 
                 label=f"$|k_n| = {root(curve.n).replace('sqrt ', chr(8730))}$",
             )  # fmt: skip
             t = np.linspace(0, until, FINE)
-            ax.plot(t, np.abs(curve.laws(t)["finite k"]), "-", color=colour, lw=1)
+            ax.plot(t, np.abs(curve.laws(t)[BEST]), "-", color=colour, lw=1)
         if name == "5.3":
             k, nu = 2 * math.pi / case.box.size[0], without_bonds(case).viscosity
             ax.plot(t, np.exp(-(2 / slowest + k * k * nu) * t / 2), "--", color=GREEN,
@@ -174,29 +184,28 @@ def theory_panels(measured: dict[str, tuple[Case, float, Curve]]) -> Any:
         top.set(xlabel="time", ylabel="$|C(k, t)|/C(k, 0)$")
         top.legend(loc="lower left")
         case, slowest, curve = measured[name]
-        draw(below, curve, 0, 50, "finite k")
+        draw(below, curve, 0, 50, BEST)
         springs, length = case.fluid.molecule.length - 1, case.box.size[0]
         dressed(below, f"N = {springs}, stress time {slowest / 2:.1f}, box of {length}", 50)
     return fig
 
 
 def rows_of(
-    figure: str, case: Case, files: mesokit.io.open.RunFiles, friction: float
+    shown: list[Curve], case: Case, files: Any, background: Comparison | None, friction: float
 ) -> list[Comparison]:
     """What a run measured beside theory."""
-    if case.fluid.molecule is None:
+    if background is None:
         return [
             Comparison(c.what, c.measured, c.error, c.expected, c.unit, "molecular chaos")
             for c in files["transverse-modes"].comparisons
             if c.what.startswith("viscosity")
         ]
-    names = ("finite k", "long waves") if figure in ("5.3", "5.4", "5.5", "5.9") else ("finite k",)
-    found = [deviation(c, name) for c in curves(figure, case, files) for name in names]
-    slowest = mode_time(files)
-    expected = hydrodynamic_time(case, friction)
+    names = [BEST, BASE] + (["long waves"] if shown[0].figure in LONG_WAVES else [])
+    slowest, expected = mode_time(files), hydrodynamic_time(case, friction)
     return [
-        *found,
+        *(deviation(curve, name) for curve in shown for name in names),
         Comparison("time of the slowest mode", slowest.measured, slowest.error, expected, "tau"),
+        background,
     ]
 
 

@@ -7,10 +7,10 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from common import BLUE, GREEN, GREY, PURPLE, RED, SHORT, Page, found, mean_and_error, plt
+from common import BLUE, GREEN, GREY, PURPLE, RED, SHORT, Page, found, long, mean_and_error, plt
 from scipy.optimize import curve_fit
 
-from mesokit import Case, Comparison, MeanSquareDisplacement, Result, theory
+from mesokit import Case, Comparison, MeanSquareDisplacement, Result, Stress, theory
 from mesokit.execute.cpu import CPU
 from mesokit.mpcd.initial import start
 from mesokit.observe.molecules import without_bonds
@@ -56,8 +56,8 @@ def within_cells(profile: Result, case: Case) -> tuple[Any, Any, Comparison]:
 def profiles(results: dict[str, tuple[Case, Result]]) -> Any:
     """Figures 4.1 and 4.2."""
     fig, axes = plt.subplots(1, 3, figsize=(13, 3.8))
-    full = results["1"][1]
-    length = results["1"][0].box.size[1]
+    full = results["full"][1]
+    length = results["full"][0].box.size[1]
     axes[0].plot(full.x["y"], full.value, ".", ms=2.5, color=BLUE, label="measured")
     axes[0].plot(full.x["y"], full.expected, "-", color=GREEN, lw=1, label="theory")
     axes[0].set(title="figure 4.1", xlabel="y", ylabel="velocity", xlim=(0, length))
@@ -68,16 +68,30 @@ def profiles(results: dict[str, tuple[Case, Result]]) -> Any:
         y = result.x["y"]
         show = (y > length / 2 - 3) & (y < length / 2 + 3)
         axes[1].errorbar(y[show], result.value[show], result.error[show], fmt=mark, ms=3, lw=0.8,
-                         color=colour, label=f"shift {shift}")  # fmt: skip
+                         color=colour, label=f"{shift} shift")  # fmt: skip
         mean, error, _ = within_cells(result, case)
         places = (np.arange(len(mean)) + 0.5) / len(mean)
-        axes[2].errorbar(places, mean, error, fmt=mark, color=colour, label=f"shift {shift}")
+        axes[2].errorbar(places, mean, error, fmt=mark, color=colour, label=f"{shift} shift")
     axes[1].plot(y[show], full.expected[show], "-", color=GREEN, lw=1)
     axes[1].set(title="figure 4.2", xlabel="y", ylabel="velocity")
     axes[2].axhline(0, color=GREEN, lw=1)
     axes[2].set(xlabel="place within the cell", ylabel="velocity - line", ylim=(-0.06, 0.06))
     axes[1].legend()
     return fig
+
+
+def background(page: Page, case: Case, tau: float) -> Comparison:
+    """What collisions and flights carry of the viscosity, in shear that is slow for molecules."""
+    molecule, run = case.fluid.molecule, dataclasses.replace(case.run, warmup=1000)
+    slow = dataclasses.replace(case, title="background", observe=(Stress(every=2),), run=run)
+    slow = with_rate(slow, min(0.1, round(0.5 / tau, 2)), steps=long(6000))
+    stress = page.run(f"background-{molecule.length}-{molecule.bond.K:.3g}", slow)["stress"]
+    parts = [found(stress, name) for name in ("kinetic", "collisional")]
+    return Comparison(
+        "background viscosity", sum(c.measured for c in parts),
+        math.hypot(*(c.error for c in parts)), without_bonds(case).viscosity, "a^2/tau",
+        "theory: of free particles",
+    )  # fmt: skip
 
 
 def bonds(page: Page, name: str, case: Case, bead: Bead, rate: float, K: float) -> Comparison:
