@@ -92,7 +92,7 @@ def deviation(curve: Curve, name: str) -> Comparison:
     worst = int(np.argmax(np.abs(off)))
     rms = math.sqrt(np.mean(off**2))
     noise = math.sqrt(np.mean(curve.error[use] ** 2))
-    what = f"largest deviation, |k_n| = {root(curve.n)}, {name}"
+    what = f"largest deviation, k_n = {root(curve.n)}, {name}"
     note = f"of {len(off)} delays; rms {rms:.3f}, of the errors {noise:.3f}"
     return Comparison(what, float(off[worst]), float(curve.error[use][worst]), 0.0, "", note)
 
@@ -182,7 +182,7 @@ def theory_panels(measured: dict[str, tuple[Case, float, Curve]]) -> Any:
             top.semilogy(t, np.abs(c), color=colour, label=label)
         top.set(title=f"figure {name}, theory at $k = 2\\pi/30$", ylim=(1e-4, 1.2), xlim=(0, 100))
         top.set(xlabel="time", ylabel="$|C(k, t)|/C(k, 0)$")
-        top.legend(loc="lower left")
+        top.legend(loc="upper right", ncols=2)
         case, slowest, curve = measured[name]
         draw(below, curve, 0, 50, BEST)
         springs, length = case.fluid.molecule.length - 1, case.box.size[0]
@@ -202,9 +202,14 @@ def rows_of(
         ]
     names = [BEST, BASE] + (["long waves"] if shown[0].figure in LONG_WAVES else [])
     slowest, expected = mode_time(files), hydrodynamic_time(case, friction)
+    molecule = case.fluid.molecule
+    alone = theory.rouse_times(theory.linear_modes(molecule.length), friction, K=molecule.bond.K)
+    note = f"hydrodynamic; without, {alone.mode[0]:.2f}"
     return [
         *(deviation(curve, name) for curve in shown for name in names),
-        Comparison("time of the slowest mode", slowest.measured, slowest.error, expected, "tau"),
+        Comparison(
+            "time of the slowest mode", slowest.measured, slowest.error, expected, "tau", note
+        ),
         background,
     ]
 

@@ -6,6 +6,7 @@ import dataclasses
 import math
 from typing import Any, NamedTuple
 
+import lees_edwards_profile
 import numpy as np
 from common import BLUE, GREEN, GREY, PURPLE, RED, SHORT, Page, found, long, mean_and_error, plt
 from scipy.optimize import curve_fit
@@ -41,19 +42,25 @@ def with_rate(case: Case, rate: float, K: float | None = None, steps: int | None
     return dataclasses.replace(case, box=box, fluid=fluid, run=run)
 
 
-def within_cells(profile: Result, case: Case) -> tuple[Any, Any, Comparison]:
-    """Deviation from the line against the place within a cell, and the slope there."""
-    rate, length = case.box.shear_rate, case.box.size[1]
-    line = theory.lees_edwards_velocity(profile.x["y"], length, rate)
-    cells = (profile.value - line).reshape(length, -1)
-    places = (np.arange(cells.shape[1]) + 0.5) / cells.shape[1]
+STRENGTHS = {"full": (1.0, 400), "half": (0.5, 400), "no": (0.0, 50)}  # of the shift, samples
+
+
+def within_cells(name: str) -> tuple[Any, Any, Comparison]:
+    """Deviation from the line against the place within a cell, and the shear rate there.
+
+    In the box of the thesis; the error is from the scatter over steps, as shifts are independent.
+    """
+    strength, samples = STRENGTHS[name]
+    series = lees_edwards_profile.within_cells(strength, samples // (10 if SHORT else 1), 4)
+    places = (np.arange(series.shape[1]) + 0.5) / series.shape[1]
     slope_of = np.linalg.pinv(np.stack([np.ones(len(places)), places - 0.5], axis=1))[1]
-    slope, error = mean_and_error(cells @ slope_of)
-    mean, spread = mean_and_error(cells)
-    return mean, spread, Comparison("shear rate within cells", rate + slope, error, rate, "1/tau")
+    slope, error = mean_and_error(series @ slope_of)
+    rate, note = lees_edwards_profile.RATE, f"{name} grid shift, box of the figure"
+    what = "shear rate within cells"
+    return *mean_and_error(series), Comparison(what, rate + slope, error, rate, "1/tau", note)
 
 
-def profiles(results: dict[str, tuple[Case, Result]]) -> Any:
+def profiles(results: dict[str, tuple[Case, Result]], cells: dict[str, Any]) -> Any:
     """Figures 4.1 and 4.2."""
     fig, axes = plt.subplots(1, 3, figsize=(13, 3.8))
     full = results["full"][1]
@@ -62,14 +69,14 @@ def profiles(results: dict[str, tuple[Case, Result]]) -> Any:
     axes[0].plot(full.x["y"], full.expected, "-", color=GREEN, lw=1, label="theory")
     axes[0].set(title="figure 4.1", xlabel="y", ylabel="velocity", xlim=(0, length))
     axes[0].legend()
-    for (shift, (case, result)), mark, colour in zip(
+    for (shift, (_, result)), mark, colour in zip(
         results.items(), ("o", "^", "s"), (BLUE, GREY, RED), strict=True
     ):
         y = result.x["y"]
         show = (y > length / 2 - 3) & (y < length / 2 + 3)
         axes[1].errorbar(y[show], result.value[show], result.error[show], fmt=mark, ms=3, lw=0.8,
                          color=colour, label=f"{shift} shift")  # fmt: skip
-        mean, error, _ = within_cells(result, case)
+        mean, error, _ = cells[shift]
         places = (np.arange(len(mean)) + 0.5) / len(mean)
         axes[2].errorbar(places, mean, error, fmt=mark, color=colour, label=f"{shift} shift")
     axes[1].plot(y[show], full.expected[show], "-", color=GREEN, lw=1)
