@@ -146,8 +146,8 @@ def make() -> int:
     )
     summary(page, rows, cases)
     page.text(
-        f"A free particle of this fluid diffuses with D = {diffusion.measured:.4f} +- "
-        f"{diffusion.error:.4f} in a box of {cases['5.1'].box.size[0]} cells: a friction of "
+        f"A free particle of this fluid diffuses with D = {diffusion.measured:.5f} +- "
+        f"{diffusion.error:.5f} in a box of {cases['5.1'].box.size[0]} cells: a friction of "
         f"{bead.friction:.2f} +- {bead.error:.2f} in a large one, a hydrodynamic radius of "
         f"{bead.radius:.4f}. That number and the viscosity of theory are all that the times of "
         "modes and the trimers are compared with. Deviations of the velocity modes are from "
@@ -178,8 +178,7 @@ def make() -> int:
     page.figure(
         modes.dimer_panels(curves, cases["5.3"], slowest["5.3"].measured),
         "Size of the correlations; lines: theory for finite k. Points that are smaller than their "
-        "error are left out. The envelope is that of long waves; waves of 16 cells and less are "
-        "not long against dimers, and swing above it.", "_dimers",
+        "error are left out. The envelope is that of long waves.", "_dimers",
     )  # fmt: skip
     page.heading("Decamers")
     modes.picture(
