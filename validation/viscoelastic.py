@@ -211,8 +211,9 @@ def make() -> int:
         f"Dimers of figure 5.3. A helical wave of amplitude {shear.WAVE} along a box of "
         f"{shear.ACROSS} x {shear.ACROSS} x {shear.LONG} cells decays slowly, where those of the "
         "thesis' boxes swing (these dimers need more than 123 cells): its late decay is that of "
-        "the slow pole. Stress in Lees-Edwards shear. Theory: nu + kT tau/2m, the stress time from "
-        "the normal modes at rest."
+        "the slow pole. Stress in Lees-Edwards shear ([sheared_dimers.toml]"
+        "(../../examples/viscoelastic/sheared_dimers.toml)). Theory: nu + kT tau/2m, the stress "
+        "time from the normal modes at rest."
     )
     fig = shear.routes(page, example("sheared_dimers"), bead, slowest["5.5"])
     page.figure(fig, "Left: decay of the wave. Right: the three routes.", "_routes")
