@@ -106,8 +106,7 @@ def test_solutes_in_a_random_solvent_obey_it():
         bond=Harmonic(K=0.02), solvent="random",
     )  # fmt: skip
     observables = [
-        MeanSquareDisplacement(of=of, kind=2, every=5, max_lag=200)
-        for of in ("centres", "beads")
+        MeanSquareDisplacement(of=of, kind=2, every=5, max_lag=200) for of in ("centres", "beads")
     ]
     case = Case(run=Run(steps=3000), box=Box([20, 20, 20]), fluid=Fluid(), solutes=chains)
     fluid = CPU(case)
