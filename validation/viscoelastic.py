@@ -146,8 +146,8 @@ def make() -> int:
     )
     summary(page, rows, cases)
     page.text(
-        f"A free particle of this fluid diffuses with D = {diffusion.measured:.4f} +- "
-        f"{diffusion.error:.4f} in a box of {cases['5.1'].box.size[0]} cells: a friction of "
+        f"A free particle of this fluid diffuses with D = {diffusion.measured:.5f} +- "
+        f"{diffusion.error:.5f} in a box of {cases['5.1'].box.size[0]} cells: a friction of "
         f"{bead.friction:.2f} +- {bead.error:.2f} in a large one, a hydrodynamic radius of "
         f"{bead.radius:.4f}. That number and the viscosity of theory are all that the times of "
         "modes and the trimers are compared with. Deviations of the velocity modes are from "
@@ -178,8 +178,7 @@ def make() -> int:
     page.figure(
         modes.dimer_panels(curves, cases["5.3"], slowest["5.3"].measured),
         "Size of the correlations; lines: theory for finite k. Points that are smaller than their "
-        "error are left out. The envelope is that of long waves; waves of 16 cells and less are "
-        "not long against dimers, and swing above it.", "_dimers",
+        "error are left out. The envelope is that of long waves.", "_dimers",
     )  # fmt: skip
     page.heading("Decamers")
     modes.picture(
@@ -212,8 +211,9 @@ def make() -> int:
         f"Dimers of figure 5.3. A helical wave of amplitude {shear.WAVE} along a box of "
         f"{shear.ACROSS} x {shear.ACROSS} x {shear.LONG} cells decays slowly, where those of the "
         "thesis' boxes swing (these dimers need more than 123 cells): its late decay is that of "
-        "the slow pole. Stress in Lees-Edwards shear. Theory: nu + kT tau/2m, the stress time from "
-        "the normal modes at rest."
+        "the slow pole. Stress in Lees-Edwards shear ([sheared_dimers.toml]"
+        "(../../examples/viscoelastic/sheared_dimers.toml)). Theory: nu + kT tau/2m, the stress "
+        "time from the normal modes at rest."
     )
     fig = shear.routes(page, example("sheared_dimers"), bead, slowest["5.5"])
     page.figure(fig, "Left: decay of the wave. Right: the three routes.", "_routes")

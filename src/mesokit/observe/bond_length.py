@@ -76,8 +76,9 @@ class BondLengthAccumulator(TensorAccumulator):
         case, box = self.case, self.case.box
         mean, error = self.summed(0, np.eye(box.dimension))
         expected, note = self.square(), ""
-        if box.shear_rate and not box.shear_frequency and setting.isothermal(case):
-            flowing = None if case.fluid.force.rule != "none" else bond_in_shear(case)
+        undisturbed = not case.walls and case.fluid.force.rule == "none"
+        if box.shear_rate and not box.shear_frequency and undisturbed and setting.isothermal(case):
+            flowing = bond_in_shear(case)
             if flowing is not None:
                 expected, note = flowing, IN_SHEAR
         root = max(mean, 0.0) ** 0.5
