@@ -2,7 +2,7 @@
 
 python -m benchmarks [--rounds 5] [--seconds 3] [--only PART,PART]
 
-Parts: peers, cost, solids, bonded, observe, memory, startup.
+Parts: peers, cost, solids, bonded, solutes, observe, memory, startup.
 """
 
 from __future__ import annotations
@@ -12,13 +12,14 @@ import datetime
 import platform
 from pathlib import Path
 
-from benchmarks import bonded, costs, peers, startup
+from benchmarks import bonded, costs, peers, solutes, startup
 
 PARTS = {
     "peers": peers.table,
     "cost": costs.rules,
     "solids": costs.solids,
     "bonded": bonded.table,
+    "solutes": solutes.table,
     "observe": costs.observables,
     "memory": costs.memory,
     "startup": startup.table,

@@ -67,34 +67,48 @@ def table(rounds: int, seconds: float) -> Iterator[str]:
 
 def write_chains(path: Path, beads: int) -> None:
     """Chains at thermal equilibrium as a LAMMPS data file."""
-    box = np.full(3, float(LENGTH))
     n = DENSITY * LENGTH**3
     shape: Any = Molecule(length=beads, bond=Harmonic(K=1.0))
-    random = np.random.default_rng(1)
+    random, box = np.random.default_rng(1), np.full(3, float(LENGTH))
     r = drawn(shape, n, 1.0, box, random, lambda places: np.ones(places.shape[:-1], bool))
-    images = np.floor(r / box).astype(int)
-    r = r - images * box
     starts = np.arange(0, n, beads)
-    bonds = (starts[:, None, None] + np.array(shape.bonds)).reshape(-1, 2) + 1
+    bonds = (starts[:, None, None] + np.array(shape.bonds)).reshape(-1, 2)
+    write_data(path, LENGTH, r, bonds, beads, "1 1.0 0.0")
+
+
+def write_data(path: Path, side: int, r: Any, bonds: Any, beads: int, bond: str | None) -> None:
+    """Molecules of so many beads in a cubic box; `bond`: the parameters of their bonds."""
+    images = np.floor(r / side).astype(int)
+    r, n = r - images * side, len(r)
     with path.open("w", encoding="utf-8") as file:
         file.write(f"chains\n\n{n} atoms\n{len(bonds)} bonds\n1 atom types\n1 bond types\n\n")
-        file.write("".join(f"0 {LENGTH} {k}lo {k}hi\n" for k in "xyz"))
-        file.write("\nMasses\n\n1 1.0\n\nBond Coeffs\n\n1 1.0 0.0\n\nAtoms\n\n")
+        file.write("".join(f"0 {side} {k}lo {k}hi\n" for k in "xyz"))
+        file.write("\nMasses\n\n1 1.0\n")
+        if bond is not None:
+            file.write(f"\nBond Coeffs\n\n{bond}\n")
+        file.write("\nAtoms\n\n")
         for i in range(n):
             x, y, z = r[i]
             a, b, c = images[i]
             file.write(f"{i + 1} {i // beads + 1} 1 {x:.6f} {y:.6f} {z:.6f} {a} {b} {c}\n")
         file.write("\nBonds\n\n")
-        file.writelines(f"{k + 1} 1 {a} {b}\n" for k, (a, b) in enumerate(bonds))
+        file.writelines(f"{k + 1} 1 {a + 1} {b + 1}\n" for k, (a, b) in enumerate(bonds))
 
 
 def lammps(data: Path, seconds: float) -> float:
     """Nanoseconds per particle-step."""
     steps = max(20, int(seconds * 100))
+    took = loop_time("in.lammps_bonds", data=data, steps=steps, reach=REACH)
+    return 1e9 * took / (DENSITY * LENGTH**3 * steps)
+
+
+def loop_time(script: str, **variables: object) -> float:
+    """Seconds that LAMMPS takes for its last run."""
     folder = Path(sys.executable).parent
-    command = [str(folder / "mpiexec"), "-n", "1", str(folder / "lmp"), "-in", "in.lammps_bonds"]
-    command += ["-log", "none", "-var", "data", str(data), "-var", "steps", str(steps)]
-    command += ["-var", "reach", str(REACH)]
+    command = [str(folder / "mpiexec"), "-n", "1", str(folder / "lmp"), "-in", script]
+    command += ["-log", "none"]
+    for name, value in variables.items():
+        command += ["-var", name, str(value)]
     done = subprocess.run(
         command,
         cwd=lammps_peer.INPUTS,
@@ -104,5 +118,4 @@ def lammps(data: Path, seconds: float) -> float:
     )
     if done.returncode != 0:
         raise RuntimeError(f"LAMMPS failed: {done.stdout[-500:]} {done.stderr[-500:]}")
-    took = float(re.findall(r"Loop time of ([\d.e+-]+)", done.stdout)[-1])
-    return 1e9 * took / (DENSITY * LENGTH**3 * steps)
+    return float(re.findall(r"Loop time of ([\d.e+-]+)", done.stdout)[-1])

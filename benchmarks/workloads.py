@@ -47,7 +47,8 @@ def case(name: str) -> Case:
 
     W1@48 is W1 with another length of the box. W5 is a 2D fluid of 400 x 50 cells with a
     thermostat: empty, or a channel with -plates, with -disks that cover 10 % of the area as well,
-    or with these -sampled. B-dimers-5 and B-decamers-5 are fluids of molecules, by 5 sub-steps.
+    or with these -sampled. B-dimers-5 and B-decamers-5 are fluids of molecules, by 5 sub-steps, and
+    S-1000-10 a thousand beads of solutes by 10.
     """
     if name.startswith("B-"):
         from benchmarks import bonded
@@ -61,6 +62,16 @@ def case(name: str) -> Case:
                 collision=SRD(angle=130),
                 molecule=bonded.molecule(kind, int(substeps)),
             ),
+        )
+    if name.startswith("S-"):
+        from benchmarks import solutes
+
+        _, beads, substeps = name.split("-")
+        return Case(
+            run=Run(steps=STEPS),
+            box=Box([solutes.box(int(beads))] * 3),
+            fluid=Fluid(density=10, timestep=solutes.TIMESTEP),
+            solutes=solutes.solutes(int(beads), int(substeps)),
         )
     if name.startswith("W5"):
         return _channel(name.partition("-")[2])
@@ -120,7 +131,7 @@ def measure(name: str, threads: int, seconds: float, warm: int = 101) -> dict[st
     while fluid.step == first or time.perf_counter() - start < seconds:
         fluid.advance(chunk)
     elapsed = time.perf_counter() - start
-    work = (fluid.step - first) * fluid.n
+    work = (fluid.step - first) * fluid.totals()[0]
     stages = {stage: 1e9 * (s - before[stage]) / work for stage, s in fluid.seconds.items()}
     return {
         "workload": name,
@@ -129,7 +140,7 @@ def measure(name: str, threads: int, seconds: float, warm: int = 101) -> dict[st
         "rate": work / elapsed,
         "nanoseconds": 1e9 * elapsed / work,
         "stages": stages,
-        "bytes_per_particle": fluid.bytes_held / fluid.n,
+        "bytes_per_particle": fluid.bytes_held / fluid.totals()[0],
         "peak_kilobytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
     }
 

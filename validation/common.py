@@ -74,8 +74,9 @@ class Page:
         for c in rows:
             error, digits = c.error, decimals(c.error, c.measured)
             percent = f"{c.percent:+.2f} %" if math.isfinite(c.percent) else ""
+            what = c.what.replace("|", "\\|")
             lines.append(
-                f"| {c.what} | {c.measured:.{digits}f} {c.unit} | {error:.{digits}f} | "
+                f"| {what} | {c.measured:.{digits}f} {c.unit} | {error:.{digits}f} | "
                 + (f"{c.expected:.{digits}f}" if math.isfinite(c.expected) else "")
                 + f" | {percent} | "
                 + (f"{c.deviation:+.1f}" if math.isfinite(c.deviation) else "")

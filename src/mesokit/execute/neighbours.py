@@ -17,6 +17,7 @@ from mesokit.execute.team import wait
 from mesokit.scalar import added_scaled, by_type, dot, scalar, scaled, seldom
 
 CROWDED = -1  # the length of a list that did not fit
+NOWHERE = -(2**60)  # beyond a wall: no number of cells added to it makes it one
 GAP = 8  # numbers between those of two threads: each has a cache line of its own
 
 
@@ -161,57 +162,54 @@ def cell_of(lists, r):
 @seldom
 def make_list(lists, box, places, i, like):
     """All within reach of bead i, in order."""
-    d, still = len(like), scaled(0.0, like)
+    d, still, found = len(like), scaled(0.0, like), 0
     mine = fetch(places, np.uint64(i * d), like)
     r, _, _ = fold(box, mine, still, still)
-    slide, square, found = offset_of_images(box), lists.reach * lists.reach, 0
-    most = lists.near.shape[1]
-    for m in range(3**d):
-        cell, inside = neighbour_cell(lists, box, r, slide, m)
-        j = lists.head[cell] if inside else -1
-        while j >= 0:
-            way = apart(box, mine, fetch(places, np.uint64(j * d), like))
-            if j != i and dot(way, way) <= square:
-                if found < most:
-                    put_in_order(lists.near, i, found, j)
-                found += 1
-            j = lists.following[j]
-    lists.count[i] = found if found <= most else CROWDED
+    slide = offset_of_images(box)
+    rows, layers = lists.cells[0], lists.cells[0] * lists.cells[1]
+    along_z, _ = next_along(lists, box, d - 1, r[d - 1])
+    along_y, up = next_along(lists, box, 1, r[1])
+    for b in range(3):  # the image above or below may be displaced along x
+        x = r[0] - up[b] * slide
+        x -= math.floor(x * box.inverse[0]) * box.size[0]
+        along_x, _ = next_along(lists, box, 0, x)
+        for c in range(3 if d == 3 else 1):
+            layer = along_z[c] * layers if d == 3 else 0
+            for a in range(3):
+                if min(along_x[a], along_y[b], layer) >= 0:
+                    cell = along_x[a] + along_y[b] * rows + layer
+                    found = list_cell(lists, box, places, i, mine, cell, found, like)
+    lists.count[i] = found if found <= lists.near.shape[1] else CROWDED
 
 
 @scalar
-def neighbour_cell(lists, box, r, slide, m):
-    """Number of the m-th of the cells round r, and whether there is such a cell."""
-    d = len(r)
-    inside, part = True, m // 3  # along y first: there the image may be displaced along x
-    step = part % 3 - 1
-    cell, up = next_along(lists, box, 1, r[1], step)
-    inside &= cell >= 0
-    index = cell * lists.cells[0]
-    x = r[0] - up * slide
-    x -= math.floor(x * box.inverse[0]) * box.size[0]
-    cell, _ = next_along(lists, box, 0, x, m % 3 - 1)
-    inside &= cell >= 0
-    index += cell
-    if d == 3:
-        cell, _ = next_along(lists, box, d - 1, r[d - 1], m // 9 - 1)
-        inside &= cell >= 0
-        index += cell * lists.cells[0] * lists.cells[1]
-    return index, inside
+def list_cell(lists, box, places, i, mine, cell, found, like):
+    """Add those of a cell to the list of bead i; how many it has then."""
+    square, most = lists.reach * lists.reach, lists.near.shape[1]
+    j = lists.head[cell]
+    while j >= 0:
+        way = apart(box, mine, fetch(places, np.uint64(j * len(like)), like))
+        if j != i and dot(way, way) <= square:
+            if found < most:
+                put_in_order(lists.near, i, found, j)
+            found += 1
+        j = lists.following[j]
+    return found
 
 
 @scalar
-def next_along(lists, box, k, x, step):
-    """The cell a step on along an axis, -1 for none, and how many boxes that crosses."""
-    cells = lists.cells[k]
+def next_along(lists, box, k, x):
+    """The cells before, at and after x along an axis, NOWHERE for none, and the boxes crossed."""
+    cells, here = lists.cells[k], cell_along(lists, k, x)
     if cells == 1:
-        return (0 if step == 0 else -1), 0.0
-    cell = cell_along(lists, k, x) + step
-    if cell < 0:
-        return (cells - 1 if box.inverse[k] > 0.0 else -1), -1.0
-    if cell >= cells:
-        return (0 if box.inverse[k] > 0.0 else -1), 1.0
-    return cell, 0.0
+        return (NOWHERE, here, NOWHERE), (0.0, 0.0, 0.0)
+    before, after, back, on = here - 1, here + 1, 0.0, 0.0
+    repeats = box.inverse[k] > 0.0
+    if before < 0:
+        before, back = (cells - 1 if repeats else NOWHERE), -1.0
+    if after >= cells:
+        after, on = (0 if repeats else NOWHERE), 1.0
+    return (before, here, after), (back, 0.0, on)
 
 
 @scalar

@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from mesokit.execute.cache import inner
+from mesokit.execute.cell_energy import asks
 from mesokit.execute.cells import draw_with_care
 from mesokit.execute.layout import LANES, record_length, share, sums_length
 from mesokit.execute.lumps import chi_square, poisson
@@ -119,7 +120,8 @@ def _with_random_solvent(
         a, b, e, f = words(counter, CELL_VIRTUAL, cell, 0)
         v = scaled(math.sqrt(physics.kT / m), normals(like, a, b, e, f))
         n, mass, momentum = n + number, mass + m, added(momentum, scaled(m, v))
-        energy += m * dot(v, v) + physics.kT * chi_square(d * (number - 1), counter, cell)
+        if asks(physics.energy):
+            energy += m * dot(v, v) + physics.kT * chi_square(d * (number - 1), counter, cell)
         who = (FIRST_NUMBER + len(solutes.cell) + np.int64(cell), 0)
         _, drawn = contribute(physics.rule, counter, who, m, v, scaled(0.0, like))
         own = added(own, drawn)

@@ -91,7 +91,7 @@ def _grow(
     random: np.random.Generator, in_fluid: InFluid,
 ) -> bool:  # fmt: skip
     """Bead by bead along the bonds of a chain or star."""
-    if not (in_fluid(first[None]) & there.free(first[None]))[0]:
+    if not (in_fluid(first[None])[0] and there.free(first)):
         return False
     start = there.number
     there.add(first)
@@ -104,11 +104,11 @@ def _grow(
             else:
                 bonds = bonds @ _any_turn(len(first), random)
         ends = there.places[start + a] + bonds
-        good = np.flatnonzero(in_fluid(ends) & there.free(ends))
-        if len(good) == 0:
+        good = next((n for n in np.flatnonzero(in_fluid(ends)) if there.free(ends[n])), None)
+        if good is None:
             return False
-        came[b] = bonds[good[0]]
-        there.add(ends[good[0]])
+        came[b] = bonds[good]
+        there.add(ends[good])
     return True
 
 
@@ -122,7 +122,7 @@ def _grow_ring(
     angle = 2.0 * math.pi * np.arange(beads) / beads
     flat = np.stack([np.cos(angle), np.sin(angle)], axis=1) * side / (2 * math.sin(math.pi / beads))
     ring = first + np.pad(flat, ((0, 0), (0, d - 2))) @ _any_turn(d, random)
-    if not (in_fluid(ring) & there.free(ring)).all():
+    if not (in_fluid(ring).all() and all(there.free(bead) for bead in ring)):
         return False
     for bead in ring:
         there.add(bead)
@@ -149,7 +149,8 @@ class Placed:
 
     def __init__(self, most: int, box: Floats, periods: Floats, limit: float) -> None:
         self.places, self.number = np.empty((most, len(box))), 0
-        self.box, self.periods, self.limit = box, periods, limit
+        self.box, self.limit = box, limit
+        self.inverse = 1.0 / periods
         self.cells = np.maximum((box / max(limit, 1e-300)).clip(max=1000).astype(int), 1)
         self.inside: dict[tuple[int, ...], list[int]] = defaultdict(list)
 
@@ -167,30 +168,23 @@ class Placed:
                 self.inside[self._cell(self.places[i])].pop()
         self.number = number
 
-    def free(self, places: Floats) -> NDArray[np.bool_]:
-        """Which of places (n, d) are farther than the limit from all beads."""
+    def free(self, place: Floats) -> bool:
+        """Whether all beads are farther away than the limit."""
         if self.limit <= 0.0:
-            return np.ones(len(places), bool)
-        return np.array([self._free(place) for place in places])
-
-    def _free(self, place: Floats) -> bool:
+            return True
         near = [i for cell in self._around(place) for i in self.inside.get(cell, ())]
         if not near:
             return True
         way = self.places[near] - place
-        with np.errstate(invalid="ignore"):
-            boxes = np.where(np.isinf(self.periods), 0.0, np.rint(way / self.periods))
-        way -= boxes * np.where(np.isinf(self.periods), 0.0, self.periods)
+        way -= np.rint(way * self.inverse) * self.box
         return bool(((way**2).sum(axis=1) > self.limit**2).all())
 
     def _cell(self, place: Floats) -> tuple[int, ...]:
         return tuple((np.floor(place / self.box * self.cells).astype(int) % self.cells).tolist())
 
     def _around(self, place: Floats) -> set[tuple[int, ...]]:
-        middle = self._cell(place)
-        steps = itertools.product((-1, 0, 1), repeat=len(middle))
-        cells = self.cells.tolist()
-        return {
-            tuple((m + s) % n for m, s, n in zip(middle, step, cells, strict=True))
-            for step in steps
-        }
+        axes = [
+            ((m - 1) % n, m, (m + 1) % n)
+            for m, n in zip(self._cell(place), self.cells.tolist(), strict=True)
+        ]
+        return set(itertools.product(*axes))
