@@ -16,8 +16,7 @@ from mesokit.execute.rows import fetch, put
 from mesokit.execute.team import wait
 from mesokit.scalar import added_scaled, by_type, dot, scalar, scaled, seldom
 
-CROWDED = -1  # the length of a list that did not fit
-NOWHERE = -(2**60)  # beyond a wall: no number of cells added to it makes it one
+CROWDED, NOWHERE = -1, -1  # the length of a list that did not fit; no cell, beyond a wall
 GAP = 8  # numbers between those of two threads: each has a cache line of its own
 
 
@@ -174,10 +173,10 @@ def make_list(lists, box, places, i, like):
         x -= math.floor(x * box.inverse[0]) * box.size[0]
         along_x, _ = next_along(lists, box, 0, x)
         for c in range(3 if d == 3 else 1):
-            layer = along_z[c] * layers if d == 3 else 0
+            layer = along_z[c] if d == 3 else 0
             for a in range(3):
                 if min(along_x[a], along_y[b], layer) >= 0:
-                    cell = along_x[a] + along_y[b] * rows + layer
+                    cell = along_x[a] + along_y[b] * rows + layer * layers
                     found = list_cell(lists, box, places, i, mine, cell, found, like)
     lists.count[i] = found if found <= lists.near.shape[1] else CROWDED
 
