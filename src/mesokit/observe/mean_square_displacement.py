@@ -193,8 +193,8 @@ class MeanSquareDisplacementAccumulator:
 
         That is when a particle has forgotten its velocity, which it does in m D/kT, and, of
         solutes, when the flow that they had set going has spread over the box; in a molecule, when
-        a bead has forgotten where in the molecule it is. What drags beads along in a fluid of molecules
-        changes as the molecule turns, so that its centre is in no hurry either.
+        a bead has forgotten where in the molecule it is. What drags beads along in a fluid of
+        molecules changes as the molecule turns, so that its centre is in no hurry either.
         """
         alone = free_diffusion(self.case, self.observable.of)
         start = 5 * alone * self.mass / self.case.fluid.kT if alone else 0.0
