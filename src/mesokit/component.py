@@ -265,7 +265,7 @@ def _choice(given: Any, known: Sequence[str]) -> str:
 def _names_key_of(here: Any, words: str) -> bool:
     """Whether a message begins with a key of the component that it is about."""
     key = re.match(r"(\w+)(\[#\d+\])?(\.| = |: )", words)
-    return key is not None and is_component(here) and key[1] in here.__pydantic_fields__
+    return key is not None and any(key[1] in c.__pydantic_fields__ for c in _members(here))
 
 
 def _walk(

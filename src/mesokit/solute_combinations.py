@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 MOST_BEADS = 2**31 - 1  # their numbers are 32-bit
 OF_SOLUTES = ("molecule-size", "normal-modes", "bond-length", "mean-square-displacement",
-              "velocity-autocorrelation", "conservation")  # fmt: skip
+              "conservation")  # fmt: skip
 
 
 def solutes(case: Case) -> Iterator[str]:

@@ -34,6 +34,11 @@ WALL = GOOD[GOOD.index("[[wall]]") : GOOD.index("[[observe]]")]
 BOND = 'bond = { rule = "harmonic", K = 1 }'
 CUBE = {"[20, 10]": "[10, 10, 10]", "[0.001, 0]": "[0.001, 0, 0]", "[0, 0]": "[0, 0, 0]"}
 
+SOLUTES = (
+    "[solutes]\npolymers = [{ number = 2, length = 4 }, { number = 3 }]\n" + BOND + "\n[fluid]"
+)
+RANDOM = SOLUTES.replace("bond =", 'solvent = "random"\nbond =')
+PROFILE = 'quantity = "velocity-profile"\naxis = "y"'
 # name: (what is replaced by what in the good case, what the message must say)
 BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     # syntax and structure
@@ -49,6 +54,25 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "no size": ({"size = [20, 10]": ""}, ("box.size: missing",)),
     "number for a table": ({"[box]\nsize = [20, 10]\n": "", '"slit"': '"slit"\nbox = 3'},
                            ("box = 3", "table")),
+    # solutes
+    "no bond": ({"[fluid]": SOLUTES.replace(BOND, "")}, ("solutes.bond: missing", "length = 4")),
+    "no beads": ({"[fluid]": SOLUTES.replace("length = 4", "length = 0")},
+                 ("solutes.polymers[#1].length = 0",)),
+    "uneven star": ({"[fluid]": SOLUTES.replace("= 4", '= 5, topology = "star", arms = 3')},
+                    ("solutes.polymers[#1].length = 5", "nearest is 4")),
+    "small ring": ({"[fluid]": SOLUTES.replace("= 4", '= 2, topology = "ring"')},
+                   ("solutes.polymers[#1].length = 2", "at least 3")),
+    "far pairs": ({"[fluid]": SOLUTES.replace("bond", 'pair = { rule = "wca", sigma = 9 }\nbond')},
+                  ("solutes.pair: it reaches 10.1", "box of 20")),
+    "monomers have no size": ({"[fluid]": SOLUTES, PROFILE: 'quantity = "molecule-size"\nkind = 2'},
+                              ("observe[#1]", "solutes.polymers[#2] are monomers")),
+    "no such kind": ({"[fluid]": SOLUTES, PROFILE: 'quantity = "molecule-size"\nkind = 3'},
+                     ("observe[#1].kind = 3", "1 to 2")),
+    "random solvent and walls": ({"[fluid]": RANDOM}, ("solvent = 'random': not with walls",)),
+    "nobody in a random solvent": (
+        {"[fluid]": RANDOM, WALL: "", PROFILE: 'quantity = "velocity-autocorrelation"'},
+        ("observe[#1].quantity = 'velocity-autocorrelation'", "there is no fluid"),
+    ),
     # typos
     "unknown key": ({"density = 5": "densty = 5"}, ("fluid.densty: unknown key", "'density'")),
     "unknown nested key": ({"angle = 90": "angel = 90"}, ("fluid.collision.angel", "'angle'")),

@@ -250,6 +250,39 @@ def test_solutes_come_after_the_fluid(tmp_path):
         ]
 
 
+@pytest.mark.parametrize("of", ["fluid", "solutes"])
+def test_the_fluid_or_the_solutes_alone(of, tmp_path):
+    """Kinds, masses and bonds of either, while the run goes on and after it."""
+    solutes = Solutes((Polymer(3), Polymer(2, length=3)), mass=5.0, bond=Harmonic(K=2.0))
+    case = Case(
+        run=Run(steps=20), box=Box([6, 6]), fluid=Fluid(density=2), solutes=solutes,
+        trajectory=Trajectory(every=10, of=of, fields=("position", "image")),
+    )  # fmt: skip
+    simulation = Simulation(case, output=tmp_path / "run", threads=1)
+    simulation.fluid.advance(10)
+    simulation._observe([])
+    simulation.checkpoint()
+    files = mesokit.open(tmp_path / "run")
+    early = read(files.export(tmp_path / "early.gsd"))
+    simulation.run()
+    late = read(mesokit.open(tmp_path / "run").export(tmp_path / "late.gsd"))
+    ids = {"fluid": range(72), "solutes": range(72, 81)}[of]
+    kinds = np.repeat([0, 1, 2], [72, 3, 6])[ids]
+    links = {"fluid": [],
+             "solutes": [[3, 4], [4, 5], [6, 7], [7, 8]]}[of]  # fmt: skip
+    assert (len(early), len(late)) == (1, 2)
+    for frame in (*early, *late):
+        frame.validate()
+        assert frame.particles.typeid.tolist() == kinds.tolist()
+        assert frame.particles.mass.tolist() == np.array([1.0, 5.0, 5.0])[kinds].tolist()
+        assert (frame.bonds.group.tolist() if frame.bonds.N else []) == links
+    np.testing.assert_array_equal(early[0].particles.position, late[0].particles.position)
+    where = simulation.fluid.positions(np.array(ids), unwrapped=True)
+    last = late[-1].particles
+    found = last.position[:, :2] + 3.0 + 6 * last.image[:, :2]
+    np.testing.assert_allclose(found, where, atol=1e-5)
+
+
 def test_the_command(whole, tmp_path, capsys):
     with pytest.raises(SystemExit) as end:
         main(["export", str(whole.directory.path), "--to", str(tmp_path / "film.gsd")])

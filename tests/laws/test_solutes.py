@@ -13,6 +13,7 @@ from mesokit.mpcd.collision import AT, SRD, ATPlusA, SRDPlusA
 from mesokit.mpcd.solutes import Polymer, Solutes
 from mesokit.mpcd.species import Species
 from mesokit.mpcd.thermostat import MaxwellBoltzmann
+from mesokit.observe import Conservation
 from mesokit.potential import FENE, WCA, Bending, Harmonic, LennardJones
 
 STIFF = Solutes(
@@ -204,6 +205,18 @@ class TestRandomSolvent:
         expected = 3 * 0.2**2 / 4.0 * (n * (1 + kept) / (1 - kept) - 2 * decayed)
         # a bead is not alone in its cell once in 500 steps, where it loses up to a third more
         assert found.agrees(expected, 0.001) and found.error < 0.02 * expected
+
+    def test_it_takes_momentum_and_keeps_the_temperature(self):
+        """Few beads wander about: a total momentum of zero is not theirs to keep."""
+        solutes = Solutes((Polymer(20),), mass=4.0, solvent="random")
+        fluid = make_fluid((9, 9, 9), solutes=solutes, density=6, timestep=0.2, collision=SRD())
+        accumulator = Conservation().accumulator(fluid.case)
+        for _ in range(400):
+            fluid.advance(10)
+            accumulator.observe(fluid)
+        (found,) = accumulator.result().comparisons
+        assert found.what == "temperature" and found.expected == 1.0
+        assert abs(found.measured - 1.0) < 3.5 * found.error < 0.1
 
     def test_chains_have_the_size_of_their_temperature(self):
         """Kremer and Grest's chains of 10: R^2 = 18.06(4), R_g^2 = 2.773(4)."""

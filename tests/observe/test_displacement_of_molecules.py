@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 from laboratory import make_case, make_fluid
@@ -127,3 +129,28 @@ def test_solutes_in_a_random_solvent_obey_it():
 def test_single_particles_have_no_centres():
     with pytest.raises(CaseError, match=r"observe\[#1\].of = 'centres' needs molecules"):
         make_case((8, 8), [MeanSquareDisplacement(of="centres")])
+
+
+class TestWhenSolutesDiffuse:
+    """Lags from which on the displacement of solutes is a straight line."""
+
+    CHAINS = Solutes((Polymer(4), Polymer(4, length=20)), mass=10.0, bond=Harmonic(K=1.5))
+
+    def first(self, of, kind, solvent, size=(12, 16, 12)):
+        solutes = dataclasses.replace(self.CHAINS, solvent=solvent)
+        case = make_case(size, density=10, collision=SRD(angle=130), solutes=solutes)
+        return MeanSquareDisplacement(of=of, kind=kind).accumulator(case).diffusive_from()
+
+    def test_in_the_fluid_momentum_has_spread_over_the_box(self):
+        viscosity = theory.transport("srd", 3, 10, 0.1, 130.0).viscosity
+        expected = 5 * 16**2 / (4 * np.pi**2 * viscosity)
+        for kind in (1, 2):
+            assert self.first("centres", kind, "fluid") == pytest.approx(expected)
+        assert self.first("beads", 1, "fluid") == pytest.approx(expected)
+        assert self.first("beads", 2, "fluid") > expected
+
+    def test_in_a_random_solvent_only_inertia_counts(self):
+        alone = theory.bead_diffusion("srd", 3, 10, 0.1, 130.0, 10.0)
+        for kind in (1, 2):
+            assert self.first("centres", kind, "random") == pytest.approx(50 * alone)
+        assert self.first("beads", 2, "random") > 100

@@ -75,7 +75,8 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
     frame = hoomd.Frame()
     frame.configuration.dimensions = particles.dimension
     frame.particles.N = len(kinds)
-    frame.particles.types = list(ascii_uppercase[: int(kinds.max(initial=0)) + 1])
+    names = range(int(kinds.max(initial=0)) + 1)
+    frame.particles.types = [ascii_uppercase[i % 26] * (i // 26 + 1) for i in names]
     frame.particles.typeid, frame.particles.mass = kinds, particles.mass
     if len(particles.bonds):
         frame.bonds.N, frame.bonds.types = len(particles.bonds), ["bond"]

@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from mesokit.component import component, param
+from mesokit.errors import CaseError
 from mesokit.mpcd import topology as links
 from mesokit.mpcd.initial import Start
 from mesokit.mpcd.molecule import MOST_SUBSTEPS, PHASE, Molecule
@@ -77,8 +78,9 @@ class Solutes:
                 )
             try:
                 self.molecule(i)
-            except ValueError as error:
-                raise ValueError(f"polymers[#{i + 1}].{error}") from None
+            except CaseError as error:
+                words = str(error).removeprefix("Molecule.")
+                raise ValueError(f"polymers[#{i + 1}].{words}") from None
 
     def molecule(self, kind: int) -> Molecule | None:
         """A kind as a molecule of its own; None for monomers."""

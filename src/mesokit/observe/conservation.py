@@ -27,7 +27,8 @@ class Conservation(Observable):
     """Number, momentum, kinetic energy and temperature of the whole fluid in time.
 
     The temperature is that of the motion about the mean velocity, flow included. Fluids of
-    molecules have a potential energy as well.
+    molecules and solutes have a potential energy as well. Solutes count as particles; in a random
+    solvent they are all there is.
     """
 
     quantity: Literal["conservation"] = tag("conservation")
@@ -43,8 +44,8 @@ class ConservationAccumulator:
     def __init__(self, observable: Conservation, case: Case) -> None:
         self.name, self.case = observable.label, case
         self.dimension = case.box.dimension
-        self.bonded = case.fluid.molecule is not None
-        # number, momentum, the potential energy of molecules, kinetic energy, temperature
+        self.bonded = case.fluid.molecule is not None or case.solutes is not None
+        # number, momentum, the potential energy of bonds and pairs, kinetic energy, temperature
         width = 3 + self.dimension + self.bonded
         self.blocks = Blocks((width,))
         self.rows = np.zeros((ROWS, 2 + width))  # step and time first
@@ -79,9 +80,12 @@ class ConservationAccumulator:
         """Twice the energy per degree of freedom; a free fluid cannot move as a whole."""
         if number == 0:
             return np.nan
-        if self.case.walls:
+        solutes = self.case.solutes
+        if self.case.walls or self.forgets():
             return 2 * energy / (self.dimension * number)
         total_mass = number * self.case.fluid.mass
+        if solutes is not None:
+            total_mass += solutes.beads * (solutes.mass - self.case.fluid.mass)
         about_mean = 2 * energy - float(momentum @ momentum) / total_mass
         return about_mean / (self.dimension * max(number - 1, 1))
 
@@ -130,9 +134,13 @@ class ConservationAccumulator:
             },
         )
 
+    def forgets(self) -> bool:
+        """Whether the solvent takes momentum and energy, and forgets them."""
+        return self.case.solutes is not None and self.case.solutes.solvent == "random"
+
     def conserves_momentum(self) -> bool:
         """Nothing outside acts on the fluid."""
-        return not (self.case.walls or setting.driven(self.case))
+        return not (self.case.walls or setting.driven(self.case) or self.forgets())
 
     def conserves_energy(self) -> bool:
         """No thermostat, and no work is done."""
@@ -150,7 +158,8 @@ class ConservationAccumulator:
         return expected
 
     def _at_rest(self) -> bool:
-        return setting.isothermal(self.case) and not setting.driven(self.case)
+        held = setting.isothermal(self.case) or self.forgets()
+        return held and not setting.driven(self.case)
 
     def _comparisons(self) -> list[Comparison]:
         fluid, found = self.case.fluid, []

@@ -21,6 +21,7 @@ from mesokit.observe.molecules import (
     kirkwood,
     modes_of,
     spring_of,
+    without_solutes,
 )
 from mesokit.observe.origins import GROUPS, Origins
 from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
@@ -190,19 +191,30 @@ class MeanSquareDisplacementAccumulator:
     def diffusive_from(self) -> float:
         """The lag from which on the displacement is a straight line.
 
-        That is when a particle has forgotten its velocity, which it does in m D/kT; in a molecule,
-        when a bead has forgotten where in the molecule it is. What drags beads along changes as
-        the molecule turns, so that its centre is in no hurry either.
+        That is when a particle has forgotten its velocity, which it does in m D/kT, and, of
+        solutes, when the flow that they had set going has spread over the box; in a molecule, when
+        a bead has forgotten where in the molecule it is. What drags beads along in a fluid of
+        molecules changes as the molecule turns, so that its centre is in no hurry either.
         """
-        fluid = self.case.fluid
         alone = free_diffusion(self.case, self.observable.of)
-        inertia = 5 * alone * self.mass / fluid.kT if alone else 0.0
+        start = 5 * alone * self.mass / self.case.fluid.kT if alone else 0.0
+        solute = self.case.solutes is not None and self.observable.of != "particles"
+        if solute:
+            start = max(start, self.spreading())
         if self.group.molecule is None:
-            return inertia
+            return start
         slowest = self.slowest(alone)
         if self.centres:
-            return max(inertia, slowest or 0.0)
-        return np.inf if slowest is None else max(inertia, 5 * slowest)
+            return start if solute else max(start, slowest or 0.0)
+        return np.inf if slowest is None else max(start, 5 * slowest)
+
+    def spreading(self) -> float:
+        """Five times the longest time in which momentum spreads, L^2/(4 pi^2 nu); 0 without one."""
+        assert self.case.solutes is not None
+        solvent = without_solutes(self.case)
+        if self.case.solutes.solvent == "random" or solvent is None:
+            return 0.0
+        return 5 * max(self.case.box.size) ** 2 / (4 * np.pi**2 * solvent.viscosity)
 
     def slowest(self, alone: float | None) -> float | None:
         """The longest relaxation time of the molecules, by Rouse's theory; None without one."""

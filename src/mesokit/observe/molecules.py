@@ -126,6 +126,11 @@ def without_bonds(case: Case) -> theory.Transport | None:
     return setting.transport(dataclasses.replace(case, fluid=fluid, observe=(), trajectory=None))
 
 
+def without_solutes(case: Case) -> theory.Transport | None:
+    """The same of what the solutes are in, be there any."""
+    return without_bonds(dataclasses.replace(case, solutes=None, observe=(), trajectory=None))
+
+
 def rouse_times_of(case: Case, kind: int = 1) -> theory.RouseTimes | None:
     """Relaxation times of molecules whose beads have the friction of free particles."""
     molecule, friction = molecule_of(case, kind=kind), friction_of(case)
@@ -147,7 +152,7 @@ def free_diffusion(case: Case, of: str = "beads") -> float | None:
     """Diffusion coefficient of a particle or bead alone by molecular chaos; None if unknown."""
     fluid, solutes = case.fluid, case.solutes
     if solutes is None or of == "particles":
-        alone = without_bonds(dataclasses.replace(case, solutes=None, observe=(), trajectory=None))
+        alone = without_solutes(case)
         return None if alone is None else alone.diffusion
     rule = fluid.collision
     if fluid.species or fluid.thermostat.rule == "rescale" or rule.rule not in ("srd", "at"):
@@ -167,7 +172,7 @@ def kirkwood(case: Case, kind: int) -> float | None:
     assert case.solutes is not None
     fluid, size, molecule = case.fluid, case.box.size, case.solutes.molecule(kind - 1)
     bond, alone = free_bond(case, kind) if molecule else None, free_diffusion(case)
-    solvent = without_bonds(dataclasses.replace(case, solutes=None, observe=(), trajectory=None))
+    solvent = without_solutes(case)
     cubic = len(size) == 3 and len(set(size)) == 1 and not case.walls
     if molecule is None or bond is None or alone is None or solvent is None or not cubic:
         return None

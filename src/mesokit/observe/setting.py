@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.box import AXES, Axis
 from mesokit.errors import CaseError
-from mesokit.solids import slit_of, solids_of
+from mesokit.solids import free_volume, slit_of, solids_of
 
 if TYPE_CHECKING:
     from mesokit.case import Case
@@ -129,6 +129,18 @@ def carriers(case: Case) -> tuple[float, float]:
     if solutes.pair is not None:
         wholes = float("nan")
     return density + solutes.beads / case.box.volume, density + wholes
+
+
+def solute_mass(case: Case) -> float:
+    """Mass of all beads of solutes, on which forces on the fluid act as well."""
+    return case.solutes.beads * case.solutes.mass if case.solutes is not None else 0.0
+
+
+def superficial_mass(case: Case) -> float:
+    """What the momentum of fluid and solutes is divided by for their superficial velocity."""
+    rho = mass_density(case)
+    with_solutes = 1.0 + solute_mass(case) / (rho * free_volume(case))
+    return rho * case.box.volume * with_solutes
 
 
 def isothermal(case: Case) -> bool:

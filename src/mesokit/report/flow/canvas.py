@@ -8,6 +8,7 @@ from typing import Any
 
 import matplotlib as mpl
 
+from mesokit.report.flow import beads
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.kinds import Panel
 from mesokit.report.flow.layout import LINE, Box, layout
@@ -123,4 +124,6 @@ class Canvas:
                     artist.remove()
                 limits = ax.get_xlim(), ax.get_ylim()
                 panel.draw(ax, flow, self.region, reach)
+                if flow.beads is not None:
+                    beads.draw(ax, flow.beads, self.region)
                 ax.set(xlim=limits[0], ylim=limits[1])

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from mesokit.report.flow.beads import Beads
 
 Array = NDArray[np.floating[Any]]
 
@@ -29,6 +32,7 @@ class Flow:
     sure: bins (nx, ny) that are mostly fluid, which the colours are chosen from, None for all.
     lowest: density at which its colours start.
     smoothing: width over which the velocity is smoothed before its slope is taken, in bins.
+    beads: of solutes, drawn over all, or None.
     """
 
     axes: tuple[str, str]
@@ -43,6 +47,7 @@ class Flow:
     sure: NDArray[np.bool_] | None = None
     lowest: float = 0.0
     smoothing: float = 0.0
+    beads: Beads | None = None
 
     @property
     def speed(self) -> Array:

@@ -17,6 +17,7 @@ from mesokit.component import show
 from mesokit.errors import CaseError
 from mesokit.io.atomic import replacing
 from mesokit.progress import FilmReporter, Reporter
+from mesokit.report.flow.beads import BeadFrames, frames_of
 from mesokit.report.flow.encode import ENCODERS, Pixels
 from mesokit.report.flow.kinds import panels_of, quieted
 from mesokit.report.flow.region import Ranges, frames_in, region_of
@@ -114,7 +115,8 @@ def animate(
     drawn.figure.set_dpi(DPI[ending])
     progress = progress or FilmReporter(quiet=True)
     progress.start(len(frames), case.particles, "drawing")
-    pictures = _pictures(drawn, source, frames, progress, width)
+    solutes = frames_of(case, trajectory, source.axes)
+    pictures = _pictures(drawn, source, frames, progress, width, solutes)
     try:
         with replacing(path) as temporary:
             temporary.touch()  # a folder that cannot be written to says so before long work
@@ -125,12 +127,14 @@ def animate(
 
 
 def _pictures(
-    drawn: Canvas, source: Source, frames: NDArray[np.int64], progress: Reporter, width: float
-) -> Iterator[Pixels]:
+    drawn: Canvas, source: Source, frames: NDArray[np.int64], progress: Reporter, width: float,
+    solutes: BeadFrames | None,
+) -> Iterator[Pixels]:  # fmt: skip
     """The pictures of a film, one by one."""
     canvas: Any = drawn.figure.canvas
     for done, frame in enumerate(frames, start=1):
-        flow = replace(source.flow(np.array([frame])), smoothing=width)
+        beads = solutes.at(source.time[frame]) if solutes else None
+        flow = replace(source.flow(np.array([frame])), smoothing=width, beads=beads)
         stamp = f"$t = {source.time[frame]:.4g}$ {symbols('tau')}"
         drawn.show([flow] * len(drawn.panels), stamp)
         canvas.draw()

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from mesokit.report.flow.beads import frames_of
 from mesokit.report.flow.kinds import panels_of, quieted
 from mesokit.report.flow.region import Ranges, frames_in, region_of
 from mesokit.report.flow.solids import Section
@@ -59,8 +60,12 @@ def picture(
     from mesokit.report.flow.canvas import Canvas
 
     width, note = quieted(panels, flows, shown)
-    flows = [replace(flow, smoothing=width) for flow in flows]
+    solutes = frames_of(case, trajectory, chosen[0].axes)
+    beads = solutes.at(window and window[1]) if solutes else None
+    flows = [replace(flow, smoothing=width, beads=beads) for flow in flows]
     reaches = [panel.reach(flow, shown) for panel, flow in zip(panels, flows, strict=True)]
-    drawn = Canvas(panels, flows, reaches, shown, section, notes=[section.note(), note(flows[0])])
+    when = f"solutes at t = {beads.time:.4g}" if beads else ""
+    notes = [section.note(), note(flows[0]), when]
+    drawn = Canvas(panels, flows, reaches, shown, section, notes=notes)
     drawn.show(flows)
     return drawn.figure

@@ -16,16 +16,17 @@ if TYPE_CHECKING:
 
 
 class TrajectorySource:
-    """The frames of a trajectory; its density is known if it holds all particles."""
+    """The frames of a trajectory, without solutes; its density is known if all the fluid is in."""
 
     def __init__(self, case: Case, reader: TrajectoryReader, axes: tuple[str, str]) -> None:
         self.reader, self.axes, self.time = reader, axes, reader.time
         self.setting, self.kT = Setting.of(case, axes), case.fluid.kT
         self.whole = np.arange(len(reader))
+        self.rows = np.flatnonzero(reader.id < case.particles)
         known = {"particles"}
-        if "velocity" in reader.fields:
+        if "velocity" in reader.fields and len(self.rows):
             known.add("velocity")
-        if len(reader.id) == case.particles:
+        if len(self.rows) == case.particles > 0:
             known.add("density")
         self.gives = frozenset(known)
         self.bins = tuple(int(length) for length in self.setting.size)
@@ -33,12 +34,13 @@ class TrajectorySource:
 
     def flow(self, frames: NDArray[np.int64]) -> Flow:
         """Means over some frames: momentum over mass."""
-        columns, mass = self.setting.columns, self.reader.mass
+        columns, mass = self.setting.columns, self.reader.mass[self.rows]
         sums = np.zeros((4, *self.bins))  # number, mass, momentum
         for frame in frames:
             read = self.reader[int(frame)]
-            place = read["position"][:, columns]
-            velocity = read["velocity"][:, columns] if "velocity" in read else 0 * place
+            place = read["position"][self.rows][:, columns]
+            known = "velocity" in read
+            velocity = read["velocity"][self.rows][:, columns] if known else 0 * place
             bins = np.minimum(place.astype(int), np.array(self.bins) - 1)
             index = np.ravel_multi_index((bins[:, 0], bins[:, 1]), self.bins)
             each = (np.ones_like(mass), mass, mass * velocity[:, 0], mass * velocity[:, 1])

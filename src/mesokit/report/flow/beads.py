@@ -1,0 +1,144 @@
+"""Beads of solutes and the bonds between them, drawn over the flow."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.report.flow.region import Region
+from mesokit.report.style import COLOURS
+
+if TYPE_CHECKING:
+    from mesokit.case import Case
+    from mesokit.io.open import TrajectoryReader
+    from mesokit.report.flow.data import Array
+
+FULL, SMALLEST = 0.5, 1.6  # diameter without a pair potential, in cells; least one, in points
+EDGE, BOND = 0.2, 0.45  # widths of the edge and of bonds, of the diameter
+ABOVE = 6  # the solids
+
+
+@dataclass(frozen=True)
+class Beads:
+    """Beads at one time, molecules whole, so that some may lie outside the box.
+
+    Parameters
+    ----------
+    places: (n, 2) along the axes of the picture.
+    kinds: (n,) from 0.
+    bonds: (m, 2) rows of `places`.
+    diameter: in cells.
+    repeats: vectors (2,) by which all of it repeats.
+    time: of the frame.
+    """
+
+    places: Array
+    kinds: NDArray[np.int64]
+    bonds: NDArray[np.int64]
+    diameter: float
+    repeats: tuple[tuple[float, float], ...]
+    time: float
+
+
+class BeadFrames:
+    """The beads that a trajectory has."""
+
+    def __init__(self, case: Case, reader: TrajectoryReader, axes: tuple[str, str]) -> None:
+        from mesokit.io.h5md import bonds_of
+
+        assert case.solutes is not None
+        self.case, self.reader = case, reader
+        self.columns = [case.box.axes.index(axis) for axis in axes]
+        self.rows = np.flatnonzero(reader.id >= case.particles)
+        self.kinds = reader.species[self.rows] - max(len(case.fluid.species), 1)
+        bonds = bonds_of(case) - (reader.id[self.rows[0]] if len(self.rows) else 0)
+        self.bonds = bonds[(bonds < len(self.rows)).all(axis=1)]
+        pair = case.solutes.pair
+        self.diameter = FULL if pair is None else pair.sigma
+        closed = {wall.axis for wall in case.walls if wall.shape == "plates"}
+        lengths = zip(case.box.axes, case.box.size, strict=True)
+        self.periods = np.array([np.inf if a in closed else float(n) for a, n in lengths])
+
+    def at(self, time: float | None = None) -> Beads:
+        """In the frame that is nearest to a time, the last one unless said."""
+        times = self.reader.time
+        index = len(times) - 1 if time is None else int(np.argmin(np.abs(times - time)))
+        now, slid = float(times[index]), 0.0
+        if self.case.box.shear_rate:
+            slid = self.case.box.displacement(now) % float(self.case.box.size[0])
+        position = self.reader[index]["position"][self.rows].astype(float)
+        whole = self._whole(position, slid)
+        edges = np.diag(np.where(np.isinf(self.periods), 0.0, self.periods))
+        edges[1, 0] = slid
+        repeats = self._repeats(whole, edges)
+        places = whole[:, self.columns]
+        return Beads(places, self.kinds, self.bonds, self.diameter, repeats, now)
+
+    def _whole(self, r: Array, slid: float) -> Array:
+        """Each bead next to the one before that it hangs on."""
+        r = r.copy()
+        for first, last in self.bonds[np.argsort(self.bonds.max(axis=1), kind="stable")]:
+            near, far = min(first, last), max(first, last)
+            way = r[far] - r[near]
+            way[0] -= slid * np.rint(way[1] / self.periods[1])
+            boxes = np.rint(way / self.periods)
+            way -= boxes * np.where(np.isinf(self.periods), 0.0, self.periods)
+            r[far] = r[near] + way
+        return r
+
+    def _repeats(self, whole: Array, edges: Array) -> tuple[tuple[float, float], ...]:
+        """Displacements by boxes that bring some bead into the box of the picture."""
+        if not len(whole):
+            return ()
+        counts = []
+        for axis, period in enumerate(self.periods):
+            if axis not in self.columns or np.isinf(period):
+                counts.append(range(1))
+                continue
+            low, high = (np.floor(f(whole[:, axis]) / period) for f in (np.min, np.max))
+            more = axis == 0 and bool(edges[1, 0])  # images above and below lie aside
+            counts.append(range(-int(high) - more, -int(low) + more + 1))
+        shifts = {tuple((np.array(n) @ edges)[self.columns].tolist()) for n in
+                  itertools.product(*counts)}  # fmt: skip
+        return tuple(sorted(shifts))
+
+
+def frames_of(
+    case: Case, trajectory: TrajectoryReader | None, axes: tuple[str, str]
+) -> BeadFrames | None:
+    """The beads of a run, None if it kept none of them."""
+    if trajectory is None or case.solutes is None or not len(trajectory):
+        return None
+    if "position" not in trajectory.fields:
+        return None
+    found = BeadFrames(case, trajectory, axes)
+    return found if len(found.rows) else None
+
+
+def draw(ax: Any, beads: Beads, region: Region) -> None:
+    """Draw those in the region, kinds in colours of their own."""
+    from matplotlib.collections import LineCollection
+
+    box = ax.get_position()
+    points = 72.0 * box.width * ax.figure.get_size_inches()[0] / np.ptp(ax.get_xlim())
+    size = max(SMALLEST, beads.diameter * points)
+    for shift in beads.repeats:
+        places = beads.places + shift
+        inside = region.holds(places)
+        ends = beads.bonds[inside[beads.bonds].any(axis=1)]
+        for kind in np.unique(beads.kinds):
+            colour = COLOURS[(kind + 1) % len(COLOURS)]
+            own = inside & (beads.kinds == kind)
+            bonds = places[ends[beads.kinds[ends[:, 0]] == kind]]
+            ax.add_collection(
+                LineCollection(list(bonds), colors=colour, linewidths=BOND * size, zorder=ABOVE),
+                autolim=False,
+            )
+            ax.plot(
+                *places[own].T, "o", color=colour, markersize=size, markeredgewidth=EDGE * size / 2,
+                markeredgecolor="white", zorder=ABOVE,
+            )  # fmt: skip

@@ -1,0 +1,118 @@
+"""Polymers over the flow: whole molecules, at both ends of a periodic box, sheared or not."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from flows import MAPS, results_of
+from laboratory import make_case
+
+from mesokit.errors import RunError
+from mesokit.geometry import Plates
+from mesokit.mpcd.solutes import Polymer, Solutes
+from mesokit.potential import WCA, Harmonic
+from mesokit.report.flow import picture
+from mesokit.report.flow.beads import BeadFrames
+from mesokit.report.style import COLOURS
+
+RING = Polymer(topology="ring", length=4)
+SOLUTES = Solutes((Polymer(2), Polymer(length=3), RING), bond=Harmonic(K=2.0), pair=WCA(sigma=0.8))
+SIZE = (12, 10)
+
+
+class Frames(SimpleNamespace):
+    """A trajectory in memory, read as one in a file is."""
+
+    fields = ("position",)
+
+    def __len__(self):
+        return len(self.frames)
+
+    def __getitem__(self, index):
+        return {"position": self.frames[index]}
+
+
+def trajectory(case, *frames, first=0):
+    """Of the beads from the first on, folded into the box."""
+    kinds = 1 + np.repeat([0, 1, 2], [2, 3, 4])
+    folded = [np.asarray(frame[first:], float) % case.box.size for frame in frames]
+    return Frames(
+        frames=folded, time=np.arange(len(frames)) * 1.0,
+        id=case.particles + np.arange(first, 9), species=kinds[first:],
+        mass=np.ones(9 - first),
+    )  # fmt: skip
+
+
+WHOLE = np.array([
+    [1, 3], [6, 6],  # monomers
+    [11.5, 9.5], [12.3, 10.2], [13, 10.8],  # a chain over a corner
+    [4, 4], [5, 4], [5, 5], [4, 5],  # a ring
+])  # fmt: skip
+
+
+def test_molecules_are_whole_and_repeat_where_they_leave_the_box():
+    case = make_case(SIZE, density=2, solutes=SOLUTES)
+    beads = BeadFrames(case, trajectory(case, 0 * WHOLE, WHOLE), ("x", "y")).at()
+    np.testing.assert_allclose(beads.places, WHOLE)
+    assert beads.kinds.tolist() == [0, 0, 1, 1, 1, 2, 2, 2, 2]
+    bonds = sorted(map(tuple, np.sort(beads.bonds).tolist()))
+    assert bonds == [(2, 3), (3, 4), (5, 6), (5, 8), (6, 7), (7, 8)]
+    assert set(beads.repeats) == {(0, 0), (-12, 0), (0, -10), (-12, -10)}
+    assert (beads.time, beads.diameter) == (1.0, 0.8)
+    turned = BeadFrames(case, trajectory(case, WHOLE), ("y", "x")).at(0.0)
+    np.testing.assert_allclose(turned.places, WHOLE[:, ::-1])
+
+
+def test_images_above_lie_aside_under_shear():
+    """The chain leaves through the upper edge: what is above has slid by 0.05 * 10 * t."""
+    case = make_case(SIZE, density=2, solutes=SOLUTES, shear_rate=0.05)
+    frames = trajectory(case, WHOLE, WHOLE)
+    slid = 0.5
+    folded = WHOLE - np.array([slid, 10]) * (WHOLE[:, 1:] >= 10)
+    frames.frames[1] = folded % np.array(SIZE)
+    beads = BeadFrames(case, frames, ("x", "y")).at()
+    np.testing.assert_allclose(beads.places, WHOLE)
+    assert (-slid, -10) in set(beads.repeats) and (-slid - 12, -10) in set(beads.repeats)
+
+
+def test_plates_have_no_images():
+    case = make_case(SIZE, density=2, solutes=SOLUTES, walls=[Plates(axis="y")])
+    inside = WHOLE - [0, 2]
+    beads = BeadFrames(case, trajectory(case, inside), ("x", "y")).at()
+    np.testing.assert_allclose(beads.places, inside)
+    assert set(beads.repeats) == {(0, 0), (-12, 0)}
+
+
+def test_a_part_of_the_beads_has_a_part_of_the_bonds():
+    case = make_case(SIZE, density=2, solutes=SOLUTES)
+    frames = trajectory(case, WHOLE)
+    frames.id, frames.species, frames.frames = frames.id[:4], frames.species[:4], [WHOLE[:4] % SIZE]
+    assert BeadFrames(case, frames, ("x", "y")).at().bonds.tolist() == [[2, 3]]
+
+
+@pytest.mark.parametrize("kind", ["speed", "quiver", "four"])
+def test_they_are_drawn_over_every_panel(kind):
+    """Each kind in a colour of its own, where it is; the corner shows all of the chain."""
+    case = make_case(SIZE, observe=MAPS, density=20, solutes=SOLUTES)
+    results = results_of(make_case(SIZE, observe=MAPS, density=20))
+    figure = picture(case, results, trajectory(case, WHOLE), kind)
+    panels = 4 if kind == "four" else 1
+    for ax in figure.axes[:panels]:
+        places = {}
+        for line in ax.lines:
+            if line.get_color() in COLOURS:
+                places.setdefault(line.get_color(), []).extend(map(tuple, line.get_xydata()))
+        chain = sorted(places[COLOURS[2]])
+        np.testing.assert_allclose(chain, [(0.3, 0.2), (1.0, 0.8), (11.5, 9.5)])
+        assert len(places[COLOURS[1]]) == 2 and len(places[COLOURS[3]]) == 4
+    assert any("solutes at t = 0" in text.get_text() for text in figure.texts)
+
+
+def test_beads_alone_are_no_flow():
+    """Of beads there are pictures; speed and density of the fluid they do not tell."""
+    case = make_case(SIZE, density=2, solutes=SOLUTES)
+    frames = trajectory(case, WHOLE)
+    assert picture(case, {}, frames, "particles").axes[0].lines
+    for kind in ("speed", "density"):
+        with pytest.raises(RunError, match="the run kept none of them"):
+            picture(case, {}, frames, kind)
