@@ -19,7 +19,7 @@ from mesokit.mpcd.initial import start
 from mesokit.mpcd.molecule import Molecule
 from mesokit.mpcd.solutes import Polymer, Solutes
 from mesokit.mpcd.thermostat import MaxwellBoltzmann
-from mesokit.observe import MeanSquareDisplacement
+from mesokit.observe import MeanSquareDisplacement, NormalModes
 from mesokit.observe.origins import GROUPS
 from mesokit.potential import FENE, Harmonic
 from mesokit.run import Run
@@ -148,6 +148,21 @@ class TestWhenSolutesDiffuse:
             assert self.first("centres", kind, "fluid") == pytest.approx(expected)
         assert self.first("beads", 1, "fluid") == pytest.approx(expected)
         assert self.first("beads", 2, "fluid") > expected
+
+    def test_chains_turn_as_zimm_or_rouse_have_it(self):
+        """Twenty beads of b = 1: in the fluid they forget their shape several times as fast."""
+        friction = 1 / theory.bead_diffusion("srd", 3, 10, 0.1, 130.0, 10.0)
+        viscosity = 10 * theory.transport("srd", 3, 10, 0.1, 130.0).viscosity
+        laws = {
+            "fluid": theory.zimm_times(20, friction, viscosity, 1.0),
+            "random": theory.rouse_times(theory.linear_modes(20), friction, K=1.5),
+        }
+        for solvent, law in laws.items():
+            solutes = dataclasses.replace(self.CHAINS, solvent=solvent)
+            case = make_case((9, 9, 9), density=10, collision=SRD(angle=130), solutes=solutes)
+            times, note = NormalModes(kind=2).accumulator(case).times()
+            np.testing.assert_allclose(times.mode, law.mode, rtol=1e-9)
+            assert ("Zimm" in note) == (solvent == "fluid")
 
     def test_in_a_random_solvent_only_inertia_counts(self):
         alone = theory.bead_diffusion("srd", 3, 10, 0.1, 130.0, 10.0)

@@ -12,6 +12,7 @@ from mesokit.errors import CaseError
 from mesokit.geometry import Array, Cylinder, Disk, Plates, Sphere, Surface
 from mesokit.mpcd.collision import SRD, SRDPlusA
 from mesokit.mpcd.field import Uniform
+from mesokit.mpcd.solutes import Polymer, Solutes
 from mesokit.mpcd.thermostat import MaxwellBoltzmann
 from mesokit.observe import FlowRate, Forces, WallStress, recognise, setting
 from mesokit.simulation import Simulation
@@ -283,3 +284,14 @@ def test_nothing_is_expected_where_nothing_holds_the_fluid(make_case):
     mixed = Plates(axis="y", lower=Surface(rule="slip"))
     case = make_case((16, 8), [Forces()], [mixed], **PUSHED)
     assert fed(case, Forces(), np.zeros((2, 3)), samples=50).comparisons[0].expected > 0
+
+
+def test_a_body_force_pulls_beads_too(make_case):
+    """The balance that solids are compared with has fluid and solutes in it."""
+    solutes = Solutes((Polymer(30),), mass=10.0)
+    push, disk = Uniform((0.01, 0.0)), Disk(centre=(6, 6), radius=2)
+    total = {}
+    for given in (None, solutes):
+        case = make_case((12, 12), [Forces()], [disk], density=5, force=push, solutes=given)
+        total[given is None] = case.observe[0].accumulator(case).total()[0]
+    assert total[False] - total[True] == pytest.approx(0.01 * 30 * 10)

@@ -161,8 +161,7 @@ class ForcesAccumulator:
             rest = np.zeros(self.dimension)
             rest[AXES.index(case.fluid.force.flow)] = np.nan
             return rest
-        mass = setting.mass_density(case) * free_volume(case) + setting.solute_mass(case)
-        total: Array = setting.acceleration(case) * mass
+        total: Array = setting.acceleration(case) * setting.mass_density(case) * free_volume(case)
         if all(isinstance(wall, Plates) and wall.slips for wall in case.walls):
             closed = np.isin(range(self.dimension), list(setting.closed_axes(case)))
             total[~closed & (total != 0)] = np.nan
@@ -254,7 +253,7 @@ class ForcesAccumulator:
         assert flow is not None  # as `check` has seen
         slope = np.zeros(mean.value.shape)  # of the speed
         if given.speed is None:
-            slope[force.size + flow] = 1.0 / setting.superficial_mass(self.case)
+            slope[force.size + flow] = 1.0 / (rho * np.prod(self.case.box.size))
             speed, error = mean.scalar(slope @ mean.value, slope)
             note = f"U = {with_error(abs(speed), error)} a/tau, the mean superficial velocity"
         else:

@@ -166,23 +166,53 @@ def free_diffusion(case: Case, of: str = "beads") -> float | None:
     )  # fmt: skip
 
 
+class Solution(NamedTuple):
+    """Ideal chains in a fluid at rest, as theory takes them: the first arguments of Kirkwood's and
+    Zimm's."""
+
+    beads: int
+    friction: float
+    viscosity: float
+    bond_length: float
+    kT: float
+
+
+def solution_of(case: Case, kind: int) -> Solution | None:
+    """Chains of a kind that drag the fluid along, in 3D without walls; None for others."""
+    assert case.solutes is not None
+    molecule = case.solutes.molecule(kind - 1)
+    bond, alone = free_bond(case, kind) if molecule else None, free_diffusion(case)
+    solvent = without_solutes(case)
+    if molecule is None or bond is None or alone is None or solvent is None:
+        return None
+    if molecule.topology != "chain" or case.box.dimension == 2 or case.walls:
+        return None
+    eta = solvent.viscosity * case.fluid.density * case.fluid.mass
+    return Solution(molecule.length, case.fluid.kT / alone, eta, math.sqrt(bond), case.fluid.kT)
+
+
 def kirkwood(case: Case, kind: int) -> float | None:
     """Diffusion coefficient of ideal chains that drag the fluid along, in this cubic box; None
     for other molecules and boxes."""
-    assert case.solutes is not None
-    fluid, size, molecule = case.fluid, case.box.size, case.solutes.molecule(kind - 1)
-    bond, alone = free_bond(case, kind) if molecule else None, free_diffusion(case)
-    solvent = without_solutes(case)
-    cubic = len(size) == 3 and len(set(size)) == 1 and not case.walls
-    if molecule is None or bond is None or alone is None or solvent is None or not cubic:
+    solution, size = solution_of(case, kind), case.box.size
+    if solution is None or len(set(size)) > 1:
         return None
-    if molecule.topology != "chain":
-        return None
-    eta = solvent.viscosity * setting.mass_density(case)
-    free = theory.kirkwood_diffusion(
-        molecule.length, fluid.kT / alone, eta, math.sqrt(bond), fluid.kT
-    )
-    return theory.diffusion_in_box(free, size[0], eta, fluid.kT)
+    free = theory.kirkwood_diffusion(*solution)
+    return theory.diffusion_in_box(free, size[0], solution.viscosity, solution.kT)
+
+
+def mode_times_of(case: Case, kind: int = 1) -> tuple[theory.RouseTimes | None, str]:
+    """Relaxation times of molecules at rest, and whose theory says so: Rouse or Zimm."""
+    if case.solutes is None or case.solutes.solvent == "random":
+        return rouse_times_of(case, kind), "Rouse; beads with the friction of free particles"
+    note = "approximate: Zimm; hydrodynamics pre-averaged, large box"
+    solution = solution_of(case, kind)
+    if solution is None:
+        return None, "no theory of these molecules in a fluid"
+    try:
+        return theory.zimm_times(*solution), note
+    except ValueError:  # beads so large for their bonds that they would overlap
+        return None, "no theory of bonds as short as these"
 
 
 def stress_in_shear(case: Case) -> theory.ShearStress | None:

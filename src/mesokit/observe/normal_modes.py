@@ -8,19 +8,20 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit import theory
 from mesokit.component import component, param, tag
 from mesokit.observe import setting
 from mesokit.observe.decay import fit_curve, normalised
 from mesokit.observe.molecules import (
     KIND,
     beads_of,
+    mode_times_of,
     modes_of,
     molecule_of,
-    rouse_times_of,
     spring_of,
 )
 from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
-from mesokit.observe.result import Array, Comparison, Result
+from mesokit.observe.result import Comparison, Result
 from mesokit.observe.transverse_modes import FEWEST, LOWEST, decaying
 from mesokit.statistics import MultipleTau
 
@@ -35,7 +36,8 @@ class NormalModes(Observable):
     """Correlation in time of the normal modes X_p of molecules, the slowest first.
 
     Of Rouse molecules each decays as exp(-t/tau_p), with the normal-mode times tau_p; the stress
-    times are half of these. X_p = sum_i v_i r_i with vectors v of unit length.
+    times are half of these. Of solutes that drag the fluid along the times are Zimm's.
+    X_p = sum_i v_i r_i with vectors v of unit length.
     """
 
     quantity: Literal["normal-modes"] = tag("normal-modes")
@@ -100,7 +102,7 @@ class NormalModesAccumulator:
         """The decay of each mode, its relaxation time and its mean square."""
         every = [c.correlation(normalised=True) for c in self.correlators]
         lag = every[0].lag * self.interval()
-        times = rouse_times_of(self.case, self.observable.kind) if self.undisturbed() else None
+        times = self.times()[0]
         expected = None
         if times is not None:
             expected = np.exp(-lag[:, None] / times.mode[: self.count])
@@ -113,21 +115,31 @@ class NormalModesAccumulator:
             label="normal mode correlation",
             units={"value": "", "time": "tau"},
             expected=expected,
-            theory="Rouse, exp(-t/tau_p)",
-            comparisons=tuple(self.comparisons(times.mode if times else None)),
+            theory="Zimm, exp(-t/tau_p)" if self.dragging() else "Rouse, exp(-t/tau_p)",
+            comparisons=tuple(self.comparisons()),
             samples=self.correlators[0].count,
         )
 
-    def comparisons(self, times: Array | None) -> list[Comparison]:
+    def dragging(self) -> bool:
+        """Whether molecules drag a fluid along that is not part of them."""
+        return self.case.solutes is not None and self.case.solutes.solvent == "fluid"
+
+    def times(self) -> tuple[theory.RouseTimes | None, str]:
+        """Relaxation times of theory, and what to say of them."""
+        if not self.undisturbed():
+            return None, "no theory of molecules in a flow or between walls"
+        return mode_times_of(self.case, self.observable.kind)
+
+    def comparisons(self) -> list[Comparison]:
         """Relaxation times and mean squares of the slowest."""
         found = []
+        times, note = self.times()
         molecule = molecule_of(self.case, kind=self.observable.kind)
         spring = spring_of(molecule) if self.undisturbed() else None
         for p, correlator in enumerate(self.correlators[:SHOWN]):
             measured = self.relaxation_time(correlator)
             if measured is not None:
-                expected = float(times[p]) if times is not None else np.nan
-                note = "Rouse; beads with the friction of free particles"
+                expected = float(times.mode[p]) if times is not None else np.nan
                 what = f"normal-mode time {p + 1}"
                 found.append(Comparison(what, *measured, expected, "tau", note))
         for p, correlator in enumerate(self.correlators[:SHOWN]):

@@ -112,9 +112,9 @@ def temperature_note(case: Case) -> str:
 
 
 def mass_density(case: Case) -> float:
-    """Mass per cell, of solutes too."""
+    """Mass per cell of the open part of the box, of solutes too."""
     solutes = 0.0 if case.solutes is None else case.solutes.beads * case.solutes.mass
-    return case.fluid.density * case.fluid.mass + solutes / case.box.volume
+    return case.fluid.density * case.fluid.mass + solutes / free_volume(case)
 
 
 def carriers(case: Case) -> tuple[float, float]:
@@ -129,18 +129,6 @@ def carriers(case: Case) -> tuple[float, float]:
     if solutes.pair is not None:
         wholes = float("nan")
     return density + solutes.beads / case.box.volume, density + wholes
-
-
-def solute_mass(case: Case) -> float:
-    """Mass of all beads of solutes, on which forces on the fluid act as well."""
-    return case.solutes.beads * case.solutes.mass if case.solutes is not None else 0.0
-
-
-def superficial_mass(case: Case) -> float:
-    """What the momentum of fluid and solutes is divided by for their superficial velocity."""
-    rho = mass_density(case)
-    with_solutes = 1.0 + solute_mass(case) / (rho * free_volume(case))
-    return rho * case.box.volume * with_solutes
 
 
 def isothermal(case: Case) -> bool:
