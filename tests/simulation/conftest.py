@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -84,11 +85,18 @@ class CrashAt(Reporter):
             raise Crash
 
 
-@pytest.fixture(scope="session", autouse=True)
-def no_figures():
+@contextmanager
+def without_figures():
     """Figures take most of the time of so small a run; other tests look at them."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("mesokit.report.save_all", lambda results, folder, case=None: [])
+        yield
+
+
+@pytest.fixture(autouse=True)
+def no_figures():
+    """For these tests alone: those of other folders may come next."""
+    with without_figures():
         yield
 
 
@@ -121,7 +129,8 @@ def case(case_file) -> Case:
 def uninterrupted(case, tmp_path_factory) -> Simulation:
     """The run that was never stopped, with its folder."""
     simulation = Simulation(case, output=tmp_path_factory.mktemp("runs") / "whole", threads=1)
-    simulation.run()
+    with without_figures():
+        simulation.run()
     return simulation
 
 
