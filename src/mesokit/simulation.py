@@ -186,7 +186,8 @@ class Simulation:
         there is a folder; `resume`, or `run` again in the same process, goes on.
         """
         progress = progress or Reporter(quiet=True)
-        progress.start(self.last_step, self.fluid.n, "running", self.step)
+        beads = self.case.solutes.beads if self.case.solutes is not None else 0
+        progress.start(self.last_step, self.fluid.n + beads, "running", self.step)
         try:
             with self._catching_signals():
                 self._compile(progress)
