@@ -303,7 +303,9 @@ def _no_wall(wall, solutes, r, time, impulse, like, scales):
 def _wall_force(wall, solutes, r, time, impulse, like, scales):
     solid, reach = solutes.near_wall
     distance, out, surface, lever = facing(solid, reach, r)
-    _, push = central(wall[0], distance * distance)
-    force = scaled(push * distance if distance < reach else 0.0, out)
-    take(impulse, surface, lever, scaled(-time, force), scales[0])
+    force = scaled(0.0, like)
+    if distance < reach:
+        _, push = central(wall[0], distance * distance)
+        force = scaled(push * distance, out)
+        take(impulse, surface, lever, scaled(-time, force), scales[0])
     return force

@@ -67,6 +67,8 @@ def _(solid, r, v, a, time):
 @facing.register(Bodies)
 def _(solid, away, r):
     x = in_box(solid, r)
+    if sure_clearance(solid, x) >= away:
+        return away, scaled(0.0, r), 0, r
     distance, part, term = nearest_within(solid.tables, away, x)
     if term == NOBODY:
         return distance, scaled(0.0, r), 0, r
