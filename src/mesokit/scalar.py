@@ -23,12 +23,12 @@ def scalar(function: Callable) -> Any:
     >>> kinetic_energy(1.0, 2.0)
     2.0
     """
-    return njit(forceinline=True, error_model="numpy")(function)
+    return njit(forceinline=True, error_model="numpy", no_cfunc_wrapper=True)(function)
 
 
 def seldom(function: Callable) -> Any:
     """As `scalar`, for what few particles need: compiled once and called, not inlined."""
-    return njit(error_model="numpy", nogil=True, _nrt=False)(function)
+    return njit(error_model="numpy", nogil=True, _nrt=False, no_cfunc_wrapper=True)(function)
 
 
 def by_type(choose: Callable) -> Any:
@@ -42,7 +42,8 @@ def by_type_with_views(choose: Callable) -> Any:
 
 
 def _overloaded(name: Callable, choose: Callable, counting: bool = False) -> Any:
-    options = {"forceinline": True, "error_model": "numpy"} | ({} if counting else {"_nrt": False})
+    options = {"forceinline": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+    options |= {} if counting else {"_nrt": False}
     overload(name, strict=False, jit_options=options)(choose)
     return name
 

@@ -37,11 +37,13 @@ def kernel(function: Callable) -> Any:
     before = config.CACHE_DIR
     config.CACHE_DIR = folder()
     try:
-        return njit(nogil=True, cache=True, error_model="numpy")(function)
+        return njit(nogil=True, cache=True, error_model="numpy", no_cfunc_wrapper=True)(function)
     finally:
         config.CACHE_DIR = before
 
 
 def inner(function: Callable) -> Any:
     """A part of a kernel, compiled with it."""
-    return njit(nogil=True, error_model="numpy")(function)
+    return njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True, no_cpython_wrapper=True)(
+        function
+    )
