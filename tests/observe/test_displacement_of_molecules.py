@@ -21,7 +21,7 @@ from mesokit.mpcd.solutes import Polymer, Solutes
 from mesokit.mpcd.thermostat import MaxwellBoltzmann
 from mesokit.observe import MeanSquareDisplacement
 from mesokit.observe.origins import GROUPS
-from mesokit.potential import FENE, Harmonic
+from mesokit.potential import FENE, WCA, Harmonic
 from mesokit.run import Run
 
 SOFT = Harmonic(K=1 / 6)  # three cells long: beads seldom meet their neighbours in a cell
@@ -154,3 +154,31 @@ class TestWhenSolutesDiffuse:
         for kind in (1, 2):
             assert self.first("centres", kind, "random") == pytest.approx(50 * alone)
         assert self.first("beads", 2, "random") > 100
+
+
+class TestHowSolutesDiffuse:
+    """What theory says of beads that drag the fluid along."""
+
+    def coefficient(self, of, kind, size=(16, 16, 16), **more):
+        solutes = dataclasses.replace(TestWhenSolutesDiffuse.CHAINS, **more)
+        case = make_case(size, density=10, collision=SRD(angle=130), solutes=solutes)
+        return MeanSquareDisplacement(of=of, kind=kind).accumulator(case).coefficient()
+
+    def test_is_that_of_cells_in_a_periodic_cube(self):
+        """Viscosity of the fluid alone, however many beads are in it."""
+        eta = theory.transport("srd", 3, 10, 0.1, 130.0).dynamic_viscosity
+        friction = 1 / theory.bead_diffusion("srd", 3, 10, 0.1, 130.0, 10.0)
+        for of, kind, length in (("beads", 1, 1), ("centres", 2, 20)):
+            free = theory.kirkwood_in_cells(length, friction, eta, 1.0)
+            found, note = self.coefficient(of, kind)
+            assert found == pytest.approx(theory.diffusion_in_box(free, 16, eta))
+            assert note.startswith("Kirkwood")
+
+    def test_says_where_nothing_is_known(self):
+        for found, note in (
+            self.coefficient("beads", 2), self.coefficient("beads", 1, size=(12, 16, 16)),
+            self.coefficient("beads", 1, pair=WCA()),
+        ):  # fmt: skip
+            assert np.isnan(found) and note == "no theory of such beads in a fluid"
+        found, note = self.coefficient("particles", 1)
+        assert np.isnan(found) and note == "no theory of a fluid with solutes"

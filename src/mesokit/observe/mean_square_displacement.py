@@ -231,8 +231,13 @@ class MeanSquareDisplacementAccumulator:
         note = setting.chaos(self.case, "correlated collisions add 10 to 18 %")
         solutes, molecule = self.case.solutes, self.group.molecule
         if solutes is not None and alone is None:
-            dragged = kirkwood(self.case, self.observable.kind) if self.centres else None
-            return dragged or nothing, "ideal chain of Kirkwood, less what its images take"
+            if self.observable.of == "particles":
+                return nothing, setting.caveat(self.case)
+            whole = self.centres or molecule is None
+            dragged = kirkwood(self.case, self.observable.kind) if whole else None
+            if dragged is None:
+                return nothing, "no theory of such beads in a fluid"
+            return dragged, "Kirkwood, smeared over cells, less what images of the box take"
         if alone is None:
             return nothing, note
         if molecule is None:

@@ -167,21 +167,24 @@ def free_diffusion(case: Case, of: str = "beads") -> float | None:
 
 
 def kirkwood(case: Case, kind: int) -> float | None:
-    """Diffusion coefficient of ideal chains that drag the fluid along, in this cubic box; None
-    for other molecules and boxes."""
+    """Diffusion coefficient of monomers and ideal chains that drag the fluid along, in this cubic
+    box; None for other molecules and boxes."""
     assert case.solutes is not None
     fluid, size, molecule = case.fluid, case.box.size, case.solutes.molecule(kind - 1)
-    bond, alone = free_bond(case, kind) if molecule else None, free_diffusion(case)
-    solvent = without_solutes(case)
+    alone, solvent = free_diffusion(case), without_solutes(case)
     cubic = len(size) == 3 and len(set(size)) == 1 and not case.walls
-    if molecule is None or bond is None or alone is None or solvent is None or not cubic:
+    if alone is None or solvent is None or not cubic:
         return None
-    if molecule.topology != "chain":
+    length, bond = 1, 1.0
+    if molecule is not None:
+        square = free_bond(case, kind)
+        if square is None or molecule.topology != "chain":
+            return None
+        length, bond = molecule.length, math.sqrt(square)
+    elif case.solutes.pair is not None:
         return None
-    eta = solvent.viscosity * setting.mass_density(case)
-    free = theory.kirkwood_diffusion(
-        molecule.length, fluid.kT / alone, eta, math.sqrt(bond), fluid.kT
-    )
+    eta = solvent.viscosity * fluid.density * fluid.mass
+    free = theory.kirkwood_in_cells(length, fluid.kT / alone, eta, bond, fluid.kT)
     return theory.diffusion_in_box(free, size[0], eta, fluid.kT)
 
 
