@@ -61,6 +61,8 @@ def group_of(case: Case, of: str, kind: int = 1) -> Group:
     """
     molecule, solutes = case.fluid.molecule, case.solutes
     if of == "particles" and (solutes is None or solutes.solvent == "fluid"):
+        if kind != 1:
+            raise CaseError(f"kind = {kind}: only with of = 'beads', 'centres' or 'ends'")
         length = molecule.length if molecule else 1
         return Group(0, length, case.particles // length, molecule)
     if solutes is None:
@@ -138,6 +140,13 @@ def rouse_times_of(case: Case, kind: int = 1) -> theory.RouseTimes | None:
     if friction is None or spring is None:
         return None
     return theory.rouse_times(modes_of(molecule), friction, K=spring.K)
+
+
+def rouse_note(case: Case) -> str:
+    """How good Rouse's theory is where beads are said to have the friction of free particles."""
+    if case.solutes is None and setting.mean_free_path(case) < 1:
+        return "approximate: Rouse; beads drag one another along"
+    return "Rouse; beads with the friction of free particles"
 
 
 def friction_of(case: Case) -> float | None:
