@@ -11,15 +11,18 @@ from laboratory import make_case, make_fluid
 from mesokit import theory
 from mesokit.box import Box
 from mesokit.case import Case
+from mesokit.derived import derive
 from mesokit.errors import CaseError
 from mesokit.execute.cpu import CPU
 from mesokit.mpcd.collision import SRD
+from mesokit.mpcd.field import Uniform
 from mesokit.mpcd.fluid import Fluid
 from mesokit.mpcd.initial import start
 from mesokit.mpcd.molecule import Molecule
 from mesokit.mpcd.solutes import Polymer, Solutes
 from mesokit.mpcd.thermostat import MaxwellBoltzmann
 from mesokit.observe import MeanSquareDisplacement
+from mesokit.observe.molecules import rouse_note
 from mesokit.observe.origins import GROUPS
 from mesokit.potential import FENE, WCA, Harmonic
 from mesokit.run import Run
@@ -182,3 +185,18 @@ class TestHowSolutesDiffuse:
             assert np.isnan(found) and note == "no theory of such beads in a fluid"
         found, note = self.coefficient("particles", 1)
         assert np.isnan(found) and note == "no theory of a fluid with solutes"
+
+
+def test_rouse_is_approximate_where_beads_drag_one_another_along():
+    molecule = Molecule(length=2, bond=Harmonic(K=1 / 6))
+    for timestep, word in ((0.1, "approximate"), (1.0, "Rouse")):
+        case = make_case((8, 8, 8), timestep=timestep, molecule=molecule)
+        assert rouse_note(case).startswith(word)
+
+
+def test_a_random_solvent_holds_what_is_pushed():
+    pushed = {"size": (8, 8, 8), "force": Uniform((0.1, 0, 0)), "thermostat": MaxwellBoltzmann()}
+    for solvent, said in (("fluid", True), ("random", False)):
+        case = make_case(**pushed, solutes=Solutes((Polymer(4),), solvent=solvent))
+        warned = any("nothing holds" in text for text in derive(case).warnings)
+        assert warned == said

@@ -20,6 +20,7 @@ from mesokit.observe.molecules import (
     group_of,
     kirkwood,
     modes_of,
+    rouse_note,
     spring_of,
     without_solutes,
 )
@@ -244,10 +245,7 @@ class MeanSquareDisplacementAccumulator:
             return alone, "molecular chaos, exact for a bead alone" if solutes else note
         if self.case.walls:
             return nothing, note
-        note = "Rouse; beads with the friction of free particles"
-        if solutes is None and setting.mean_free_path(self.case) < 1:
-            note = "approximate: Rouse; beads drag one another along"
-        return alone / molecule.length, note
+        return alone / molecule.length, rouse_note(self.case)
 
     def fit_diffusion(
         self,

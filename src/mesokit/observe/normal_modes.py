@@ -16,6 +16,7 @@ from mesokit.observe.molecules import (
     beads_of,
     modes_of,
     molecule_of,
+    rouse_note,
     rouse_times_of,
     spring_of,
 )
@@ -127,7 +128,7 @@ class NormalModesAccumulator:
             measured = self.relaxation_time(correlator)
             if measured is not None:
                 expected = float(times[p]) if times is not None else np.nan
-                note = "Rouse; beads with the friction of free particles"
+                note = rouse_note(self.case) if times is not None else "no theory of such molecules"
                 what = f"normal-mode time {p + 1}"
                 found.append(Comparison(what, *measured, expected, "tau", note))
         for p, correlator in enumerate(self.correlators[:SHOWN]):
