@@ -192,6 +192,8 @@ def test_rouse_is_approximate_where_beads_drag_one_another_along():
     for timestep, word in ((0.1, "approximate"), (1.0, "Rouse")):
         case = make_case((8, 8, 8), timestep=timestep, molecule=molecule)
         assert rouse_note(case).startswith(word)
+    solutes = Solutes((Polymer(4, length=10),), bond=Harmonic(K=1.5), solvent="random")
+    assert rouse_note(make_case((8, 8, 8), solutes=solutes)).startswith("approximate")
 
 
 def test_a_random_solvent_holds_what_is_pushed():

@@ -146,6 +146,8 @@ def rouse_note(case: Case) -> str:
     """How good Rouse's theory is where beads are said to have the friction of free particles."""
     if case.solutes is None and setting.mean_free_path(case) < 1:
         return "approximate: Rouse; beads drag one another along"
+    if case.solutes is not None:
+        return "approximate: Rouse; beads that share a cell lose less momentum than apart"
     return "Rouse; beads with the friction of free particles"
 
 
