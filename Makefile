@@ -26,7 +26,7 @@ demo: $(READY)
 	@echo "look at demo/velocity-profile.png"
 
 test: $(READY)
-	@$(BIN)/python -m pytest -n 2 --dist loadfile
+	@$(BIN)/python -m pytest -n 2 --dist worksteal
 
 check: $(READY)
 	@$(BIN)/ruff check .

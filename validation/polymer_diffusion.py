@@ -110,9 +110,7 @@ def smeared(n: int) -> float:
     variance 1/3 together. So n bonds of variance 1/3 each give <1/r> = sqrt(6/pi/(n + 1)), which of
     a bead with itself is finite: no friction has to be measured. Derived here.
     """
-    apart = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
-    dragged = np.sqrt(6 / math.pi / (apart + 1)).sum() / (6 * math.pi * VISCOSITY * n**2)
-    return float(ALONE / n + dragged)
+    return theory.kirkwood_in_cells(n, 1 / ALONE, VISCOSITY, 1.0)
 
 
 def make() -> int:

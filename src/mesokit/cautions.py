@@ -136,9 +136,10 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
                 f"box.shear_rate = {case.box.shear_rate:g}: velocities differ by {cell:.2g} of the "
                 "speed of sound across a cell; keep it below 0.2"
             )
+    random = case.solutes is not None and case.solutes.solvent == "random"
     if force.rule == "uniform":
         for axis, push in zip(AXES, force.acceleration, strict=False):
-            if push and not case.walls:
+            if push and not case.walls and not random:
                 yield (
                     f"fluid.force.acceleration: nothing holds the fluid along {axis}: without "
                     "walls it speeds up for ever (without a thermostat it also heats)"

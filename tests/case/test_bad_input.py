@@ -68,6 +68,11 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
                               ("observe[#1]", "solutes.polymers[#2] are monomers")),
     "no such kind": ({"[fluid]": SOLUTES, PROFILE: 'quantity = "molecule-size"\nkind = 3'},
                      ("observe[#1].kind = 3", "1 to 2")),
+    "kind of the fluid": (
+        {"[fluid]": SOLUTES, PROFILE: 'quantity = "mean-square-displacement"\nkind = 2\n'
+         'components = ["x"]'},
+        ("observe[#1].kind = 2", "only with of = 'beads'"),
+    ),
     "random solvent and walls": ({"[fluid]": RANDOM}, ("solvent = 'random': not with walls",)),
     "nobody in a random solvent": (
         {"[fluid]": RANDOM, WALL: "", PROFILE: 'quantity = "velocity-autocorrelation"'},

@@ -11,17 +11,20 @@ from laboratory import make_case, make_fluid
 from mesokit import theory
 from mesokit.box import Box
 from mesokit.case import Case
+from mesokit.derived import derive
 from mesokit.errors import CaseError
 from mesokit.execute.cpu import CPU
 from mesokit.mpcd.collision import SRD
+from mesokit.mpcd.field import Uniform
 from mesokit.mpcd.fluid import Fluid
 from mesokit.mpcd.initial import start
 from mesokit.mpcd.molecule import Molecule
 from mesokit.mpcd.solutes import Polymer, Solutes
 from mesokit.mpcd.thermostat import MaxwellBoltzmann
 from mesokit.observe import MeanSquareDisplacement, NormalModes
+from mesokit.observe.molecules import rouse_note
 from mesokit.observe.origins import GROUPS
-from mesokit.potential import FENE, Harmonic
+from mesokit.potential import FENE, WCA, Harmonic
 from mesokit.run import Run
 
 SOFT = Harmonic(K=1 / 6)  # three cells long: beads seldom meet their neighbours in a cell
@@ -169,3 +172,48 @@ class TestWhenSolutesDiffuse:
         for kind in (1, 2):
             assert self.first("centres", kind, "random") == pytest.approx(50 * alone)
         assert self.first("beads", 2, "random") > 100
+
+
+class TestHowSolutesDiffuse:
+    """What theory says of beads that drag the fluid along."""
+
+    def coefficient(self, of, kind, size=(16, 16, 16), **more):
+        solutes = dataclasses.replace(TestWhenSolutesDiffuse.CHAINS, **more)
+        case = make_case(size, density=10, collision=SRD(angle=130), solutes=solutes)
+        return MeanSquareDisplacement(of=of, kind=kind).accumulator(case).coefficient()
+
+    def test_is_that_of_cells_in_a_periodic_cube(self):
+        """Viscosity of the fluid alone, however many beads are in it."""
+        eta = theory.transport("srd", 3, 10, 0.1, 130.0).dynamic_viscosity
+        friction = 1 / theory.bead_diffusion("srd", 3, 10, 0.1, 130.0, 10.0)
+        for of, kind, length in (("beads", 1, 1), ("centres", 2, 20)):
+            free = theory.kirkwood_in_cells(length, friction, eta, 1.0)
+            found, note = self.coefficient(of, kind)
+            assert found == pytest.approx(theory.diffusion_in_box(free, 16, eta))
+            assert note.startswith("Kirkwood")
+
+    def test_says_where_nothing_is_known(self):
+        for found, note in (
+            self.coefficient("beads", 2), self.coefficient("beads", 1, size=(12, 16, 16)),
+            self.coefficient("beads", 1, pair=WCA()),
+        ):  # fmt: skip
+            assert np.isnan(found) and note == "no theory of such beads in a fluid"
+        found, note = self.coefficient("particles", 1)
+        assert np.isnan(found) and note == "no theory of a fluid with solutes"
+
+
+def test_rouse_is_approximate_where_beads_drag_one_another_along():
+    molecule = Molecule(length=2, bond=Harmonic(K=1 / 6))
+    for timestep, word in ((0.1, "approximate"), (1.0, "Rouse")):
+        case = make_case((8, 8, 8), timestep=timestep, molecule=molecule)
+        assert rouse_note(case).startswith(word)
+    solutes = Solutes((Polymer(4, length=10),), bond=Harmonic(K=1.5), solvent="random")
+    assert rouse_note(make_case((8, 8, 8), solutes=solutes)).startswith("approximate")
+
+
+def test_a_random_solvent_holds_what_is_pushed():
+    pushed = {"size": (8, 8, 8), "force": Uniform((0.1, 0, 0)), "thermostat": MaxwellBoltzmann()}
+    for solvent, said in (("fluid", True), ("random", False)):
+        case = make_case(**pushed, solutes=Solutes((Polymer(4),), solvent=solvent))
+        warned = any("nothing holds" in text for text in derive(case).warnings)
+        assert warned == said

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 from fake_fluid import FakeFluid
@@ -57,6 +59,19 @@ def test_force_and_torque_of_each_body(make_case):
     assert total.measured == pytest.approx(12, abs=4 * total.error)
     share = by_name(result)["share of post along x"]
     assert share.measured == pytest.approx(100 * 6 / total.expected, abs=4 * share.error)
+
+
+def test_beads_of_solutes_are_pushed_once(make_case):
+    """The force on the fluid, and the mass that the superficial velocity counts."""
+    beads = Solutes((Polymer(12),), mass=10.0)
+    plain = channel_case(make_case)
+    case = dataclasses.replace(plain, solutes=beads)
+    mean = [[3.0, 0, 0], [3.0, 0, 0], [7.0, 0, 0]]
+    total = by_name(fed(case, Forces(), mean))["force on all solids along x"]
+    mass = 10 * free_volume(case) + 120
+    assert total.expected == pytest.approx(0.01 * mass)
+    assert setting.mass_density(case) == pytest.approx(mass / free_volume(case))
+    assert setting.superficial_mass(case) == pytest.approx(mass * 128 / free_volume(case))
 
 
 def test_force_on_one_solid_is_the_force_on_the_fluid(make_case):

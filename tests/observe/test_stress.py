@@ -9,6 +9,8 @@ from fake_fluid import FakeFluid
 from mesokit.errors import CaseError
 from mesokit.geometry import Plates, Surface
 from mesokit.mpcd.field import Uniform
+from mesokit.mpcd.molecule import Molecule
+from mesokit.mpcd.solutes import Polymer, Solutes
 from mesokit.mpcd.thermostat import MaxwellBoltzmann
 from mesokit.observe import (
     Conservation,
@@ -19,6 +21,8 @@ from mesokit.observe import (
     setting,
 )
 from mesokit.observe.conservation import ROWS
+from mesokit.observe.wall_stress import balance
+from mesokit.potential import WCA, Harmonic
 
 
 def by_name(result):
@@ -115,6 +119,23 @@ def test_stress_under_shear_gives_the_viscosity(make_case):
 def test_stress_is_not_for_walls(make_case):
     with pytest.raises(CaseError, match="use wall-stress"):
         make_case((4, 4), [Stress()], walls=[Plates(axis="y")])
+
+
+def test_beads_push_plates_one_by_one(make_case):
+    """A slit of ideal dimers: half of the places at a plate are free, somewhat more are taken."""
+    plates, H, spread = [Plates(axis="y")], 8, (1 / 3) ** 0.5
+    at_plate = 0.5 / (1 - 2 * spread / (H * (2 * np.pi) ** 0.5))
+    bond = Harmonic(K=1.5)
+
+    def pressure(**more):
+        return balance(make_case((4, H), walls=plates, **more))[:, 1]
+
+    dimers = pressure(molecule=Molecule(length=2, bond=bond))
+    assert dimers == pytest.approx(10 * at_plate * np.array([-1, 1]), rel=1e-4)
+    kinds = (Polymer(6), Polymer(5, length=2))
+    dissolved = 10 + (6 + 10 * at_plate) / 32
+    assert pressure(solutes=Solutes(kinds, bond=bond))[1] == pytest.approx(dissolved, rel=1e-4)
+    assert np.isnan(pressure(solutes=Solutes((Polymer(6),), pair=WCA()))).all()
 
 
 def test_wall_stress_balances_the_force(make_case):

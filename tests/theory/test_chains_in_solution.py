@@ -10,6 +10,7 @@ from mesokit.theory import (
     chain_exponents,
     diffusion_in_box,
     kirkwood_diffusion,
+    kirkwood_in_cells,
     kremer_grest_bond,
     linear_modes,
     rouse_diffusion,
@@ -41,6 +42,20 @@ def test_kirkwood_is_the_mean_of_the_mobility_over_gaussian_distances(n, b, zeta
                 inverse += np.sqrt(6 / (np.pi * abs(i - j))) / b
     expected = 1 / (n * zeta) + inverse / (6 * np.pi * ETA * n**2)
     assert kirkwood_diffusion(n, zeta, ETA, b) == pytest.approx(expected)
+
+
+def test_in_cells_distances_are_smeared():
+    """<1/r> of Gaussian distances to which the places of two cells are added, drawn."""
+    rng = np.random.default_rng(1)
+    n, b, zeta, inverse = 3, 0.8, 50.0, 0.0
+    for i in range(n):
+        for j in range(n):
+            spread = np.sqrt(abs(i - j) * b**2 / 3 + 1 / 3)
+            inverse += (1 / np.linalg.norm(rng.normal(0, spread, (100_000, 3)), axis=1)).mean()
+    expected = 1 / (n * zeta) + inverse / (6 * np.pi * ETA * n**2)
+    assert kirkwood_in_cells(n, zeta, ETA, b) == pytest.approx(expected, rel=5e-3)
+    long = kirkwood_in_cells(10**4, zeta, ETA, b) / kirkwood_diffusion(10**4, zeta, ETA, b)
+    assert 0.97 < long < 1.0
 
 
 def test_zimm_is_the_limit_of_long_chains():

@@ -13,7 +13,7 @@ from mesokit import theory
 from mesokit.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.observe import setting
-from mesokit.observe.molecules import rouse_times_of, without_bonds
+from mesokit.observe.molecules import rouse_note, rouse_times_of, without_bonds
 from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.observe.stress import PARTS, ROUSE, UNIT
@@ -149,10 +149,11 @@ class DynamicModuliAccumulator:
         """Totals, and the viscosity that the loss modulus is."""
         mean, error, expected = self.blocks.mean(), self.blocks.error(), self.expected()
         unit = UNIT[self.case.box.dimension]
+        note = "" if self.case.fluid.molecule is None else rouse_note(self.case)
         found = [
             Comparison(
                 f"{name} modulus", float(mean[-1, k]), float(error[-1, k]), float(expected[-1, k]),
-                unit,
+                unit, note,
             )
             for k, name in enumerate(MODULI.values())
         ]  # fmt: skip

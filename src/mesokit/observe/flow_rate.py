@@ -62,7 +62,7 @@ class FlowRateAccumulator:
         observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         self.axis = observable.seen(case)
-        self.mass = setting.mass_density(case) * float(np.prod(case.box.size))
+        self.mass = setting.superficial_mass(case)
         self.blocks, self.series = Blocks(), TimeSeries(1)
 
     def observe(self, fluid: RunningFluid) -> None:

@@ -161,7 +161,8 @@ class ForcesAccumulator:
             rest = np.zeros(self.dimension)
             rest[AXES.index(case.fluid.force.flow)] = np.nan
             return rest
-        total: Array = setting.acceleration(case) * setting.mass_density(case) * free_volume(case)
+        mass = setting.mass_density(case) * free_volume(case)
+        total: Array = setting.acceleration(case) * mass
         if all(isinstance(wall, Plates) and wall.slips for wall in case.walls):
             closed = np.isin(range(self.dimension), list(setting.closed_axes(case)))
             total[~closed & (total != 0)] = np.nan

@@ -20,6 +20,7 @@ from mesokit.observe.molecules import (
     group_of,
     kirkwood,
     modes_of,
+    rouse_note,
     spring_of,
     without_solutes,
 )
@@ -231,18 +232,20 @@ class MeanSquareDisplacementAccumulator:
         note = setting.chaos(self.case, "correlated collisions add 10 to 18 %")
         solutes, molecule = self.case.solutes, self.group.molecule
         if solutes is not None and alone is None:
-            dragged = kirkwood(self.case, self.observable.kind) if self.centres else None
-            return dragged or nothing, "ideal chain of Kirkwood, less what its images take"
+            if self.observable.of == "particles":
+                return nothing, setting.caveat(self.case)
+            whole = self.centres or molecule is None
+            dragged = kirkwood(self.case, self.observable.kind) if whole else None
+            if dragged is None:
+                return nothing, "no theory of such beads in a fluid"
+            return dragged, "Kirkwood, smeared over cells, less what images of the box take"
         if alone is None:
             return nothing, note
         if molecule is None:
             return alone, "molecular chaos, exact for a bead alone" if solutes else note
         if self.case.walls:
             return nothing, note
-        note = "Rouse; beads with the friction of free particles"
-        if solutes is None and setting.mean_free_path(self.case) < 1:
-            note = "approximate: Rouse; beads drag one another along"
-        return alone / molecule.length, note
+        return alone / molecule.length, rouse_note(self.case)
 
     def fit_diffusion(
         self,

@@ -61,6 +61,8 @@ def group_of(case: Case, of: str, kind: int = 1) -> Group:
     """
     molecule, solutes = case.fluid.molecule, case.solutes
     if of == "particles" and (solutes is None or solutes.solvent == "fluid"):
+        if kind != 1:
+            raise CaseError(f"kind = {kind}: only with of = 'beads', 'centres' or 'ends'")
         length = molecule.length if molecule else 1
         return Group(0, length, case.particles // length, molecule)
     if solutes is None:
@@ -140,6 +142,15 @@ def rouse_times_of(case: Case, kind: int = 1) -> theory.RouseTimes | None:
     return theory.rouse_times(modes_of(molecule), friction, K=spring.K)
 
 
+def rouse_note(case: Case) -> str:
+    """How good Rouse's theory is where beads are said to have the friction of free particles."""
+    if case.solutes is None and setting.mean_free_path(case) < 1:
+        return "approximate: Rouse; beads drag one another along"
+    if case.solutes is not None:
+        return "approximate: Rouse; beads that share a cell lose less momentum than apart"
+    return "Rouse; beads with the friction of free particles"
+
+
 def friction_of(case: Case) -> float | None:
     """kT over the diffusion coefficient of a bead alone; None where the fluid remembers it."""
     diffusion = free_diffusion(case)
@@ -192,19 +203,31 @@ def solution_of(case: Case, kind: int) -> Solution | None:
 
 
 def kirkwood(case: Case, kind: int) -> float | None:
-    """Diffusion coefficient of ideal chains that drag the fluid along, in this cubic box; None
-    for other molecules and boxes."""
-    solution, size = solution_of(case, kind), case.box.size
+    """Diffusion coefficient of monomers and ideal chains that drag the fluid along, in this cubic
+    box; None for other molecules and boxes."""
+    assert case.solutes is not None
+    size, solution = case.box.size, solution_of(case, kind)
+    if case.solutes.molecule(kind - 1) is None and case.solutes.pair is None:
+        solution = monomers_of(case)
     if solution is None or len(set(size)) > 1:
         return None
-    free = theory.kirkwood_diffusion(*solution)
+    free = theory.kirkwood_in_cells(*solution)
     return theory.diffusion_in_box(free, size[0], solution.viscosity, solution.kT)
+
+
+def monomers_of(case: Case) -> Solution | None:
+    """Beads alone that drag the fluid along, in 3D without walls."""
+    alone, solvent = free_diffusion(case), without_solutes(case)
+    if alone is None or solvent is None or case.box.dimension == 2 or case.walls:
+        return None
+    eta = solvent.viscosity * case.fluid.density * case.fluid.mass
+    return Solution(1, case.fluid.kT / alone, eta, 1.0, case.fluid.kT)
 
 
 def mode_times_of(case: Case, kind: int = 1) -> tuple[theory.RouseTimes | None, str]:
     """Relaxation times of molecules at rest, and whose theory says so: Rouse or Zimm."""
     if case.solutes is None or case.solutes.solvent == "random":
-        return rouse_times_of(case, kind), "Rouse; beads with the friction of free particles"
+        return rouse_times_of(case, kind), rouse_note(case)
     note = "approximate: Zimm; hydrodynamics pre-averaged, large box"
     solution = solution_of(case, kind)
     if solution is None:

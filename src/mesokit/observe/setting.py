@@ -112,9 +112,9 @@ def temperature_note(case: Case) -> str:
 
 
 def mass_density(case: Case) -> float:
-    """Mass per cell of the open part of the box, of solutes too."""
-    solutes = 0.0 if case.solutes is None else case.solutes.beads * case.solutes.mass
-    return case.fluid.density * case.fluid.mass + solutes / free_volume(case)
+    """Mass per cell, of solutes too."""
+    fluid = case.fluid.density * case.fluid.mass
+    return fluid if case.solutes is None else fluid + solute_mass(case) / free_volume(case)
 
 
 def carriers(case: Case) -> tuple[float, float]:
@@ -125,10 +125,21 @@ def carriers(case: Case) -> tuple[float, float]:
     density, molecule, solutes = case.fluid.density, case.fluid.molecule, case.solutes
     if solutes is None:
         return density, density / (1 if molecule is None else molecule.length)
-    wholes = sum(polymer.number for polymer in solutes.polymers) / case.box.volume
+    volume = free_volume(case)
+    wholes = sum(polymer.number for polymer in solutes.polymers) / volume
     if solutes.pair is not None:
         wholes = float("nan")
-    return density + solutes.beads / case.box.volume, density + wholes
+    return density + solutes.beads / volume, density + wholes
+
+
+def solute_mass(case: Case) -> float:
+    """Mass of all beads of solutes, on which forces on the fluid act as well."""
+    return case.solutes.beads * case.solutes.mass if case.solutes is not None else 0.0
+
+
+def superficial_mass(case: Case) -> float:
+    """What the momentum of fluid and solutes is divided by for their superficial velocity."""
+    return mass_density(case) * case.box.volume
 
 
 def isothermal(case: Case) -> bool:

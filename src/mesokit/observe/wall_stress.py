@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
+from mesokit import theory
 from mesokit.box import AXES
 from mesokit.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.observe import setting
 from mesokit.observe.estimate import of_mean
+from mesokit.observe.molecules import spring_of
 from mesokit.observe.protocol import BlockAccumulator, Observable, RunningFluid
 from mesokit.observe.result import Array, Comparison, Result
 from mesokit.observe.walls import require_counted
@@ -19,8 +21,10 @@ from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case import Case
+    from mesokit.mpcd.molecule import Molecule
 
 PLATES = ("lower", "upper")
+THIN = 1e-5  # of the height: what lies next to a plate
 UNIT = {2: "m/tau^2", 3: "m/(a tau^2)"}  # force per area, by dimension
 
 
@@ -150,13 +154,47 @@ def balance(case: Case) -> Array:
 
 def _pressure(case: Case, weight: float, height: float) -> tuple[float, float]:
     """Ideal gas, heavier at the bottom under a force towards a plate; nan where it heats."""
-    density, kT = case.fluid.density, case.fluid.kT
+    kT = case.fluid.kT
     if not setting.isothermal(case) and setting.driven(case):
         return np.nan, np.nan
     if weight == 0:
-        return -density * kT, density * kT
-    if len({kind.mass for kind in case.fluid.species}) > 1:
+        pressure = _contact(case, height) * kT
+        return -pressure, pressure
+    linked = case.fluid.molecule is not None or case.solutes is not None
+    if linked or len({kind.mass for kind in case.fluid.species}) > 1:
         return np.nan, np.nan
     lost = setting.mass_density(case) * weight * height  # between the plates
     upper = lost / -np.expm1(-case.fluid.mass * weight * height / kT)
     return lost - upper, upper
+
+
+def _contact(case: Case, height: float) -> float:
+    """Particles and beads per cell next to a plate: whatever links them, it is they that hit it.
+
+    nan where there is no theory of how molecules lie there.
+    """
+    fluid, solutes = case.fluid, case.solutes
+    if solutes is None:
+        return fluid.density * _at_plate(case, fluid.molecule, height)
+    if solutes.pair is not None or solutes.wall is not None:
+        return np.nan
+    kinds = [
+        polymer.number * polymer.length * _at_plate(case, solutes.molecule(i), height)
+        for i, polymer in enumerate(solutes.polymers)
+    ]
+    return fluid.density + sum(kinds) / case.box.volume
+
+
+def _at_plate(case: Case, molecule: Molecule | None, height: float) -> float:
+    """Density of beads at a plate over their mean."""
+    if molecule is None:
+        return 1.0
+    spring = spring_of(molecule)
+    if spring is None:
+        return np.nan
+    edges = height * np.array([0.0, THIN, 1.0 - THIN, 1.0])
+    try:
+        beads = theory.beads_in_slit(edges, molecule.bonds, (case.fluid.kT / spring.k) ** 0.5)
+    except ValueError:  # a grid too fine
+        return np.nan
+    return float(beads[:, 0].mean())

@@ -4,7 +4,12 @@ Nothing here uses the rest of mesokit, so that it can judge it. Lengths are in c
 """
 
 from mesokit.theory.bead_diffusion import bead_diffusion
-from mesokit.theory.chain_diffusion import kirkwood_diffusion, rouse_diffusion, zimm_diffusion
+from mesokit.theory.chain_diffusion import (
+    kirkwood_diffusion,
+    kirkwood_in_cells,
+    rouse_diffusion,
+    zimm_diffusion,
+)
 from mesokit.theory.chain_displacement import msd_rouse_beads
 from mesokit.theory.chain_in_slit import beads_in_slit, centre_in_slit
 from mesokit.theory.chain_scaling import ChainExponents, chain_exponents
@@ -144,6 +149,7 @@ __all__ = [
     "hagen_poiseuille_flow_rate",
     "hagen_poiseuille_velocity",
     "kirkwood_diffusion",
+    "kirkwood_in_cells",
     "kolmogorov_onset_time",
     "kolmogorov_velocity",
     "kolmogorov_viscosity",

@@ -47,6 +47,31 @@ def kirkwood_diffusion(
     return rouse_diffusion(beads, friction, kT) + kT * pairs / drag
 
 
+def kirkwood_in_cells(
+    beads: int, friction: float, viscosity: float, bond_length: float, kT: float = 1.0
+) -> float:
+    """Diffusion coefficient of an ideal chain of n beads, or of one, in MPCD with cells of side 1.
+
+    kT/(n zeta) + kT/(n^2 eta sqrt(6 pi^3)) sum_ij (|i - j| b^2 + 1)^(-1/2), i = j as well. A bead
+    hands its momentum to a cell that lies anywhere around it, and takes the velocity of such a
+    cell: this adds four numbers uniform in [-1/2, 1/2] to each component of a distance, of variance
+    1/3 together.
+
+    Parameters: as in `kirkwood_diffusion`, but `friction` is that of a bead in a fluid that forgets
+    (kT over `bead_diffusion`); what a single bead drags along is in the sum. Raises ValueError for
+    a value out of range. Source: derived here. Valid for Gaussian chains and monomers in a large
+    box (see `diffusion_in_box`), with the full grid shift.
+
+    >>> round(kirkwood_in_cells(1, friction=72.77, viscosity=8.695, bond_length=1), 5)
+    0.02217
+    """
+    positive(viscosity=viscosity, bond_length=bond_length)
+    apart = np.arange(1, beads)
+    pairs = beads + 2 * float(((beads - apart) / np.sqrt(apart * bond_length**2 + 1)).sum())
+    drag = beads**2 * viscosity * math.sqrt(6 * math.pi**3)
+    return rouse_diffusion(beads, friction, kT) + kT * pairs / drag
+
+
 def zimm_diffusion(beads: int, viscosity: float, bond_length: float, kT: float = 1.0) -> float:
     """Diffusion coefficient 8 kT/(3 sqrt(6 pi^3) eta b sqrt n) of a long ideal chain.
 
