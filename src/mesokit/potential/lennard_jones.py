@@ -15,7 +15,7 @@ class LennardJones:
     rule: Literal["lennard-jones"] = tag("lennard-jones")
     epsilon: float = param(1.0, doc="depth of the well", unit="kT", gt=0)
     sigma: float = param(1.0, doc="distance of zero energy", unit="a", gt=0)
-    cutoff: float = param(2.5, doc="no force beyond, in units of sigma", unit="sigma", gt=0)
+    cutoff: float = param(2.5, doc="no force beyond, in units of sigma", unit="sigma", ge=1)
     shift: bool = param(True, doc="whether the energy is shifted to 0 at the cut-off")
 
     @property
