@@ -14,7 +14,9 @@ from mesokit.scalar import mul_add, scalar
 _MANTISSA = np.int64(0x000FFFFFFFFFFFFF)
 _ONE = np.int64(0x3FF0000000000000)
 _LN2 = math.log(2.0)
+_PER_LN2 = 1.0 / _LN2
 _SQRT2 = math.sqrt(2.0)
+_ROUNDER = 1.5 * 2.0**52
 
 
 @scalar
@@ -89,6 +91,24 @@ def short_log(x):
     p = mul_add(z, p, 0.2000016759422225)
     p = mul_add(z, p, 0.33333332822736444)
     return mul_add(exponent, _LN2, mul_add(2.0 * s * z, p, 2.0 * s))
+
+
+@scalar
+def short_exp(x):
+    """Exponential of -700 < x < 700; relative error."""
+    powers = np.floor(mul_add(x, _PER_LN2, 0.5))
+    y = mul_add(-powers, _LN2, x)
+    p = 1.0 / 362880.0
+    p = mul_add(y, p, 1.0 / 40320.0)
+    p = mul_add(y, p, 1.0 / 5040.0)
+    p = mul_add(y, p, 1.0 / 720.0)
+    p = mul_add(y, p, 1.0 / 120.0)
+    p = mul_add(y, p, 1.0 / 24.0)
+    p = mul_add(y, p, 1.0 / 6.0)
+    p = mul_add(y, p, 0.5)
+    p = mul_add(y * y, p, y) + 1.0
+    bits = np.float64(powers + _ROUNDER).view(np.int64)  # the last are those of the whole number
+    return p * np.int64((bits + 1023) << 52).view(np.float64)
 
 
 @scalar

@@ -7,7 +7,8 @@ import pytest
 from numba import njit
 from scipy import stats
 
-from mesokit.mpcd.thermostat.maxwell_boltzmann import Canonical, part, propose
+from mesokit.gamma import part, propose
+from mesokit.mpcd.thermostat.maxwell_boltzmann import Canonical
 from mesokit.mpcd.thermostat.protocol import draw, guess
 from mesokit.random import CELL, Counter, words
 
@@ -25,7 +26,7 @@ def guesses(freedom, count):
         chance = words(counter, CELL, cell, 0)[2:]
         value, sure = guess(CANONICAL, chance, freedom)
         out[cell, 0], out[cell, 1] = value, sure
-        out[cell, 2], out[cell, 3] = propose(chance, freedom)[1], part(chance)
+        out[cell, 2], out[cell, 3] = propose(chance[0], chance[1], freedom)[1], part(chance[1])
     return out
 
 

@@ -17,7 +17,7 @@ from mesokit.execute.bounce import take
 from mesokit.execute.cell_energy import tally, untangled
 from mesokit.execute.chart import offset_of
 from mesokit.execute.flags import MEASURE_WALLS
-from mesokit.execute.layout import LANES, ROW, share, strip_of, sums_length
+from mesokit.execute.layout import LANES, ROW, share, strip_at, sums_length
 from mesokit.execute.lumps import Lumps, fill_lumps, lumps_recoil
 from mesokit.execute.near_flow import flow_at
 from mesokit.execute.rows import load, mass_of, store
@@ -143,7 +143,7 @@ def settle(guests, thread, physics, r, number, count, rows, like):
     piece = guests.pieces[home_cell(solid.tables, foot)]
     if piece >= 0:
         u = added(u, flow_at(guests.rates, piece, clear, like))
-    strip = strip_of(guests.data[thread], count // LANES, rows)
+    strip = guests.data[thread][strip_at(count // LANES, rows)]
     store(strip, count % LANES, 0, r + u)
     if len(physics.masses) == 0:
         mass = guests.masses[number % KINDS]
@@ -162,7 +162,7 @@ def draw_velocities(
     d = len(like)
     guests.filled[thread] = count
     for s in range((count + LANES - 1) // LANES):
-        strip, lanes = strip_of(guests.data[thread], s, rows), min(LANES, count - s * LANES)
+        strip, lanes = guests.data[thread][strip_at(s, rows)], min(LANES, count - s * LANES)
         here = guests.cell[thread, s * LANES : (s + 1) * LANES]
         who = guests.number[thread, s * LANES : (s + 1) * LANES]
         for i in range(LANES):
@@ -209,7 +209,7 @@ def _recoil(
     if what & MEASURE_WALLS:
         count = guests.filled[thread]
         for s in range((count + LANES - 1) // LANES):
-            strip = strip_of(guests.data[thread], s, rows)
+            strip = guests.data[thread][strip_at(s, rows)]
             here = guests.cell[thread, s * LANES : (s + 1) * LANES]
             gather_strip(here, coefficients, gathered, c)
             collide_strip(physics, grid, strip, gathered, like, c)

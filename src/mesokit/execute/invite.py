@@ -15,8 +15,8 @@ from mesokit.execute.chart import (
     surface_pieces,
 )
 from mesokit.execute.guests import KINDS, Guests
-from mesokit.execute.layout import BLOCK, ROW, blocks_for, zeros
-from mesokit.execute.lumps import Lumps
+from mesokit.execute.layout import BLOCK, ROW, SCRATCH_ROW, blocks_for, zeros
+from mesokit.execute.lumps import ROWS, Lumps
 from mesokit.execute.near_flow import columns
 from mesokit.geometry.bodies import Bodies
 from mesokit.geometry.contact import MARGIN
@@ -67,11 +67,12 @@ def guests_of(
         normals, heights, places, cut_terms, where = cut_planes(solids, corners, starts)
         entries = int(np.diff(starts).max(initial=0)) // threads + 1
         lumps = Lumps(
-            normals=normals,
+            normals=np.ascontiguousarray(normals.T).ravel(),
             heights=heights,
-            places=places,
+            places=np.ascontiguousarray(places.T).ravel(),
             terms=cut_terms,
             pieces=pieces[where].astype(np.int64),
+            work=zeros((threads, ROWS * SCRATCH_ROW)),
             state=np.zeros((threads, entries, 3 * d + 1)),
             entry=np.zeros((threads, entries), np.int64),
             filled=np.zeros(threads, np.int64),

@@ -7,7 +7,7 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from mesokit.execute.bounce import take
 from mesokit.execute.cell_energy import tally
 from mesokit.execute.flags import COLLIDE, MEASURE_WALLS, STREAM
-from mesokit.execute.layout import LANES, share, strip_of
+from mesokit.execute.layout import LANES, share, strip_at
 from mesokit.execute.rows import load, mass_of, store
 from mesokit.execute.stages import (
     add_strip,
@@ -40,7 +40,7 @@ def _fill(
     start, end = share(strips[1], thread, threads)
     for s in range(start, end):
         b = first_virtual + s
-        strip, here = strip_of(data, b, rows), cell[b * LANES : (b + 1) * LANES]
+        strip, here = data[strip_at(b, rows)], cell[b * LANES : (b + 1) * LANES]
         who = ident[b * LANES : (b + 1) * LANES]
         lanes = min(LANES, count[1] - s * LANES)
         if what & COLLIDE and what & MEASURE_WALLS:

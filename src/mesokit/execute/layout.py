@@ -134,7 +134,11 @@ def place(particle, rows, row):
 
 
 @scalar
-def strip_of(data, number, rows):
-    """The part of the blocks that holds a strip: row k of lane i is at k * ROW + i."""
+def strip_at(number, rows):
+    """The part of the blocks that holds a strip: row k of lane i is at k * ROW + i.
+
+    A slice: functions that count no users of arrays (`scalar.seldom`) can neither return a view
+    nor give one back.
+    """
     start = number // STRIPS * (rows * ROW) + number % STRIPS * LANES
-    return data[start : start + (rows - 1) * ROW + LANES]
+    return slice(start, start + (rows - 1) * ROW + LANES)

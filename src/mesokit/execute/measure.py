@@ -10,7 +10,7 @@ from mesokit.box import fold
 from mesokit.elementary import sincos_turn
 from mesokit.execute.cache import kernel
 from mesokit.execute.fixed_point import ROUNDER_BITS, fixed, integers, rounded
-from mesokit.execute.layout import LANES, lanes_in, share, strip_of, strips_in
+from mesokit.execute.layout import LANES, lanes_in, share, strip_at, strips_in
 from mesokit.execute.rows import load, mass_of, note
 from mesokit.execute.stages import add_strip
 from mesokit.potential.angle import bend
@@ -24,7 +24,7 @@ def totals(thread, threads, gate, physics, data, filling, rows, like, out):
     d = len(like)
     first, last = share(strips_in(filling), thread, threads)
     for b in range(first, last):
-        strip = strip_of(data, b, rows)
+        strip = data[strip_at(b, rows)]
         for i in range(lanes_in(filling, b)):
             v = load(strip, i, d, like)
             m = mass_of(physics.masses, strip, i, 2 * d)
@@ -49,7 +49,7 @@ def bin_sums(
     terms = integers(scales)
     first, last = share(strips_in(filling), thread, threads)
     for b in range(first, last):
-        strip = strip_of(data, b, rows)
+        strip = data[strip_at(b, rows)]
         for i in range(LANES):
             r, v = load(strip, i, 0, like), load(strip, i, d, like)
             r, v, _ = fold(box, r, v, scaled(0.0, like))
@@ -74,7 +74,7 @@ def modes(thread, threads, gate, physics, box, data, filling, rows, like, waves,
     d = len(like)
     first, last = share(strips_in(filling), thread, threads)
     for b in range(first, last):
-        strip = strip_of(data, b, rows)
+        strip = data[strip_at(b, rows)]
         lanes = lanes_in(filling, b)
         for w in range(len(waves)):
             wave = load_row(waves, w, like)
@@ -111,7 +111,7 @@ def gather_by_id(
     d = len(like)
     first, last = share(strips_in(filling), thread, threads)
     for b in range(first, last):
-        strip = strip_of(data, b, rows)
+        strip = data[strip_at(b, rows)]
         for i in range(lanes_in(filling, b)):
             j = b * LANES + i
             slot = slots[ident[j]]

@@ -13,7 +13,13 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from mesokit.execute.layout import share, sums_length
 from mesokit.execute.stages import cell_index
 from mesokit.execute.sums import nothing_found, read_sums
-from mesokit.geometry.bodies import in_box, nearest, surface_velocity, term_clearance
+from mesokit.geometry.bodies import (
+    in_box,
+    nearest,
+    sure_clearance,
+    surface_velocity,
+    term_clearance,
+)
 from mesokit.scalar import added_scaled, dot, scalar, scaled, seldom
 
 EVERY = 4  # steps from one look at a piece to the next: sooner, the same particles are there
@@ -65,9 +71,11 @@ def look(guests, e, p, physics, grid, sums, like, terms, scales):
     for k in range(d):
         corner = np.floor(probe[k] + grid.origin[k]) - grid.origin[k]
         middle = tuple_setitem(middle, k, corner + 0.5)
-    least, _, _ = nearest(solid.tables, in_box(solid, middle))
-    if least < 0.5 * math.sqrt(float(d)):
-        return
+    room, at_home = 0.5 * math.sqrt(float(d)), in_box(solid, middle)
+    if sure_clearance(solid, at_home) < room:
+        least, _, _ = nearest(solid.tables, at_home)
+        if least < room:
+            return
     cell, found = cell_index(probe, grid), nothing_found(terms)
     for t in range(sums.shape[0]):
         for k in range(len(found)):

@@ -16,7 +16,7 @@ from mesokit.execute.layout import (
     place,
     place_of_bead,
     share,
-    strip_of,
+    strip_at,
 )
 from mesokit.execute.rows import count_images, load, store
 from mesokit.execute.stages import cell_index
@@ -35,13 +35,13 @@ def wrap(thread, threads, box, grid, data, cell, image, filling, rows, like):
     for g in range(first, last):
         for bead in range(beads_of(filling)):
             b = g * beads_of(filling) + bead
-            strip = strip_of(data, b, rows)
+            strip = data[strip_at(b, rows)]
             for i in range(lanes_in(filling, b), LANES):
                 store(strip, i, 0, like + like)
         for bead in range(beads_of(filling) - 1, -1, -1):  # the first, which decides, at the end
             b = g * beads_of(filling) + bead
-            strip, boxes = strip_of(data, b, rows), image[:, b * LANES : (b + 1) * LANES]
-            leader = strip_of(data, g * beads_of(filling), rows)
+            strip, boxes = data[strip_at(b, rows)], image[:, b * LANES : (b + 1) * LANES]
+            leader = data[strip_at(g * beads_of(filling), rows)]
             for i in range(LANES):
                 r, v = load(strip, i, 0, like), load(strip, i, d, like)
                 leading = load(leader, i, 0, like)

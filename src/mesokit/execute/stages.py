@@ -10,7 +10,7 @@ from mesokit.box import slide
 from mesokit.execute.bounce import bounce
 from mesokit.execute.cell_energy import tally
 from mesokit.execute.chart import clear_place
-from mesokit.execute.layout import LANES, QUAD, SCRATCH_ROW, sums_length
+from mesokit.execute.layout import LANES, QUAD, ROW, SCRATCH_ROW, sums_length
 from mesokit.execute.records import gather, scatter_add
 from mesokit.execute.rows import add_to, count_images, load, mass_of, note, recall, store
 from mesokit.execute.sums import terms_of
@@ -21,6 +21,9 @@ from mesokit.mpcd.collision.protocol import collide, contribute
 from mesokit.mpcd.streaming import fall, halfway, vector
 from mesokit.pointer import whole
 from mesokit.scalar import by_type, chosen, mul_add, optional, scalar
+
+
+MANY = 8.0  # strides from a plate, beyond which a strip is left alone for so many steps
 
 
 class Physics(NamedTuple):
@@ -97,8 +100,11 @@ def locate_strip(grid, strip, cell, like):
 
 @by_type
 def look_around_strip(solid, grid, known, strip, s, cell, calm, clear, like):
-    """How far each particle of strip s may fly; its cell is known after a collision."""
-    return _look_around if solid.instance_class is Bodies else lambda *_: None
+    """How far each particle of strip s may fly; its cell is known after a collision.
+
+    Whether all of them may fly a stride, plates or not, is the answer.
+    """
+    return _look_around if solid.instance_class is Bodies else lambda *_: False
 
 
 def _look_around(solid, grid, known, strip, s, cell, calm, clear, like):
@@ -108,7 +114,7 @@ def _look_around(solid, grid, known, strip, s, cell, calm, clear, like):
     off a stride, until it is found anew. `clear` holds the bits of float32 numbers: those of
     positive numbers are in the same order, and the least of whole numbers is found faster.
     """
-    if calm[s] < solid.stride:
+    if not calm[s] >= solid.stride:
         if not known:
             locate_strip(grid, strip, cell, like)
         table = solid.clear + 4 * clear_place(solid, grid, 0)
@@ -118,10 +124,30 @@ def _look_around(solid, grid, known, strip, s, cell, calm, clear, like):
         for i in range(LANES):
             least = min(least, clear[i])
         calm[s] = math.sqrt(np.int32(least).view(np.float32))
-    if calm[s] >= solid.stride:
-        calm[s] -= solid.stride
-        for i in range(LANES):
-            clear[i] = np.float32(solid.stride * solid.stride).view(np.int32)
+        if calm[s] >= solid.stride:
+            calm[s] = min(calm[s], room_between_plates(solid, strip, like))
+    if not calm[s] >= solid.stride:
+        return False
+    calm[s] -= solid.stride
+    for i in range(LANES):
+        clear[i] = np.float32(solid.stride * solid.stride).view(np.int32)
+    return True
+
+
+@scalar
+def room_between_plates(solid, strip, like):
+    """A distance that every particle of the strip has from all plates: MANY strides, one or 0."""
+    for strides in (MANY, 1.0):
+        away, near = strides * solid.stride, np.int64(0)
+        for k in range(len(like)):
+            if solid.lowest[k] > -np.inf:
+                for i in range(LANES):
+                    x = strip[k * ROW + i]
+                    near |= np.int64(x - solid.lowest[k] < away)
+                    near |= np.int64(solid.highest[k] - x < away)
+        if near == 0:
+            return away
+    return 0.0
 
 
 @by_type
@@ -133,14 +159,13 @@ def clear_of(solid, clear, i):
 
 
 @scalar
-def fly(physics, strip, i, r, v, clear, hits):
+def fly(physics, strip, i, r, v, around, hits):
     """Store position and velocity a timestep later; a particle that may hit a surface stays behind.
 
-    The latter is marked in `hits`, and 1 is the answer.
+    The latter is marked in `hits`, and 1 is the answer. `around` is what `touches` asks for.
     """
     a = halfway(physics.field, r, v, physics.timestep)
     there = fall(r, v, a, physics.timestep)
-    around = clear_of(physics.solid, clear, i)
     hit = np.int64(touches(physics.solid, around, r, v, vector(a, r), physics.timestep))
     if exposed(physics.solid):
         hits[i] = hit
@@ -164,19 +189,43 @@ def stream_strip(physics, strip, clear, hits, like):
     any_hit = np.int64(0)
     for i in range(LANES):
         r, v = load(strip, i, 0, like), load(strip, i, d, like)
-        any_hit |= fly(physics, strip, i, r, v, clear, hits)
+        any_hit |= fly(physics, strip, i, r, v, clear_of(physics.solid, clear, i), hits)
     return any_hit
 
 
+@by_type
+def collide_and_stream_strip(physics, grid, strip, gathered, quiet, clear, hits, like, c):
+    """The two above in one loop; `quiet` is what `look_around_strip` said."""
+    def among_solids(physics, grid, strip, gathered, quiet, clear, hits, like, c):
+        return _among_solids(physics, grid, strip, gathered, clear, hits, like, c)
+
+    def looked_around(physics, grid, strip, gathered, quiet, clear, hits, like, c):
+        if quiet:
+            return _far_from_solids(physics, grid, strip, gathered, hits, like, c)
+        return _among_solids(physics, grid, strip, gathered, clear, hits, like, c)
+
+    return looked_around if kind_of_solid(physics) is Bodies else among_solids
+
+
 @scalar
-def collide_and_stream_strip(physics, grid, strip, gathered, clear, hits, like, c):
-    """The two above in one loop."""
+def _among_solids(physics, grid, strip, gathered, clear, hits, like, c):
     d = len(like)
     any_hit = np.int64(0)
     for i in range(LANES):
         r, v = load(strip, i, 0, like), load(strip, i, d, like)
         v = collided(physics, grid, gathered, i, r, v, c)
-        any_hit |= fly(physics, strip, i, r, v, clear, hits)
+        any_hit |= fly(physics, strip, i, r, v, clear_of(physics.solid, clear, i), hits)
+    return any_hit
+
+
+@scalar
+def _far_from_solids(physics, grid, strip, gathered, hits, like, c):
+    d = len(like)
+    any_hit = np.int64(0)
+    for i in range(LANES):
+        r, v = load(strip, i, 0, like), load(strip, i, d, like)
+        v = collided(physics, grid, gathered, i, r, v, c)
+        any_hit |= fly(physics, strip, i, r, v, (), hits)
     return any_hit
 
 
@@ -187,20 +236,26 @@ def bounce_strip(physics, counter, strip, count, ident, hits, impulse, scales, l
 
 
 def _bounce_strip(physics, counter, strip, count, ident, hits, impulse, scales, like):
-    d, marked = len(like), 0
+    d, marked, left = len(like), 0, 0
     for i in range(count):  # their numbers first: a loop without branches
         hit = hits[i]
         hits[marked] = i
         marked += hit
-    for j in range(marked):
+    for j in range(marked):  # most of them fly past: again without branches
         i = hits[j]
         r, v = load(strip, i, 0, like), load(strip, i, d, like)
         a = vector(halfway(physics.field, r, v, physics.timestep), like)
-        if free(physics.solid, r, v, a, physics.timestep):
-            r, v = fall(r, v, a, physics.timestep)
-        else:
-            m = mass_of(physics.masses, strip, i, 2 * d)
-            r, v = bounce(physics, counter, ident[i], m, r, v, a, impulse, scales[0])
+        past = free(physics.solid, r, v, a, physics.timestep)
+        there = fall(r, v, a, physics.timestep)
+        store(strip, i, 0, chosen(past, there[0] + there[1], r + v))
+        hits[left] = i
+        left += np.int64(not past)
+    for j in range(left):
+        i = hits[j]
+        r, v = load(strip, i, 0, like), load(strip, i, d, like)
+        a = vector(halfway(physics.field, r, v, physics.timestep), like)
+        m = mass_of(physics.masses, strip, i, 2 * d)
+        r, v = bounce(physics, counter, ident[i], m, r, v, a, impulse, scales[0])
         store(strip, i, 0, r + v)
 
 

@@ -6,12 +6,12 @@ Blocks are shared out among the threads in order; each thread adds to cell sums 
 import numpy as np
 
 from mesokit.box import at_time, peculiar
-from mesokit.execute.beads import WIDTH, bead_of, put_bead, take_bead
+from mesokit.execute.beads import WIDTH, bead_at, put_bead, take_bead
 from mesokit.execute.cache import inner
 from mesokit.execute.cell_energy import tally
 from mesokit.execute.flags import COLLIDE, MEASURE_STRESS, STREAM
 from mesokit.execute.layers import fill_layers
-from mesokit.execute.layout import LANES, SCRATCH_ROW, groups_in, lanes_in, share, strip_of
+from mesokit.execute.layout import LANES, SCRATCH_ROW, groups_in, lanes_in, share, strip_at
 from mesokit.execute.rows import load, mass_of
 from mesokit.execute.stages import (
     add_strip,
@@ -96,17 +96,21 @@ def _sweep_singles(
     measured = what & MEASURE_STRESS
     first, last = share(strips[0], thread, threads)
     for s in range(first, last):
-        strip, here = strip_of(data, s, rows), cell[s * LANES : (s + 1) * LANES]
+        strip, here = data[strip_at(s, rows)], cell[s * LANES : (s + 1) * LANES]
         lanes = lanes_in(count[0], s)
         who = ident[s * LANES : (s + 1) * LANES]
         boxes = image[:, s * LANES : (s + 1) * LANES]
+        quiet, behind = False, np.int64(0)
         if what & STREAM:
-            look_around_strip(physics.solid, old, what & COLLIDE, strip, s, here, calm, clear, like)
+            quiet = look_around_strip(
+                physics.solid, old, what & COLLIDE, strip, s, here, calm, clear, like
+            )
         if what & COLLIDE:
             gather_strip(here, coefficients, gathered, c)
-        behind = np.int64(0)
         if what & COLLIDE and what & STREAM and not measured:
-            behind = collide_and_stream_strip(physics, old, strip, gathered, clear, hits, like, c)
+            behind = collide_and_stream_strip(
+                physics, old, strip, gathered, quiet, clear, hits, like, c
+            )
         else:
             if what & COLLIDE:
                 collide_strip(physics, old, strip, gathered, like, c)
@@ -142,7 +146,7 @@ def _sweep_molecules(
         lanes = lanes_in(count[0], g * beads)
         for k in range(beads):  # velocities of step n, after the collision
             s = g * beads + k
-            strip, here = strip_of(data, s, rows), cell[s * LANES : (s + 1) * LANES]
+            strip, here = data[strip_at(s, rows)], cell[s * LANES : (s + 1) * LANES]
             if what & STREAM:
                 near = clear[k * SCRATCH_ROW : (k + 1) * SCRATCH_ROW]
                 look_around_strip(
@@ -161,18 +165,18 @@ def _sweep_molecules(
             for k in range(beads - 1, -1, -1):  # the leader's counts of boxes stay to the end
                 s = g * beads + k
                 boxes = image[:, s * LANES + start : (s + 1) * LANES]
-                strip = strip_of(data, s, rows)[start:]
-                take_bead(before, strip, boxes, leader, bead_of(work, k, like), like)
+                strip = data[strip_at(s, rows)][start:]
+                take_bead(before, strip, boxes, leader, work[bead_at(k, like)], like)
             fly_molecules(
                 physics, flock, counter, work, ident, clear, calm, hits, impulse, faults, measured,
                 tensor[2, g], scales, like,
             )  # fmt: skip
             for k in range(beads):
-                strip = strip_of(data, g * beads + k, rows)[start:]
-                put_bead(strip, bead_of(work, k, like), like)
+                strip = data[strip_at(g * beads + k, rows)][start:]
+                put_bead(strip, work[bead_at(k, like)], like)
         for k in range(beads):  # cells and their sums of step n + 1
             s = g * beads + k
-            strip, here = strip_of(data, s, rows), cell[s * LANES : (s + 1) * LANES]
+            strip, here = data[strip_at(s, rows)], cell[s * LANES : (s + 1) * LANES]
             who = ident[s * LANES : (s + 1) * LANES]
             slide_strip(box, grid, strip, image[:, s * LANES : (s + 1) * LANES], like)
             if measured:

@@ -38,7 +38,7 @@ from mesokit.geometry.protocol import (
 )
 from mesokit.pointer import whole, word
 from mesokit.random import DIFFUSE_WALL, Counter, normals, unit_open, words
-from mesokit.scalar import added_scaled, dot, scaled, seldom
+from mesokit.scalar import added_scaled, by_type, dot, scaled, seldom
 
 MARGIN = 1e-9  # cells: particles are kept so far from surfaces, beyond the rounding of coordinates
 
@@ -51,11 +51,23 @@ def _(solid):
 @touches.register(Bodies)
 def _(solid, clear, r, v, a, time):
     ahead = added_scaled(scaled(time, v), 0.5 * time * time, a)
-    near = dot(ahead, ahead) >= clear[0]
-    for k in range(len(r)):
-        end = r[k] + ahead[k]
-        near |= (min(r[k], end) < solid.lowest[k]) | (max(r[k], end) > solid.highest[k])
-    return near
+    return beyond(solid, clear, r, ahead)
+
+
+@by_type
+def beyond(solid, clear, r, ahead):
+    """Whether a way leads farther than is known to be clear: a stride, or what `clear` says."""
+    if len(clear) == 0:
+        return lambda solid, clear, r, ahead: dot(ahead, ahead) >= solid.stride * solid.stride
+
+    def looked(solid, clear, r, ahead):
+        near = dot(ahead, ahead) >= clear[0]
+        for k in range(len(r)):
+            end = r[k] + ahead[k]
+            near |= (min(r[k], end) < solid.lowest[k]) | (max(r[k], end) > solid.highest[k])
+        return near
+
+    return looked
 
 
 @free.register(Bodies)

@@ -35,7 +35,8 @@ def exposed(solid):
 def touches(solid, clear, r, v, a, time):
     """Whether the flight may touch the solid within the time (a cheap test for every particle).
 
-    `clear` is (square of the distance that is clear around r,) for solids in tables, else ().
+    For solids in tables `clear` is (square of the distance that is clear around r,), or () where
+    a stride is clear; for others it is ().
     """
 
 
