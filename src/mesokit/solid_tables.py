@@ -116,8 +116,8 @@ class SolidTables:
             self._places[number] = place
         self._places[SIZE : SIZE + self.dimension] = self.size
         size = tuple(float(length) for length in self.size)
-        unsure = self._keep(np.full(math.prod(self.size), -1.0), np.float32)
-        return Bodies(size, inverse, address(self._places), 0, 0.0, unsure, 1.0, size, size)
+        unsure = self._keep(np.zeros(math.prod(self.size)), np.float32)
+        return Bodies(size, inverse, address(self._places), unsure, 1.0, 0.0, size, size)
 
     def _surface(self, body: Body) -> list[float]:
         velocity = list(body.surface.velocity or ()) + [0.0] * 3

@@ -16,7 +16,7 @@ import numpy as np
 from mesokit.execute import survey
 from mesokit.geometry.bodies import Bodies
 from mesokit.geometry.contact import MARGIN
-from mesokit.scalar import by_type, scalar
+from mesokit.scalar import by_type
 from mesokit.solids import Solids
 
 OFFSETS = {2: 4, 3: 2}  # along each axis, by dimension
@@ -24,6 +24,7 @@ PARTS = {2: 4, 3: 2}  # of a cell along each axis, for which a bound of the clea
 PIECES = 5  # along each axis, by which a cell is searched for a surface
 SHIFTED_FINE = 4  # parts of a cell along each axis by which its volume is summed, for each shift
 EVERYWHERE = 1e30
+FAR = 1e6
 ROUNDING = 1e-9  # of a share
 
 
@@ -50,15 +51,6 @@ def _offset(solid, grid):
     return number
 
 
-@scalar
-def clear_place(solid, grid, cell):
-    """Where the table of clear distances has that of a cell."""
-    cells = 1
-    for k in range(len(grid.cells)):
-        cells *= int(grid.cells[k])
-    return offset_of(solid, grid) * (cells + 1) + cell
-
-
 def origins(closed: tuple[bool, ...]) -> Iterator[tuple[float, ...]]:
     """The middle of each interval: from 0 to 1 along a closed axis, from -1/2 to 1/2 elsewhere."""
     many = OFFSETS[len(closed)]
@@ -76,22 +68,12 @@ def centres(cells: tuple[int, ...], origin: tuple[float, ...]) -> Any:
     return np.stack([axis.ravel() for axis in reversed(mesh)], axis=-1)
 
 
-def clear_distances(solids: Solids, cells: tuple[int, ...], bend: float) -> Any:
-    """Square of the distance that any particle of each cell may fly (offsets, cells + 1).
+def clear_squares(solids: Solids, bend: float) -> tuple[Any, int]:
+    """Square of a lower bound of the clearance in small cubes that fill the box, x varying fastest,
+    and their number to a cell along each axis.
 
     No flight is farther than `bend` from the straight way to its end. Plates do not count.
     """
-    d, rows = solids.dimension, []
-    corner = (0.5 + 0.5 / OFFSETS[d]) * math.sqrt(d)
-    for origin in origins(solids.room.closed):
-        clear = solids.distance(centres(cells, origin), plates=False) - corner - bend - MARGIN
-        rows.append(np.append(np.maximum(clear, 0.0) ** 2, EVERYWHERE).astype(np.float32))
-    return np.stack(rows)
-
-
-def sure_clearances(solids: Solids) -> tuple[Any, int]:
-    """A lower bound of the clearance in small cubes that fill the box, x varying fastest, and their
-    number to a cell along each axis."""
     d = solids.dimension
     parts = PARTS[d]
     grids = [(np.arange(n * parts) + 0.5) / parts for n in solids.size]
@@ -100,7 +82,9 @@ def sure_clearances(solids: Solids) -> tuple[Any, int]:
     for last in grids[-1]:  # slice by slice, for there may be many
         mesh = np.meshgrid(*reversed([*grids[:-1], np.array([last])]), indexing="ij")
         points = np.stack([axis.ravel() for axis in reversed(mesh)], axis=-1)
-        rows.append((solids.distance(points) - corner - MARGIN).astype(np.float32))
+        clear = solids.distance(points, plates=False) - corner - bend - MARGIN
+        squares = np.clip(clear, 0.0, FAR) ** 2
+        rows.append(np.nextafter(squares.astype(np.float32), np.float32(0.0)))  # never too large
     return np.concatenate(rows), parts
 
 

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mesokit.execute.chart import (
-    clear_distances,
+    clear_squares,
     cut_cells,
     cut_planes,
-    sure_clearances,
     surface_pieces,
 )
 from mesokit.execute.guests import KINDS, Guests
@@ -30,24 +29,22 @@ if TYPE_CHECKING:
 MANY_SIGMA = 4.5  # of the Maxwell distribution: one particle in 20,000 is faster
 
 
-def charted(case: Case, solids: Solids, cells: tuple[int, ...]) -> tuple[Bodies, Any]:
-    """The solids with the distances that are clear around each cell and place; those tables."""
+def charted(case: Case, solids: Solids) -> tuple[Bodies, Any]:
+    """The solids with the distance that is clear around each place, and the table that keeps it."""
     bend = 0.125 * case.fluid.force.largest * case.fluid.timestep**2
-    clear = clear_distances(solids, cells, bend)
-    fine, parts = sure_clearances(solids)
+    clear, parts = clear_squares(solids, bend)
     lightest = min((kind.mass for kind in case.fluid.species), default=case.fluid.mass)
     stride = MANY_SIGMA * math.sqrt(case.fluid.kT / lightest) * case.fluid.timestep + bend
     gap = bend + MARGIN  # no parabola is further from its straight line than a t^2 / 8
     ends = list(zip(solids.room.closed, case.box.size, strict=True))
     kernel = solids.kernel._replace(
         clear=address(clear),
-        stride=stride,
-        fine=address(fine),
         parts=float(parts),
+        stride=stride,
         lowest=tuple(gap if shut else -math.inf for shut, _ in ends),
         highest=tuple(length - gap if shut else math.inf for shut, length in ends),
     )
-    return kernel, (clear, fine)
+    return kernel, clear
 
 
 def guests_of(

@@ -133,7 +133,7 @@ class Memory:
             return Nothing()
         if self.slit is not None:
             return self.slit.kernel(self.case.box.size)
-        bodies, self._clear = charted(self.case, self.solids, self.cells)
+        bodies, self._clear = charted(self.case, self.solids)
         return bodies
 
     def _molecule(self) -> tuple:
@@ -172,7 +172,7 @@ class Memory:
         surfaces = 2 if self.slit else len(self.solids.bodies) if self.solids else 0
         self.impulse = zeros((threads, surfaces * (d + (1 if d == 2 else 3))), np.int64)
         self.wall_rates = zeros((2, d))
-        self.calm = zeros(self.strips[0])
+        self.calm = zeros((2, self.strips[0]))
         self.guests: Guests | tuple[()] = ()
         if self.solids and self.slit is None and self.virtual != "none":
             masses = np.repeat(self.masses_of_kinds, self.counts)

@@ -71,9 +71,9 @@ def look(guests, e, p, physics, grid, sums, like, terms, scales):
     for k in range(d):
         corner = np.floor(probe[k] + grid.origin[k]) - grid.origin[k]
         middle = tuple_setitem(middle, k, corner + 0.5)
-    room, at_home = 0.5 * math.sqrt(float(d)), in_box(solid, middle)
-    if sure_clearance(solid, at_home) < room:
-        least, _, _ = nearest(solid.tables, at_home)
+    room = 0.5 * math.sqrt(float(d))
+    if sure_clearance(solid, middle) < room:
+        least, _, _ = nearest(solid.tables, in_box(solid, middle))
         if least < room:
             return
     cell, found = cell_index(probe, grid), nothing_found(terms)

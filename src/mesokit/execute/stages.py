@@ -9,19 +9,17 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from mesokit.box import slide
 from mesokit.execute.bounce import bounce
 from mesokit.execute.cell_energy import tally
-from mesokit.execute.chart import clear_place
 from mesokit.execute.layout import LANES, QUAD, ROW, SCRATCH_ROW, sums_length
 from mesokit.execute.records import gather, scatter_add
 from mesokit.execute.rows import add_to, count_images, load, mass_of, note, recall, store
 from mesokit.execute.sums import terms_of
-from mesokit.geometry.bodies import Bodies
+from mesokit.geometry.bodies import Bodies, cube_of
 from mesokit.geometry.none import Nothing
-from mesokit.geometry.protocol import exposed, free, touches
+from mesokit.geometry.protocol import exposed, leaps, touches
 from mesokit.mpcd.collision.protocol import collide, contribute
 from mesokit.mpcd.streaming import fall, halfway, vector
 from mesokit.pointer import whole
-from mesokit.scalar import by_type, chosen, mul_add, optional, scalar
-
+from mesokit.scalar import added_scaled, by_type, chosen, mul_add, optional, scalar
 
 MANY = 8.0  # strides from a plate, beyond which a strip is left alone for so many steps
 
@@ -91,47 +89,43 @@ def collided(physics, grid, gathered, i, r, v, c):
     return collide(physics.rule, recall(gathered, i, c), v, in_cell(r, grid))
 
 
-@scalar
-def locate_strip(grid, strip, cell, like):
-    """Find the cells anew, where those of the step before are no longer known."""
-    for i in range(LANES):
-        cell[i] = cell_index(load(strip, i, 0, like), grid)
-
-
 @by_type
-def look_around_strip(solid, grid, known, strip, s, cell, calm, clear, like):
-    """How far each particle of strip s may fly; its cell is known after a collision.
+def look_around_strip(solid, strip, s, calm, clear, like):
+    """How far each particle of strip s may fly, plates not counted.
 
     Whether all of them may fly a stride, plates or not, is the answer.
     """
     return _look_around if solid.instance_class is Bodies else lambda *_: False
 
 
-def _look_around(solid, grid, known, strip, s, cell, calm, clear, like):
-    """What its cell says or, far from all solids, the stride that few go beyond.
+def _look_around(solid, strip, s, calm, clear, like):
+    """At most a stride, which few go beyond.
 
-    `calm` is the distance that is surely clear around every particle of a strip: each step takes
-    off a stride, until it is found anew. `clear` holds the bits of float32 numbers: those of
-    positive numbers are in the same order, and the least of whole numbers is found faster.
+    `calm` is the distance that is surely clear around every particle of a strip, of plates and of
+    all else: each step takes off a stride, until it is found anew. `clear` holds the bits of
+    float32 numbers: those of positive numbers are in the same order, and the least of whole numbers
+    is found faster.
     """
-    if not calm[s] >= solid.stride:
-        if not known:
-            locate_strip(grid, strip, cell, like)
-        table = solid.clear + 4 * clear_place(solid, grid, 0)
+    stride = np.int32(np.float32(solid.stride * solid.stride).view(np.int32))
+    if calm[0, s] < solid.stride:
         for i in range(LANES):
-            clear[i] = np.int32(whole(table, np.int64(cell[i])))
+            clear[i] = cube_of(solid, load(strip, i, 0, like))
+        for i in range(LANES):
+            clear[i] = np.int32(whole(solid.clear, np.int64(clear[i])))
         least = np.int32(np.iinfo(np.int32).max)
         for i in range(LANES):
             least = min(least, clear[i])
-        calm[s] = math.sqrt(np.int32(least).view(np.float32))
-        if calm[s] >= solid.stride:
-            calm[s] = min(calm[s], room_between_plates(solid, strip, like))
-    if not calm[s] >= solid.stride:
-        return False
-    calm[s] -= solid.stride
-    for i in range(LANES):
-        clear[i] = np.float32(solid.stride * solid.stride).view(np.int32)
-    return True
+            clear[i] = min(stride, clear[i])
+        calm[0, s] = math.sqrt(np.int32(least).view(np.float32))
+    else:
+        for i in range(LANES):
+            clear[i] = stride
+    if calm[1, s] < solid.stride:
+        calm[1, s] = room_between_plates(solid, strip, like)
+    quiet = (calm[0, s] >= solid.stride) & (calm[1, s] >= solid.stride)
+    calm[0, s] -= solid.stride
+    calm[1, s] -= solid.stride
+    return quiet
 
 
 @scalar
@@ -143,8 +137,8 @@ def room_between_plates(solid, strip, like):
             if solid.lowest[k] > -np.inf:
                 for i in range(LANES):
                     x = strip[k * ROW + i]
-                    near |= np.int64(x - solid.lowest[k] < away)
-                    near |= np.int64(solid.highest[k] - x < away)
+                    far = (x - solid.lowest[k] >= away) & (solid.highest[k] - x >= away)
+                    near |= np.int64(not far)
         if near == 0:
             return away
     return 0.0
@@ -231,32 +225,28 @@ def _far_from_solids(physics, grid, strip, gathered, hits, like, c):
 
 @by_type
 def bounce_strip(physics, counter, strip, count, ident, hits, impulse, scales, like):
-    """Flight of the marked particles, with reflections; what surfaces take goes to impulse."""
-    return _bounce_strip if kind_of_solid(physics) is not Nothing else lambda *_: None
+    """Flight of the marked particles, with reflections; what surfaces take goes to impulse.
+
+    Whether any went farther than a stride is the answer.
+    """
+    return _bounce_strip if kind_of_solid(physics) is not Nothing else lambda *_: False
 
 
 def _bounce_strip(physics, counter, strip, count, ident, hits, impulse, scales, like):
-    d, marked, left = len(like), 0, 0
+    d, marked, far = len(like), 0, False
     for i in range(count):  # their numbers first: a loop without branches
         hit = hits[i]
         hits[marked] = i
         marked += hit
-    for j in range(marked):  # most of them fly past: again without branches
-        i = hits[j]
-        r, v = load(strip, i, 0, like), load(strip, i, d, like)
-        a = vector(halfway(physics.field, r, v, physics.timestep), like)
-        past = free(physics.solid, r, v, a, physics.timestep)
-        there = fall(r, v, a, physics.timestep)
-        store(strip, i, 0, chosen(past, there[0] + there[1], r + v))
-        hits[left] = i
-        left += np.int64(not past)
-    for j in range(left):
+    for j in range(marked):
         i = hits[j]
         r, v = load(strip, i, 0, like), load(strip, i, d, like)
         a = vector(halfway(physics.field, r, v, physics.timestep), like)
         m = mass_of(physics.masses, strip, i, 2 * d)
-        r, v = bounce(physics, counter, ident[i], m, r, v, a, impulse, scales[0])
-        store(strip, i, 0, r + v)
+        end, v = bounce(physics, counter, ident[i], m, r, v, a, impulse, scales[0])
+        store(strip, i, 0, end + v)
+        far |= leaps(physics.solid, added_scaled(end, -1.0, r))
+    return far
 
 
 @scalar

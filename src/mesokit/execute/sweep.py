@@ -102,9 +102,7 @@ def _sweep_singles(
         boxes = image[:, s * LANES : (s + 1) * LANES]
         quiet, behind = False, np.int64(0)
         if what & STREAM:
-            quiet = look_around_strip(
-                physics.solid, old, what & COLLIDE, strip, s, here, calm, clear, like
-            )
+            quiet = look_around_strip(physics.solid, strip, s, calm, clear, like)
         if what & COLLIDE:
             gather_strip(here, coefficients, gathered, c)
         if what & COLLIDE and what & STREAM and not measured:
@@ -118,9 +116,10 @@ def _sweep_singles(
                     momentum_flux(physics, box, old, strip, lanes, tensor[1, s], like)
             if what & STREAM:
                 behind = stream_strip(physics, strip, clear, hits, like)
-        if behind:
-            calm[s] = 0.0
-            bounce_strip(physics, counter, strip, lanes, who, hits, impulse, scales, like)
+        if behind and bounce_strip(
+            physics, counter, strip, lanes, who, hits, impulse, scales, like
+        ):
+            calm[0, s] = calm[1, s] = 0.0
         if what & STREAM:
             slide_strip(box, grid, strip, boxes, like)
             if measured:
@@ -149,9 +148,7 @@ def _sweep_molecules(
             strip, here = data[strip_at(s, rows)], cell[s * LANES : (s + 1) * LANES]
             if what & STREAM:
                 near = clear[k * SCRATCH_ROW : (k + 1) * SCRATCH_ROW]
-                look_around_strip(
-                    physics.solid, old, what & COLLIDE, strip, s, here, calm, near, like
-                )
+                look_around_strip(physics.solid, strip, s, calm, near, like)
             if what & COLLIDE:
                 gather_strip(here, coefficients, gathered, c)
                 collide_strip(physics, old, strip, gathered, like, c)

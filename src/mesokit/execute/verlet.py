@@ -87,7 +87,7 @@ def _fly_springs(
                 if drift_bead(
                     short, at, bead, flock.lanes, who, around, hits, impulse, scales, like
                 ):
-                    calm[s] = 0.0
+                    calm[0, s] = calm[1, s] = 0.0
         # v: the second half of the kick of that sub-step, and the first half of the next one's
         span = time if 0 < n < substeps else 0.5 * time
         if measured:

@@ -6,6 +6,7 @@ the box is a term of its own, and every cell of the box has a list of the terms 
 meets only those.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from mesokit.geometry import primitive
 from mesokit.geometry.primitive import WIDTH
 from mesokit.pointer import real, short, whole, word
-from mesokit.scalar import elementwise, scalar, scaled, seldom
+from mesokit.scalar import elementwise, mul_add, scalar, scaled, seldom
 
 REACH = 1.0  # lists hold the terms within this distance of a cell; flights are cut into such pieces
 NOBODY = -1
@@ -34,11 +35,9 @@ class Bodies(NamedTuple):
     - SIZE: not an address but the whole lengths of the box, 3 places.
 
     Tables hold float64 or, for numbers of things, int32.
-    clear (offsets, collision cells + 1): address of the square of the distance, float32, that every
-    particle of a cell may fly before it meets a solid, for each offset of the grid (`offset_of`).
+    clear (cubes of the box): address of the square, float32, of a lower bound of the distance from
+    all solids but plates in cubes of 1/parts, `parts` to a cell along each axis, x varying fastest.
     stride: distance that hardly a particle flies beyond in a timestep.
-    fine (parts of the box): address of a float32 lower bound of the clearance in cubes of 1/parts,
-    `parts` to a cell along each axis.
     lowest, highest: coordinates between which a flight ends that does not hit a plate; plates are
     not in `clear`, for each flight can look itself.
     """
@@ -47,9 +46,8 @@ class Bodies(NamedTuple):
     inverse: tuple[float, ...]
     tables: int
     clear: int
-    stride: float
-    fine: int
     parts: float
+    stride: float
     lowest: tuple[float, ...]
     highest: tuple[float, ...]
 
@@ -71,14 +69,28 @@ def in_box(solid, r):
 
 
 @scalar
+def cube_of(solid, r):
+    """Number of the cube that holds the image of r in the box; 0 for what is no number."""
+    index, cubes = 0.0, 1.0
+    for j in range(len(r)):
+        k = len(r) - 1 - j
+        along = solid.size[k] * solid.parts
+        i = np.floor(r[k] * solid.parts)
+        # half a cube keeps the quotient away from whole numbers, where it might round either way
+        images = np.floor((i + 0.5) * (solid.inverse[k] * (1.0 / solid.parts)))
+        i = min(max(mul_add(-along, images, i), 0.0), along - 1.0)
+        index = mul_add(index, along, i)
+        cubes *= along
+    return np.int32(index if (index >= 0.0) & (index < cubes) else 0.0)
+
+
+@scalar
 def sure_clearance(solid, r):
-    """A lower bound of the clearance of r, which is in the box: of the cube that holds it."""
-    cube, stride = 0, 1
+    """A lower bound of the clearance of r: of the cube that holds it, and from plates."""
+    bound = math.sqrt(short(solid.clear, np.int64(cube_of(solid, r))))
     for k in range(len(r)):
-        length = int(solid.size[k] * solid.parts)
-        cube += min(max(int(np.floor(r[k] * solid.parts)), 0), length - 1) * stride
-        stride *= length
-    return short(solid.fine, cube)
+        bound = min(bound, min(r[k] - solid.lowest[k], solid.highest[k] - r[k]))
+    return bound
 
 
 @scalar

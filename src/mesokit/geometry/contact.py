@@ -30,6 +30,7 @@ from mesokit.geometry.protocol import (
     free,
     happens,
     homed,
+    leaps,
     lever,
     reflect,
     settled,
@@ -70,16 +71,21 @@ def beyond(solid, clear, r, ahead):
     return looked
 
 
+@leaps.register(Bodies)
+def _(solid, way):
+    return dot(way, way) >= solid.stride * solid.stride
+
+
 @free.register(Bodies)
 def _(solid, r, v, a, time):
     path = (length(v) + 0.5 * length(a) * time) * time
-    return sure_clearance(solid, in_box(solid, r)) > path + MARGIN
+    return sure_clearance(solid, r) > path + MARGIN
 
 
 @facing.register(Bodies)
 def _(solid, away, r):
     x = in_box(solid, r)
-    if sure_clearance(solid, x) >= away:
+    if sure_clearance(solid, r) >= away:
         return away, scaled(0.0, r), 0, r
     distance, part, term = nearest_within(solid.tables, away, x)
     if term == NOBODY:

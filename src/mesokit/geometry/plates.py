@@ -20,6 +20,7 @@ from mesokit.geometry.protocol import (
     free,
     happens,
     homed,
+    leaps,
     lever,
     reflect,
     settled,
@@ -147,6 +148,11 @@ def _(solid, r, v, a, time):
     below = time_to_fall(r[k], v[k], a[k], time)
     above = time_to_fall(solid.width - r[k], -v[k], -a[k], time)
     return (below, 0) if below < above else (above, 1)
+
+
+@leaps.register(SlitX, SlitY, SlitZ)
+def _(solid, way):
+    return False
 
 
 @free.register(SlitX, SlitY, SlitZ)

@@ -41,6 +41,11 @@ def touches(solid, clear, r, v, a, time):
 
 
 @generic
+def leaps(solid, way):
+    """Whether a way is longer than a stride, of solids in tables: `clear` may not be so large."""
+
+
+@generic
 def free(solid, r, v, a, time):
     """Whether the flight surely misses the solid (a closer look than `touches`)."""
 
