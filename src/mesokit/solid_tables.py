@@ -117,7 +117,11 @@ class SolidTables:
         self._places[SIZE : SIZE + self.dimension] = self.size
         size = tuple(float(length) for length in self.size)
         unsure = self._keep(np.zeros(math.prod(self.size)), np.float32)
-        return Bodies(size, inverse, address(self._places), unsure, 1.0, 0.0, size, size)
+        no_plane = self._keep(np.full(math.prod(self.size), -1))
+        return Bodies(
+            size, inverse, address(self._places), clear=unsure, parts=1.0, plane_of=no_plane,
+            planes=0, reach=0.0, stride=0.0, lowest=size, highest=size,
+        )  # fmt: skip
 
     def _surface(self, body: Body) -> list[float]:
         velocity = list(body.surface.velocity or ()) + [0.0] * 3

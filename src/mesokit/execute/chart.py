@@ -8,19 +8,20 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
 from mesokit.execute import survey
-from mesokit.geometry.bodies import Bodies
+from mesokit.geometry.bodies import REACH, Bodies
 from mesokit.geometry.contact import MARGIN
 from mesokit.scalar import by_type
 from mesokit.solids import Solids
 
 OFFSETS = {2: 4, 3: 2}  # along each axis, by dimension
 PARTS = {2: 4, 3: 2}  # of a cell along each axis, for which a bound of the clearance is kept
+COLUMNS = {2: 32, 3: 10}  # along each axis, by which the solid about a cube is probed
 PIECES = 5  # along each axis, by which a cell is searched for a surface
 SHIFTED_FINE = 4  # parts of a cell along each axis by which its volume is summed, for each shift
 EVERYWHERE = 1e30
@@ -76,16 +77,46 @@ def clear_squares(solids: Solids, bend: float) -> tuple[Any, int]:
     """
     d = solids.dimension
     parts = PARTS[d]
-    grids = [(np.arange(n * parts) + 0.5) / parts for n in solids.size]
-    corner = 0.5 * math.sqrt(d) / parts
+    sides = [n * parts for n in solids.size]
+    layer = math.prod(sides[:-1])
     rows = []
-    for last in grids[-1]:  # slice by slice, for there may be many
-        mesh = np.meshgrid(*reversed([*grids[:-1], np.array([last])]), indexing="ij")
-        points = np.stack([axis.ravel() for axis in reversed(mesh)], axis=-1)
-        clear = solids.distance(points, plates=False) - corner - bend - MARGIN
+    for n in range(sides[-1]):  # layer by layer, for there may be many
+        middles = cube_middles(np.arange(n * layer, (n + 1) * layer), sides, parts)
+        clear = solids.distance(middles, plates=False) - 0.5 * math.sqrt(d) / parts - bend - MARGIN
         squares = np.clip(clear, 0.0, FAR) ** 2
         rows.append(np.nextafter(squares.astype(np.float32), np.float32(0.0)))  # never too large
     return np.concatenate(rows), parts
+
+
+def cube_middles(numbers: Any, sides: Sequence[int], parts: int) -> Any:
+    """Middles of small cubes, of which there are so many along each side of the box."""
+    places = []
+    for side in sides:
+        places.append((numbers % side + 0.5) / parts)
+        numbers = numbers // side
+    return np.stack(places, axis=-1)
+
+
+def free_planes(solids: Solids, clear: Any, stride: float, bend: float) -> tuple[Any, Any, float]:
+    """Planes above which there is no solid, for the small cubes that have some as near as a stride.
+
+    Number of the plane of each cube, or -1; normals and heights; how near to the cube that holds.
+    """
+    d = solids.dimension
+    parts = PARTS[d]
+    corner = 0.5 * math.sqrt(d) / parts
+    reach = min(stride, REACH - corner - bend)
+    numbers = np.flatnonzero(clear < stride * stride)
+    middles = cube_middles(numbers, [n * parts for n in solids.size], parts)
+    found = np.abs(solids.distance(middles, plates=False)) < corner + stride
+    numbers, middles = numbers[found], middles[found]
+    planes = np.zeros((len(numbers), d + 1))
+    away = corner + reach + bend
+    survey.free_planes(solids.kernel, solids.like, away, COLUMNS[d], middles, planes)
+    planes[:, d] += bend + MARGIN
+    plane_of = np.full(len(clear), -1, np.int32)
+    plane_of[numbers] = np.arange(len(numbers))
+    return plane_of, planes, reach
 
 
 def cut_cells(solids: Solids, cells: tuple[int, ...]) -> tuple[Any, Any, Any]:

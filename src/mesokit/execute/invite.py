@@ -11,6 +11,7 @@ from mesokit.execute.chart import (
     clear_squares,
     cut_cells,
     cut_planes,
+    free_planes,
     surface_pieces,
 )
 from mesokit.execute.guests import KINDS, Guests
@@ -30,21 +31,25 @@ MANY_SIGMA = 4.5  # of the Maxwell distribution: one particle in 20,000 is faste
 
 
 def charted(case: Case, solids: Solids) -> tuple[Bodies, Any]:
-    """The solids with the distance that is clear around each place, and the table that keeps it."""
+    """The solids with the distances that are clear around each place; the tables that keep them."""
     bend = 0.125 * case.fluid.force.largest * case.fluid.timestep**2
     clear, parts = clear_squares(solids, bend)
     lightest = min((kind.mass for kind in case.fluid.species), default=case.fluid.mass)
     stride = MANY_SIGMA * math.sqrt(case.fluid.kT / lightest) * case.fluid.timestep + bend
+    plane_of, planes, reach = free_planes(solids, clear, stride, bend)
     gap = bend + MARGIN  # no parabola is further from its straight line than a t^2 / 8
     ends = list(zip(solids.room.closed, case.box.size, strict=True))
     kernel = solids.kernel._replace(
         clear=address(clear),
         parts=float(parts),
+        plane_of=address(plane_of),
+        planes=address(planes),
+        reach=reach,
         stride=stride,
         lowest=tuple(gap if shut else -math.inf for shut, _ in ends),
         highest=tuple(length - gap if shut else math.inf for shut, length in ends),
     )
-    return kernel, clear
+    return kernel, (clear, plane_of, planes)
 
 
 def guests_of(

@@ -15,7 +15,7 @@ from mesokit.execute.rows import add_to, count_images, load, mass_of, note, reca
 from mesokit.execute.sums import terms_of
 from mesokit.geometry.bodies import Bodies, cube_of
 from mesokit.geometry.none import Nothing
-from mesokit.geometry.protocol import exposed, leaps, touches
+from mesokit.geometry.protocol import exposed, free, leaps, touches
 from mesokit.mpcd.collision.protocol import collide, contribute
 from mesokit.mpcd.streaming import fall, halfway, vector
 from mesokit.pointer import whole
@@ -242,8 +242,11 @@ def _bounce_strip(physics, counter, strip, count, ident, hits, impulse, scales, 
         i = hits[j]
         r, v = load(strip, i, 0, like), load(strip, i, d, like)
         a = vector(halfway(physics.field, r, v, physics.timestep), like)
-        m = mass_of(physics.masses, strip, i, 2 * d)
-        end, v = bounce(physics, counter, ident[i], m, r, v, a, impulse, scales[0])
+        if free(physics.solid, r, v, a, physics.timestep):
+            end, v = fall(r, v, a, physics.timestep)
+        else:
+            m = mass_of(physics.masses, strip, i, 2 * d)
+            end, v = bounce(physics, counter, ident[i], m, r, v, a, impulse, scales[0])
         store(strip, i, 0, end + v)
         far |= leaps(physics.solid, added_scaled(end, -1.0, r))
     return far

@@ -14,8 +14,9 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.geometry import primitive
 from mesokit.geometry.primitive import WIDTH
+from mesokit.geometry.primitive.numbers import vector
 from mesokit.pointer import real, short, whole, word
-from mesokit.scalar import elementwise, mul_add, scalar, scaled, seldom
+from mesokit.scalar import dot, elementwise, mul_add, scalar, scaled, seldom
 
 REACH = 1.0  # lists hold the terms within this distance of a cell; flights are cut into such pieces
 NOBODY = -1
@@ -37,6 +38,9 @@ class Bodies(NamedTuple):
     Tables hold float64 or, for numbers of things, int32.
     clear (cubes of the box): address of the square, float32, of a lower bound of the distance from
     all solids but plates in cubes of 1/parts, `parts` to a cell along each axis, x varying fastest.
+    plane_of (cubes,): address of the number, int32, of the plane of each cube, or -1; planes
+    (planes, d + 1): address of normals and heights. No solid is above it, n r > height, as near as
+    `reach` to the cube.
     stride: distance that hardly a particle flies beyond in a timestep.
     lowest, highest: coordinates between which a flight ends that does not hit a plate; plates are
     not in `clear`, for each flight can look itself.
@@ -47,6 +51,9 @@ class Bodies(NamedTuple):
     tables: int
     clear: int
     parts: float
+    plane_of: int
+    planes: int
+    reach: float
     stride: float
     lowest: tuple[float, ...]
     highest: tuple[float, ...]
@@ -91,6 +98,27 @@ def sure_clearance(solid, r):
     for k in range(len(r)):
         bound = min(bound, min(r[k] - solid.lowest[k], solid.highest[k] - r[k]))
     return bound
+
+
+@scalar
+def between_plates(solid, r):
+    """Whether r is surely between the plates."""
+    inside = True
+    for k in range(len(r)):
+        inside &= (r[k] > solid.lowest[k]) & (r[k] < solid.highest[k])
+    return inside
+
+
+@seldom
+def above_plane(solid, r, way):
+    """Whether r and r + way, nearer than `reach`, lie above the plane of the cube that holds r."""
+    plane, d = whole(solid.plane_of, np.int64(cube_of(solid, r))), len(r)
+    if plane < 0:
+        return False
+    place = solid.planes + 8 * (d + 1) * plane
+    n, height = vector(place, 0, r), real(place, d)
+    start = dot(n, in_box(solid, r)) - height
+    return min(start, start + dot(n, way)) > 0.0
 
 
 @scalar

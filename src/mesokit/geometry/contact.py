@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from mesokit.elementary import log
 from mesokit.geometry.bodies import (
     BODY,
@@ -10,6 +12,9 @@ from mesokit.geometry.bodies import (
     RULE,
     SLIP,
     Bodies,
+    above_plane,
+    between_plates,
+    cube_of,
     from_pivot,
     in_box,
     nearest,
@@ -21,7 +26,6 @@ from mesokit.geometry.bodies import (
     surface_velocity,
 )
 from mesokit.geometry.flight import first_meeting
-from mesokit.geometry.primitive.numbers import length
 from mesokit.geometry.protocol import (
     confine,
     exposed,
@@ -37,9 +41,9 @@ from mesokit.geometry.protocol import (
     surface_of,
     touches,
 )
-from mesokit.pointer import whole, word
+from mesokit.pointer import short, whole, word
 from mesokit.random import DIFFUSE_WALL, Counter, normals, unit_open, words
-from mesokit.scalar import added_scaled, by_type, dot, scaled, seldom
+from mesokit.scalar import added, added_scaled, by_type, dot, scaled, seldom
 
 MARGIN = 1e-9  # cells: particles are kept so far from surfaces, beyond the rounding of coordinates
 
@@ -78,8 +82,13 @@ def _(solid, way):
 
 @free.register(Bodies)
 def _(solid, r, v, a, time):
-    path = (length(v) + 0.5 * length(a) * time) * time
-    return sure_clearance(solid, r) > path + MARGIN
+    way = added_scaled(scaled(time, v), 0.5 * time * time, a)
+    path = dot(way, way)
+    if path < short(solid.clear, np.int64(cube_of(solid, r))):
+        past = True
+    else:
+        past = path < solid.reach * solid.reach and above_plane(solid, r, way)
+    return past and between_plates(solid, r) and between_plates(solid, added(r, way))
 
 
 @facing.register(Bodies)
