@@ -29,7 +29,7 @@ from mesokit.execute.layout import (
     sums_length,
     zeros,
 )
-from mesokit.execute.stages import Grid, Physics
+from mesokit.execute.stages import FEW, Grid, Physics
 from mesokit.geometry.none import Nothing
 from mesokit.solids import free_volume, slit_of, solids_of
 
@@ -172,7 +172,7 @@ class Memory:
         surfaces = 2 if self.slit else len(self.solids.bodies) if self.solids else 0
         self.impulse = zeros((threads, surfaces * (d + (1 if d == 2 else 3))), np.int64)
         self.wall_rates = zeros((2, d))
-        self.calm = zeros((2, self.strips[0]))
+        self.calm = zeros((2, self.strips[0] * (LANES // FEW)))
         self.guests: Guests | tuple[()] = ()
         if self.solids and self.slit is None and self.virtual != "none":
             masses = np.repeat(self.masses_of_kinds, self.counts)

@@ -21,6 +21,7 @@ from mesokit.mpcd.streaming import fall, halfway, vector
 from mesokit.pointer import whole
 from mesokit.scalar import added_scaled, by_type, chosen, mul_add, optional, scalar
 
+FEW = 64  # lanes: of particles next to one another, which are all near a solid or all far
 MANY = 8.0  # strides from a plate, beyond which a strip is left alone for so many steps
 
 
@@ -91,51 +92,79 @@ def collided(physics, grid, gathered, i, r, v, c):
 
 @by_type
 def look_around_strip(solid, strip, s, calm, clear, like):
-    """How far each particle of strip s may fly, plates not counted.
+    """How far each particle of strip s may fly, plates not counted, in as many lanes at a time as
+    `lanes_together` says.
 
-    Whether all of them may fly a stride, plates or not, is the answer.
+    The answer has a bit for each of these parts: whether all may fly a stride, plates or not.
     """
-    return _look_around if solid.instance_class is Bodies else lambda *_: False
+    return _look_around if solid.instance_class is Bodies else lambda *_: 0
+
+
+@by_type
+def lanes_together(solid):
+    """How many lanes are looked at together: those of a strip, fewer among solids in tables."""
+    number = FEW if solid.instance_class is Bodies else LANES
+    return lambda solid: number
 
 
 def _look_around(solid, strip, s, calm, clear, like):
     """At most a stride, which few go beyond.
 
-    `calm` is the distance that is surely clear around every particle of a strip, of plates and of
-    all else: each step takes off a stride, until it is found anew. `clear` holds the bits of
-    float32 numbers: those of positive numbers are in the same order, and the least of whole numbers
-    is found faster.
+    `calm` is the distance that is surely clear around every particle of a part of a strip, of
+    plates and of all else: each step takes off a stride, until it is found anew.
     """
-    stride = np.int32(np.float32(solid.stride * solid.stride).view(np.int32))
-    if calm[0, s] < solid.stride:
-        for i in range(LANES):
-            clear[i] = cube_of(solid, load(strip, i, 0, like))
-        for i in range(LANES):
-            clear[i] = np.int32(whole(solid.clear, np.int64(clear[i])))
-        least = np.int32(np.iinfo(np.int32).max)
-        for i in range(LANES):
-            least = min(least, clear[i])
-            clear[i] = min(stride, clear[i])
-        calm[0, s] = math.sqrt(np.int32(least).view(np.float32))
-    else:
-        for i in range(LANES):
-            clear[i] = stride
-    if calm[1, s] < solid.stride:
-        calm[1, s] = room_between_plates(solid, strip, like)
-    quiet = (calm[0, s] >= solid.stride) & (calm[1, s] >= solid.stride)
-    calm[0, s] -= solid.stride
-    calm[1, s] -= solid.stride
+    quiet = 0
+    for part in range(LANES // FEW):
+        n, start = s * (LANES // FEW) + part, part * FEW
+        look_up(solid, strip[start:], n, calm, clear[start:], like)
+        if calm[1, n] < solid.stride:
+            calm[1, n] = room_between_plates(solid, strip[start:], like)
+        if (calm[0, n] >= solid.stride) & (calm[1, n] >= solid.stride):
+            quiet |= 1 << part
+        calm[0, n] -= solid.stride
+        calm[1, n] -= solid.stride
     return quiet
 
 
-@scalar
+@by_type
+def look_up(solid, strip, n, calm, clear, like):
+    """The distance around each particle of the nth part, and the least of them if it is not known.
+
+    `clear` holds the bits of float32 numbers: those of positive numbers are in the same order, and
+    the least of whole numbers is found faster.
+    """
+    return _look_up
+
+
+def _look_up(solid, strip, n, calm, clear, like):
+    stride = np.int32(np.float32(solid.stride * solid.stride).view(np.int32))
+    if calm[0, n] < solid.stride:
+        for i in range(FEW):
+            clear[i] = cube_of(solid, load(strip, i, 0, like))
+        for i in range(FEW):
+            clear[i] = np.int32(whole(solid.clear, np.int64(clear[i])))
+        least = np.int32(np.iinfo(np.int32).max)
+        for i in range(FEW):
+            least = min(least, clear[i])
+            clear[i] = min(stride, clear[i])
+        calm[0, n] = math.sqrt(np.int32(least).view(np.float32))
+    else:
+        for i in range(FEW):
+            clear[i] = stride
+
+
+@by_type
 def room_between_plates(solid, strip, like):
-    """A distance that every particle of the strip has from all plates: MANY strides, one or 0."""
+    """A distance that every particle of the part has from all plates: MANY strides, one or 0."""
+    return _room_between_plates
+
+
+def _room_between_plates(solid, strip, like):
     for strides in (MANY, 1.0):
         away, near = strides * solid.stride, np.int64(0)
         for k in range(len(like)):
             if solid.lowest[k] > -np.inf:
-                for i in range(LANES):
+                for i in range(FEW):
                     x = strip[k * ROW + i]
                     far = (x - solid.lowest[k] >= away) & (solid.highest[k] - x >= away)
                     near |= np.int64(not far)
@@ -178,78 +207,107 @@ def collide_strip(physics, grid, strip, gathered, like, c):
 
 @scalar
 def stream_strip(physics, strip, clear, hits, like):
-    """Positions and velocities a timestep later; whether particles stayed behind is the answer."""
+    """Positions and velocities a timestep later.
+
+    The answer has a bit for each part of the strip in which particles may have stayed behind.
+    """
     d = len(like)
     any_hit = np.int64(0)
     for i in range(LANES):
         r, v = load(strip, i, 0, like), load(strip, i, d, like)
         any_hit |= fly(physics, strip, i, r, v, clear_of(physics.solid, clear, i), hits)
-    return any_hit
+    return -any_hit  # all bits
 
 
 @by_type
 def collide_and_stream_strip(physics, grid, strip, gathered, quiet, clear, hits, like, c):
     """The two above in one loop; `quiet` is what `look_around_strip` said."""
+
     def among_solids(physics, grid, strip, gathered, quiet, clear, hits, like, c):
-        return _among_solids(physics, grid, strip, gathered, clear, hits, like, c)
+        d, any_hit = len(like), np.int64(0)
+        for i in range(LANES):
+            r, v = load(strip, i, 0, like), load(strip, i, d, like)
+            v = collided(physics, grid, gathered, i, r, v, c)
+            any_hit |= fly(physics, strip, i, r, v, (), hits)
+        return any_hit
 
     def looked_around(physics, grid, strip, gathered, quiet, clear, hits, like, c):
-        if quiet:
-            return _far_from_solids(physics, grid, strip, gathered, hits, like, c)
-        return _among_solids(physics, grid, strip, gathered, clear, hits, like, c)
+        behind = np.int64(0)
+        for part in range(LANES // FEW):
+            start = part * FEW
+            any_hit = move_few(
+                physics, grid, strip[start:], gathered[start:], (quiet >> part) & 1,
+                clear[start:], hits[start:], like, c,
+            )  # fmt: skip
+            behind |= any_hit << part
+        return behind
 
     return looked_around if kind_of_solid(physics) is Bodies else among_solids
 
 
-@scalar
-def _among_solids(physics, grid, strip, gathered, clear, hits, like, c):
-    d = len(like)
-    any_hit = np.int64(0)
-    for i in range(LANES):
-        r, v = load(strip, i, 0, like), load(strip, i, d, like)
-        v = collided(physics, grid, gathered, i, r, v, c)
-        any_hit |= fly(physics, strip, i, r, v, clear_of(physics.solid, clear, i), hits)
-    return any_hit
+@by_type
+def move_few(physics, grid, strip, gathered, quiet, clear, hits, like, c):
+    """A part of a strip; where it is quiet, with a simpler question."""
+    return _move_few
 
 
-@scalar
-def _far_from_solids(physics, grid, strip, gathered, hits, like, c):
-    d = len(like)
-    any_hit = np.int64(0)
-    for i in range(LANES):
-        r, v = load(strip, i, 0, like), load(strip, i, d, like)
-        v = collided(physics, grid, gathered, i, r, v, c)
-        any_hit |= fly(physics, strip, i, r, v, (), hits)
+def _move_few(physics, grid, strip, gathered, quiet, clear, hits, like, c):
+    d, any_hit = len(like), np.int64(0)
+    if quiet != 0:
+        for i in range(FEW):
+            r, v = load(strip, i, 0, like), load(strip, i, d, like)
+            v = collided(physics, grid, gathered, i, r, v, c)
+            any_hit |= fly(physics, strip, i, r, v, (), hits)
+    else:
+        for i in range(FEW):
+            r, v = load(strip, i, 0, like), load(strip, i, d, like)
+            v = collided(physics, grid, gathered, i, r, v, c)
+            any_hit |= fly(physics, strip, i, r, v, clear_of(physics.solid, clear, i), hits)
     return any_hit
 
 
 @by_type
-def bounce_strip(physics, counter, strip, count, ident, hits, impulse, scales, like):
+def bounce_strip(physics, counter, strip, count, behind, ident, hits, impulse, scales, like):
     """Flight of the marked particles, with reflections; what surfaces take goes to impulse.
 
-    Whether any went farther than a stride is the answer.
+    `behind` and the answer have a bit for each part of the strip: whether some stayed behind, and
+    whether any of these then went farther than a stride.
     """
-    return _bounce_strip if kind_of_solid(physics) is not Nothing else lambda *_: False
+    return _bounce_strip if kind_of_solid(physics) is not Nothing else lambda *_: 0
 
 
-def _bounce_strip(physics, counter, strip, count, ident, hits, impulse, scales, like):
-    d, marked, far = len(like), 0, False
-    for i in range(count):  # their numbers first: a loop without branches
-        hit = hits[i]
-        hits[marked] = i
-        marked += hit
-    for j in range(marked):
-        i = hits[j]
-        r, v = load(strip, i, 0, like), load(strip, i, d, like)
-        a = vector(halfway(physics.field, r, v, physics.timestep), like)
-        if free(physics.solid, r, v, a, physics.timestep):
-            end, v = fall(r, v, a, physics.timestep)
-        else:
-            m = mass_of(physics.masses, strip, i, 2 * d)
-            end, v = bounce(physics, counter, ident[i], m, r, v, a, impulse, scales[0])
-        store(strip, i, 0, end + v)
-        far |= leaps(physics.solid, added_scaled(end, -1.0, r))
+def _bounce_strip(physics, counter, strip, count, behind, ident, hits, impulse, scales, like):
+    d, far, width = len(like), 0, lanes_together(physics.solid)
+    for start in range(0, count, width):
+        part, marked = start // width, start
+        if (behind >> part) & 1 == 0:
+            continue
+        for i in range(start, min(start + width, count)):  # their numbers first, without branches
+            hit = hits[i]
+            hits[marked] = i
+            marked += hit
+        for j in range(start, marked):
+            i = hits[j]
+            r, v = load(strip, i, 0, like), load(strip, i, d, like)
+            a = vector(halfway(physics.field, r, v, physics.timestep), like)
+            if free(physics.solid, r, v, a, physics.timestep):
+                end, v = fall(r, v, a, physics.timestep)
+            else:
+                m = mass_of(physics.masses, strip, i, 2 * d)
+                end, v = bounce(physics, counter, ident[i], m, r, v, a, impulse, scales[0])
+            store(strip, i, 0, end + v)
+            if leaps(physics.solid, added_scaled(end, -1.0, r)):
+                far |= 1 << part
     return far
+
+
+@scalar
+def forget(calm, s, far):
+    """Let the parts of a strip be looked around anew that `far` has bits for."""
+    for part in range(LANES // FEW):
+        if (far >> part) & 1 != 0:
+            n = s * (LANES // FEW) + part
+            calm[0, n] = calm[1, n] = 0.0
 
 
 @scalar

@@ -19,6 +19,7 @@ from mesokit.execute.stages import (
     bounce_strip,
     collide_and_stream_strip,
     collide_strip,
+    forget,
     gather_strip,
     look_around_strip,
     slide_strip,
@@ -100,7 +101,7 @@ def _sweep_singles(
         lanes = lanes_in(count[0], s)
         who = ident[s * LANES : (s + 1) * LANES]
         boxes = image[:, s * LANES : (s + 1) * LANES]
-        quiet, behind = False, np.int64(0)
+        quiet, behind = 0, np.int64(0)
         if what & STREAM:
             quiet = look_around_strip(physics.solid, strip, s, calm, clear, like)
         if what & COLLIDE:
@@ -116,10 +117,11 @@ def _sweep_singles(
                     momentum_flux(physics, box, old, strip, lanes, tensor[1, s], like)
             if what & STREAM:
                 behind = stream_strip(physics, strip, clear, hits, like)
-        if behind and bounce_strip(
-            physics, counter, strip, lanes, who, hits, impulse, scales, like
-        ):
-            calm[0, s] = calm[1, s] = 0.0
+        if behind != 0:
+            far = bounce_strip(
+                physics, counter, strip, lanes, behind, who, hits, impulse, scales, like
+            )
+            forget(calm, s, far)
         if what & STREAM:
             slide_strip(box, grid, strip, boxes, like)
             if measured:

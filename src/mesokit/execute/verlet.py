@@ -12,7 +12,7 @@ from mesokit.execute.beads import WIDTH, bead_at, leave, look
 from mesokit.execute.bounce import bounce
 from mesokit.execute.forces import add_product, add_virial, kick
 from mesokit.execute.layout import LANES, SCRATCH_ROW
-from mesokit.execute.stages import Physics, clear_of, kind_of_solid
+from mesokit.execute.stages import FEW, Physics, clear_of, forget, kind_of_solid
 from mesokit.geometry.none import Nothing
 from mesokit.geometry.protocol import free, touches
 from mesokit.mpcd.molecule import Dimers
@@ -87,7 +87,7 @@ def _fly_springs(
                 if drift_bead(
                     short, at, bead, flock.lanes, who, around, hits, impulse, scales, like
                 ):
-                    calm[0, s] = calm[1, s] = 0.0
+                    forget(calm, s, 1 << (flock.start // FEW))
         # v: the second half of the kick of that sub-step, and the first half of the next one's
         span = time if 0 < n < substeps else 0.5 * time
         if measured:
