@@ -4,14 +4,14 @@ import numpy as np
 
 from mesokit.geometry.protocol import (
     Chance,
-    confine,
     first_hit,
     happens,
     homed,
     lever,
-    reflect,
+    rebound,
     settled,
     surface_of,
+    unmet,
 )
 from mesokit.mpcd.streaming import fall
 from mesokit.scalar import added, added_scaled, outer, scalar, scaled, seldom
@@ -46,8 +46,9 @@ def bounce(physics, counter, number, m, r, v, a, impulse, scale):
     x, u, flying, touched = start, v, True, False
     # hits on one surface are added before they are rounded: there may be many small ones
     surface, given = 0, scaled(0.0, v + outer(v, v))
+    contact = unmet(solid)
     for n in range(MOST_HITS):
-        hit, contact = first_hit(solid, x, u, a, time)
+        hit, contact = first_hit(solid, x, u, a, time, contact)
         if hit > time:
             flying = False
             break
@@ -55,9 +56,8 @@ def bounce(physics, counter, number, m, r, v, a, impulse, scale):
         time -= hit
         if happens(solid, contact):
             touched = True
-            x = confine(solid, contact, x)
             chance = Chance(counter.seed, counter.step, number, n, physics.kT / m)
-            left = reflect(solid, contact, x, u, chance)
+            x, left = rebound(solid, contact, x, u, chance)
             lost = scaled(m, added_scaled(u, -1.0, left))
             hit_now = surface_of(solid, contact)
             if hit_now != surface:

@@ -22,7 +22,8 @@ from mesokit.pointer import whole
 from mesokit.scalar import added_scaled, by_type, chosen, mul_add, optional, scalar
 
 FEW = 64  # lanes: of particles next to one another, which are all near a solid or all far
-MANY = 8.0  # strides from a plate, beyond which a strip is left alone for so many steps
+MOST_ROOM = 1e6
+ROUNDED_DOWN = 1.0 - 1e-6  # of numbers that float32 may have rounded up
 
 
 class Physics(NamedTuple):
@@ -116,9 +117,9 @@ def _look_around(solid, strip, s, calm, clear, like):
     quiet = 0
     for part in range(LANES // FEW):
         n, start = s * (LANES // FEW) + part, part * FEW
-        look_up(solid, strip[start:], n, calm, clear[start:], like)
         if calm[1, n] < solid.stride:
-            calm[1, n] = room_between_plates(solid, strip[start:], like)
+            calm[1, n] = room_between_plates(solid, strip[start:], clear[start:], like)
+        look_up(solid, strip[start:], n, calm, clear[start:], like)
         if (calm[0, n] >= solid.stride) & (calm[1, n] >= solid.stride):
             quiet |= 1 << part
         calm[0, n] -= solid.stride
@@ -154,23 +155,22 @@ def _look_up(solid, strip, n, calm, clear, like):
 
 
 @by_type
-def room_between_plates(solid, strip, like):
-    """A distance that every particle of the part has from all plates: MANY strides, one or 0."""
+def room_between_plates(solid, strip, clear, like):
+    """The least distance of the particles of the part from plates; `clear` is scratch memory."""
     return _room_between_plates
 
 
-def _room_between_plates(solid, strip, like):
-    for strides in (MANY, 1.0):
-        away, near = strides * solid.stride, np.int64(0)
-        for k in range(len(like)):
-            if solid.lowest[k] > -np.inf:
-                for i in range(FEW):
-                    x = strip[k * ROW + i]
-                    far = (x - solid.lowest[k] >= away) & (solid.highest[k] - x >= away)
-                    near |= np.int64(not far)
-        if near == 0:
-            return away
-    return 0.0
+def _room_between_plates(solid, strip, clear, like):
+    least = np.int32(np.float32(MOST_ROOM).view(np.int32))
+    for k in range(len(like)):
+        if solid.lowest[k] > -np.inf:
+            for i in range(FEW):
+                x = strip[k * ROW + i]
+                room = max(min(x - solid.lowest[k], solid.highest[k] - x), 0.0)
+                clear[i] = np.float32(room).view(np.int32)
+            for i in range(FEW):
+                least = min(least, clear[i])
+    return np.int32(least).view(np.float32) * ROUNDED_DOWN
 
 
 @by_type

@@ -10,11 +10,9 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.execute.cache import kernel
 from mesokit.geometry.bodies import (
-    KINDS,
     NEAR,
     NOBODY,
     REACH,
-    SIGNS,
     STARTS,
     home_cell,
     in_box,
@@ -24,8 +22,8 @@ from mesokit.geometry.bodies import (
     term_clearance,
 )
 from mesokit.geometry.cut_cube import share_beyond
-from mesokit.geometry.flight import is_convex
-from mesokit.pointer import real, whole, word
+from mesokit.geometry.flight import curves_away
+from mesokit.pointer import whole, word
 from mesokit.scalar import added_scaled, by_type, dot, outer, scalar, scaled, seldom
 
 
@@ -218,12 +216,6 @@ def near_terms(tables, r):
     """Places in the list of those near the cell of r."""
     cell = home_cell(tables, r)
     return range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1))
-
-
-@scalar
-def curves_away(tables, part):
-    """Whether all of a part lies behind each of its tangent planes."""
-    return real(word(tables, SIGNS), part) > 0.0 and is_convex(whole(word(tables, KINDS), part))
 
 
 @seldom

@@ -110,15 +110,19 @@ def between_plates(solid, r):
 
 
 @seldom
-def above_plane(solid, r, way):
-    """Whether r and r + way, nearer than `reach`, lie above the plane of the cube that holds r."""
-    plane, d = whole(solid.plane_of, np.int64(cube_of(solid, r))), len(r)
+def sure_to_miss(solid, r, way):
+    """Whether the way from r surely leads into no solid, plates not counted.
+
+    Both ends are above the plane of the cube that holds r, or the way is shorter than is clear.
+    """
+    cube, path = np.int64(cube_of(solid, r)), dot(way, way)
+    plane, d = whole(solid.plane_of, cube), len(r)
     if plane < 0:
-        return False
+        return path < short(solid.clear, cube)
     place = solid.planes + 8 * (d + 1) * plane
-    n, height = vector(place, 0, r), real(place, d)
-    start = dot(n, in_box(solid, r)) - height
-    return min(start, start + dot(n, way)) > 0.0
+    n = vector(place, 0, r)
+    start = dot(n, in_box(solid, r)) - real(place, d)
+    return min(start, start + dot(n, way)) > 0.0 and path < solid.reach * solid.reach
 
 
 @scalar

@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 from mesokit.elementary import log
 from mesokit.geometry.bodies import (
     BODY,
@@ -12,9 +10,7 @@ from mesokit.geometry.bodies import (
     RULE,
     SLIP,
     Bodies,
-    above_plane,
     between_plates,
-    cube_of,
     from_pivot,
     in_box,
     nearest,
@@ -22,12 +18,12 @@ from mesokit.geometry.bodies import (
     part_clearance,
     part_normal,
     sure_clearance,
+    sure_to_miss,
     surface_number,
     surface_velocity,
 )
 from mesokit.geometry.flight import first_meeting
 from mesokit.geometry.protocol import (
-    confine,
     exposed,
     facing,
     first_hit,
@@ -36,12 +32,13 @@ from mesokit.geometry.protocol import (
     homed,
     leaps,
     lever,
-    reflect,
+    rebound,
     settled,
     surface_of,
     touches,
+    unmet,
 )
-from mesokit.pointer import short, whole, word
+from mesokit.pointer import whole, word
 from mesokit.random import DIFFUSE_WALL, Counter, normals, unit_open, words
 from mesokit.scalar import added, added_scaled, by_type, dot, scaled, seldom
 
@@ -83,12 +80,8 @@ def _(solid, way):
 @free.register(Bodies)
 def _(solid, r, v, a, time):
     way = added_scaled(scaled(time, v), 0.5 * time * time, a)
-    path = dot(way, way)
-    if path < short(solid.clear, np.int64(cube_of(solid, r))):
-        past = True
-    else:
-        past = path < solid.reach * solid.reach and above_plane(solid, r, way)
-    return past and between_plates(solid, r) and between_plates(solid, added(r, way))
+    past = between_plates(solid, r) & between_plates(solid, added(r, way))
+    return past and sure_to_miss(solid, r, way)
 
 
 @facing.register(Bodies)
@@ -109,9 +102,14 @@ def _(solid, r):
     return in_box(solid, r)
 
 
+@unmet.register(Bodies)
+def _(solid):
+    return 0, NOBODY
+
+
 @first_hit.register(Bodies)
-def _(solid, r, v, a, time):
-    hit, part, term = first_meeting(solid.tables, r, v, a, time)
+def _(solid, r, v, a, time, last):
+    hit, part, term = first_meeting(solid.tables, r, v, a, time, last[0], last[1])
     return hit, (part, term)
 
 
@@ -130,30 +128,25 @@ def _(solid, contact, r):
     return from_pivot(solid.tables, contact[1], r)
 
 
-@confine.register(Bodies)
-def _(solid, contact, r):
-    part = contact[0]
-    lacking = MARGIN - part_clearance(solid.tables, part, r)
-    return added_scaled(r, max(lacking, 0.0), part_normal(solid.tables, part, r))
-
-
-@reflect.register(Bodies)
+@rebound.register(Bodies)
 def _(solid, contact, r, v, chance):
-    return rebound(solid.tables, contact[0], contact[1], r, v, chance)
+    return after_hit(solid.tables, contact[0], contact[1], r, v, chance)
 
 
 @seldom
-def rebound(tables, part, term, r, v, chance):
-    """Velocity after a hit: bounced back, mirrored, or drawn anew at the temperature of the wall.
+def after_hit(tables, part, term, r, v, chance):
+    """Place and velocity after a hit: bounced back, mirrored, or drawn anew at the wall's kT.
 
     In the frame of the surface. A thermal wall sends particles out with a Maxwellian flux: normal
     velocities with density u exp(-m u^2 / 2 kT) (Lebowitz and Spohn 1978).
     """
-    u, n = surface_velocity(tables, term, r), part_normal(tables, part, r)
+    n = part_normal(tables, part, r)
+    r = added_scaled(r, max(MARGIN - part_clearance(tables, part, r), 0.0), n)
+    u = surface_velocity(tables, term, r)
     rule = surface_number(tables, term, RULE)
     coming = added_scaled(v, -1.0, u)
     if rule == SLIP:
-        return added_scaled(v, -2.0 * dot(n, coming), n)
+        return r, added_scaled(v, -2.0 * dot(n, coming), n)
     if rule == DIFFUSE:
         counter = Counter(chance.seed, chance.step)
         a, b, c, d = words(counter, DIFFUSE_WALL, chance.number, 2 * chance.hit)
@@ -161,8 +154,8 @@ def rebound(tables, part, term, r, v, chance):
         a, _, _, _ = words(counter, DIFFUSE_WALL, chance.number, 2 * chance.hit + 1)
         away = math.sqrt(-2.0 * log(unit_open(a)))
         drawn = added_scaled(along, away - dot(n, along), n)
-        return added_scaled(u, math.sqrt(chance.kT_over_m), drawn)
-    return added_scaled(u, -1.0, coming)
+        return r, added_scaled(u, math.sqrt(chance.kT_over_m), drawn)
+    return r, added_scaled(u, -1.0, coming)
 
 
 @settled.register(Bodies)

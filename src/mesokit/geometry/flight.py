@@ -124,10 +124,25 @@ def crossing(tables, part, r, v, a, outside, inside):
     return outside
 
 
+@scalar
+def curves_away(tables, part):
+    """Whether all of a part lies behind each of its tangent planes."""
+    return real(word(tables, SIGNS), part) > 0.0 and is_convex(whole(word(tables, KINDS), part))
+
+
+@scalar
+def departs(tables, part, r, v, a, time):
+    """Whether a flight that starts on the surface of a part surely does not come back to it."""
+    if not curves_away(tables, part):
+        return False
+    n = part_normal(tables, part, r)
+    return dot(n, v) + 0.5 * min(dot(n, a), 0.0) * time > 0.0
+
+
 @seldom
 def entry(tables, part, r, v, a, time):
     """When the flight enters a part; more than `time` if it does not."""
-    if real(word(tables, SIGNS), part) > 0.0 and is_convex(whole(word(tables, KINDS), part)):
+    if curves_away(tables, part):
         return approach(tables, part, r, v, a, time)
     return march(tables, part, r, v, a, time)
 
@@ -155,9 +170,10 @@ def meeting(tables, term, r, v, a, time):
 
 
 @seldom
-def first_meeting(tables, r, v, a, time):
+def first_meeting(tables, r, v, a, time, last_part, last_term):
     """The first hit of a flight that starts in the box: time, part and term.
 
+    It starts on the surface of the last part and term, unless that is NOBODY.
     A flight is followed no farther than REACH at a time: where it then is, the term is NOBODY.
     The time is more than `time` if nothing is left to happen.
     """
@@ -171,6 +187,8 @@ def first_meeting(tables, r, v, a, time):
     cell = home_cell(tables, r)
     for j in range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1)):
         candidate = whole(word(tables, NEAR), j)
+        if candidate == last_term and departs(tables, last_part, r, v, a, time):
+            continue
         c, _ = term_clearance(tables, candidate, r)
         if c <= path:
             t, which = meeting(tables, candidate, r, v, a, time)

@@ -13,7 +13,6 @@ from mesokit.geometry.flight import time_to_fall
 from mesokit.geometry.protocol import (
     across,
     closes,
-    confine,
     exposed,
     facing,
     first_hit,
@@ -22,16 +21,17 @@ from mesokit.geometry.protocol import (
     homed,
     leaps,
     lever,
-    reflect,
+    rebound,
     settled,
     side,
     surface_of,
     touches,
+    unmet,
 )
 from mesokit.geometry.region import Room, half_space
 from mesokit.geometry.shape import VIRTUAL, Body, Piece, Virtual
 from mesokit.geometry.surface import Surface
-from mesokit.scalar import added_scaled, mul_add, scaled
+from mesokit.scalar import added_scaled, mul_add, scalar, scaled
 
 
 @component
@@ -142,8 +142,13 @@ def _(solid, clear, r, v, a, time):
     return (min(h, end) - bend <= 0.0) | (max(h, end) + bend >= solid.width)
 
 
+@unmet.register(SlitX, SlitY, SlitZ)
+def _(solid):
+    return 0
+
+
 @first_hit.register(SlitX, SlitY, SlitZ)
-def _(solid, r, v, a, time):
+def _(solid, r, v, a, time, last):
     k = across(solid)
     below = time_to_fall(r[k], v[k], a[k], time)
     above = time_to_fall(solid.width - r[k], -v[k], -a[k], time)
@@ -180,25 +185,26 @@ def _(solid, contact, r):
     return scaled(0.0, r)
 
 
-@reflect.register(SlitX, SlitY, SlitZ)
+@rebound.register(SlitX, SlitY, SlitZ)
 def _(solid, contact, r, v, chance):
     k = across(solid)
     u = solid.lower_velocity if contact == 0 else solid.upper_velocity
     slips = solid.lower_slips if contact == 0 else solid.upper_slips
     back = added_scaled(scaled(2.0, u), -1.0, v)
     mirrored = tuple_setitem(v, k, -v[k])
-    return mirrored if slips > 0.5 else back
+    return between(solid, r), mirrored if slips > 0.5 else back
 
 
-@confine.register(SlitX, SlitY, SlitZ)
-def _(solid, contact, r):
+@scalar
+def between(solid, r):
+    """The place between the plates that is nearest to r."""
     k = across(solid)
     return tuple_setitem(r, k, min(max(r[k], 0.0), solid.width))
 
 
 @settled.register(SlitX, SlitY, SlitZ)
 def _(solid, r):
-    return confine(solid, 0, r), True
+    return between(solid, r), True
 
 
 @exposed.register(SlitX, SlitY, SlitZ)

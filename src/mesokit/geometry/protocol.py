@@ -56,8 +56,16 @@ def homed(solid, r):
 
 
 @generic
-def first_hit(solid, r, v, a, time):
-    """Time of the first hit (more than `time` if there is none), and the contact: what is hit."""
+def unmet(solid):
+    """The contact of a flight that starts away from all surfaces."""
+
+
+@generic
+def first_hit(solid, r, v, a, time, last):
+    """Time of the first hit (more than `time` if there is none), and the contact: what is hit.
+
+    The flight starts from the last contact.
+    """
 
 
 @generic
@@ -76,13 +84,11 @@ def lever(solid, contact, r):
 
 
 @generic
-def confine(solid, contact, r):
-    """The nearest place in the fluid: takes off what rounding put beyond the surface."""
+def rebound(solid, contact, r, v, chance):
+    """Place and velocity after the hit.
 
-
-@generic
-def reflect(solid, contact, r, v, chance):
-    """Velocity after the hit."""
+    The place is the nearest one in the fluid: that takes off what rounding put beyond the surface.
+    """
 
 
 @generic
