@@ -44,7 +44,7 @@ def flies(solid, r, v, a, time):
     return r, v, taken[0], taken[1]
 
 
-finds = njit(lambda solid, r, v, a, time: first_hit(solid, r, v, a, time))
+finds = njit(lambda solid, r, v, a, time: first_hit(solid, r, v, a, time, 0))
 sees = njit(lambda solid, r, v, a, time: touches(solid, (), r, v, a, time))
 folds = njit(lambda box, r, v, shift: fold(box, r, v, shift))
 relative = njit(lambda box, r, v: peculiar(box, r, v))

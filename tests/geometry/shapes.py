@@ -145,7 +145,7 @@ def on_surface(solids: Solids, n: int, seed: int = 0) -> tuple[np.ndarray, np.nd
 def _meets(solid, r, v, a, time):
     gone, x, u = 0.0, homed(solid, r), v
     for _ in range(1000):
-        t, _, term = first_meeting(solid.tables, x, u, a, time - gone)
+        t, _, term = first_meeting(solid.tables, x, u, a, time - gone, 0, NOBODY)
         if t > time - gone:
             break
         gone += t

@@ -23,10 +23,10 @@ def bead_size(d):
 
 
 @scalar
-def bead_at(number, like):
-    """The rows of one bead in the work space."""
+def bead_of(work, number, like):
+    """The rows of one bead."""
     size = bead_size(len(like))
-    return slice(number * size, (number + 1) * size)
+    return work[number * size : (number + 1) * size]
 
 
 @elementwise

@@ -1,6 +1,6 @@
 """What potentials do to the velocities of beads: loops over WIDTH molecules side by side."""
 
-from mesokit.execute.beads import WIDTH, bead_at, leave, look
+from mesokit.execute.beads import WIDTH, bead_of, leave, look
 from mesokit.mpcd.field.none import Zero
 from mesokit.mpcd.field.protocol import acceleration
 from mesokit.pointer import word
@@ -20,20 +20,20 @@ def kick(physics, work, time, like):
     bonds, angles, pairs = molecule.number
     apart = False
     for n in range(bonds):
-        a = bead_at(work, word(links, 2 * n), like)
-        b = bead_at(work, word(links, 2 * n + 1), like)
+        a = bead_of(work, word(links, 2 * n), like)
+        b = bead_of(work, word(links, 2 * n + 1), like)
         apart |= kick_bond(molecule.bond, factor, a, b, like)
     for n in range(angles):
-        a = bead_at(work, word(links, 2 * bonds + 3 * n), like)
-        b = bead_at(work, word(links, 2 * bonds + 3 * n + 1), like)
-        c = bead_at(work, word(links, 2 * bonds + 3 * n + 2), like)
+        a = bead_of(work, word(links, 2 * bonds + 3 * n), like)
+        b = bead_of(work, word(links, 2 * bonds + 3 * n + 1), like)
+        c = bead_of(work, word(links, 2 * bonds + 3 * n + 2), like)
         kick_angle(molecule.angle, factor, a, b, c, like)
     for n in range(pairs):
-        a = bead_at(work, word(links, 2 * bonds + 3 * angles + 2 * n), like)
-        b = bead_at(work, word(links, 2 * bonds + 3 * angles + 2 * n + 1), like)
+        a = bead_of(work, word(links, 2 * bonds + 3 * angles + 2 * n), like)
+        b = bead_of(work, word(links, 2 * bonds + 3 * angles + 2 * n + 1), like)
         kick_pair(molecule.pair, factor, a, b, like)
     for k in range(molecule.beads):
-        push_bead(physics.field, time, work[bead_at(k, like)], like)
+        push_bead(physics.field, time, bead_of(work, k, like), like)
     return apart
 
 
@@ -104,17 +104,17 @@ def add_virial(physics, work, time, lanes, tensor, like):
     links = molecule.links
     bonds, angles, pairs = molecule.number
     for n in range(bonds):
-        a = bead_at(work, word(links, 2 * n), like)
-        b = bead_at(work, word(links, 2 * n + 1), like)
+        a = bead_of(work, word(links, 2 * n), like)
+        b = bead_of(work, word(links, 2 * n + 1), like)
         bond_virial(molecule.bond, time, a, b, lanes, tensor, like)
     for n in range(angles):
-        a = bead_at(work, word(links, 2 * bonds + 3 * n), like)
-        b = bead_at(work, word(links, 2 * bonds + 3 * n + 1), like)
-        c = bead_at(work, word(links, 2 * bonds + 3 * n + 2), like)
+        a = bead_of(work, word(links, 2 * bonds + 3 * n), like)
+        b = bead_of(work, word(links, 2 * bonds + 3 * n + 1), like)
+        c = bead_of(work, word(links, 2 * bonds + 3 * n + 2), like)
         angle_virial(molecule.angle, time, a, b, c, lanes, tensor, like)
     for n in range(pairs):
-        a = bead_at(work, word(links, 2 * bonds + 3 * angles + 2 * n), like)
-        b = bead_at(work, word(links, 2 * bonds + 3 * angles + 2 * n + 1), like)
+        a = bead_of(work, word(links, 2 * bonds + 3 * angles + 2 * n), like)
+        b = bead_of(work, word(links, 2 * bonds + 3 * angles + 2 * n + 1), like)
         pair_virial(molecule.pair, time, a, b, lanes, tensor, like)
 
 

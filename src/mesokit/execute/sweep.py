@@ -6,7 +6,7 @@ Blocks are shared out among the threads in order; each thread adds to cell sums 
 import numpy as np
 
 from mesokit.box import at_time, peculiar
-from mesokit.execute.beads import WIDTH, bead_at, put_bead, take_bead
+from mesokit.execute.beads import WIDTH, bead_of, put_bead, take_bead
 from mesokit.execute.cache import inner
 from mesokit.execute.cell_energy import tally
 from mesokit.execute.flags import COLLIDE, MEASURE_STRESS, STREAM
@@ -165,14 +165,14 @@ def _sweep_molecules(
                 s = g * beads + k
                 boxes = image[:, s * LANES + start : (s + 1) * LANES]
                 strip = data[strip_at(s, rows)][start:]
-                take_bead(before, strip, boxes, leader, work[bead_at(k, like)], like)
+                take_bead(before, strip, boxes, leader, bead_of(work, k, like), like)
             fly_molecules(
                 physics, flock, counter, work, ident, clear, calm, hits, impulse, faults, measured,
                 tensor[2, g], scales, like,
             )  # fmt: skip
             for k in range(beads):
                 strip = data[strip_at(g * beads + k, rows)][start:]
-                put_bead(strip, work[bead_at(k, like)], like)
+                put_bead(strip, bead_of(work, k, like), like)
         for k in range(beads):  # cells and their sums of step n + 1
             s = g * beads + k
             strip, here = data[strip_at(s, rows)], cell[s * LANES : (s + 1) * LANES]

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mesokit.execute.beads import WIDTH, bead_at, leave, look
+from mesokit.execute.beads import WIDTH, bead_of, leave, look
 from mesokit.execute.bounce import bounce
 from mesokit.execute.forces import add_product, add_virial, kick
 from mesokit.execute.layout import LANES, SCRATCH_ROW
@@ -76,12 +76,12 @@ def _fly_springs(
     time = physics.timestep / substeps
     short = within(physics, time)
     for k in range(beads):
-        remember(physics.solid, work[bead_at(k, like)], like)
+        remember(physics.solid, bead_of(work, k, like), like)
     for n in range(substeps + 1):
         if n > 0:  # r: t + (n - 1) h -> t + n h
             at = Counter(counter.seed, counter.step + (n << SUBSTEP_BITS))
             for k in range(beads):
-                bead, s = work[bead_at(k, like)], flock.strip + k
+                bead, s = bead_of(work, k, like), flock.strip + k
                 around = clear[k * SCRATCH_ROW + flock.start : (k + 1) * SCRATCH_ROW]
                 who = ident[s * LANES + flock.start : (s + 1) * LANES]
                 if drift_bead(
@@ -102,7 +102,7 @@ def _fly_dimers(
     scales, like,
 ):  # fmt: skip
     d, exact, time = len(like), physics.molecule, physics.timestep
-    a, b = work[bead_at(0, like)], work[bead_at(1, like)]
+    a, b = bead_of(work, 0, like), bead_of(work, 1, like)
     if measured:
         _exact_virial(exact, a, b, flock.lanes, tensor, like)
     for i in range(WIDTH):
@@ -201,8 +201,8 @@ def note_torn(molecule, flock, counter, work, ident, faults, like):
         a, b = word(molecule.links, 2 * n), word(molecule.links, 2 * n + 1)
         for i in range(flock.lanes):
             way = added_scaled(
-                look(work[bead_at(b, like)], i, 0, like), -1.0,
-                look(work[bead_at(a, like)], i, 0, like),
+                look(bead_of(work, b, like), i, 0, like), -1.0,
+                look(bead_of(work, a, like), i, 0, like),
             )  # fmt: skip
             if torn(molecule.bond, dot(way, way)):
                 one = np.int64(ident[base + a * LANES + i])

@@ -3,8 +3,9 @@
 A flight starts at r, in the fluid or on a surface, with velocity v, and has the acceleration a.
 Half-spaces have a formula. Convex parts are approached by their tangent planes: no flight reaches
 the solid before it reaches the plane, so the time of the plane is safe, and the next plane, at the
-place reached, is nearer to the truth, quadratically as Newton's method. Everything else is
-approached by steps no longer than the distance to it, and the crossing is then bracketed.
+place reached, is nearer to the truth, quadratically as Newton's method. Sampled solids are crossed
+cell by cell of their grid. Everything else is approached by steps no longer than the distance to
+it, and the crossing is then bracketed.
 """
 
 import math
@@ -15,7 +16,9 @@ from mesokit.geometry.bodies import (
     KINDS,
     NEAR,
     NOBODY,
+    NUMBERS,
     REACH,
+    SAMPLES,
     SIGNS,
     STARTS,
     home_cell,
@@ -23,6 +26,7 @@ from mesokit.geometry.bodies import (
     part_normal,
     term_clearance,
 )
+from mesokit.geometry.primitive import WIDTH, sampled
 from mesokit.geometry.primitive.numbers import length
 from mesokit.pointer import real, whole, word
 from mesokit.scalar import added_scaled, dot, scalar, seldom
@@ -30,6 +34,7 @@ from mesokit.scalar import added_scaled, dot, scalar, seldom
 ON_SURFACE = 1e-11  # cells: a flight that comes so close has arrived
 SHORT_STEP = 1e-3  # cells: what a march dares without looking
 MOST_TRIES = 100
+SAMPLED = primitive.KINDS["sampled"]
 _CONVEX_KINDS = sum(1 << kind for kind, convex in enumerate(primitive.CONVEX) if convex)
 
 
@@ -79,6 +84,37 @@ def approach(tables, part, r, v, a, time):
 
 
 @seldom
+def traverse(tables, part, r, v, a, time):
+    """When the flight enters a sampled part; more than `time` if it does not.
+
+    From cell to cell of its grid; within one, no farther than where the value may be 0 at the
+    soonest, which is where it is 0 unless the flight is bent.
+    """
+    p = word(tables, NUMBERS) + 8 * WIDTH * part
+    samples, sign = word(tables, SAMPLES), real(word(tables, SIGNS), part)
+    spacing, steep, pull = real(p, 3), real(p, 8), length(a)
+    late, t = 2.0 * time + 1.0, 0.0
+    x, u = r, v
+    for _ in range(MOST_TRIES + int(8.0 * REACH / spacing)):
+        value, slope, bend, leave = sampled.ahead(p, samples, x, u)
+        value, slope = sign * value, sign * slope
+        if value <= ON_SURFACE * steep and slope < 0.0:
+            return t
+        value, bend = max(value, 0.0), bend + steep * pull
+        root = math.sqrt(slope * slope + 2.0 * bend * value)
+        if slope > 0.0:
+            soonest = (slope + root) / (bend + 1e-300)
+        else:
+            soonest = 2.0 * value / (root - slope + 1e-300)
+        hop = ON_SURFACE / (length(u) + 1e-300)  # over the end of the cell
+        t += min(soonest, leave) + hop
+        if t > time:
+            return late
+        x, u = at(r, v, a, t)
+    return t
+
+
+@seldom
 def march(tables, part, r, v, a, time):
     """When the flight enters any part; more than `time` if it does not."""
     late, t, pull = 2.0 * time + 1.0, 0.0, length(a)
@@ -88,23 +124,22 @@ def march(tables, part, r, v, a, time):
     if room and part_clearance(tables, part, x) >= 0.5 * pull * time * time:
         return late
     x, u = r, v
+    c = part_clearance(tables, part, r)
     while t < time:
-        c = max(part_clearance(tables, part, x), SHORT_STEP)
-        ahead = min(t + c / (length(u) + pull * (time - t) + 1e-300), time)
+        ahead = max(c, SHORT_STEP) / (length(u) + pull * (time - t) + 1e-300)
+        ahead = min(t + ahead, time)
         x, u = at(r, v, a, ahead)
-        if part_clearance(tables, part, x) < 0.0:
-            return crossing(tables, part, r, v, a, t, ahead)
+        above, c = c, part_clearance(tables, part, x)
+        if c < 0.0:
+            return crossing(tables, part, r, v, a, t, ahead, max(above, 0.0), c)
         t = ahead
     return late
 
 
 @seldom
-def crossing(tables, part, r, v, a, outside, inside):
-    """The last time found outside, when the flight crosses the surface between two times."""
-    x, _ = at(r, v, a, outside)
-    above = max(part_clearance(tables, part, x), 0.0)
-    x, _ = at(r, v, a, inside)
-    below = part_clearance(tables, part, x)
+def crossing(tables, part, r, v, a, outside, inside, above, below):
+    """The last time found outside, when the flight crosses the surface between two times, at which
+    its distances from it are `above` and `below`."""
     for n in range(MOST_TRIES):
         # false position; its end that stays is given half the weight (Illinois), now and then half
         share = above / (above - below) if n % 8 < 7 else 0.5
@@ -144,6 +179,8 @@ def entry(tables, part, r, v, a, time):
     """When the flight enters a part; more than `time` if it does not."""
     if curves_away(tables, part):
         return approach(tables, part, r, v, a, time)
+    if whole(word(tables, KINDS), part) == SAMPLED:
+        return traverse(tables, part, r, v, a, time)
     return march(tables, part, r, v, a, time)
 
 

@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numba.cpython.unsafe.tuple import tuple_setitem
 
-from mesokit.geometry.primitive.numbers import unit
+from mesokit.geometry.primitive.numbers import length, unit
 from mesokit.pointer import real
 from mesokit.scalar import dot, scalar, scaled
 
@@ -47,13 +47,20 @@ def corner(p, samples, base, which):
 
 
 @scalar
-def interpolated(p, samples, x):
-    """Value between the samples, and its gradient per spacing."""
-    base, part, gradient = x, x, scaled(0.0, x)
+def split(x):
+    """The first point of the cell of the grid that x is in, and how far from it x is."""
+    base, part = x, x
     for k in range(len(x)):
         base = tuple_setitem(base, k, np.floor(x[k]))
         part = tuple_setitem(part, k, x[k] - np.floor(x[k]))
-    value = 0.0
+    return base, part
+
+
+@scalar
+def interpolated(p, samples, x):
+    """Value between the samples, and its gradient per spacing."""
+    base, part = split(x)
+    value, gradient = 0.0, scaled(0.0, x)
     for which in range(1 << len(x)):
         sample, weight = corner(p, samples, base, which), 1.0
         for k in range(len(x)):
@@ -66,6 +73,49 @@ def interpolated(p, samples, x):
                     share *= part[k] if (which >> k) & 1 else 1.0 - part[k]
             gradient = tuple_setitem(gradient, j, gradient[j] + share * sample)
     return value, gradient
+
+
+@scalar
+def twist(p, samples, base, v):
+    """A bound of the second derivative of the value along v within a cell, in spacings.
+
+    Within a cell the value is linear along each axis: only mixed derivatives are not 0, and each is
+    linear along the other axes.
+    """
+    total, d = 0.0, len(v)
+    for j in range(d):
+        for k in range(j + 1, d):
+            most = 0.0
+            for far in range(d - 1):  # of the axis that is neither, if there is one
+                other = (7 ^ (1 << j) ^ (1 << k)) & ((1 << d) - 1) if far else 0
+                mixed = corner(p, samples, base, other)
+                mixed -= corner(p, samples, base, other | (1 << j))
+                mixed -= corner(p, samples, base, other | (1 << k))
+                mixed += corner(p, samples, base, other | (1 << j) | (1 << k))
+                most = max(most, abs(mixed))
+            total += 2.0 * most * abs(v[j] * v[k])
+    return total
+
+
+@scalar
+def ahead(p, samples, r, v):
+    """What a flight sees: value, its slope along the flight, a bound of how that may change within
+    the cell of the grid, and the time until it leaves this.
+
+    Beyond the grid, as if it flew straight to the solid.
+    """
+    x, off = inside_grid(p, r)
+    if dot(off, off) > 0.0:
+        steep = real(p, 8)
+        return distance(p, samples, r) * steep, -steep * length(v), 0.0, np.inf
+    value, gradient = interpolated(p, samples, x)
+    base, part = split(x)
+    per_time = scaled(1.0 / real(p, 3), v)
+    leave = np.inf
+    for k in range(len(v)):
+        left = 1.0 - part[k] if v[k] > 0.0 else part[k]
+        leave = min(leave, left / abs(per_time[k]) if v[k] != 0.0 else np.inf)
+    return value, dot(gradient, per_time), twist(p, samples, base, per_time), leave
 
 
 @scalar
