@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 from shapes import EVERY, example, solids_of, walls_of
 
-from mesokit.execute.chart import EVERYWHERE, OFFSETS, cut_cells, cut_planes
+from mesokit.execute.chart import (
+    EVERYWHERE,
+    OFFSETS,
+    PARTS,
+    clear_squares,
+    cube_middles,
+    cut_cells,
+    cut_planes,
+    free_planes,
+)
 from mesokit.geometry.cut_cube import share_and_depth
 
 
@@ -35,3 +44,48 @@ def test_planes_cut_off_what_is_solid(case, tmp_path):
         assert abs(cut - share).max(initial=0.0) < 0.35
         total, expected = total + sum(cut), expected + share.sum()
     assert total == pytest.approx(expected, rel=0.02)
+
+
+STRIDE = 0.45
+
+
+@pytest.mark.parametrize("case", EVERY, ids=lambda case: "-".join(map(str, case)))
+def test_nothing_is_where_tables_say_so(case, tmp_path):
+    """No solid but plates is nearer to a small cube than the table has it, nor above its plane as
+    near as a stride."""
+    name, d, side = case
+    solids = solids_of(walls_of(example(name, d, side, tmp_path), d), d)
+    clear, parts = clear_squares(solids, 0.0)
+    plane_of, planes, reach = free_planes(solids, clear, STRIDE, 0.0)
+    assert parts == PARTS[d]
+    assert reach == STRIDE
+    rng, sides = np.random.default_rng(2), [n * parts for n in solids.size]
+    some = rng.integers(len(clear), size=2000)
+    near = np.flatnonzero(plane_of >= 0)
+    some = np.concatenate([some, rng.choice(near, min(len(near), 2000))])
+    start = cube_middles(some, sides, parts) + (rng.random((len(some), d)) - 0.5) / parts
+    way = rng.standard_normal((len(some), d))
+    way /= np.linalg.norm(way, axis=1)[:, None]
+    ends = start + way * np.sqrt(clear[some] * rng.random(len(some)))[:, None]
+    assert (solids.distance(ends, plates=False)[clear[some] > 0.0] >= 0.0).all()
+    ends = start + way * (STRIDE * rng.random(len(some)))[:, None]
+    known = plane_of[some] >= 0
+    normals, heights = planes[plane_of[some[known]], :d], planes[plane_of[some[known]], d]
+    above = (normals * ends[known]).sum(axis=1) > heights
+    assert (solids.distance(ends[known], plates=False)[above] >= 0.0).all()
+
+
+def test_planes_lie_on_surfaces(tmp_path):
+    """All of the fluid within half a cell of a flat surface, and most of it at a round one, is
+    above a plane."""
+    for name, least in (("rectangle", 0.9), ("disk", 0.9), ("picture", 0.7)):
+        solids = solids_of(walls_of(example(name, 2, "outside", tmp_path), 2), 2)
+        clear, parts = clear_squares(solids, 0.0)
+        plane_of, planes, _ = free_planes(solids, clear, STRIDE, 0.0)
+        points = np.random.default_rng(3).random((20_000, 2)) * solids.size
+        distance = solids.distance(points, plates=False)
+        points = points[(distance > 0.0) & (distance < 0.3)]
+        cubes = np.floor(points * parts).astype(int) @ [1, solids.size[0] * parts]
+        known = plane_of[cubes] >= 0
+        found = (planes[plane_of[cubes], :2] * points).sum(axis=1) > planes[plane_of[cubes], 2]
+        assert (known & found).mean() > least, name

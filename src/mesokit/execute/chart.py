@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from mesokit.execute import survey
+from mesokit.execute.free_planes import planes_above
 from mesokit.geometry.bodies import REACH, Bodies
 from mesokit.geometry.contact import MARGIN
 from mesokit.scalar import by_type
@@ -112,7 +113,7 @@ def free_planes(solids: Solids, clear: Any, stride: float, bend: float) -> tuple
     numbers, middles = numbers[found], middles[found]
     planes = np.zeros((len(numbers), d + 1))
     away = corner + reach + bend
-    survey.free_planes(solids.kernel, solids.like, away, COLUMNS[d], middles, planes)
+    planes_above(solids.kernel, solids.like, away, COLUMNS[d], middles, planes)
     planes[:, d] += bend + MARGIN
     plane_of = np.full(len(clear), -1, np.int32)
     plane_of[numbers] = np.arange(len(numbers))

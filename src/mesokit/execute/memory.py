@@ -29,7 +29,8 @@ from mesokit.execute.layout import (
     sums_length,
     zeros,
 )
-from mesokit.execute.stages import FEW, Grid, Physics
+from mesokit.execute.look_around import FEW
+from mesokit.execute.stages import Grid, Physics
 from mesokit.geometry.none import Nothing
 from mesokit.solids import free_volume, slit_of, solids_of
 

@@ -1,6 +1,5 @@
 """The stages of a step, each a loop over the lanes of one strip of particles."""
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,21 +8,17 @@ from numba.cpython.unsafe.tuple import tuple_setitem
 from mesokit.box import slide
 from mesokit.execute.bounce import bounce
 from mesokit.execute.cell_energy import tally
-from mesokit.execute.layout import LANES, QUAD, ROW, SCRATCH_ROW, sums_length
+from mesokit.execute.layout import LANES, QUAD, SCRATCH_ROW, sums_length
+from mesokit.execute.look_around import FEW, lanes_together
 from mesokit.execute.records import gather, scatter_add
 from mesokit.execute.rows import add_to, count_images, load, mass_of, note, recall, store
 from mesokit.execute.sums import terms_of
-from mesokit.geometry.bodies import Bodies, cube_of
+from mesokit.geometry.bodies import Bodies
 from mesokit.geometry.none import Nothing
 from mesokit.geometry.protocol import exposed, free, leaps, touches
 from mesokit.mpcd.collision.protocol import collide, contribute
 from mesokit.mpcd.streaming import fall, halfway, vector
-from mesokit.pointer import whole
 from mesokit.scalar import added_scaled, by_type, chosen, mul_add, optional, scalar
-
-FEW = 64  # lanes: of particles next to one another, which are all near a solid or all far
-MOST_ROOM = 1e6
-ROUNDED_DOWN = 1.0 - 1e-6  # of numbers that float32 may have rounded up
 
 
 class Physics(NamedTuple):
@@ -89,88 +84,6 @@ def gather_strip(cell, coefficients, gathered, c):
 def collided(physics, grid, gathered, i, r, v, c):
     """Velocity of lane i after the collision in its cell."""
     return collide(physics.rule, recall(gathered, i, c), v, in_cell(r, grid))
-
-
-@by_type
-def look_around_strip(solid, strip, s, calm, clear, like):
-    """How far each particle of strip s may fly, plates not counted, in as many lanes at a time as
-    `lanes_together` says.
-
-    The answer has a bit for each of these parts: whether all may fly a stride, plates or not.
-    """
-    return _look_around if solid.instance_class is Bodies else lambda *_: 0
-
-
-@by_type
-def lanes_together(solid):
-    """How many lanes are looked at together: those of a strip, fewer among solids in tables."""
-    number = FEW if solid.instance_class is Bodies else LANES
-    return lambda solid: number
-
-
-def _look_around(solid, strip, s, calm, clear, like):
-    """At most a stride, which few go beyond.
-
-    `calm` is the distance that is surely clear around every particle of a part of a strip, of
-    plates and of all else: each step takes off a stride, until it is found anew.
-    """
-    quiet = 0
-    for part in range(LANES // FEW):
-        n, start = s * (LANES // FEW) + part, part * FEW
-        if calm[1, n] < solid.stride:
-            calm[1, n] = room_between_plates(solid, strip[start:], clear[start:], like)
-        look_up(solid, strip[start:], n, calm, clear[start:], like)
-        if (calm[0, n] >= solid.stride) & (calm[1, n] >= solid.stride):
-            quiet |= 1 << part
-        calm[0, n] -= solid.stride
-        calm[1, n] -= solid.stride
-    return quiet
-
-
-@by_type
-def look_up(solid, strip, n, calm, clear, like):
-    """The distance around each particle of the nth part, and the least of them if it is not known.
-
-    `clear` holds the bits of float32 numbers: those of positive numbers are in the same order, and
-    the least of whole numbers is found faster.
-    """
-    return _look_up
-
-
-def _look_up(solid, strip, n, calm, clear, like):
-    stride = np.int32(np.float32(solid.stride * solid.stride).view(np.int32))
-    if calm[0, n] < solid.stride:
-        for i in range(FEW):
-            clear[i] = cube_of(solid, load(strip, i, 0, like))
-        for i in range(FEW):
-            clear[i] = np.int32(whole(solid.clear, np.int64(clear[i])))
-        least = np.int32(np.iinfo(np.int32).max)
-        for i in range(FEW):
-            least = min(least, clear[i])
-            clear[i] = min(stride, clear[i])
-        calm[0, n] = math.sqrt(np.int32(least).view(np.float32))
-    else:
-        for i in range(FEW):
-            clear[i] = stride
-
-
-@by_type
-def room_between_plates(solid, strip, clear, like):
-    """The least distance of the particles of the part from plates; `clear` is scratch memory."""
-    return _room_between_plates
-
-
-def _room_between_plates(solid, strip, clear, like):
-    least = np.int32(np.float32(MOST_ROOM).view(np.int32))
-    for k in range(len(like)):
-        if solid.lowest[k] > -np.inf:
-            for i in range(FEW):
-                x = strip[k * ROW + i]
-                room = max(min(x - solid.lowest[k], solid.highest[k] - x), 0.0)
-                clear[i] = np.float32(room).view(np.int32)
-            for i in range(FEW):
-                least = min(least, clear[i])
-    return np.int32(least).view(np.float32) * ROUNDED_DOWN
 
 
 @by_type
@@ -299,15 +212,6 @@ def _bounce_strip(physics, counter, strip, count, behind, ident, hits, impulse, 
             if leaps(physics.solid, added_scaled(end, -1.0, r)):
                 far |= 1 << part
     return far
-
-
-@scalar
-def forget(calm, s, far):
-    """Let the parts of a strip be looked around anew that `far` has bits for."""
-    for part in range(LANES // FEW):
-        if (far >> part) & 1 != 0:
-            n = s * (LANES // FEW) + part
-            calm[0, n] = calm[1, n] = 0.0
 
 
 @scalar

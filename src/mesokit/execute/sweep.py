@@ -12,6 +12,7 @@ from mesokit.execute.cell_energy import tally
 from mesokit.execute.flags import COLLIDE, MEASURE_STRESS, STREAM
 from mesokit.execute.layers import fill_layers
 from mesokit.execute.layout import LANES, SCRATCH_ROW, groups_in, lanes_in, share, strip_at
+from mesokit.execute.look_around import forget, look_around_strip
 from mesokit.execute.rows import load, mass_of
 from mesokit.execute.stages import (
     add_strip,
@@ -19,9 +20,7 @@ from mesokit.execute.stages import (
     bounce_strip,
     collide_and_stream_strip,
     collide_strip,
-    forget,
     gather_strip,
-    look_around_strip,
     slide_strip,
     stream_strip,
 )

@@ -12,7 +12,8 @@ from mesokit.execute.beads import WIDTH, bead_of, leave, look
 from mesokit.execute.bounce import bounce
 from mesokit.execute.forces import add_product, add_virial, kick
 from mesokit.execute.layout import LANES, SCRATCH_ROW
-from mesokit.execute.stages import FEW, Physics, clear_of, forget, kind_of_solid
+from mesokit.execute.look_around import FEW, forget
+from mesokit.execute.stages import Physics, clear_of, kind_of_solid
 from mesokit.geometry.none import Nothing
 from mesokit.geometry.protocol import free, touches
 from mesokit.mpcd.molecule import Dimers

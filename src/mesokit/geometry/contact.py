@@ -160,7 +160,7 @@ def after_hit(tables, part, term, r, v, chance):
 
 @settled.register(Bodies)
 def _(solid, r):
-    if sure_clearance(solid, r) > MARGIN:
+    if between_plates(solid, r) and sure_to_miss(solid, r, scaled(0.0, r)):
         return r, True
     return put_back(solid, r)
 

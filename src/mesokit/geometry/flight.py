@@ -206,6 +206,17 @@ def meeting(tables, term, r, v, a, time):
     return t, first
 
 
+@scalar
+def may_reach(tables, term, r, path):
+    """Whether a flight may reach a term: asked where that is quicker than to see when it does."""
+    first = whole(word(tables, FIRST), term)
+    quick = curves_away(tables, first) or whole(word(tables, KINDS), first) == SAMPLED
+    if quick and whole(word(tables, FIRST), term + 1) - first == 1:
+        return True
+    c, _ = term_clearance(tables, term, r)
+    return c <= path
+
+
 @seldom
 def first_meeting(tables, r, v, a, time, last_part, last_term):
     """The first hit of a flight that starts in the box: time, part and term.
@@ -226,8 +237,7 @@ def first_meeting(tables, r, v, a, time, last_part, last_term):
         candidate = whole(word(tables, NEAR), j)
         if candidate == last_term and departs(tables, last_part, r, v, a, time):
             continue
-        c, _ = term_clearance(tables, candidate, r)
-        if c <= path:
+        if may_reach(tables, candidate, r, path):
             t, which = meeting(tables, candidate, r, v, a, time)
             if t <= time and t < soonest:
                 soonest, part, term = t, which, candidate
