@@ -106,10 +106,10 @@ def free_planes(solids: Solids, clear: Any, stride: float, bend: float) -> tuple
     d = solids.dimension
     parts = PARTS[d]
     corner = 0.5 * math.sqrt(d) / parts
-    reach = min(stride, REACH - corner - bend)
+    reach = max(min(stride, REACH - corner - bend), 0.0)
     numbers = np.flatnonzero(clear < stride * stride)
     middles = cube_middles(numbers, [n * parts for n in solids.size], parts)
-    found = np.abs(solids.distance(middles, plates=False)) < corner + stride
+    found = solids.distance(middles, plates=False) > -corner  # the others hold no fluid
     numbers, middles = numbers[found], middles[found]
     planes = np.zeros((len(numbers), d + 1))
     away = corner + reach + bend
