@@ -147,3 +147,21 @@ def test_diffuse_reflections_have_the_flux_of_a_gas(case):
     law = (lambda c: c**2) if d == 3 else (lambda c: 1 - np.sqrt(1 - c**2))
     assert stats.kstest(cosine, law).pvalue > 1e-3
     assert abs(np.corrcoef(away, along)[0, 1]) < 4 / np.sqrt(len(away))
+
+
+@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("rule", ["no-slip", "slip"])
+def test_who_is_pressed_onto_a_solid_hops_on_it(rule, d):
+    """Dropped onto the top of a ball by a force, from 0.02: seven hops and a half in a timestep."""
+    wall = ROUND[d]((6.0, 5.0, 4.5)[:d], 2.0)
+    solids = solids_of((with_surface(wall, Surface(rule)),), d)
+    height, g = 0.02, 4.0
+    fall_time = (2 * height / g) ** 0.5
+    top, down = np.array((6.0, 7.0, 4.5)[:d]), np.eye(d)[1] * -g
+    start = top - height * down / g
+    end, after, taken = bounced(solids, start, np.zeros(d), down, 15.5 * fall_time)
+    # 15 times of fall end at the surface, the half one on the way up
+    up = (g * fall_time) - g * 0.5 * fall_time
+    np.testing.assert_allclose(after, up * np.eye(d)[1], atol=1e-6)
+    np.testing.assert_allclose(end, top + np.eye(d)[1] * 0.75 * height, atol=1e-6)
+    np.testing.assert_allclose(taken.sum(axis=0), down * 15.5 * fall_time - after, atol=1e-6)
