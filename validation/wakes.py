@@ -15,7 +15,7 @@ from mesokit import Box, Case, Comparison, Disk, Plates, Rectangle, Run, theory
 
 ROOM = 8  # height of the channel over the diameter, as in the reference values
 LENGTH = 4  # of the periodic box over the height
-STEADY = (Flow(10, 8, 0.5, 1e4), Flow(20, 12, 1.0, 6e3), Flow(30, 16, 1.0, 1e4))
+STEADY = (Flow(10, 8, 0.5, 4e4), Flow(20, 12, 1.0, 6e3), Flow(30, 16, 1.0, 1e4))
 DRAG = {10: 3.29, 20: 2.23, 30: 1.83}  # about, to choose the force
 EXCESS = 1.15  # of the viscosity over that of theory, about, to choose the velocity
 

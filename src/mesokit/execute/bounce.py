@@ -38,7 +38,8 @@ def bounce(physics, counter, number, m, r, v, a, impulse, scale):
     """Position and velocity a timestep later, with reflections; surfaces take the momentum lost.
 
     A particle that rounding leaves in a solid, or that still flies after MOST_HITS, stays where it
-    was, with the velocity that its hits left it: no particle is ever in a solid.
+    was and turns back: no particle is ever in a solid. Between surfaces that touch and move, its
+    hits may have driven it to any speed, so what they gave it is taken off again.
     """
     solid, time = physics.solid, physics.timestep
     start = homed(solid, r)
@@ -46,7 +47,7 @@ def bounce(physics, counter, number, m, r, v, a, impulse, scale):
     x, u, flying, touched = start, v, True, False
     # hits on one surface are added before they are rounded: there may be many small ones
     surface, given = 0, scaled(0.0, v + outer(v, v))
-    contact = unmet(solid)
+    contact = last = unmet(solid)
     for n in range(MOST_HITS):
         hit, contact = first_hit(solid, x, u, a, time, contact)
         if hit > time:
@@ -55,7 +56,7 @@ def bounce(physics, counter, number, m, r, v, a, impulse, scale):
         x, u = fall(x, u, a, hit)
         time -= hit
         if happens(solid, contact):
-            touched = True
+            touched, last = True, contact
             chance = Chance(counter.seed, counter.step, number, n, physics.kT / m)
             x, left = rebound(solid, contact, x, u, chance)
             lost = scaled(m, added_scaled(u, -1.0, left))
@@ -69,13 +70,19 @@ def bounce(physics, counter, number, m, r, v, a, impulse, scale):
         away = added(away, added_scaled(x, -1.0, at_home))
         x = at_home
     if touched:
-        take_sum(impulse, surface, given, scale)
         x, u = fall(x, u, a, time)
     else:  # the same bits as for a particle that was seen to be far from all solids
         x, u = fall(r, v, a, physics.timestep)
         away = scaled(0.0, r)
     at_home = homed(solid, x)
     place, good = settled(solid, at_home)
-    if flying or not good:
+    caught = flying or not good
+    if touched:
+        if caught:
+            lost = scaled(m, added(u, v))
+            given = added(given, lost + outer(lever(solid, last, start), lost))
+            u = scaled(-1.0, v)
+        take_sum(impulse, surface, given, scale)
+    if caught:
         return r, u
     return added(added(x, away), added_scaled(place, -1.0, at_home)), u
