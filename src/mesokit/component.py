@@ -288,6 +288,8 @@ def _walk(
             continue
         if options:
             holder = options[0]
+        elif here is not cls and isinstance(item, str) and typing.get_origin(here) is not dict:
+            continue  # a branch of a union of plain types
         shown = rename.get(item, item) if holder is cls else item
         path += ("." if path else "") + _printable(shown)
         fields = holder.__pydantic_fields__

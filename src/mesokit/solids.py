@@ -307,7 +307,8 @@ class Solids(SolidTables):
             full[:, : self.dimension] = arm
             u = np.cross(body.rotation, full)[:, : self.dimension]
             u += np.array(body.surface.velocity or (0.0,) * self.dimension)
-            speed = float(np.sqrt((u**2).sum(axis=1)).max())
+            with np.errstate(over="ignore"):  # absurd speeds are refused elsewhere
+                speed = float(np.sqrt((u**2).sum(axis=1)).max())
             across = float(np.abs((u * normal[at]).sum(axis=1)).max())
             wall = self.walls[self.body_of_term[term]]
             fastest, most = found.get(wall, (0.0, 0.0))

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import field_validator
 
 from mesokit.component import component, param
+
+FASTEST = 1e6  # a surface's speed and rate of rotation: beyond it is a slip of the pen
 
 
 @component
@@ -34,6 +36,14 @@ class Surface:
         if velocity is not None and len(velocity) not in (2, 3):
             raise ValueError("expected one number for each axis")
         return velocity
+
+    @field_validator("velocity", "rotation")
+    @classmethod
+    def _sane(cls, value: Any) -> Any:
+        numbers = value if isinstance(value, tuple) else (value or 0.0,)
+        if any(abs(x) > FASTEST for x in numbers):
+            raise ValueError(f"expected numbers of at most {FASTEST:g}")
+        return value
 
     @property
     def moves(self) -> bool:
