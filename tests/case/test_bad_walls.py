@@ -153,6 +153,14 @@ BAD: dict[str, tuple[str, list[str], tuple[str, ...]]] = {
         SPACE, [BALL + "surface = { rotation = [0, 1] }"],
         ("wall[#1].surface.rotation", "a number or three"),
     ),
+    "no finite rate": (
+        PLANE, [DISK + "surface = { rotation = nan }"],
+        ("wall[#1].surface.rotation = nan", "a finite number"),
+    ),
+    "an absurd rate": (
+        PLANE, [DISK + "surface = { rotation = 1e300 }"],
+        ("wall[#1].surface.rotation = 1e+300", "at most 1e+06"),
+    ),
     "long velocity": (
         PLANE, [DISK + "surface = { velocity = [0, 0, 0] }"],
         ("wall[#1].surface.velocity", "2 numbers"),
