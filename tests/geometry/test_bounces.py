@@ -167,7 +167,7 @@ def test_who_is_pressed_onto_a_solid_hops_on_it(rule, d):
 
 def test_who_is_caught_between_surfaces_is_not_driven_on():
     """In the crevice between a turning disk and a plate that slips, where hits follow one another
-    without end: the particle turns back with the speed that it came with."""
+    without end: the particle leaves no faster than it came."""
     disk = with_surface(Disk((6.0, 2.5), 3.0), Surface("no-slip", rotation=0.3))
     solids = solids_of((Plates("y", lower=Surface("slip")), disk), 2)
     rng, caught = np.random.default_rng(6), 0
@@ -182,5 +182,5 @@ def test_who_is_caught_between_surfaces_is_not_driven_on():
         np.testing.assert_allclose(after, v - taken.sum(axis=0), atol=1e-9)
         if (end == start).all():
             caught += 1
-            np.testing.assert_allclose(after, -v, atol=1e-12)
+            assert np.hypot(*after) <= np.hypot(*v) * (1 + 1e-8)
     assert caught > 10

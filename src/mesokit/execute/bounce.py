@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from mesokit.geometry.primitive.numbers import length
 from mesokit.geometry.protocol import (
     Chance,
     first_hit,
@@ -16,6 +17,7 @@ from mesokit.geometry.protocol import (
 from mesokit.mpcd.streaming import fall
 from mesokit.scalar import added, added_scaled, outer, scalar, scaled, seldom
 
+DRIVEN = 1.0 + 1e-9  # of the speed that surfaces at rest can leave: more is not rounding
 MOST_HITS = 256  # within one timestep, pieces of a long flight included
 
 
@@ -38,8 +40,8 @@ def bounce(physics, counter, number, m, r, v, a, impulse, scale):
     """Position and velocity a timestep later, with reflections; surfaces take the momentum lost.
 
     A particle that rounding leaves in a solid, or that still flies after MOST_HITS, stays where it
-    was and turns back: no particle is ever in a solid. Between surfaces that touch and move, its
-    hits may have driven it to any speed, so what they gave it is taken off again.
+    was, with the velocity that its hits left it: no particle is ever in a solid. Between surfaces
+    that touch and move they may have driven it to any speed: then it turns back with its own.
     """
     solid, time = physics.solid, physics.timestep
     start = homed(solid, r)
@@ -78,7 +80,7 @@ def bounce(physics, counter, number, m, r, v, a, impulse, scale):
     place, good = settled(solid, at_home)
     caught = flying or not good
     if touched:
-        if caught:
+        if caught and length(u) > DRIVEN * (length(v) + length(a) * physics.timestep):
             lost = scaled(m, added(u, v))
             given = added(given, lost + outer(lever(solid, last, start), lost))
             u = scaled(-1.0, v)
