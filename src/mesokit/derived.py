@@ -26,7 +26,7 @@ RATES = {
     (3, "srd"): 130.0, (3, "at"): 58.0, (3, "srd+a"): 40.0, (3, "at+a"): 33.0,
 }  # fmt: skip
 # factors of time, rate
-COSTS = {"thermostat": 1.15, "walls": 1.25, "solids": 1.7, "shear": 1.2, "thread": 0.85}
+COSTS = {"thermostat": 1.15, "walls": 1.25, "solids": 1.3, "shear": 1.2, "thread": 0.85}
 # seconds more for each particle-step of a molecule, and for each of its sub-steps
 FLOCK, SUBSTEP = 5e-9, 1e-9
 BEAD, BEAD_SUBSTEP = 100e-9, 45e-9  # and for each step and sub-step of a bead of a solute

@@ -8,10 +8,12 @@ import math
 import numpy as np
 
 from mesokit.elementary import log
-from mesokit.random import normal, unit_open
-from mesokit.scalar import mul_add, scalar
+from mesokit.random import normal, unit_open, words
+from mesokit.scalar import mul_add, scalar, seldom
 
 LAST_BITS = np.uint64(4095)
+DOUBT = 1 << 16
+MOST_DRAWS = 1000  # each accepted with more than 95 %
 
 
 @scalar
@@ -65,3 +67,18 @@ def decided(a, b, c, freedom):
     cube = max(t * t * t, 1e-300)
     accepted = t > 0.0 and log(u) < 0.5 * x * x + e - e * cube + e * log(cube)
     return value, accepted or e == 0.0
+
+
+@seldom
+def gamma_number(freedom, counter, purpose, index):
+    """A gamma variate of shape freedom / 2: energy over kT of so many degrees of freedom.
+
+    Uses the third and fourth word of draws 0, 1, ... and the first of those from DOUBT on.
+    """
+    value, good, attempt = 0.0, False, 0
+    while not good and attempt < MOST_DRAWS:
+        _, _, a, b = words(counter, purpose, index, attempt)
+        c, _, _, _ = words(counter, purpose, index, DOUBT + attempt)
+        value, good = decided(a, b, c, freedom)
+        attempt += 1
+    return value

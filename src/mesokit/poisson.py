@@ -1,7 +1,7 @@
 """Poisson numbers, by inversion: chances are taken off a uniform number until it is used up."""
 
 from mesokit.elementary import short_exp
-from mesokit.random import unit_open
+from mesokit.random import unit_open, words
 from mesokit.scalar import scalar
 
 MOST_MEAN = 16.0  # drawn at a time: a sum of Poisson numbers is one
@@ -30,4 +30,17 @@ def poisson(word, mean):
     while left > 0.0 and number < MOST_NUMBER:
         number += 1
         chance, left = one_more(number, mean, chance, left)
+    return number
+
+
+@scalar
+def poisson_number(mean, counter, purpose, index):
+    """A Poisson number of any mean, from the first word of draws 0, 1, ..."""
+    number, draw, rest = 0, 0, mean
+    while rest > 0.0:
+        some = min(rest, MOST_MEAN)
+        rest -= some
+        a, _, _, _ = words(counter, purpose, index, draw)
+        number += poisson(a, some)
+        draw += 1
     return number

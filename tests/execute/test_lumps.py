@@ -9,7 +9,9 @@ from scipy import stats
 
 from mesokit.elementary import short_exp
 from mesokit.execute.layout import LANES, SCRATCH_ROW
-from mesokit.execute.lumps import MEAN, NUMBER, ROWS, count_batch, inner_energy, poisson_number
+from mesokit.execute.lumps import MEAN, NUMBER, ROWS, count_batch
+from mesokit.gamma import gamma_number
+from mesokit.poisson import poisson_number
 from mesokit.random import BODY_NUMBER, Counter
 
 UNLIKELY = 1e-4
@@ -40,7 +42,7 @@ def energies(freedom, count):
     out = np.empty(count)
     for cell in range(count):
         counter = Counter(np.uint64(5), np.uint64(9))
-        out[cell] = inner_energy(freedom, counter, BODY_NUMBER, cell)
+        out[cell] = gamma_number(freedom, counter, BODY_NUMBER, cell)
     return out
 
 

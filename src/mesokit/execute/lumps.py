@@ -23,17 +23,15 @@ from mesokit.execute.layout import LANES, SCRATCH_ROW, record_length, share, sum
 from mesokit.execute.near_flow import flow_at
 from mesokit.execute.rows import fetch, note, recall
 from mesokit.execute.stages import in_cell
-from mesokit.gamma import decided, likely
+from mesokit.gamma import gamma_number, likely
 from mesokit.geometry.bodies import BODY, from_pivot, surface_velocity
 from mesokit.geometry.cut_cube import share_and_depth
 from mesokit.mpcd.collision.protocol import collide, contribute
 from mesokit.pointer import whole, word
-from mesokit.poisson import MOST_MEAN, MOST_NUMBER, none_found, one_more, poisson
+from mesokit.poisson import MOST_MEAN, MOST_NUMBER, none_found, one_more
 from mesokit.random import BODY_NUMBER, BODY_VELOCITY, normals, words
 from mesokit.scalar import added, added_scaled, dot, scalar, scaled, seldom
 
-DOUBT = 1 << 16  # draws of a lump's energy after the first, which the number's may not reach
-MOST_DRAWS = 1000
 ROWS = 14  # of the scratch memory of a batch of lumps
 # The first four are followed by as many rows as there are axes.
 PLACE, THERMAL, MEAN, DEPTH, NUMBER, CHANCE, LEFT, INNER, HEIGHT = 0, 3, 6, 7, 8, 9, 10, 11, 12
@@ -59,31 +57,6 @@ class Lumps(NamedTuple):
     state: Any
     entry: Any
     filled: Any
-
-
-@scalar
-def poisson_number(mean, counter, purpose, index):
-    """A Poisson number of any mean."""
-    number, draw, rest = 0, 0, mean
-    while rest > 0.0:
-        some = min(rest, MOST_MEAN)
-        rest -= some
-        a, _, _, _ = words(counter, purpose, index, draw)
-        number += poisson(a, some)
-        draw += 1
-    return number
-
-
-@seldom
-def inner_energy(freedom, counter, purpose, index):
-    """Thermal energy m c^2 / 2 of so many degrees of freedom, over kT."""
-    value, good, attempt = 0.0, False, 0
-    while not good and attempt < MOST_DRAWS:
-        _, _, a, b = words(counter, purpose, index, attempt)
-        c, _, _, _ = words(counter, purpose, index, DOUBT + attempt)
-        value, good = decided(a, b, c, freedom)
-        attempt += 1
-    return value
 
 
 @scalar
@@ -215,7 +188,7 @@ def place_lump(
     if asks(physics.energy):
         inner = work[INNER * SCRATCH_ROW + i]
         if inner < 0.0:
-            inner = inner_energy(float(d * (number - 1)), counter, BODY_NUMBER, start + i)
+            inner = gamma_number(float(d * (number - 1)), counter, BODY_NUMBER, start + i)
         inner *= 2.0 * physics.kT
     who = (guests.first_number + start + i, 0)
     kept, own = contribute(physics.rule, counter, who, mass, v, in_cell(r, grid))

@@ -13,13 +13,14 @@ from mesokit.execute.cache import inner
 from mesokit.execute.cell_energy import asks
 from mesokit.execute.cells import draw_with_care
 from mesokit.execute.layout import LANES, record_length, share, sums_length
-from mesokit.execute.lumps import inner_energy, poisson_number
 from mesokit.execute.rows import fetch, put
 from mesokit.execute.solutes import FIRST_NUMBER
 from mesokit.execute.sums import nothing_found, read_sums
+from mesokit.gamma import gamma_number
 from mesokit.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.mpcd.collision.protocol import contribute, freedom
 from mesokit.mpcd.thermostat.protocol import guess
+from mesokit.poisson import poisson_number
 from mesokit.random import BODY_NUMBER, CELL, CELL_VIRTUAL, normals, words
 from mesokit.scalar import added, by_type, dot, scalar, scaled
 
@@ -121,7 +122,7 @@ def _with_random_solvent(
         v = scaled(math.sqrt(physics.kT / m), normals(like, a, b, e, f))
         n, mass, momentum = n + number, mass + m, added(momentum, scaled(m, v))
         if asks(physics.energy):
-            inner = inner_energy(float(d * (number - 1)), counter, BODY_NUMBER, cell)
+            inner = gamma_number(float(d * (number - 1)), counter, BODY_NUMBER, cell)
             energy += m * dot(v, v) + 2.0 * physics.kT * inner
         who = (FIRST_NUMBER + len(solutes.cell) + np.int64(cell), 0)
         _, drawn = contribute(physics.rule, counter, who, m, v, scaled(0.0, like))
