@@ -3,11 +3,12 @@ PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/ready
 
-.PHONY: help demo test check bench validate clean
+.PHONY: help demo test quick check bench validate clean
 help:
 	@echo "make demo      run a channel flow and draw it with the theory"
 	@echo "make test      run the tests"
-	@echo "make check     lint, types, import rules"
+	@echo "make quick     run the tests that simulate nothing: cases, theory, statistics, documents"
+	@echo "make check     lint, types, import rules, and that the physics compiles for a GPU"
 	@echo "make bench     measure the speed, side by side with LAMMPS"
 	@echo "make validate  write docs/validation: measured against theory, law by law"
 	@echo "make clean     remove what these made"
@@ -22,17 +23,21 @@ $(READY): pyproject.toml
 
 demo: $(READY)
 	@$(BIN)/python -c 'import shutil; shutil.rmtree("demo", ignore_errors=True)'
-	@$(BIN)/mesokit run src/mesokit/templates/poiseuille.toml --output demo
+	@$(BIN)/mesokit run src/mesokit/method/mpcd/templates/poiseuille.toml --output demo
 	@echo "look at demo/velocity-profile.png"
 
 test: $(READY)
 	@$(BIN)/python -m pytest -n 2 --dist worksteal
 
+QUICK := tests/architecture tests/case tests/theory tests/statistics tests/docs/test_documents.py
+quick: $(READY)
+	@$(BIN)/python -m pytest -n 2 --dist worksteal $(QUICK)
+
 check: $(READY)
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
-	@$(BIN)/python -m pytest tests/architecture
+	@$(BIN)/python -m pytest tests/architecture tests/gpu
 
 bench: $(READY)
 	@$(BIN)/python -m benchmarks

@@ -15,7 +15,7 @@ import numpy as np
 
 from benchmarks import lammps_peer, once
 from mesokit import Harmonic, Molecule
-from mesokit.mpcd.conformation import drawn
+from mesokit.method.mpcd.start.conformation import drawn
 
 LENGTH, DENSITY = 30, 10
 BEADS = {"dimers": 2, "decamers": 10}

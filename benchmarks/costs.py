@@ -118,7 +118,7 @@ def _simulation(observe: list[mesokit.Observable]) -> mesokit.Simulation:
 
 
 def _advance_seconds(observe: list[mesokit.Observable], rounds: int) -> float:
-    fluid = _simulation(observe).fluid
+    fluid = _simulation(observe).engine
     fluid.advance(100)
     times = []
     for _ in range(rounds):
@@ -131,7 +131,7 @@ def _advance_seconds(observe: list[mesokit.Observable], rounds: int) -> float:
 def _sample_seconds(observable: mesokit.Observable, rounds: int) -> float:
     """Steps taken one at a time with the sample, less the same without it."""
     simulation = _simulation([observable])
-    fluid, accumulator = simulation.fluid, simulation.accumulators[observable.label]
+    fluid, accumulator = simulation.engine, simulation.accumulators[observable.label]
     stress = "stress" in observable.measures
     times = []
     fluid.advance(50)

@@ -11,7 +11,7 @@ import numpy as np
 
 from benchmarks import bonded, lammps_peer, once
 from mesokit import FENE, WCA, Polymer, Solutes
-from mesokit.mpcd.growth import grown
+from mesokit.method.mpcd.start.growth import grown
 
 BEADS, LENGTH, DENSITY = (1_000, 10_000, 100_000), 20, 0.2
 SUBSTEPS, TIMESTEP = 20, 0.08

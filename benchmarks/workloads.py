@@ -124,9 +124,9 @@ def _sampled(solids: Solids, spacing: float = 0.25) -> Sampled:
 def measure(name: str, threads: int, seconds: float, warm: int = 101) -> dict[str, object]:
     """Run for about so many seconds; the warm-up takes compiling and the first sorts out of it."""
     simulation = Simulation(case(name), threads=threads)
-    fluid = simulation.fluid
+    fluid = simulation.engine
     fluid.advance(warm)
-    start, before, chunk = time.perf_counter(), dict(fluid.seconds), 2 * fluid.sort_every
+    start, before, chunk = time.perf_counter(), dict(fluid.seconds), 2 * fluid.numbers.sort_every
     first = fluid.step
     while fluid.step == first or time.perf_counter() - start < seconds:
         fluid.advance(chunk)
@@ -140,7 +140,7 @@ def measure(name: str, threads: int, seconds: float, warm: int = 101) -> dict[st
         "rate": work / elapsed,
         "nanoseconds": 1e9 * elapsed / work,
         "stages": stages,
-        "bytes_per_particle": fluid.bytes_held / fluid.totals()[0],
+        "bytes_per_particle": fluid.memory.bytes_held / fluid.totals()[0],
         "peak_kilobytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
     }
 

@@ -9,12 +9,11 @@ import numpy as np
 from common import ANGLE, BLUE, GREY, RED, Page, long, main, plt
 
 import mesokit
-from mesokit import SRD, Box, Case, Comparison, Fluid, MaxwellBoltzmann, Run, theory
-from mesokit.execute.cpu import CPU
-from mesokit.mpcd.initial import start
-from mesokit.mpcd.molecule import Molecule
-from mesokit.observe.modes import transverse_units
-from mesokit.potential import Harmonic
+from mesokit import SRD, Box, Case, Comparison, Fluid, Harmonic, MaxwellBoltzmann, Run, theory
+from mesokit.execute.cpu.engine import CPU
+from mesokit.method.mpcd.molecule import Molecule
+from mesokit.method.mpcd.start.fluid import start
+from mesokit.observe.shared.modes import transverse_units
 
 WAVES = {"1": (1, 0, 0), "sqrt 2": (1, 1, 0), "2": (2, 0, 0)}
 SEEDS = (1, 2, 3, 4)
@@ -72,7 +71,7 @@ def decay(kind: Kind, wave: tuple[int, ...], seed: int) -> tuple[Any, Any]:
         found.append((momentum[0] @ first).real - (momentum[0] @ second).imag)
         fluid.advance(EVERY)
     found = np.array(found) / (AMPLITUDE * fluid.n)
-    return np.arange(len(found)) * EVERY * fluid.timestep, found / found[0]
+    return np.arange(len(found)) * EVERY * fluid.numbers.timestep, found / found[0]
 
 
 def mode_time(page: Page, kind: Kind) -> tuple[Comparison, Comparison]:
@@ -149,7 +148,11 @@ def make() -> int:
                 "long waves": theory.transverse_correlation_chain(k, t, NU, 1 / kind.beads, times),
             } | {
                 name: theory.transverse_correlation_finite_k(
-                    k, t, nu, 1 / kind.beads, modes, slowest.measured, bond, diffusion
+                    k,
+                    t,
+                    nu,
+                    1 / kind.beads,
+                    theory.GaussianMolecule(modes, slowest.measured, bond, diffusion),
                 )
                 for name, nu in (("finite k", NU), ("finite k, measured background", base.measured))
             }

@@ -23,7 +23,7 @@ def drift(rule: Any, d: int, size: int, steps: int, samples: int = 50) -> tuple:
         threads=1, run=Run(steps=0, seed=4), box=Box([size] * d),
         fluid=Fluid(density=5, timestep=0.1, collision=rule),
     )  # fmt: skip
-    fluid = simulation.fluid
+    fluid = simulation.engine
     _, momentum, energy = fluid.totals()
     scale = np.linalg.norm(fluid.velocities(), axis=1).sum()
     drifts = []
@@ -44,7 +44,7 @@ def within_cells(rule: Any, d: int, size: int = 12) -> np.ndarray:
         threads=1, run=Run(steps=0, seed=4), box=Box([size] * d),
         fluid=Fluid(density=5, timestep=0.1, collision=rule, grid_shift=0),
     )  # fmt: skip
-    fluid = simulation.fluid
+    fluid = simulation.engine
     fluid.advance(10)
     before = fluid.velocities()
     fluid.advance(1)

@@ -29,12 +29,12 @@ def parts(strength: float, steps: int, every: int) -> dict[str, Any]:
 def within_cells(strength: float, samples: int, every: int) -> np.ndarray:
     """Deviation from the line against the place within a cell, (samples, BINS), over all cells."""
     simulation = mesokit.Simulation(threads=1, **parts(strength, 0, 1))
-    simulation.fluid.advance(300)
+    simulation.engine.advance(300)
     y = (np.arange(LENGTH * BINS) + 0.5) / BINS
     found = []
     for _ in range(samples):
-        simulation.fluid.advance(every)
-        _, mass, momentum, _ = simulation.fluid.moments((1,), (LENGTH * BINS,))
+        simulation.engine.advance(every)
+        _, mass, momentum, _ = simulation.engine.moments((1,), (LENGTH * BINS,))
         deviation = momentum[0] / mass - theory.lees_edwards_velocity(y, LENGTH, RATE)
         found.append(deviation.reshape(LENGTH, BINS).mean(axis=0))
     return np.array(found)

@@ -9,9 +9,8 @@ import numpy as np
 from common import BLUE, GREY, RED, Page, found, long, main, plt
 
 import mesokit
-from mesokit import SRD, Box, Case, Comparison, Fluid, MaxwellBoltzmann, Run, theory
-from mesokit.mpcd.solutes import Polymer, Solutes
-from mesokit.potential import Harmonic
+from mesokit import SRD, Box, Case, Comparison, Fluid, Harmonic, MaxwellBoltzmann, Run, theory
+from mesokit.method.mpcd.solutes import Polymer, Solutes
 
 LENGTH, DENSITY, TIMESTEP, ANGLE, MASS = 20, 10, 0.1, 130.0, 10.0
 BEADS = 240  # in the box, in chains of one length

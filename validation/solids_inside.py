@@ -16,10 +16,10 @@ from common import Page, main
 
 import mesokit
 from mesokit import Box, Case, CaseError, Fluid, MaxwellBoltzmann, Plates, Run, Surface, Uniform
-from mesokit.component import tag_of
-from mesokit.execute.cpu import CPU
-from mesokit.geometry import SHAPES
-from mesokit.mpcd.initial import start
+from mesokit.case.component import tag_of
+from mesokit.execute.cpu.engine import CPU
+from mesokit.geometry.shape import SHAPES
+from mesokit.method.mpcd.start.fluid import start
 
 PARTICLE_STEPS, SHORT = 10**9, 10**6
 LOOKS = 20  # besides the one at the end
@@ -113,8 +113,8 @@ def count(cpu: CPU, wanted: int) -> tuple[int, int, float]:
         began = time.perf_counter()
         cpu.advance(part)
         seconds += time.perf_counter() - began
-        assert cpu.solids is not None
-        inside += int((cpu.solids.distance(cpu.positions()) < 0).sum())
+        assert cpu.numbers.solids is not None
+        inside += int((cpu.numbers.solids.distance(cpu.positions()) < 0).sum())
     return steps * cpu.n, inside, steps * cpu.n / seconds
 
 

@@ -40,11 +40,11 @@ def cell_energies(d: int, density: float) -> tuple[np.ndarray, np.ndarray]:
         ),
     )  # fmt: skip
     occupancy, energy = [], []
-    simulation.fluid.advance(20)
+    simulation.engine.advance(20)
     for _ in range(SNAPSHOTS):
-        simulation.fluid.advance(5)
-        place = np.floor(simulation.fluid.positions()).astype(int)
-        v = simulation.fluid.velocities()
+        simulation.engine.advance(5)
+        place = np.floor(simulation.engine.positions()).astype(int)
+        v = simulation.engine.velocities()
         cell = np.ravel_multi_index(tuple(place.T), (size,) * d, mode="wrap")
         n = np.bincount(cell, minlength=size**d)
         e = np.bincount(cell, (v**2).sum(axis=1), minlength=size**d)

@@ -11,7 +11,7 @@ import numpy as np
 from common import BLUE, GREEN, GREY, PURPLE, RED, Page, plt
 
 from mesokit import Case, Comparison, theory
-from mesokit.observe.molecules import without_bonds
+from mesokit.method.mpcd.expected.molecules import without_bonds
 
 COLOURS, MARKS = (BLUE, RED, GREY), ("o", "s", "^")
 LONG_WAVES = ("5.3", "5.4", "5.5", "5.9")  # what the thesis draws in
@@ -55,7 +55,7 @@ def laws(case: Case, slowest: float, background: float, k: float, t: Any) -> dic
     return {
         **{
             name: theory.transverse_correlation_finite_k(
-                k, t, viscosity, share, modes, slowest, bond, diffusion
+                k, t, viscosity, share, theory.GaussianMolecule(modes, slowest, bond, diffusion)
             )
             for name, viscosity in ((BEST, background), (BASE, nu))
         },

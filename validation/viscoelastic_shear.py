@@ -12,9 +12,9 @@ from common import BLUE, GREEN, GREY, PURPLE, RED, SHORT, Page, found, long, mea
 from scipy.optimize import curve_fit
 
 from mesokit import Case, Comparison, MeanSquareDisplacement, Result, Stress, theory
-from mesokit.execute.cpu import CPU
-from mesokit.mpcd.initial import start
-from mesokit.observe.molecules import without_bonds
+from mesokit.execute.cpu.engine import CPU
+from mesokit.method.mpcd.expected.molecules import without_bonds
+from mesokit.method.mpcd.start.fluid import start
 from mesokit.potential.thermal import lengths
 
 WAVE, LONG, ACROSS, SEEDS = 0.2, 240, 12, range(1, 3 if SHORT else 7)
@@ -151,11 +151,11 @@ def decay(case: Case, seed: int) -> tuple[Any, Any]:
     v[:, 1] += WAVE * np.sin(k * r[:, 2])
     start(fluid, r, v)
     left = []
-    for _ in range(int(END / (40 * fluid.timestep)) + 1):
+    for _ in range(int(END / (40 * fluid.numbers.timestep)) + 1):
         _, momentum = fluid.modes(np.array([[0.0, 0.0, k]]))
         left.append((momentum[0, 0].real - momentum[0, 1].imag) / (WAVE * fluid.n))
         fluid.advance(40)
-    return np.arange(len(left)) * 40 * fluid.timestep, np.array(left)
+    return np.arange(len(left)) * 40 * fluid.numbers.timestep, np.array(left)
 
 
 def from_decay(case: Case, tau: float) -> tuple[Comparison, Any, Any, float]:

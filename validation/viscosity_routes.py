@@ -40,8 +40,8 @@ def wave_run(seed: int, length: int, start: float, times: int, every: int) -> np
     amplitude = np.zeros(times + 1)
     for i in range(times + 1):
         if i:
-            simulation.fluid.advance(every)
-        _, momentum = simulation.fluid.modes(np.array([[0.0, k, 0.0]]))
+            simulation.engine.advance(every)
+        _, momentum = simulation.engine.modes(np.array([[0.0, k, 0.0]]))
         amplitude[i] = -2 * momentum[0, 0].imag / n
     return amplitude
 

@@ -13,21 +13,22 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from mesokit.case import Case
-from mesokit.component import require_known, show
+from mesokit import method as methods
+from mesokit.case.case import Case, method_named
+from mesokit.case.component import nearest, require_known, show
+from mesokit.case.kind import note_run
+from mesokit.case.trajectory import written
 from mesokit.errors import CaseError, CheckpointError, RunError
-from mesokit.execute.cpu import CPU
-from mesokit.first_state import first_state, part
 from mesokit.io import checkpoint, h5md
 from mesokit.io.frames import require_frames
 from mesokit.io.run_directory import RunDirectory, now, provenance
-from mesokit.io.trajectory import TrajectoryWriter, written
-from mesokit.mpcd.initial import start
-from mesokit.progress import Reporter
+from mesokit.io.trajectory import TrajectoryWriter
+from mesokit.method.protocol import method_of
+from mesokit.report.progress import Reporter
 
 if TYPE_CHECKING:
-    from mesokit.observe.protocol import Accumulator, Observable
-    from mesokit.observe.result import Result
+    from mesokit.observe.shared.protocol import Accumulator, Observable
+    from mesokit.observe.shared.result import Result
     from mesokit.report.flow import Film
 
 CALL_SECONDS = 0.2  # of compiled code at a time, so that Ctrl-C and the progress bar are prompt
@@ -47,7 +48,8 @@ class Simulation:
     threads : int, optional
         Threads to use (all cores unless said). Results do not depend on it.
     positions, velocities, beads, bead_velocities : array (n, d), optional
-        Start from these, by particle id, in cells and cells per unit of time.
+        Start from these, by particle number, in cells and cells per unit of time; another method
+        of simulation than MPCD may have arrays of other names.
 
     Raises
     ------
@@ -71,25 +73,18 @@ class Simulation:
         *,
         output: str | Path | None = None,
         threads: int | None = None,
-        positions: Any = None,
-        velocities: Any = None,
-        beads: Any = None,
-        bead_velocities: Any = None,
         **parts: Any,
     ) -> None:
-        if (case is None) == (not parts):
-            raise CaseError("Simulation: expected a case, or its parts by name")
-        self.case = Case(**parts) if case is None else _case(case)
+        self.case, arrays = _case_and_arrays(case, parts)
         self.threads = _threads(threads)
-        arrays = positions, velocities, beads, bead_velocities
-        given = any(array is not None for array in arrays)
-        state = first_state(self.case, *arrays)
+        method = method_of(self.case)
+        state = method.first_state(self.case, arrays)
         self._build()
-        start(self.fluid, *state)
+        method.start(self.engine, state)
         self.directory: RunDirectory | None = None
         if output is not None:
             self.write_to(output)
-            if given:
+            if arrays:
                 self.checkpoint()
 
     def write_to(self, output: str | Path) -> None:
@@ -120,7 +115,8 @@ class Simulation:
         if directory.checkpoint_file.exists():
             self._restore()
         else:
-            start(self.fluid, *first_state(self.case))
+            method = method_of(self.case)
+            method.start(self.engine, method.first_state(self.case, {}))
         if self.writer is not None:
             require_frames(directory, self.case, self.step)
             self.writer.resume(self.step)
@@ -131,7 +127,7 @@ class Simulation:
 
     def _build(self) -> None:
         measures = {name for observable in self.case.observe for name in observable.measures}
-        self.fluid = CPU(self.case, self.threads, sorted(measures))
+        self.engine = method_of(self.case).engine(self.case, self.threads, sorted(measures))
         self.accumulators: dict[str, Accumulator] = {
             observable.label: observable.accumulator(self.case) for observable in self.case.observe
         }
@@ -139,17 +135,19 @@ class Simulation:
         self.last_step = self.case.run.warmup + self.case.run.steps
         self._observe_seconds = dict.fromkeys(self.accumulators, 0.0)
         self._stopped_by: signal.Signals | None = None
+        self._compiling = False
 
     def _attach(self, directory: RunDirectory) -> None:
         self.directory = directory
         if self.case.trajectory is not None:
             folder = directory.trajectory_folder
-            self.writer = TrajectoryWriter(self.case.trajectory, folder, *written(self.case))
+            number, first = written(self.case.trajectory, self.case.groups)
+            self.writer = TrajectoryWriter(self.case.trajectory, folder, number, first)
 
     @property
     def step(self) -> int:
         """Steps done, the warm-up included."""
-        return self.fluid.step
+        return self.engine.step
 
     def __getitem__(self, name: str) -> Result:
         """What an observable says so far."""
@@ -186,30 +184,41 @@ class Simulation:
         there is a folder; `resume`, or `run` again in the same process, goes on.
         """
         progress = progress or Reporter(quiet=True)
-        beads = self.case.solutes.beads if self.case.solutes is not None else 0
-        progress.start(self.last_step, self.fluid.n + beads, "running", self.step)
+        particles = sum(group.number for group in self.case.groups)
+        progress.start(self.last_step, particles, "running", self.step)
         try:
             with self._catching_signals():
                 self._compile(progress)
                 self._loop(progress)
                 if self._stopped_by is None:
                     self._end()
-        except RunError as error:
-            self._note_failure(str(error))
+        except Exception as error:
+            self._note_failure(str(error) or repr(error))
             raise
         finally:
             progress.finish()
         if self._stopped_by is not None:
-            raise KeyboardInterrupt(f"stopped at step {self.step} by {self._stopped_by.name}")
+            raise KeyboardInterrupt(self._stopped)
+
+    @property
+    def _stopped(self) -> str:
+        """Where the run was stopped, and by what."""
+        assert self._stopped_by is not None
+        doing = ", while compiling," if self._compiling else ""
+        return f"stopped at step {self.step}{doing} by {self._stopped_by.name}"
 
     def _compile(self, progress: Reporter) -> None:
-        """Load or compile the kernels; say so if it takes long."""
+        """Load or compile the kernels; say so if it takes long. A signal ends it at once."""
         timer = threading.Timer(COMPILE_SECONDS, progress.compiling)
         timer.start()
+        self._compiling = True
         try:
-            self.fluid.advance(0)
+            self.engine.advance(0)
         finally:
+            self._compiling = False
             timer.cancel()
+        with contextlib.suppress(OSError):  # kernels are then not kept either
+            note_run(self.case)
 
     def _loop(self, progress: Reporter) -> None:
         chunk, saved = 1, perf_counter()
@@ -218,7 +227,7 @@ class Simulation:
             steps = target - self.step
             due = self._due(target)
             stress = any("stress" in observable.measures for observable in due)
-            self.fluid.advance(steps, measure_stress=stress)
+            self.engine.advance(steps, measure_stress=stress)
             chunk = _next_chunk(steps, perf_counter() - began)
             self._observe(due)
             if self._checkpoint_due(perf_counter() - saved):
@@ -249,14 +258,14 @@ class Simulation:
 
     def _observe(self, due: list[Observable]) -> None:
         if self.step == self.case.run.warmup:
-            self.fluid.wall_impulse  # noqa: B018  what the walls took so far is not to be seen
+            self.engine.end_warmup()
         for observable in due:
             began = perf_counter()
-            self.accumulators[observable.label].observe(self.fluid)
+            self.accumulators[observable.label].observe(self.engine)
             self._observe_seconds[observable.label] += perf_counter() - began
         passed, trajectory = self.step - self.case.run.warmup, self.case.trajectory
         if self.writer and trajectory and passed > 0 and passed % trajectory.every == 0:
-            self.writer.record(self.fluid)
+            self.writer.record(self.engine)
 
     def _end(self) -> None:
         if self.directory is None:
@@ -265,9 +274,7 @@ class Simulation:
         record = self.directory.read_provenance()
         record |= {"ended": now(), "timings": self.timings}
         results, path = self.results, self.directory.data_file
-        ids = self.writer.ids if self.writer is not None else None
-        masses, species = self.fluid.masses(ids), self.fluid.species(ids)
-        h5md.write(path, self.case, record, results.values(), self.writer, masses, species)
+        h5md.write(path, self.case, record, results.values(), self.writer)
         self._save_provenance(record)
         from mesokit.report import save_all
 
@@ -279,7 +286,7 @@ class Simulation:
     def timings(self) -> dict[str, float]:
         """Seconds spent in each stage and observable since this process began the run."""
         observing = {f"observe {name}": s for name, s in self._observe_seconds.items()}
-        return self.fluid.seconds | observing
+        return self.engine.seconds | observing
 
     # --- safety ---------------------------------------------------------------------------------
 
@@ -289,7 +296,7 @@ class Simulation:
             raise RunError("no checkpoint without an output folder")
         if self.writer is not None:
             self.writer.flush()
-        arrays = {f"fluid/{key}": value for key, value in self.fluid.state().items()}
+        arrays = {f"engine/{key}": value for key, value in self.engine.state().items()}
         for name, accumulator in self.accumulators.items():
             arrays |= {f"observe/{name}/{key}": v for key, v in accumulator.state().items()}
         case = checkpoint.digest(self.case.to_toml(self.directory.path))
@@ -301,9 +308,9 @@ class Simulation:
         case = checkpoint.digest(self.case.to_toml(self.directory.path))
         arrays, _ = checkpoint.read(path, case)
         try:
-            self.fluid.restore(part(arrays, "fluid/"))
+            self.engine.restore(_part(arrays, "engine/"))
             for name, accumulator in self.accumulators.items():
-                accumulator.restore(part(arrays, f"observe/{name}/"))
+                accumulator.restore(_part(arrays, f"observe/{name}/"))
         except (KeyError, ValueError, IndexError) as error:
             raise CheckpointError(f"{path}: does not fit this case: {error}") from None
 
@@ -343,6 +350,8 @@ class Simulation:
             if self._stopped_by is not None:
                 raise KeyboardInterrupt
             self._stopped_by = signal.Signals(number)
+            if self._compiling:
+                raise KeyboardInterrupt(self._stopped)
 
         before = {s: signal.signal(s, stop) for s in (signal.SIGINT, signal.SIGTERM)}
         try:
@@ -352,12 +361,28 @@ class Simulation:
                 signal.signal(number, handler)
 
 
-def _case(given: Any) -> Case:
-    if isinstance(given, Case):
-        return given
+def _case_and_arrays(given: Any, parts: dict[str, Any]) -> tuple[Case, dict[str, Any]]:
+    """The case, made of its parts if none is given, and the arrays among these to start from."""
     if isinstance(given, str | os.PathLike):
-        return Case.from_toml(Path(given))
-    raise CaseError(f"Simulation: case = {show(given)}: expected a case, or the path of its file")
+        given = Case.from_toml(Path(given))
+    if given is not None and not isinstance(given, Case):
+        raise CaseError(
+            f"Simulation: case = {show(given)}: expected a case, or the path of its file"
+        )
+    name = method_named(parts.get("run")) if given is None else given.run.method
+    known = methods.load(name).arrays
+    arrays = {name: parts.pop(name) for name in known if name in parts}
+    if (given is None) == (not parts):
+        key = next(iter(parts), None)
+        hint = f", not {key}{nearest(key, known)}" if key else ""
+        raise CaseError(f"Simulation: expected a case, or its parts by name{hint}")
+    arrays = {name: array for name, array in arrays.items() if array is not None}
+    return given or Case(**parts), arrays
+
+
+def _part(arrays: dict[str, Any], start: str) -> dict[str, Any]:
+    """The arrays whose names start so, without it."""
+    return {key[len(start) :]: v for key, v in arrays.items() if key.startswith(start)}
 
 
 def _threads(given: Any) -> int:

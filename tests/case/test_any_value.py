@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import mesokit.templates
 from mesokit import Case, CaseError
-from mesokit.case import parse
-from mesokit.derived import derive
+from mesokit.case.toml import parse
+from mesokit.method import templates
+from mesokit.method.mpcd.derived import derive
 
-TEMPLATES = sorted(Path(mesokit.templates.__file__).parent.glob("*.toml"))
+TEMPLATES = [Path(str(path)) for path in templates().values()]
 
 
 def paths(data: dict[str, Any], start: str = "") -> list[str]:

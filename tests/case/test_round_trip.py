@@ -38,9 +38,11 @@ from mesokit import (
     VelocityProfile,
     Water,
 )
-from mesokit.cli import TEMPLATES
-from mesokit.component import is_component
-from mesokit.derived import Derived, derive
+from mesokit.case.component import is_component
+from mesokit.method import templates
+from mesokit.method.mpcd.derived import derive
+from mesokit.method.mpcd.numbers import Derived
+from mesokit.method.protocol import method_of
 
 positive = st.floats(1e-3, 1e3)
 small = st.floats(-1.0, 1.0)
@@ -120,15 +122,12 @@ def test_written_and_read_a_case_is_the_same(tmp_path_factory: typing.Any, case:
     derive(case, 2)  # whatever is valid has derived numbers
 
 
-@pytest.mark.parametrize("name", TEMPLATES)
+@pytest.mark.parametrize("name", templates())
 def test_templates_are_valid_and_without_warnings(name: str) -> None:
-    import mesokit.templates
-
-    path = Path(mesokit.templates.__file__).parent / f"{name}.toml"
-    case = Case.from_toml(path)
-    numbers = derive(case, 2)
-    assert numbers.warnings == ()
-    assert numbers.seconds < 60
+    case = Case.from_toml(templates()[name])
+    summary = method_of(case).summary(case, 2)
+    assert summary.warnings == ()
+    assert summary.seconds < 60
 
 
 def components(hint: typing.Any) -> set[type]:
@@ -205,9 +204,7 @@ class TestOverrides:
 
     @pytest.fixture
     def path(self) -> Path:
-        import mesokit.templates
-
-        return Path(mesokit.templates.__file__).parent / "poiseuille.toml"
+        return Path(str(templates()["poiseuille"]))
 
     def test_replace_values(self, path: Path) -> None:
         case = Case.from_toml(

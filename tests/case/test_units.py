@@ -30,10 +30,10 @@ from mesokit import (
     convert,
     derive,
 )
+from mesokit.case.units import BOLTZMANN
 from mesokit.cli import main
-from mesokit.observe import setting
-from mesokit.si import QUANTITIES
-from mesokit.units import BOLTZMANN
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.si import QUANTITIES
 
 MATCHED = {"reynolds": "Reynolds", "peclet": "colloid Peclet", "mach": "Mach",
            "thermal": "thermal noise"}  # fmt: skip
@@ -122,7 +122,7 @@ def test_matched_properties_are_those_of_the_real_fluid(case: Case) -> None:
         "kT": case.fluid.kT * si.energy,
         "sound_speed": theory.sound_speed * si.velocity,
     }
-    for name in mesokit.units.MATCHES[case.units.match]:
+    for name in mesokit.case.units.MATCHES[case.units.match]:
         assert simulated[name] == pytest.approx(getattr(real, name))
 
 

@@ -11,8 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from mesokit.case import Case
-from mesokit.cli import TEMPLATES, main
+from mesokit.case.case import Case
+from mesokit.cli import main
+from mesokit.method import templates
 
 Captured = pytest.CaptureFixture[str]
 SOURCE = str(Path(__file__).parents[2] / "src")
@@ -56,7 +57,7 @@ def refusal(capsys: Captured, *arguments: str, status: int = 2) -> str:
 class TestNew:
     """`mesokit new`."""
 
-    @pytest.mark.parametrize("name", TEMPLATES)
+    @pytest.mark.parametrize("name", templates())
     def test_writes_a_case_that_passes_the_check(self, name: str, capsys: Captured) -> None:
         assert ends("new", name) == 0
         assert f"mesokit run {name}.toml" in capsys.readouterr().out
@@ -291,7 +292,7 @@ class TestProgress:
     """What a run says while it goes."""
 
     def test_plain_lines_start_at_once_and_are_few(self, monkeypatch) -> None:
-        from mesokit import progress
+        from mesokit.report import progress
 
         clock = iter(range(10_000))
         monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock) * 0.1)
@@ -310,7 +311,7 @@ class TestProgress:
         assert len(lines) == 5
 
     def test_the_time_left_comes_from_the_recent_past(self, monkeypatch) -> None:
-        from mesokit import progress
+        from mesokit.report import progress
 
         rate = progress.Rate()
         for second in range(101):
@@ -318,7 +319,7 @@ class TestProgress:
         assert rate.steps_per_second == pytest.approx(10)
 
     def test_a_terminal_gets_a_bar(self) -> None:
-        from mesokit.progress import Reporter
+        from mesokit.report.progress import Reporter
 
         stream = Terminal()
         reporter = Reporter(stream=stream)
@@ -329,7 +330,7 @@ class TestProgress:
         assert "%" in stream.getvalue()
 
     def test_quiet_is_quiet(self, capsys: Captured) -> None:
-        from mesokit.progress import Reporter
+        from mesokit.report.progress import Reporter
 
         reporter = Reporter(quiet=True)
         reporter.start(10, particles=5)

@@ -11,7 +11,7 @@ import pytest
 from mesokit import Case
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = ["README.md", "docs/guide.md"]
+PAGES = ["README.md", "docs/guide.md", "docs/methods/brownian.md"]
 SHORT = ["--set", "run.steps=40", "--set", "run.warmup=10"]
 
 

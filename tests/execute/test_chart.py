@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from shapes import EVERY, example, solids_of, walls_of
 
-from mesokit.execute.chart import (
+from mesokit.geometry.solids.clearance import (
     EVERYWHERE,
     OFFSETS,
     PARTS,
@@ -16,7 +16,7 @@ from mesokit.execute.chart import (
     cut_planes,
     free_planes,
 )
-from mesokit.geometry.cut_cube import share_and_depth
+from mesokit.geometry.solids.cut_cube import share_and_depth
 
 
 def cells_of(solids):

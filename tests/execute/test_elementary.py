@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba import njit
 
-from mesokit.elementary import log, short_log, short_sin, short_sincos, sincos_turn
-from mesokit.execute.fixed_point import fixed, from_fixed
+from mesokit.scalar.elementary import log, short_log, short_sin, short_sincos, sincos_turn
+from mesokit.scalar.fixed_point import fixed, from_fixed
 
 EPSILON = float(np.finfo(float).eps)
 

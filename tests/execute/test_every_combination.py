@@ -12,10 +12,10 @@ from concurrent.futures import ProcessPoolExecutor
 import numpy as np
 import pytest
 
+from mesokit import AT, SRD, MaxwellBoltzmann, NoForce, NoThermostat, Plates, Surface, Uniform
 from mesokit.errors import CaseError
-from mesokit.geometry import Plates, Surface
-from mesokit.mpcd import collision, field, thermostat
-from mesokit.mpcd.species import Species
+from mesokit.method.mpcd import collision, field, thermostat
+from mesokit.method.mpcd.species import Species
 
 BOUNDARIES = {
     "periodic": lambda d: {},
@@ -34,23 +34,20 @@ KINDS = {
 
 
 # The tests of the laws need these kernels.
-FREE, BARE = thermostat.NoThermostat, field.NoForce
+FREE, BARE = NoThermostat, NoForce
 PLAIN = {
     dimension: [(rule, FREE, BARE, "periodic", masses) for rule in collision.RULES]
     for dimension, masses in ((2, 2), (3, 1))
 }
-PLAIN[3] += [(collision.SRD, rule, BARE, "periodic", 1) for rule in thermostat.RULES]
-PLAIN[3] += [(collision.AT, FREE, rule, "periodic", 1) for rule in field.RULES]
-CANONICAL = thermostat.MaxwellBoltzmann
+PLAIN[3] += [(SRD, rule, BARE, "periodic", 1) for rule in thermostat.RULES]
+PLAIN[3] += [(AT, FREE, rule, "periodic", 1) for rule in field.RULES]
+CANONICAL = MaxwellBoltzmann
 for dimension in (2, 3):
     PLAIN[dimension] += [
         (rule, FREE if rule().rule.startswith("at") else CANONICAL, BARE, "sheared", 1)
         for rule in collision.RULES
     ]
-PLAIN[2] += [
-    (collision.SRD, CANONICAL, field.Uniform, boundary, 1)
-    for boundary in ("slit", "topped-up slit")
-]
+PLAIN[2] += [(SRD, CANONICAL, Uniform, boundary, 1) for boundary in ("slit", "topped-up slit")]
 
 
 def build(dimension, rule, thermostat, field, boundary, masses):
@@ -93,8 +90,8 @@ CHOSEN, REFUSED = cover()
 def run(path, combination):
     """Three steps, in a process of its own."""
     sys.path[:] = path
-    from mesokit.execute.cpu import CPU
-    from mesokit.mpcd.initial import start
+    from mesokit.execute.cpu.engine import CPU
+    from mesokit.method.mpcd.start.fluid import start
 
     fluid = CPU(build(*combination), 2)
     start(fluid)

@@ -7,10 +7,10 @@ import pytest
 from numba import njit
 from scipy import stats
 
-from mesokit.gamma import part, propose
-from mesokit.mpcd.thermostat.maxwell_boltzmann import Canonical
-from mesokit.mpcd.thermostat.protocol import draw, guess
-from mesokit.random import CELL, Counter, words
+from mesokit.method.mpcd.thermostat.maxwell_boltzmann import Canonical
+from mesokit.method.mpcd.thermostat.protocol import draw, guess
+from mesokit.scalar.gamma import part, propose
+from mesokit.scalar.random import CELL, Counter, words
 
 CANONICAL = Canonical(1.0, 1e-9)
 UNLIKELY = 1e-4

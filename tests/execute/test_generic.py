@@ -6,10 +6,10 @@ import pytest
 from numba import njit
 from numba.core.errors import TypingError
 
-from mesokit.box import Box, fold
-from mesokit.mpcd.field import NoForce, Uniform
-from mesokit.mpcd.field.protocol import acceleration
-from mesokit.scalar import generic
+from mesokit import NoForce, Uniform
+from mesokit.case.box import Box, fold
+from mesokit.method.mpcd.field.protocol import acceleration
+from mesokit.scalar.jit import generic
 
 
 class Square(NamedTuple):

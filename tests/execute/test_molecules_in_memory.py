@@ -4,14 +4,11 @@ import numpy as np
 import pytest
 from laboratory import assert_same, fingerprint, make_case, make_fluid
 
-from mesokit.execute.cpu import CPU
-from mesokit.execute.layout import BLOCK, places_of_beads
-from mesokit.geometry import Disk, Plates, Surface
-from mesokit.mpcd.field import Uniform
-from mesokit.mpcd.initial import start
-from mesokit.mpcd.molecule import Molecule
-from mesokit.mpcd.thermostat import MaxwellBoltzmann
-from mesokit.potential import Harmonic
+from mesokit import Disk, Harmonic, MaxwellBoltzmann, Plates, Surface, Uniform
+from mesokit.execute.cpu.engine import CPU
+from mesokit.execute.cpu.strips.layout import LANES, places_of_beads
+from mesokit.method.mpcd.molecule import Molecule
+from mesokit.method.mpcd.start.fluid import start
 
 SHEARED = {
     "size": (5, 11, 6), "density": 2310 / 330, "shear_rate": 0.2,
@@ -45,7 +42,7 @@ def case(request):
 @pytest.fixture(scope="module")
 def reference(case):
     fluid = make_fluid(**case, threads=1)
-    assert fluid.filling.molecules % 256
+    assert fluid.numbers.filling.molecules % 256
     fluid.advance(STEPS)
     return fingerprint(fluid)
 
@@ -80,11 +77,11 @@ def test_from_a_state(case, reference, step):
 def test_bonds_stay_bonds(case):
     """In memory, beads of one molecule are side by side, and bond vectors are what they were."""
     fluid = make_fluid(**case)
-    places = places_of_beads(fluid.filling.molecules, fluid.beads)
+    places = places_of_beads(fluid.numbers.filling.molecules, fluid.numbers.beads)
     for _ in range(3):
         fluid.advance(100)
-        ids = fluid.ident[places]
-        assert (ids == ids[:, :1] + np.arange(fluid.beads)).all()
+        ids = fluid.memory.fluid.particles.ident[places]
+        assert (ids == ids[:, :1] + np.arange(fluid.numbers.beads)).all()
         assert sorted(ids.ravel()) == list(range(fluid.n))
         way = fluid.bond_vectors()
         fluid.sort()
@@ -95,11 +92,11 @@ def test_bonds_stay_bonds(case):
 @pytest.mark.parametrize("rubbish", [1e20, np.inf, np.nan])
 def test_rubbish_in_spare_lanes_changes_nothing(case, reference, rubbish):
     fluid = make_fluid(**case)
-    used = places_of_beads(fluid.filling.molecules, fluid.beads).ravel()
-    spare = np.setdiff1d(np.arange(fluid.places), used)
+    used = places_of_beads(fluid.numbers.filling.molecules, fluid.numbers.beads).ravel()
+    spare = np.setdiff1d(np.arange(fluid.memory.strips * LANES), used)
     assert len(spare)
     for k in range(2 * fluid.dimension):
-        fluid.row(k)[spare // BLOCK, spare % BLOCK] = rubbish
+        fluid.memory.fluid.particles.data[fluid.memory.at(k, spare)] = rubbish
     fluid.advance(STEPS)
     assert_same(fingerprint(fluid), reference)
 
@@ -107,7 +104,7 @@ def test_rubbish_in_spare_lanes_changes_nothing(case, reference, rubbish):
 def test_molecules_reach_over_blocks():
     """Groups of seven strips do not fit into blocks of sixteen."""
     fluid = make_fluid(**SHEARED | {"size": (12, 12, 12), "density": 10.5}, threads=2)
-    assert fluid.real_blocks > 3
+    assert fluid.memory.real_blocks > 3
     r = fluid.positions(unwrapped=True)[:, 1:]  # along x images slide
     fluid.advance(1)
     assert np.abs(fluid.positions(unwrapped=True)[:, 1:] - r).max() < 1.0

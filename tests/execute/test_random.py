@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from numba import njit
 from scipy import stats
 
-from mesokit import random as rng
-from mesokit.random import Counter, grid_shift, normals, philox, unit, unit_open, words
+from mesokit.scalar import random as rng
+from mesokit.scalar.random import Counter, grid_shift, normals, philox, unit, unit_open, words
 
 # Random123, examples/kat_vectors: philox4x32 10, counter, key, result
 KNOWN_ANSWERS = [

@@ -8,12 +8,9 @@ import numpy as np
 import pytest
 from laboratory import assert_same, fingerprint, make_case, make_fluid
 
-from mesokit.execute.cpu import CPU
-from mesokit.geometry import Plates, Surface
-from mesokit.mpcd.collision import SRD
-from mesokit.mpcd.field import Uniform
-from mesokit.mpcd.species import Species
-from mesokit.mpcd.thermostat import MaxwellBoltzmann
+from mesokit import SRD, MaxwellBoltzmann, Plates, Surface, Uniform
+from mesokit.execute.cpu.engine import CPU
+from mesokit.method.mpcd.species import Species
 
 CASES = {
     "slit with an odd number of particles": {
@@ -93,7 +90,7 @@ def test_the_start_does_not_depend_on_the_threads_of_blas():
     script = (
         "import hashlib, mesokit as m\n"
         "case = m.Case(run=m.Run(steps=1), box=m.Box([40, 40]), fluid=m.Fluid(density=10))\n"
-        "fluid = m.Simulation(case).fluid\n"
+        "fluid = m.Simulation(case).engine\n"
         "print(hashlib.sha256(fluid.velocities().tobytes()).hexdigest())\n"
     )
     seen = set()

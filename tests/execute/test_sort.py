@@ -20,14 +20,14 @@ def test_sort_is_a_stable_permutation(n, threads, seed, spread):
     assert fluid.n == n
     r = random.uniform(-spread, spread, (n, 2))
     ids = random.permutation(n).astype(np.int32)
-    for k in range(2):
-        rows = fluid.row(k)
-        rows[np.arange(n) // rows.shape[1], np.arange(n) % rows.shape[1]] = r[:, k]
-    fluid.ident[:n] = ids
+    memory, by_number = fluid.memory, np.empty_like(r)
+    by_number[ids] = r
+    memory.fluid.particles.ident[:n] = ids
+    memory.fill(by_number, by_number)
     fluid.sort()
-    after = fluid.ident[:n]
+    after = memory.fluid.particles.ident[:n]
     assert sorted(after) == list(range(n))
-    rows = np.stack([fluid.row(k).reshape(-1)[:n] for k in range(2)], axis=1)
+    rows = memory.read()[0][after]
     assert (rows >= 0).all() and (rows <= SIZE).all()
     cell = np.floor(rows[:, 0]) % 5 + 5 * (np.floor(rows[:, 1]) % 7)
     assert (np.diff(cell) >= 0).all()
@@ -44,5 +44,5 @@ def test_order_does_not_depend_on_threads(threads):
     for count in (1, threads):
         fluid = make_fluid((6, 7), density=9.5, threads=count)
         fluid.advance(300)
-        orders.append(fluid.ident[: fluid.n].copy())
+        orders.append(fluid.memory.fluid.particles.ident[: fluid.n].copy())
     np.testing.assert_array_equal(*orders)

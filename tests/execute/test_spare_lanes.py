@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from mesokit import SRD, Box, Case, Fluid, MaxwellBoltzmann, Plates, Run, Uniform
-from mesokit.execute.cpu import CPU
-from mesokit.mpcd.initial import start
+from mesokit.execute.cpu.engine import CPU
+from mesokit.execute.cpu.strips.layout import LANES
+from mesokit.method.mpcd.start.fluid import start
 
 
 @pytest.mark.parametrize("rubbish", [1e20, -1e20, np.inf, np.nan])
@@ -22,7 +23,9 @@ def test_rubbish_in_spare_lanes_changes_nothing(rubbish: float) -> None:
         start(fluid)
         assert fluid.n % 256 != 0
         for k in range(4 * dirty):
-            fluid.row(k).reshape(-1)[fluid.n :] = rubbish
+            memory = fluid.memory
+            spare = np.arange(fluid.n, memory.strips * LANES)
+            memory.fluid.particles.data[memory.at(k, spare)] = rubbish
         fluid.advance(150)
         found.append((fluid.positions(), fluid.velocities()))
     assert np.array_equal(found[0][0], found[1][0])

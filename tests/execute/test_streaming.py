@@ -8,11 +8,11 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from numba import njit
 
-from mesokit.box import Box, fold, peculiar
-from mesokit.execute.bounce import bounce
-from mesokit.geometry import Plates, Surface
+from mesokit import Plates, Surface
+from mesokit.case.box import Box, fold, peculiar
+from mesokit.execute.cpu.bounce import bounce
 from mesokit.geometry.protocol import first_hit, touches
-from mesokit.random import Counter
+from mesokit.scalar.random import Counter
 
 WIDTH, LENGTH = 3, 5
 
@@ -29,11 +29,12 @@ class Step(NamedTuple):
     solid: tuple
     timestep: float
     kT: float
+    scales: tuple
 
 
 @njit
 def flown(solid, r, v, a, time, impulse):
-    return bounce(Step(solid, time, 1.0), Counter(1, 1), 0, 1.0, r, v, a, impulse, SCALE)
+    return bounce(Step(solid, time, 1.0, (SCALE,)), Counter(1, 1), 0, 1.0, r, v, a, impulse)
 
 
 def flies(solid, r, v, a, time):

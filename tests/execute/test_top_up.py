@@ -6,15 +6,16 @@ from laboratory import make_case
 from numba import njit
 
 from mesokit import AT, Plates
-from mesokit.execute.cpu import CPU
-from mesokit.execute.fixed_point import ROUNDER_BITS
-from mesokit.execute.stages import Grid
-from mesokit.execute.top_up import top_up
-from mesokit.random import Counter
+from mesokit.execute.cpu.engine import CPU
+from mesokit.execute.cpu.groups import Now
+from mesokit.execute.cpu.threads import Team
+from mesokit.execute.virtual.stages import top_up_walls
+from mesokit.scalar.fixed_point import ROUNDER_BITS
+from mesokit.scalar.random import Counter
 
 LENGTH, DENSITY = 400, 128.0
 
-fill = njit(lambda *arguments: top_up(*arguments))
+fill = njit(lambda *arguments: top_up_walls(*arguments))
 
 
 @pytest.fixture
@@ -24,15 +25,14 @@ def topped_up():
         (LENGTH, 3), collision=AT(), density=1.0, walls=[Plates(axis="y", virtual="top-up")]
     )
     cpu = CPU(case)
-    shift = (0.0, 0.5)
-    grid = Grid(shift, shift, cpu.grid.cells, cpu.grid.inverse)
-    fill(
-        (DENSITY,), (), 0, cpu.physics, Counter(np.uint64(1), np.uint64(1)), grid, cpu.cell_arrays,
-        cpu.number_of_cells, cpu.like, cpu.scales,
-    )  # fmt: skip
-    sums = cpu.sums[0].reshape(cpu.number_of_cells + 1, -1)[:LENGTH]
+    memory, number = cpu.memory, cpu.numbers.number_of_cells
+    grid = memory.grid._replace(shift=(0.0, 0.5), origin=(0.0, 0.5))
+    now = Now(Counter(np.uint64(1), np.uint64(1)), memory.box, memory.grid, grid, 0)
+    alone = Team(0, 1, np.zeros(1, np.int64), np.zeros(1, np.int64))
+    fill(alone, now, memory.physics, memory.fluid, memory.walls._replace(top_up=(DENSITY,)))
+    sums = memory.fluid.cells.sums[0].reshape(number + 1, -1)[:LENGTH]
     number, own = sums[:, 0], sums[:, 3:5]
-    return number, (own - number[:, None] * ROUNDER_BITS) / cpu.scales[2]
+    return number, (own - number[:, None] * ROUNDER_BITS) / memory.physics.scales[2]
 
 
 def test_cells_are_filled_to_the_mean_density(topped_up):

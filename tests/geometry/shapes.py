@@ -12,14 +12,14 @@ from numba import njit
 from PIL import Image
 
 from mesokit import Box, Case, CaseError, Disk, Plates, Run, Solids, Sphere
-from mesokit.component import tag_of
-from mesokit.execute.bounce import bounce
-from mesokit.geometry import SHAPES
-from mesokit.geometry.bodies import NOBODY
-from mesokit.geometry.flight import first_meeting
+from mesokit.case.component import tag_of
+from mesokit.execute.cpu.bounce import bounce
 from mesokit.geometry.protocol import homed
-from mesokit.mpcd.streaming import fall
-from mesokit.random import Counter
+from mesokit.geometry.shape import SHAPES
+from mesokit.geometry.solids.bodies import NOBODY
+from mesokit.geometry.solids.flight import first_meeting
+from mesokit.method.mpcd.streaming import fall
+from mesokit.scalar.random import Counter
 
 SIZE = {2: (12, 10), 3: (12, 10, 9)}
 ROUND = {2: Disk, 3: Sphere}
@@ -163,7 +163,7 @@ def meets(solids: Solids, r: Any, v: Any, a: Any, time: float) -> float:
 
 @njit
 def _bounced(physics, number, r, v, a, impulse):
-    return bounce(physics, Counter(1, 1), number, 1.0, r, v, a, impulse, SCALE)
+    return bounce(physics, Counter(1, 1), number, 1.0, r, v, a, impulse)
 
 
 class Step(NamedTuple):
@@ -172,12 +172,13 @@ class Step(NamedTuple):
     solid: Any
     timestep: float
     kT: float
+    scales: tuple
 
 
 def bounced(solids: Solids, r: Any, v: Any, a: Any, time: float, number: int = 0) -> Any:
     """Place and velocity after a step, and the momentum that the bodies took (bodies, d)."""
     d = solids.dimension
     impulse = np.zeros((len(solids.bodies), d + (1 if d == 2 else 3)), np.int64)
-    step = Step(solids.kernel, time, 1.0)
+    step = Step(solids.kernel, time, 1.0, (SCALE,))
     r, v = _bounced(step, number, tuple(r), tuple(v), tuple(a), impulse.ravel())
     return np.array(r), np.array(v), impulse[:, :d] / SCALE

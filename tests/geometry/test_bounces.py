@@ -26,8 +26,8 @@ def rule(request):
 @pytest.fixture(scope="module")
 def ruled(every, rule):
     """Every solid with every rule: the same tables, but for the numbers of its surfaces."""
-    from mesokit.geometry.bodies import COLUMNS, SURFACES
-    from mesokit.solid_tables import RULES
+    from mesokit.geometry.solids.bodies import COLUMNS, SURFACES
+    from mesokit.geometry.solids.tables import RULES
 
     solids = every[3]
     table = next(t for t in solids._tables if t.ctypes.data == solids._places[SURFACES])

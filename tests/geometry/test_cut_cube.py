@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from mesokit.geometry.cut_cube import share_and_depth, share_beyond
+from mesokit.geometry.solids.cut_cube import share_and_depth, share_beyond
 
 FINE = {2: 400, 3: 60}
 

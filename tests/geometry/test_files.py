@@ -202,7 +202,7 @@ def test_arrays_that_span_the_box_repeat(tmp_path):
 
 
 def test_a_file_that_changes_makes_another_solid(make_case, tmp_path):
-    from mesokit.solids import solids_of as kept
+    from mesokit.geometry.solids.solids import solids_of as kept
 
     file = str(tmp_path / "a.png")
     Image.fromarray(drawn(2.0)).save(file)

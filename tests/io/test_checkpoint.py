@@ -84,7 +84,7 @@ def test_another_case_and_another_format(path):
         checkpoint.read(path, case="yours")
     header = {"format": checkpoint.FORMAT + 1, "case": "mine", "arrays": [], "meta": {}}
     np.savez(path, meta=np.array(json.dumps(header)))
-    with pytest.raises(CheckpointError, match="format 2; this version of mesokit reads format 1"):
+    with pytest.raises(CheckpointError, match="format 4; this version of mesokit reads format 3"):
         checkpoint.read(path)
 
 

@@ -9,21 +9,18 @@ import numpy as np
 import pytest
 
 import mesokit
-from mesokit.box import Box
-from mesokit.case import Case
+from mesokit import Harmonic, MaxwellBoltzmann, Plates, Uniform
+from mesokit.case.box import Box
+from mesokit.case.case import Case
+from mesokit.case.run import Run
+from mesokit.case.trajectory import Trajectory
 from mesokit.cli import main
 from mesokit.errors import CaseError, RunError
-from mesokit.geometry import Plates
-from mesokit.io.trajectory import Trajectory
-from mesokit.mpcd.field import Uniform
-from mesokit.mpcd.fluid import Fluid
-from mesokit.mpcd.initial import Start
-from mesokit.mpcd.molecule import Molecule
-from mesokit.mpcd.solutes import Polymer, Solutes
-from mesokit.mpcd.species import Species
-from mesokit.mpcd.thermostat import MaxwellBoltzmann
-from mesokit.potential import Harmonic
-from mesokit.run import Run
+from mesokit.method.mpcd.fluid import Fluid
+from mesokit.method.mpcd.molecule import Molecule
+from mesokit.method.mpcd.solutes import Polymer, Solutes
+from mesokit.method.mpcd.species import Species
+from mesokit.method.mpcd.start.section import Start
 from mesokit.simulation import Simulation
 
 TRIMERS = Molecule(length=3, bond=Harmonic(K=2.0))
@@ -43,8 +40,8 @@ class Watched(Simulation):
         trajectory = self.case.trajectory
         if trajectory and self.step and self.step % trajectory.every == 0:
             self.__dict__.setdefault("seen", {})[self.step] = (
-                self.fluid.positions(), self.fluid.velocities(), self.fluid.images(),
-                self.fluid.bond_vectors(),
+                self.engine.positions(), self.engine.velocities(), self.engine.images(),
+                self.engine.bond_vectors(),
             )  # fmt: skip
 
 
@@ -82,7 +79,7 @@ def read(path):
 def test_gsd_has_all_that_the_run_has(size, tmp_path):
     simulation = run_of(tmp_path / "run", size, kT=2.0, mass=3.0)
     frames = read(mesokit.open(tmp_path / "run").export(tmp_path / "run.gsd"))
-    d, n = len(size), simulation.fluid.n
+    d, n = len(size), simulation.engine.n
     deep = [1.0] * (3 - d)
     assert [frame.configuration.step for frame in frames] == [10, 20, 30, 40]
     assert [frame.log["time"][0] for frame in frames] == pytest.approx([1, 2, 3, 4])
@@ -96,7 +93,7 @@ def test_gsd_has_all_that_the_run_has(size, tmp_path):
         np.testing.assert_allclose(frame.particles.velocity[:, :d], v, atol=1e-5)
         np.testing.assert_array_equal(frame.particles.image[:, :d], image)
         np.testing.assert_array_equal(frame.particles.mass, np.full(n, 3.0))
-        np.testing.assert_array_equal(frame.bonds.group, simulation.fluid.bonds())
+        np.testing.assert_array_equal(frame.bonds.group, simulation.engine.bonds())
         whole = x[:, :d] + frame.particles.image[:, :d] * np.array(size)
         way = whole[frame.bonds.group[:, 1]] - whole[frame.bonds.group[:, 0]]
         np.testing.assert_allclose(way, bonds, atol=1e-5)
@@ -142,7 +139,7 @@ def test_mdanalysis_reads_all_three(whole, tmp_path):
                 if ending != ".xyz":
                     assert now.dimensions.tolist() == [6, 5, 7, 90, 90, 90]
             if ending == ".gsd":
-                np.testing.assert_array_equal(universe.bonds.to_indices(), whole.fluid.bonds())
+                np.testing.assert_array_equal(universe.bonds.to_indices(), whole.engine.bonds())
 
 
 def test_a_dump_says_box_images_and_velocities(whole, tmp_path):
@@ -150,7 +147,7 @@ def test_a_dump_says_box_images_and_velocities(whole, tmp_path):
     lines = path.read_text().splitlines()
     assert lines[4] == "ITEM: BOX BOUNDS pp pp pp" and lines[5:8] == ["0 6", "0 5", "0 7"]
     assert lines[8] == "ITEM: ATOMS id type mass x y z ix iy iz vx vy vz"
-    n, (r, v, image, _) = whole.fluid.n, whole.seen[10]
+    n, (r, v, image, _) = whole.engine.n, whole.seen[10]
     rows = np.array([line.split() for line in lines[9 : 9 + n]], float)
     np.testing.assert_allclose(rows[:, 3:6], r, atol=1e-5)
     np.testing.assert_array_equal(rows[:, 6:9], image)
@@ -184,7 +181,7 @@ def test_a_run_that_goes_on_gives_what_it_has_so_far(whole, tmp_path):
         mesokit.open(tmp_path / "run").export(tmp_path / "a.gsd")
     assert not (tmp_path / "a.gsd").exists()
     while simulation.step < 20:
-        simulation.fluid.advance(10)
+        simulation.engine.advance(10)
         simulation._observe([])
     simulation.checkpoint()
     early = read(mesokit.open(tmp_path / "run").export(tmp_path / "a.gsd"))
@@ -205,9 +202,9 @@ def test_an_export_is_a_start(whole, tmp_path):
         fluid=Fluid(density=9, molecule=TRIMERS, start=Start(file=str(path))),
     )  # fmt: skip
     other = Simulation(case, threads=1)
-    np.testing.assert_allclose(other.fluid.positions(), whole.fluid.positions(), atol=1e-5)
-    np.testing.assert_allclose(other.fluid.velocities(), whole.fluid.velocities(), atol=1e-5)
-    np.testing.assert_allclose(other.fluid.bond_vectors(), whole.fluid.bond_vectors(), atol=1e-5)
+    np.testing.assert_allclose(other.engine.positions(), whole.engine.positions(), atol=1e-5)
+    np.testing.assert_allclose(other.engine.velocities(), whole.engine.velocities(), atol=1e-5)
+    np.testing.assert_allclose(other.engine.bond_vectors(), whole.engine.bond_vectors(), atol=1e-5)
 
 
 def test_kinds_and_subsets(tmp_path):
@@ -231,7 +228,7 @@ def test_solutes_come_after_the_fluid(tmp_path):
         trajectory=Trajectory(every=10),
     )  # fmt: skip
     simulation = Simulation(case, output=tmp_path / "run", threads=1)
-    simulation.fluid.advance(10)
+    simulation.engine.advance(10)
     simulation._observe([])
     simulation.checkpoint()
     files, seen = mesokit.open(tmp_path / "run"), []
@@ -259,7 +256,7 @@ def test_the_fluid_or_the_solutes_alone(of, tmp_path):
         trajectory=Trajectory(every=10, of=of, fields=("position", "image")),
     )  # fmt: skip
     simulation = Simulation(case, output=tmp_path / "run", threads=1)
-    simulation.fluid.advance(10)
+    simulation.engine.advance(10)
     simulation._observe([])
     simulation.checkpoint()
     files = mesokit.open(tmp_path / "run")
@@ -277,7 +274,7 @@ def test_the_fluid_or_the_solutes_alone(of, tmp_path):
         assert frame.particles.mass.tolist() == np.array([1.0, 5.0, 5.0])[kinds].tolist()
         assert (frame.bonds.group.tolist() if frame.bonds.N else []) == links
     np.testing.assert_array_equal(early[0].particles.position, late[0].particles.position)
-    where = simulation.fluid.positions(np.array(ids), unwrapped=True)
+    where = simulation.engine.positions(np.array(ids), unwrapped=True)
     last = late[-1].particles
     found = last.position[:, :2] + 3.0 + 6 * last.image[:, :2]
     np.testing.assert_allclose(found, where, atol=1e-5)

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from fake_fluid import FakeFluid
 
+import mesokit
+from mesokit import Conservation, Plates, Stress, TransverseModes, VelocityField, VelocityProfile
+from mesokit.case.trajectory import Trajectory
 from mesokit.errors import RunError
-from mesokit.geometry import Plates
 from mesokit.io import h5md
-from mesokit.io.open import open_run
 from mesokit.io.run_directory import RunDirectory, provenance
-from mesokit.io.trajectory import Trajectory, TrajectoryWriter
-from mesokit.observe import Conservation, Stress, TransverseModes, VelocityField, VelocityProfile
+from mesokit.io.trajectory import TrajectoryWriter
 
 OBSERVABLES = (
     Conservation(every=5), VelocityProfile(), VelocityField(), Stress(every=10), TransverseModes(),
@@ -57,7 +57,7 @@ def finished(tmp_path, make_case, size, trajectory=None, observe=OBSERVABLES, st
 def test_everything_comes_back_equal(tmp_path, make_case, size):
     trajectory = Trajectory(every=10, fields=EVERYTHING, precision="float64")
     run, results, frames = finished(tmp_path, make_case, size, trajectory)
-    files = open_run(run.path)
+    files = mesokit.open(run.path)
     assert list(files.results.values()) == sorted(results, key=lambda r: r.name)
     assert files["velocity-profile"].comparisons == results[1].comparisons
     assert files.case == make_case(size, observe=OBSERVABLES, trajectory=trajectory)
@@ -143,11 +143,11 @@ def test_ending_twice_keeps_the_trajectory(tmp_path, make_case):
     """A finished run that is resumed has no segments any more, only its data file."""
     trajectory = Trajectory(every=10)
     run, results, frames = finished(tmp_path, make_case, (6, 6), trajectory, OBSERVABLES[:2])
-    case = open_run(run.path).case
+    case = mesokit.open(run.path).case
     writer = TrajectoryWriter(trajectory, run.trajectory_folder, case.particles)
     writer.resume(50)
     h5md.write(run.data_file, case, {}, results, writer)
-    files = open_run(run.path)
+    files = mesokit.open(run.path)
     assert len(files.trajectory) == 5
     np.testing.assert_allclose(files.trajectory[4]["position"], frames[4][1], atol=1e-5)
     with h5py.File(run.data_file) as file:
@@ -160,12 +160,12 @@ def test_time_series_that_miss_a_frame_are_no_observables(tmp_path, make_case):
     run, results, _ = finished(tmp_path, make_case, (6, 6), Trajectory(every=10), observe)
     with h5py.File(run.data_file) as file:
         assert "observables" not in file
-    assert open_run(run.path)["conservation"] == results[0]
+    assert mesokit.open(run.path)["conservation"] == results[0]
 
 
 def test_no_trajectory(tmp_path, make_case):
     run, *_ = finished(tmp_path, make_case, (6, 6), None, OBSERVABLES[:2])
-    assert open_run(run.path).trajectory is None
+    assert mesokit.open(run.path).trajectory is None
 
 
 def test_resume_drops_what_came_after_the_checkpoint(tmp_path, make_case):
@@ -218,11 +218,11 @@ def test_damaged_files_are_one_line(tmp_path, make_case):
     whole = run.data_file.read_bytes()
     run.data_file.write_bytes(whole[: len(whole) // 2])
     with pytest.raises(RunError, match=r"^[^\n]*run.h5: damaged[^\n]*$"):
-        _ = open_run(run.path).results
+        _ = mesokit.open(run.path).results
     run.data_file.unlink()
     with pytest.raises(RunError, match="has not ended"):
-        _ = open_run(run.path).results
-    assert "not ended" in repr(open_run(run.path))
+        _ = mesokit.open(run.path).results
+    assert "not ended" in repr(mesokit.open(run.path))
     writer = TrajectoryWriter(Trajectory(every=1), tmp_path / "t", 4)
     (tmp_path / "t").mkdir()
     (tmp_path / "t" / "segment-000000000000001.npz").write_bytes(b"half")
@@ -252,8 +252,8 @@ def test_folders_that_are_refused(tmp_path, make_case):
     with pytest.raises(RunError, match="cannot make the folder"):
         RunDirectory.create(tmp_path / "file" / "b", case)
     with pytest.raises(RunError, match="no such folder"):
-        open_run(tmp_path / "nowhere")
+        mesokit.open(tmp_path / "nowhere")
     (tmp_path / "empty").mkdir()
     with pytest.raises(RunError, match="holds no run"):
-        open_run(tmp_path / "empty")
+        mesokit.open(tmp_path / "empty")
     RunDirectory.create(tmp_path / "empty", case)  # an empty folder is welcome

@@ -55,16 +55,16 @@ def test_resumed_after_the_file_is_gone_and_the_folder_moved(case: Case, tmp_pat
     whole = Simulation(case, threads=1)
     whole.run()
     begun = Simulation(case, output=tmp_path / "run", threads=1)
-    begun.fluid.advance(STEPS // 2)
+    begun.engine.advance(STEPS // 2)
     begun.checkpoint()
     shutil.rmtree(tmp_path / "files")
     (tmp_path / "run").rename(tmp_path / "moved")
     resumed = Simulation.resume(tmp_path / "moved", threads=1)
     assert resumed.step == STEPS // 2
     resumed.run()
-    np.testing.assert_array_equal(resumed.fluid.positions(), whole.fluid.positions())
+    np.testing.assert_array_equal(resumed.engine.positions(), whole.engine.positions())
     assert mesokit.open(tmp_path / "moved").case.particles == case.particles
-    assert resumed.fluid.solids.names == whole.fluid.solids.names
+    assert resumed.engine.numbers.solids.names == whole.engine.numbers.solids.names
 
 
 def test_run_anew_from_its_own_folder(case: Case, tmp_path: Path) -> None:
@@ -77,7 +77,7 @@ def test_run_anew_from_its_own_folder(case: Case, tmp_path: Path) -> None:
         main([*command, "--overwrite", "--quiet"])
     assert end.value.code == 0
     again = Simulation.resume(tmp_path / "run", threads=1)
-    np.testing.assert_array_equal(again.fluid.positions(), first.fluid.positions())
+    np.testing.assert_array_equal(again.engine.positions(), first.engine.positions())
 
 
 def test_names_are_relative_to_the_case(tmp_path: Path) -> None:

@@ -12,14 +12,13 @@ import numpy as np
 import pytest
 from laboratory import make_case, make_fluid
 
+from mesokit import Harmonic, Plates
 from mesokit.cli import main
 from mesokit.errors import CaseError
-from mesokit.first_state import first_state
-from mesokit.geometry import Plates
-from mesokit.mpcd.initial import Start
-from mesokit.mpcd.molecule import Molecule
-from mesokit.mpcd.species import Species
-from mesokit.potential import Harmonic
+from mesokit.method.mpcd.molecule import Molecule
+from mesokit.method.mpcd.species import Species
+from mesokit.method.mpcd.start.first_state import first_state
+from mesokit.method.mpcd.start.section import Start
 
 BOND = Harmonic(K=3.0)
 MOLECULES = {
@@ -324,7 +323,7 @@ def test_two_states_are_refused():
 
 
 def test_the_file_is_found_from_the_folder_of_the_case(tmp_path):
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
     (tmp_path / "case.toml").write_text(CASE)
     case = Case.from_toml(tmp_path / "case.toml")

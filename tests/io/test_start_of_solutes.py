@@ -5,12 +5,13 @@ import numpy as np
 import pytest
 from laboratory import make_case
 
+from mesokit import Harmonic
 from mesokit.errors import CaseError
-from mesokit.execute.cpu import CPU
-from mesokit.first_state import first_state
-from mesokit.mpcd.initial import Start, start
-from mesokit.mpcd.solutes import Polymer, Solutes
-from mesokit.potential import Harmonic
+from mesokit.execute.cpu.engine import CPU
+from mesokit.method.mpcd.solutes import Polymer, Solutes
+from mesokit.method.mpcd.start.first_state import first_state
+from mesokit.method.mpcd.start.fluid import start
+from mesokit.method.mpcd.start.section import Start
 
 SIZE = (8, 8, 8)
 CHAINS = {"polymers": (Polymer(3, length=4),), "mass": 5.0, "bond": Harmonic(K=1.0)}
@@ -34,7 +35,7 @@ def written(path, fluid, change=lambda frame: None):
     order = np.random.default_rng(1).permutation(12)
     row = np.argsort(order)
     frame = gsd.hoomd.Frame()
-    r, v, boxes = fluid.dissolved.folded()
+    r, v, boxes = fluid.solutes.folded()
     frame.configuration.box = [*SIZE, 0, 0, 0]
     frame.particles.N = 12
     frame.particles.position = (r - 4.0)[order]
@@ -42,7 +43,7 @@ def written(path, fluid, change=lambda frame: None):
     frame.particles.image = boxes[order]
     frame.particles.mass = np.full(12, 5.0)
     frame.bonds.N = 9
-    frame.bonds.group = row[fluid.dissolved.bonds]
+    frame.bonds.group = row[fluid.solutes.bonds]
     change(frame)
     with gsd.hoomd.open(path, "w") as file:
         file.append(frame)
@@ -50,12 +51,12 @@ def written(path, fluid, change=lambda frame: None):
 
 
 def test_from_arrays(fluid):
-    r, v = fluid.dissolved.places.copy(), fluid.dissolved.velocities.copy()
+    r, v = fluid.solutes.places.copy(), fluid.solutes.velocities.copy()
     state = first_state(case_from(), beads=r, bead_velocities=v)
     other = CPU(case_from())
     start(other, *state)
-    np.testing.assert_array_equal(other.dissolved.places, r)
-    np.testing.assert_array_equal(other.dissolved.velocities, v)
+    np.testing.assert_array_equal(other.solutes.places, r)
+    np.testing.assert_array_equal(other.solutes.velocities, v)
 
 
 def test_from_a_gsd_file_whose_beads_are_in_another_order(tmp_path, fluid):
@@ -63,12 +64,12 @@ def test_from_a_gsd_file_whose_beads_are_in_another_order(tmp_path, fluid):
     state = first_state(case_from(start={"file": str(path)}))
     way = state.beads.reshape(3, 4, 3)
     way = way[:, 1:] - way[:, :-1]
-    truth = fluid.dissolved.places.reshape(3, 4, 3)
+    truth = fluid.solutes.places.reshape(3, 4, 3)
     truth = truth[:, 1:] - truth[:, :-1]
     found = sorted(np.linalg.norm(way, axis=2).sum(axis=1))
     np.testing.assert_allclose(found, sorted(np.linalg.norm(truth, axis=2).sum(axis=1)), atol=1e-5)
     np.testing.assert_allclose(
-        state.bead_velocities.sum(axis=0), fluid.dissolved.velocities.sum(axis=0), atol=1e-5
+        state.bead_velocities.sum(axis=0), fluid.solutes.velocities.sum(axis=0), atol=1e-5
     )
 
 
@@ -101,7 +102,7 @@ def test_from_an_earlier_run(tmp_path):
     earlier = Simulation(case_from(), output=tmp_path / "run", threads=1)
     earlier.run()
     later = Simulation(case_from(start={"run": str(tmp_path / "run")}), threads=1)
-    np.testing.assert_array_equal(later.fluid.dissolved.places, earlier.fluid.dissolved.places)
+    np.testing.assert_array_equal(later.engine.solutes.places, earlier.engine.solutes.places)
     with pytest.raises(CaseError, match=r"solutes\.start\.run = .* that run has solutes\.polymers"):
         Simulation(
             case_from(polymers=(Polymer(2, length=6),), start={"run": str(tmp_path / "run")})
@@ -112,11 +113,11 @@ def test_resumed_with_the_same_bits(tmp_path):
     from mesokit import Simulation
 
     whole = Simulation(case_from(), threads=1)
-    whole.fluid.advance(12)
+    whole.engine.advance(12)
     part = Simulation(case_from(), output=tmp_path / "run", threads=1)
-    part.fluid.advance(5)
+    part.engine.advance(5)
     part.checkpoint()
     again = Simulation.resume(tmp_path / "run", threads=2)
-    again.fluid.advance(7)
-    np.testing.assert_array_equal(again.fluid.dissolved.places, whole.fluid.dissolved.places)
-    np.testing.assert_array_equal(again.fluid.velocities(), whole.fluid.velocities())
+    again.engine.advance(7)
+    np.testing.assert_array_equal(again.engine.solutes.places, whole.engine.solutes.places)
+    np.testing.assert_array_equal(again.engine.velocities(), whole.engine.velocities())

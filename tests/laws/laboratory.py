@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.box import Box
-from mesokit.case import Case
-from mesokit.execute.cpu import CPU
-from mesokit.mpcd.fluid import Fluid
-from mesokit.mpcd.initial import start
-from mesokit.run import Run
+from mesokit.case.box import Box
+from mesokit.case.case import Case
+from mesokit.case.run import Run
+from mesokit.execute.cpu.engine import CPU
+from mesokit.method.mpcd.fluid import Fluid
+from mesokit.method.mpcd.start.fluid import start
 
 SMALL = 0.01  # value of a parameter that a component has no default for
 
@@ -56,10 +56,10 @@ def fingerprint(fluid: CPU) -> list:
     number, momentum, energy = fluid.totals()
     bins = fluid.moments((0, 1), (7, 5))
     waves = np.ones((1, fluid.dimension))
-    return [
-        fluid.positions(), fluid.velocities(), fluid.images(), fluid.positions(unwrapped=True),
-        number, momentum, energy, *bins, *fluid.modes(waves), fluid.impulse.sum(axis=0),
-    ]  # fmt: skip
+    taken = fluid.memory.fluid.taken.impulse.sum(axis=0)
+    particles = fluid.positions(), fluid.velocities(), fluid.images()
+    whole = fluid.positions(unwrapped=True), number, momentum, energy
+    return [*particles, *whole, *bins, *fluid.modes(waves), taken]
 
 
 def assert_same(one, other) -> None:
@@ -149,7 +149,7 @@ def shear_viscosity(
         v[:, 2] += amplitude * np.sin(k * r[:, 1])
         v[:, 1] += drift
         start(fluid, r, v)
-        steps = int(decays / (viscosity * k * k * fluid.timestep))
+        steps = int(decays / (viscosity * k * k * fluid.numbers.timestep))
         fluid.advance(10)  # until the stress has grown to its steady value
         modes = []
         for _ in range(steps // every):
@@ -162,5 +162,5 @@ def shear_viscosity(
         squares += np.sum(abs(x[:-1]) ** 2)
     kept = products / squares
     noise = (1 - kept**2) * parts.get("kT", 1.0) / (2 * fluid.n)  # of the part along x
-    elapsed = every * fluid.timestep * k * k
+    elapsed = every * fluid.numbers.timestep * k * k
     return Measured(-np.log(kept) / elapsed, np.sqrt(noise / squares) / kept / elapsed)

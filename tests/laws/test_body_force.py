@@ -5,10 +5,9 @@ import pytest
 from laboratory import Measured, example, make_fluid
 from numba import njit
 
-from mesokit import theory
-from mesokit.mpcd.collision import AT
-from mesokit.mpcd.field import RULES, Sinusoidal
-from mesokit.mpcd.field.protocol import acceleration
+from mesokit import AT, Sinusoidal, theory
+from mesokit.method.mpcd.field import RULES
+from mesokit.method.mpcd.field.protocol import acceleration
 
 
 @pytest.mark.parametrize("force", RULES, ids=lambda rule: rule.__name__)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from laboratory import cells, conserved_sums, make_fluid
 
-from mesokit.mpcd.collision import RULES
-from mesokit.mpcd.species import Species
+from mesokit.method.mpcd.collision import RULES
+from mesokit.method.mpcd.species import Species
 
 EVERYTHING = ("mass", "momentum", "energy", "angular momentum")
 ROUNDING = 1e-9  # fixed-point sums of some ten terms, each rounded to 2^-36 or finer

@@ -6,8 +6,8 @@ from laboratory import Measured, cells, make_fluid, mean
 from scipy import stats
 
 from mesokit import theory
-from mesokit.mpcd.collision import RULES
-from mesokit.mpcd.species import Species
+from mesokit.method.mpcd.collision import RULES
+from mesokit.method.mpcd.species import Species
 
 UNLIKELY = 1e-3  # a p-value below this would happen by chance once in a thousand seeds
 

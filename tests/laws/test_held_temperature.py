@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 from laboratory import Measured, make_fluid
 
-from mesokit import theory
-from mesokit.mpcd.collision import AT, SRD, SRDPlusA
-from mesokit.mpcd.thermostat import MaxwellBoltzmann, NoThermostat, Rescale
+from mesokit import AT, SRD, MaxwellBoltzmann, NoThermostat, Rescale, SRDPlusA, theory
 from mesokit.statistics import blocking_error
 
 

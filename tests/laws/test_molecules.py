@@ -6,14 +6,22 @@ import numpy as np
 import pytest
 from laboratory import make_case, make_fluid, mean
 
+from mesokit import (
+    FENE,
+    SRD,
+    WCA,
+    Bending,
+    Disk,
+    Harmonic,
+    MaxwellBoltzmann,
+    Plates,
+    Spring,
+    Surface,
+    Uniform,
+)
 from mesokit.errors import CaseError, RunError
-from mesokit.first_state import first_state
-from mesokit.geometry import Disk, Plates, Surface
-from mesokit.mpcd.collision import SRD
-from mesokit.mpcd.field import Uniform
-from mesokit.mpcd.molecule import Molecule
-from mesokit.mpcd.thermostat import MaxwellBoltzmann
-from mesokit.potential import FENE, WCA, Bending, Harmonic, Spring
+from mesokit.method.mpcd.molecule import Molecule
+from mesokit.method.mpcd.start.first_state import first_state
 
 CHAINS = {
     "dimers": Molecule(bond=Harmonic(K=1 / 6), substeps=4),
@@ -135,7 +143,9 @@ def test_a_force_moves_molecules_as_a_whole():
     fluid = make_fluid((4, 4, 4), density=4, molecule=molecule, force=force)
     fluid.advance(100)
     _, momentum, _ = fluid.totals()
-    assert momentum == pytest.approx([fluid.n * g * 100 * fluid.timestep, 0.0, 0.0], abs=1e-8)
+    assert momentum == pytest.approx(
+        [fluid.n * g * 100 * fluid.numbers.timestep, 0.0, 0.0], abs=1e-8
+    )
 
 
 class TestSheared:
@@ -200,7 +210,7 @@ class TestAmongSolids:
             r = fluid.positions()
             assert (r[:, 1] >= 0).all() and (r[:, 1] <= 8).all()
         taken = fluid.wall_impulse[:, :2].sum(axis=0)
-        given = np.array([fluid.n * 0.01 * 300 * fluid.timestep, 0.0])
+        given = np.array([fluid.n * 0.01 * 300 * fluid.numbers.timestep, 0.0])
         assert abs(given - taken - fluid.totals()[1]).max() < 1e-6 * fluid.n
 
     @pytest.mark.parametrize("rule", ["no-slip", "slip", "diffuse"])
@@ -213,9 +223,9 @@ class TestAmongSolids:
         )  # fmt: skip
         for _ in range(30):
             fluid.advance(10)
-            assert (fluid.solids.distance(fluid.positions()) >= 0).all()
+            assert (fluid.numbers.solids.distance(fluid.positions()) >= 0).all()
         taken = fluid.wall_impulse[:, :2].sum(axis=0)
-        given = np.array([fluid.n * 0.01 * 300 * fluid.timestep, 0.0])
+        given = np.array([fluid.n * 0.01 * 300 * fluid.numbers.timestep, 0.0])
         assert abs(given - taken - fluid.totals()[1]).max() < 1e-6 * fluid.n
 
     def test_bonds_between_plates_have_the_temperature(self):

@@ -37,17 +37,17 @@ def test_nobody_is_inside(walled, rule, timestep):
     d, walls = walled
     fluid = fluid_between(walls, d, rule, timestep)
     while fluid.step < STEPS[d]:
-        assert fluid.solids.distance(fluid.positions()).min() >= 0
+        assert fluid.numbers.solids.distance(fluid.positions()).min() >= 0
         fluid.advance(LOOK)
-    assert fluid.solids.distance(fluid.positions()).min() >= 0
+    assert fluid.numbers.solids.distance(fluid.positions()).min() >= 0
     assert np.isfinite(fluid.velocities()).all()
 
 
 def fingerprint(fluid):
     """What must be the same to the last bit."""
     fluid.advance(0)
-    momentum = fluid.impulse.sum(axis=0)
-    return fluid.positions(), fluid.velocities(), fluid.images(), momentum, fluid.wall_rates
+    momentum = fluid.memory.fluid.taken.impulse.sum(axis=0)
+    return fluid.positions(), fluid.velocities(), fluid.images(), momentum, fluid.memory.wall_rates
 
 
 @pytest.mark.parametrize("rule", RULES)

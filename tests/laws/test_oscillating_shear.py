@@ -12,8 +12,8 @@ from mesokit import (
     Run,
     Simulation,
     StressAutocorrelation,
+    VelocityProfile,
 )
-from mesokit.observe import VelocityProfile
 
 
 def sheared(frequency, steps, threads=1, size=(8, 8, 8), rate=0.2):
@@ -43,7 +43,7 @@ def test_a_simple_fluid_loses_by_its_viscosity_and_stores_nothing():
 def test_the_fluid_follows_the_images():
     """The box is lower than the depth to which the oscillation reaches: a straight line."""
     simulation = sheared(0.02, 0)
-    fluid, box = simulation.fluid, simulation.case.box
+    fluid, box = simulation.engine, simulation.case.box
     fluid.advance(300)
     slopes, rates = [], []
     for _ in range(60):
@@ -58,11 +58,11 @@ def test_the_fluid_follows_the_images():
 
 def test_same_bits():
     one, two = sheared(0.5, 0), sheared(0.5, 0, threads=2)
-    one.fluid.advance(60)
+    one.engine.advance(60)
     for _ in range(12):
-        two.fluid.advance(5)
-    np.testing.assert_array_equal(one.fluid.positions(), two.fluid.positions())
-    np.testing.assert_array_equal(one.fluid.velocities(), two.fluid.velocities())
+        two.engine.advance(5)
+    np.testing.assert_array_equal(one.engine.positions(), two.engine.positions())
+    np.testing.assert_array_equal(one.engine.velocities(), two.engine.velocities())
 
 
 @pytest.mark.parametrize("size", [(16, 16), (8, 8, 8)], ids=["2D", "3D"])

@@ -61,7 +61,7 @@ def balance(fluid, steps, pull):
     _ = fluid.wall_impulse
     before = fluid.totals()[1]
     fluid.advance(steps)
-    d, time = fluid.dimension, steps * fluid.timestep
+    d, time = fluid.dimension, steps * fluid.numbers.timestep
     taken = fluid.wall_impulse
     given = np.zeros(d)
     given[0] = fluid.masses().sum() * pull * time
@@ -139,11 +139,11 @@ def test_density_and_temperature_are_the_same_up_to_the_surface(rule, virtual):
     edges = np.array([0.0, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0])
     grid = (np.arange(14 * 40) + 0.5) / 40
     points = np.stack(np.meshgrid(grid, grid), -1).reshape(-1, 2)
-    volume = np.histogram(fluid.solids.distance(points), edges)[0] / 1600
+    volume = np.histogram(fluid.numbers.solids.distance(points), edges)[0] / 1600
     number, energy = [], []
     for _ in range(40):
         fluid.advance(25)
-        shell = fluid.solids.distance(fluid.positions())
+        shell = fluid.numbers.solids.distance(fluid.positions())
         v = fluid.velocities()
         number.append(np.histogram(shell, edges)[0])
         energy.append(np.histogram(shell, edges, weights=0.5 * (v**2).sum(axis=1))[0])

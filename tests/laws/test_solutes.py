@@ -6,15 +6,26 @@ import numpy as np
 import pytest
 from laboratory import make_fluid, mean
 
-from mesokit import theory
+from mesokit import (
+    AT,
+    FENE,
+    SRD,
+    WCA,
+    ATPlusA,
+    Bending,
+    Conservation,
+    Disk,
+    Harmonic,
+    LennardJones,
+    MaxwellBoltzmann,
+    Plates,
+    SRDPlusA,
+    Surface,
+    theory,
+)
 from mesokit.errors import RunError
-from mesokit.geometry import Disk, Plates, Surface
-from mesokit.mpcd.collision import AT, SRD, ATPlusA, SRDPlusA
-from mesokit.mpcd.solutes import Polymer, Solutes
-from mesokit.mpcd.species import Species
-from mesokit.mpcd.thermostat import MaxwellBoltzmann
-from mesokit.observe import Conservation
-from mesokit.potential import FENE, WCA, Bending, Harmonic, LennardJones
+from mesokit.method.mpcd.solutes import Polymer, Solutes
+from mesokit.method.mpcd.species import Species
 
 STIFF = Solutes(
     (Polymer(4, length=10), Polymer(1, length=7, topology="star", arms=3), Polymer(10)),
@@ -58,7 +69,7 @@ def test_energy_is_kept_to_second_order_in_the_substep(case):
         for _ in range(8):
             fluid.advance(1)
             worst = max(worst, abs(total_energy(fluid) - first))
-        changes.append(worst / len(fluid.dissolved.places))
+        changes.append(worst / len(fluid.solutes.places))
     assert changes[0] < 0.02
     assert changes[1] < 0.45 * changes[0] and changes[2] < 0.45 * changes[1]
 
@@ -87,7 +98,7 @@ def test_nobody_is_inside(potential):
     fluid = make_fluid(**DISK, solutes=solutes)
     for _ in range(100):
         fluid.advance(5)
-        assert fluid.solids.distance(fluid.dissolved.folded()[0]).min() >= 0.0
+        assert fluid.numbers.solids.distance(fluid.solutes.folded()[0]).min() >= 0.0
 
 
 class TestSkin:
@@ -100,15 +111,15 @@ class TestSkin:
             solutes = dataclasses.replace(STIFF, skin=skin)
             fluid = make_fluid((9, 8, 7), solutes=solutes, density=4, **shear)
             fluid.advance(60)
-            found.append(fluid.dissolved.places.copy())
+            found.append(fluid.solutes.places.copy())
         assert (found[0] == found[1]).all() and (found[0] == found[2]).all()
 
     def test_of_beads_with_more_neighbours_than_room(self):
         """Soft beads that attract one another gather in one place."""
         deep = Solutes((Polymer(100),), pair=LennardJones(epsilon=4.0, sigma=0.3, cutoff=4.0))
         fluid = make_fluid((6, 6, 6), solutes=deep, density=2)
-        lists = fluid.solutes.neighbours[0]
-        fluid.dissolved.places[:] = 3.0 + 0.05 * np.arange(100)[:, None] * np.array([1.0, 0, 0])
+        lists = fluid.memory.solutes.neighbours[0]
+        fluid.solutes.places[:] = 3.0 + 0.05 * np.arange(100)[:, None] * np.array([1.0, 0, 0])
         crowded = fluid.potential_energy()
         assert (lists.count >= 0).all() or lists.near.shape[1] < 99
         apart = 0.05 * np.abs(np.subtract.outer(np.arange(100), np.arange(100)))
@@ -127,12 +138,12 @@ def test_beads_repel_one_another_over_the_sliding_boundary():
         pair = Solutes((Polymer(2),), mass=2.0, pair=WCA(sigma=3.0), substeps=20)
         fluid = make_fluid((12, 10, 12), solutes=pair, density=2 / 1440, shear_rate=0.2)
         fluid.advance(7)
-        fluid.dissolved.places[:] = [[6.0, y - 1.2, 6.0], [6.3, y + 1.4, 6.2]]
-        fluid.dissolved.velocities[:] = 0.0
-        fluid.dissolved.velocities[:, 0] = 0.2 * (fluid.dissolved.places[:, 1] - 5.0)
-        fluid.dissolved.forget_lists()
+        fluid.solutes.places[:] = [[6.0, y - 1.2, 6.0], [6.3, y + 1.4, 6.2]]
+        fluid.solutes.velocities[:] = 0.0
+        fluid.solutes.velocities[:, 0] = 0.2 * (fluid.solutes.places[:, 1] - 5.0)
+        fluid.solutes.forget_lists()
         fluid.advance(12)
-        one, other = fluid.dissolved.places
+        one, other = fluid.solutes.places
         ways.append(other - one)
     assert np.linalg.norm(ways[0] - [0.3, 2.6, 0.2]) > 0.5
     np.testing.assert_allclose(ways[0], ways[1], atol=1e-9)
@@ -141,8 +152,8 @@ def test_beads_repel_one_another_over_the_sliding_boundary():
 def thermal(fluid, samples=150, every=4):
     """Mean 2 E_kin/(d n) of the beads; without the share that a whole at rest takes from them."""
     whole = fluid.masses(np.arange(fluid.totals()[0])).sum()
-    share = 1.0 - fluid.solutes.mass / whole
-    found, beads = [], fluid.dissolved
+    share = 1.0 - fluid.memory.solutes.mass / whole
+    found, beads = [], fluid.solutes
     for _ in range(samples):
         fluid.advance(every)
         n, _, energy = beads.totals()
@@ -192,9 +203,9 @@ class TestRandomSolvent:
         fluid.advance(100)
         squares = []
         for _ in range(12):
-            before = fluid.dissolved.places.copy()
+            before = fluid.solutes.places.copy()
             fluid.advance(100)
-            squares.append(((fluid.dissolved.places - before) ** 2).sum(axis=1).mean())
+            squares.append(((fluid.solutes.places - before) ** 2).sum(axis=1).mean())
         found = mean(squares)
         angle = getattr(rule, "angle", None)
         D = theory.bead_diffusion(rule.rule, 3, 6, 0.2, angle, 4.0)
@@ -228,7 +239,7 @@ class TestRandomSolvent:
         found = []
         for _ in range(20):
             fluid.advance(100)
-            r = fluid.dissolved.places.reshape(60, 10, 3)
+            r = fluid.solutes.places.reshape(60, 10, 3)
             end = ((r[:, -1] - r[:, 0]) ** 2).sum(axis=1).mean()
             arm = r - r.mean(axis=1, keepdims=True)
             found.append((end, (arm**2).sum(axis=2).mean()))
@@ -240,7 +251,7 @@ class TestRandomSolvent:
 def test_a_torn_bond_stops_the_run():
     solutes = Solutes((Polymer(2, length=3),), mass=1.0, bond=FENE(), substeps=10)
     fluid = make_fluid((8, 8, 8), solutes=solutes, density=2)
-    fluid.dissolved.places[4] = fluid.dissolved.places[3] + [1.6, 0.0, 0.0]
+    fluid.solutes.places[4] = fluid.solutes.places[3] + [1.6, 0.0, 0.0]
     with pytest.raises(RunError, match=r"step 1: the bond of beads 4 and 5 is longer than"):
         fluid.advance(3)
 
@@ -248,7 +259,7 @@ def test_a_torn_bond_stops_the_run():
 def test_a_lost_bead_stops_the_run():
     solutes = Solutes((Polymer(2),), mass=1.0, pair=WCA(), substeps=20)
     fluid = make_fluid((8, 8, 8), solutes=solutes, density=2)
-    fluid.dissolved.velocities[1] = np.nan
+    fluid.solutes.velocities[1] = np.nan
     with pytest.raises(RunError, match=r"step 1: bead 2 is lost"):
         fluid.advance(1)
 
@@ -282,8 +293,8 @@ class TestStress:
         pair = Solutes((Polymer(2),), mass=2.0, pair=WCA(sigma=3.0), substeps=20)
         fluid = make_fluid((12, 10, 12), solutes=pair, density=2 / 1440, measures=("stress",))
         places = np.array([[6.0, 8.7, 6.0], [6.3, 11.8, 6.2]])  # over the boundary
-        fluid.dissolved.places[:], fluid.dissolved.velocities[:] = places, 0.0
-        fluid.dissolved.forget_lists()
+        fluid.solutes.places[:], fluid.solutes.velocities[:] = places, 0.0
+        fluid.solutes.forget_lists()
         fluid.advance(1, measure_stress=True)
         way = places[1] - places[0]
         sixth = (9.0 / (way @ way)) ** 3

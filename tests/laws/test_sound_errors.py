@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 from laboratory import make_case
 
-from mesokit import LongitudinalModes
-from mesokit.execute.cpu import CPU
-from mesokit.mpcd.collision import SRD
-from mesokit.mpcd.initial import start
-from mesokit.mpcd.thermostat import MaxwellBoltzmann, NoThermostat
+from mesokit import SRD, LongitudinalModes, MaxwellBoltzmann, NoThermostat
+from mesokit.execute.cpu.engine import CPU
+from mesokit.method.mpcd.start.fluid import start
 
 
 @pytest.mark.parametrize("bath", [NoThermostat(), MaxwellBoltzmann()])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mesokit import Box, Case, Fluid, MaxwellBoltzmann, NoThermostat, Run, Simulation, Stress
-from mesokit.mpcd.collision import RULES
+from mesokit.method.mpcd.collision import RULES
 
 # Molecular chaos leaves out correlated collisions; in 2D also the loop of fluctuations, most for
 # rules of low viscosity. What this test is for are terms that are missing or counted twice.

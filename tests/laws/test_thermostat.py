@@ -5,11 +5,9 @@ import pytest
 from laboratory import Measured, conserved_sums, make_fluid, relative_energy
 from scipy import stats
 
-from mesokit import theory
-from mesokit.geometry import Plates
-from mesokit.mpcd.field import Uniform
-from mesokit.mpcd.species import Species
-from mesokit.mpcd.thermostat import RULES, MaxwellBoltzmann, NoThermostat
+from mesokit import MaxwellBoltzmann, NoThermostat, Plates, Uniform, theory
+from mesokit.method.mpcd.species import Species
+from mesokit.method.mpcd.thermostat import RULES
 
 SIZE = (14, 12, 16)
 REST = Uniform(acceleration=(0.0, 0.0))

@@ -5,9 +5,9 @@ import pytest
 from laboratory import Measured, make_fluid, mean, shear_viscosity
 from scipy.optimize import curve_fit
 
-from mesokit import theory
-from mesokit.mpcd.collision import AT, RULES, SRD
-from mesokit.mpcd.initial import start
+from mesokit import AT, SRD, theory
+from mesokit.method.mpcd.collision import RULES
+from mesokit.method.mpcd.start.fluid import start
 
 # Molecular chaos leaves out correlated collisions (1 to 2 %) and the loop of fluctuations (1 to
 # 2 % at ten particles per cell); a wave 16 cells long sees 1 % less of the transfer within cells.
@@ -51,7 +51,7 @@ def diffusion(length, lag, origins, **parts):
     for _ in range(origins):
         fluid.advance(lag)
         new = fluid.positions(unwrapped=True)
-        samples.append(np.sum((new - old) ** 2) / (6 * lag * fluid.timestep * fluid.n * kT))
+        samples.append(np.sum((new - old) ** 2) / (6 * lag * fluid.numbers.timestep * fluid.n * kT))
         old = new
     return mean(samples)
 

@@ -5,15 +5,10 @@ import pytest
 from laboratory import make_case, make_fluid, mean
 from scipy import stats
 
-from mesokit import theory
+from mesokit import SRD, MaxwellBoltzmann, Plates, Surface, Uniform, WallStress, theory
 from mesokit.errors import CaseError
-from mesokit.execute.cpu import CPU
-from mesokit.geometry import Plates, Surface
-from mesokit.mpcd.collision import SRD
-from mesokit.mpcd.field import Uniform
-from mesokit.mpcd.initial import start
-from mesokit.mpcd.thermostat import MaxwellBoltzmann
-from mesokit.observe import WallStress
+from mesokit.execute.cpu.engine import CPU
+from mesokit.method.mpcd.start.fluid import start
 from mesokit.statistics import weighted_line
 
 LENGTH, HEIGHT = 48, 16
@@ -115,10 +110,10 @@ def test_what_the_force_gives_the_walls_take(virtual):
     fluid.advance(50)
     gained = fluid.totals()[1] - before
     taken = fluid.wall_impulse[:, :2]
-    given = np.array([fluid.n * g * 50 * fluid.timestep, 0.0])
+    given = np.array([fluid.n * g * 50 * fluid.numbers.timestep, 0.0])
     np.testing.assert_allclose(gained + taken.sum(axis=0), given, atol=1e-7)
     # pressure on each plate: an ideal gas of density 10, 5 % by chance
-    pressure = taken[:, 1] / (50 * fluid.timestep * LENGTH)
+    pressure = taken[:, 1] / (50 * fluid.numbers.timestep * LENGTH)
     np.testing.assert_allclose(pressure, [-10, 10], rtol=0.2)
 
 

@@ -6,12 +6,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from mesokit import Disk, Harmonic, Plates, Sphere, Uniform
 from mesokit.errors import CaseError
-from mesokit.geometry import Disk, Plates, Sphere
-from mesokit.mpcd.field import Uniform
-from mesokit.mpcd.molecule import Molecule
-from mesokit.potential import Harmonic
-from mesokit.solids import solids_of
+from mesokit.geometry.solids.solids import solids_of
+from mesokit.method.mpcd.molecule import Molecule
 
 
 def case_for(observable, make_case, size, **fluid):

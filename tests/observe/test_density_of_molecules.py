@@ -6,14 +6,9 @@ import numpy as np
 import pytest
 from laboratory import make_case, make_fluid
 
+from mesokit import SRD, DensityProfile, Disk, Harmonic, MaxwellBoltzmann, Plates, Spring, Uniform
 from mesokit.errors import CaseError
-from mesokit.geometry import Disk, Plates
-from mesokit.mpcd.collision import SRD
-from mesokit.mpcd.field import Uniform
-from mesokit.mpcd.molecule import Molecule
-from mesokit.mpcd.thermostat import MaxwellBoltzmann
-from mesokit.observe import DensityProfile
-from mesokit.potential import Harmonic, Spring
+from mesokit.method.mpcd.molecule import Molecule
 
 BOND = Harmonic(K=1.0)
 MOLECULES = {

@@ -8,24 +8,29 @@ import numpy as np
 import pytest
 from laboratory import make_case, make_fluid
 
-from mesokit import theory
-from mesokit.box import Box
-from mesokit.case import Case
-from mesokit.derived import derive
+from mesokit import (
+    FENE,
+    SRD,
+    WCA,
+    Harmonic,
+    MaxwellBoltzmann,
+    MeanSquareDisplacement,
+    NormalModes,
+    Uniform,
+    theory,
+)
+from mesokit.case.box import Box
+from mesokit.case.case import Case
+from mesokit.case.run import Run
 from mesokit.errors import CaseError
-from mesokit.execute.cpu import CPU
-from mesokit.mpcd.collision import SRD
-from mesokit.mpcd.field import Uniform
-from mesokit.mpcd.fluid import Fluid
-from mesokit.mpcd.initial import start
-from mesokit.mpcd.molecule import Molecule
-from mesokit.mpcd.solutes import Polymer, Solutes
-from mesokit.mpcd.thermostat import MaxwellBoltzmann
-from mesokit.observe import MeanSquareDisplacement, NormalModes
-from mesokit.observe.molecules import rouse_note
-from mesokit.observe.origins import GROUPS
-from mesokit.potential import FENE, WCA, Harmonic
-from mesokit.run import Run
+from mesokit.execute.cpu.engine import CPU
+from mesokit.method.mpcd.derived import derive
+from mesokit.method.mpcd.expected.molecules import rouse_note
+from mesokit.method.mpcd.fluid import Fluid
+from mesokit.method.mpcd.molecule import Molecule
+from mesokit.method.mpcd.solutes import Polymer, Solutes
+from mesokit.method.mpcd.start.fluid import start
+from mesokit.observe.shared.origins import GROUPS
 
 SOFT = Harmonic(K=1 / 6)  # three cells long: beads seldom meet their neighbours in a cell
 THIN = {"timestep": 1.0, "collision": SRD(angle=90)}  # they fly a cell between two collisions
@@ -142,7 +147,7 @@ class TestWhenSolutesDiffuse:
     def first(self, of, kind, solvent, size=(12, 16, 12)):
         solutes = dataclasses.replace(self.CHAINS, solvent=solvent)
         case = make_case(size, density=10, collision=SRD(angle=130), solutes=solutes)
-        return MeanSquareDisplacement(of=of, kind=kind).accumulator(case).diffusive_from()
+        return MeanSquareDisplacement(of=of, kind=kind).accumulator(case).theory.diffusive_from()
 
     def test_in_the_fluid_momentum_has_spread_over_the_box(self):
         viscosity = theory.transport("srd", 3, 10, 0.1, 130.0).viscosity
@@ -180,7 +185,7 @@ class TestHowSolutesDiffuse:
     def coefficient(self, of, kind, size=(16, 16, 16), **more):
         solutes = dataclasses.replace(TestWhenSolutesDiffuse.CHAINS, **more)
         case = make_case(size, density=10, collision=SRD(angle=130), solutes=solutes)
-        return MeanSquareDisplacement(of=of, kind=kind).accumulator(case).coefficient()
+        return MeanSquareDisplacement(of=of, kind=kind).accumulator(case).theory.coefficient()
 
     def test_is_that_of_cells_in_a_periodic_cube(self):
         """Viscosity of the fluid alone, however many beads are in it."""

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from fake_fluid import FakeFluid, case_for, taken
 
-from mesokit.mpcd.collision import AT
-from mesokit.mpcd.species import Species
+from mesokit import AT
+from mesokit.method.mpcd.species import Species
 from mesokit.observe import OBSERVABLES
-from mesokit.observe.result import with_error
+from mesokit.observe.shared.result import with_error
 
 
 def sampled(accumulator, fluid, samples, rng):

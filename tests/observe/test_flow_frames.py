@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from fake_fluid import FakeFluid
 
+from mesokit import DensityField, FlowFrames, VelocityField
 from mesokit.errors import CaseError
 from mesokit.io import h5md
-from mesokit.mpcd.species import Species
-from mesokit.observe import DensityField, FlowFrames, VelocityField
+from mesokit.method.mpcd.species import Species
 from mesokit.observe.flow_frames import average
 
 

@@ -8,17 +8,28 @@ import numpy as np
 import pytest
 from fake_fluid import FakeFluid
 
-from mesokit import theory
-from mesokit.case import Case
+from mesokit import (
+    SRD,
+    Array,
+    Cylinder,
+    Disk,
+    FlowRate,
+    Forces,
+    MaxwellBoltzmann,
+    Plates,
+    Sphere,
+    SRDPlusA,
+    Surface,
+    Uniform,
+    WallStress,
+    theory,
+)
+from mesokit.case.case import Case
 from mesokit.errors import CaseError
-from mesokit.geometry import Array, Cylinder, Disk, Plates, Sphere, Surface
-from mesokit.mpcd.collision import SRD, SRDPlusA
-from mesokit.mpcd.field import Uniform
-from mesokit.mpcd.solutes import Polymer, Solutes
-from mesokit.mpcd.thermostat import MaxwellBoltzmann
-from mesokit.observe import FlowRate, Forces, WallStress, recognise, setting
+from mesokit.geometry.solids.solids import free_volume
+from mesokit.method.mpcd.expected import recognise, setting
+from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.simulation import Simulation
-from mesokit.solids import free_volume
 
 PUSHED = {"force": Uniform((0.01, 0)), "thermostat": MaxwellBoltzmann()}
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from fake_fluid import FakeFluid, FakeWaves
 
+from mesokit import LongitudinalModes, TransverseModes
 from mesokit.errors import CaseError
-from mesokit.observe import LongitudinalModes, TransverseModes
-from mesokit.observe.modes import transverse_units
+from mesokit.observe.shared.modes import transverse_units
 
 
 def sampled(case, observable, samples, viscosity=0.8, speed=1.3, attenuation=0.9, seed=1):
@@ -93,7 +93,7 @@ def test_polarisations_are_orthonormal():
 
 
 def test_waves_that_do_not_fit(make_case):
-    from mesokit.geometry import Plates
+    from mesokit import Plates
 
     for wrong in ([[1, 0, 0]], [[0, 0]]):
         with pytest.raises(CaseError, match="expected 2 whole numbers"):

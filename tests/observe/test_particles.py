@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from fake_fluid import FakeFluid
 
-from mesokit import theory
+from mesokit import MeanSquareDisplacement, Plates, Uniform, VelocityAutocorrelation, theory
 from mesokit.errors import CaseError
-from mesokit.geometry import Plates
-from mesokit.mpcd.field import Uniform
-from mesokit.observe import MeanSquareDisplacement, VelocityAutocorrelation, setting
-from mesokit.observe.origins import Origins
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.displacement import Displacement
+from mesokit.observe.shared.origins import Origins
 
 
 def watched(case, observable, kept, samples, seed=1):
@@ -93,9 +92,13 @@ def test_memory_is_bounded_by_the_longest_lag():
 
 def test_axes_with_flow_or_walls_are_left_out(make_case):
     observable = MeanSquareDisplacement()
+
+    def axes(case):
+        return Displacement(case, observable).axes
+
     walls, push = [Plates(axis="y")], Uniform((0.01, 0, 0))
-    assert observable.axes(make_case((8, 8, 8), walls=walls, force=push)) == (2,)
-    assert observable.axes(make_case((8, 8, 8), shear_rate=0.1)) == (1, 2)
+    assert axes(make_case((8, 8, 8), walls=walls, force=push)) == (2,)
+    assert axes(make_case((8, 8, 8), shear_rate=0.1)) == (1, 2)
     with pytest.raises(CaseError, match="every axis has a flow or a wall"):
         make_case((8, 8), [observable], walls=walls, force=Uniform((0.01, 0)))
     with pytest.raises(CaseError, match=r"box\.shear_rate"):

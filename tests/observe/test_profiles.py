@@ -6,20 +6,22 @@ import numpy as np
 import pytest
 from fake_fluid import FakeFluid
 
-from mesokit import theory
-from mesokit.errors import CaseError
-from mesokit.geometry import Plates, Surface
-from mesokit.mpcd.collision import AT
-from mesokit.mpcd.field import Sinusoidal, Uniform
-from mesokit.mpcd.thermostat import MaxwellBoltzmann
-from mesokit.observe import (
+from mesokit import (
+    AT,
     DensityField,
     DensityProfile,
+    MaxwellBoltzmann,
+    Plates,
+    Sinusoidal,
+    Surface,
     TemperatureProfile,
+    Uniform,
     VelocityField,
     VelocityProfile,
-    setting,
+    theory,
 )
+from mesokit.errors import CaseError
+from mesokit.method.mpcd.expected import setting
 
 
 def watched(case, observable, flow=None, samples=300, seed=1):

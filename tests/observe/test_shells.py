@@ -6,14 +6,24 @@ import numpy as np
 import pytest
 from fake_fluid import FakeFluid
 
-from mesokit import theory
-from mesokit.case import Case
+from mesokit import (
+    SRD,
+    Cylinder,
+    Disk,
+    Forces,
+    MaxwellBoltzmann,
+    Plates,
+    RadialProfile,
+    Rectangle,
+    Sphere,
+    Surface,
+    SurfaceProfile,
+    Uniform,
+    theory,
+)
+from mesokit.case.case import Case
 from mesokit.errors import CaseError
-from mesokit.geometry import Cylinder, Disk, Plates, Rectangle, Sphere, Surface
-from mesokit.mpcd.collision import SRD
-from mesokit.mpcd.field import Uniform
-from mesokit.mpcd.thermostat import MaxwellBoltzmann
-from mesokit.observe import Forces, RadialProfile, SurfaceProfile, setting
+from mesokit.method.mpcd.expected import setting
 from mesokit.observe.radial_profile import ring_average
 from mesokit.simulation import Simulation
 

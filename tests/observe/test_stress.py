@@ -6,23 +6,25 @@ import numpy as np
 import pytest
 from fake_fluid import FakeFluid
 
-from mesokit.errors import CaseError
-from mesokit.geometry import Plates, Surface
-from mesokit.mpcd.field import Uniform
-from mesokit.mpcd.molecule import Molecule
-from mesokit.mpcd.solutes import Polymer, Solutes
-from mesokit.mpcd.thermostat import MaxwellBoltzmann
-from mesokit.observe import (
+from mesokit import (
+    WCA,
     Conservation,
     DynamicModuli,
+    Harmonic,
+    MaxwellBoltzmann,
+    Plates,
     Stress,
     StressAutocorrelation,
+    Surface,
+    Uniform,
     WallStress,
-    setting,
 )
+from mesokit.errors import CaseError
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.molecule import Molecule
+from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.observe.conservation import ROWS
 from mesokit.observe.wall_stress import balance
-from mesokit.potential import WCA, Harmonic
 
 
 def by_name(result):

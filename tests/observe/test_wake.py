@@ -6,11 +6,20 @@ import numpy as np
 import pytest
 from fake_fluid import FakeFluid
 
+from mesokit import (
+    Array,
+    Cylinder,
+    Disk,
+    MaxwellBoltzmann,
+    Plates,
+    Probe,
+    Rectangle,
+    Sphere,
+    Uniform,
+    Wake,
+)
 from mesokit.errors import CaseError
-from mesokit.geometry import Array, Cylinder, Disk, Plates, Rectangle, Sphere
-from mesokit.mpcd.field import Uniform
-from mesokit.mpcd.thermostat import MaxwellBoltzmann
-from mesokit.observe import Probe, Wake, recognise
+from mesokit.method.mpcd.expected import recognise
 from mesokit.observe.wake import Standing
 
 PUSHED = {"force": Uniform((0.01, 0)), "thermostat": MaxwellBoltzmann()}

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-from mesokit.potential import ANGLES, BONDS, FENE, PAIRS, Harmonic, LennardJones, Spring
+from mesokit import FENE, Harmonic, LennardJones, Spring
+from mesokit.potential import ANGLES, BONDS, PAIRS
 from mesokit.potential.angle import bend
 from mesokit.potential.protocol import central
 from mesokit.potential.thermal import lengths, mean_square, stiffness

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from fake_fluid import FakeFluid
 
-from mesokit.observe import DensityField, FlowFrames, VelocityField
+from mesokit import DensityField, FlowFrames, VelocityField
 
 SPIN = 0.25
 

@@ -7,10 +7,9 @@ import pytest
 from flows import MAPS, results_of
 from laboratory import make_case
 
+from mesokit import WCA, Harmonic, Plates
 from mesokit.errors import RunError
-from mesokit.geometry import Plates
-from mesokit.mpcd.solutes import Polymer, Solutes
-from mesokit.potential import WCA, Harmonic
+from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.report.flow import picture
 from mesokit.report.flow.beads import BeadFrames
 from mesokit.report.style import COLOURS

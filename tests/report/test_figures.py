@@ -9,8 +9,9 @@ import pytest
 from fake_fluid import FakeFluid, case_for, taken
 from rich.console import Console
 
+from mesokit import Comparison
 from mesokit.errors import RunError
-from mesokit.observe import OBSERVABLES, Comparison, Result
+from mesokit.observe import OBSERVABLES, Result
 from mesokit.report import plot, print_comparisons, save, save_all
 
 
@@ -62,7 +63,7 @@ def test_runs_without_samples_have_no_figure(make_case, tmp_path):
 
 
 def test_the_legend_of_a_tensor_hides_no_data(make_case):
-    from mesokit.observe import WallStress
+    from mesokit import WallStress
 
     figure = plot(result_of(WallStress, make_case, 40))
     figure.canvas.draw()
@@ -108,8 +109,7 @@ def test_comparisons_are_a_table_on_a_terminal():
 
 
 def test_plates_have_panels_of_their_own_and_no_torques(make_case):
-    from mesokit.geometry import Disk, Plates
-    from mesokit.observe import Forces
+    from mesokit import Disk, Forces, Plates
 
     walls = [Plates(axis="y"), Disk(centre=[8, 4], radius=1.5, name="post")]
     case = make_case((16, 8), [Forces()], walls)
@@ -131,7 +131,7 @@ class TestMaps:
     def results(self, make_case):
         from flows import FRAMES, MAPS, results_of
 
-        from mesokit.geometry import Disk, Plates
+        from mesokit import Disk, Plates
 
         walls = [Plates(axis="y"), Disk(centre=[6, 5], radius=2)]
         case = make_case((24, 10), [FRAMES, *MAPS], walls, density=20)
@@ -173,6 +173,6 @@ class TestMaps:
 
 
 def case_share(case):
-    from mesokit.solids import solids_of
+    from mesokit.geometry.solids.solids import solids_of
 
     return solids_of(case).open_share((0, 1), tuple(case.box.size[:2]))

@@ -10,10 +10,10 @@ from flows import FRAMES, MAPS, results_of
 from imageio_ffmpeg import count_frames_and_secs, read_frames
 from PIL import Image
 
+from mesokit import FlowFrames
 from mesokit.errors import CaseError, RunError
-from mesokit.observe import FlowFrames
-from mesokit.progress import FilmReporter
 from mesokit.report.flow import animate, encode
+from mesokit.report.progress import FilmReporter
 
 
 @pytest.fixture

@@ -10,12 +10,12 @@ import pytest
 from fake_fluid import FakeFluid
 from flows import FRAMES, MAPS, SPIN, Disk, results_of
 
+from mesokit import FlowFrames, Plates
+from mesokit.case.trajectory import Trajectory
 from mesokit.errors import CaseError, RunError
-from mesokit.geometry import Plates
 from mesokit.io import h5md
-from mesokit.io.open import TrajectoryReader
-from mesokit.io.trajectory import Trajectory, TrajectoryWriter
-from mesokit.observe import FlowFrames
+from mesokit.io.trajectory import TrajectoryWriter
+from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report import save_figure
 from mesokit.report.flow import KINDS, picture, solids, speed
 from mesokit.report.flow.data import Flow

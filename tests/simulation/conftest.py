@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import mesokit
-from mesokit.case import Case
-from mesokit.progress import Reporter
+from mesokit.case.case import Case
+from mesokit.report.progress import Reporter
 from mesokit.simulation import Simulation
 
 CASE = """
@@ -68,7 +68,7 @@ fields = ["position", "velocity", "image"]
 """
 
 
-class Crash(Exception):
+class Crash(BaseException):
     """What ends a run at once, as a loss of power would."""
 
 
@@ -149,7 +149,7 @@ def ends_alike(uninterrupted):
 def same_state(one: Simulation, other: Simulation) -> None:
     assert one.step == other.step
     for name in ("positions", "velocities", "images"):
-        np.testing.assert_array_equal(getattr(one.fluid, name)(), getattr(other.fluid, name)())
+        np.testing.assert_array_equal(getattr(one.engine, name)(), getattr(other.engine, name)())
     assert one.results == other.results
 
 

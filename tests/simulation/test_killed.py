@@ -56,9 +56,9 @@ def whole(case_file, tmp_path_factory):
 def assert_same_end(folder, other):
     one, two = (Simulation.resume(path, threads=1) for path in (folder, other))
     assert one.step == two.step == STEPS + 37
-    np.testing.assert_array_equal(one.fluid.positions(), two.fluid.positions())
-    np.testing.assert_array_equal(one.fluid.velocities(), two.fluid.velocities())
-    np.testing.assert_array_equal(one.fluid.images(), two.fluid.images())
+    np.testing.assert_array_equal(one.engine.positions(), two.engine.positions())
+    np.testing.assert_array_equal(one.engine.velocities(), two.engine.velocities())
+    np.testing.assert_array_equal(one.engine.images(), two.engine.images())
     assert mesokit.open(folder).results == mesokit.open(other).results
 
 
@@ -75,7 +75,7 @@ def test_killed_at_random_moments(whole, case_file, tmp_path):
         process.communicate()
         if (folder / "checkpoint.npz").exists():
             with np.load(folder / "checkpoint.npz") as checkpoint:
-                steps.append(int(checkpoint["fluid/step"]))
+                steps.append(int(checkpoint["engine/step"]))
     assert steps == sorted(steps) and steps[-1] > 0
     process = start_or_resume(case_file, folder)
     _, errors = process.communicate()

@@ -58,6 +58,6 @@ def test_stopped_among_solids_and_resumed(rule, tmp_path):
         stopped.run()
     resumed = Simulation.resume(tmp_path / "run", threads=3)
     resumed.run()
-    np.testing.assert_array_equal(whole.fluid.positions(), resumed.fluid.positions())
-    np.testing.assert_array_equal(whole.fluid.velocities(), resumed.fluid.velocities())
+    np.testing.assert_array_equal(whole.engine.positions(), resumed.engine.positions())
+    np.testing.assert_array_equal(whole.engine.velocities(), resumed.engine.velocities())
     assert whole["forces"] == resumed["forces"]

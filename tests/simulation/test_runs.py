@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mesokit.errors import CaseError
-from mesokit.mpcd.initial import Start
+from mesokit.method.mpcd.start.section import Start
 from mesokit.simulation import Simulation
 
 
@@ -15,7 +15,7 @@ def replaced(case, **parts):
 
 
 def state(simulation):
-    fluid = simulation.fluid
+    fluid = simulation.engine
     return fluid.positions(), fluid.velocities(), fluid.images()
 
 
@@ -55,7 +55,7 @@ def test_warm_up_is_seen_by_no_observer(case):
     only_warm = Simulation(replaced(case, run=dataclasses.replace(run, steps=0)), threads=1)
     only_warm.run()
     assert all(result.samples == 0 for result in only_warm.results.values())
-    fluid = only_warm.fluid
+    fluid = only_warm.engine
     _ = fluid.wall_impulse  # what came before is not to count
     fluid.advance(steps)
     area, dt = case.box.size[0], case.fluid.timestep
@@ -80,8 +80,8 @@ def arrays(case):
 
 def test_start_from_arrays_by_particle_id(case, arrays, tmp_path):
     simulation = Simulation(case, positions=arrays[0], velocities=arrays[1], threads=1)
-    np.testing.assert_allclose(simulation.fluid.positions(), arrays[0], atol=1e-14)
-    np.testing.assert_array_equal(simulation.fluid.velocities(), arrays[1])
+    np.testing.assert_allclose(simulation.engine.positions(), arrays[0], atol=1e-14)
+    np.testing.assert_array_equal(simulation.engine.velocities(), arrays[1])
     simulation.run()
     for name, array in zip(("positions", "velocities"), arrays, strict=True):
         np.save(tmp_path / f"{name}.npy", array)
@@ -139,14 +139,14 @@ def test_arrays_of_no_numbers_are_refused(case, arrays, name, change, words):
 def test_arrays_of_any_real_numbers_are_taken(case, arrays, kind):
     velocities = np.abs(arrays[1]).astype(kind)
     simulation = Simulation(case, velocities=velocities, threads=1)
-    np.testing.assert_array_equal(simulation.fluid.velocities(), velocities.astype(float))
+    np.testing.assert_array_equal(simulation.engine.velocities(), velocities.astype(float))
 
 
 def test_positions_too_far_away_for_counting_boxes_are_refused(case, arrays):
     r = arrays[0].copy()
     r[5, 0] = -12 * (2**30 - 1)
     simulation = Simulation(case, positions=r, threads=1)
-    assert simulation.fluid.images()[5].tolist() == [1 - 2**30, 0]
+    assert simulation.engine.images()[5].tolist() == [1 - 2**30, 0]
     for far in (12.0 * 2**30, -1e300):
         r[5, 0] = far
         with pytest.raises(CaseError, match=r"positions: row 5 = .* 2\^30 boxes away or more"):
@@ -162,8 +162,8 @@ def test_no_array_is_silently_ignored(case, arrays, uninterrupted, tmp_path):
     start = Start(velocities=str(tmp_path / "v.npy"))
     other = replaced(case, fluid=dataclasses.replace(case.fluid, start=start))
     simulation = Simulation(other, positions=arrays[0], threads=1)
-    np.testing.assert_allclose(simulation.fluid.positions(), arrays[0], atol=1e-14)
-    np.testing.assert_array_equal(simulation.fluid.velocities(), arrays[1])
+    np.testing.assert_allclose(simulation.engine.positions(), arrays[0], atol=1e-14)
+    np.testing.assert_array_equal(simulation.engine.velocities(), arrays[1])
 
 
 def test_a_case_may_be_the_path_of_its_file(case, case_file):
@@ -199,6 +199,6 @@ def test_two_simulations_in_one_process(case, uninterrupted):
     one = Simulation(case, threads=2)
     two = Simulation(replaced(case, run=dataclasses.replace(case.run, seed=9)), threads=1)
     while one.step < 437:
-        one.fluid.advance(min(23, 437 - one.step))
-        two.fluid.advance(11)
+        one.engine.advance(min(23, 437 - one.step))
+        two.engine.advance(11)
     assert_same(state(one), state(uninterrupted))

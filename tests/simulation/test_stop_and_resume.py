@@ -11,7 +11,7 @@ import pytest
 import mesokit
 from mesokit.errors import CheckpointError, RunError
 from mesokit.io import atomic
-from mesokit.progress import Reporter
+from mesokit.report.progress import Reporter
 from mesokit.simulation import Simulation
 
 

@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.special import erf
 
-from mesokit.mpcd.topology import bonds
+from mesokit.method.mpcd.topology import bonds
 from mesokit.theory import beads_in_slit, centre_in_slit
 
 HEIGHT = 6.0

@@ -158,7 +158,7 @@ def test_andersen_closed_form(dimension, density, timestep):
 @given(density=densities, timestep=timesteps, suffix=st.sampled_from(["", "+a"]))
 @settings(deadline=None)
 def test_uniform_angle_is_andersen(density, timestep, suffix):
-    one = transport("srd" + suffix, 2, density, timestep, angle_distribution="uniform")
+    one = transport("srd" + suffix, 2, density, timestep, angle="uniform")
     two = transport("at" + suffix, 2, density, timestep)
     assert one.viscosity == pytest.approx(two.viscosity, rel=1e-12)
     assert one.diffusion == pytest.approx(two.diffusion, rel=1e-12)
@@ -279,9 +279,9 @@ def test_isothermal_sound_attenuation(rule, angle, simulated):
         ({"angle": 360}, "angle = 360"),
         ({"angle": 180, "dimension": 2}, "not 180"),
         ({"rule": "at"}, "angle = 90"),
-        ({"angle_distribution": "uniform"}, "angle_distribution = 'uniform'"),
-        ({"angle_distribution": "uniform", "dimension": 2}, "angle = 90"),
-        ({"angle_distribution": "normal"}, "angle_distribution = 'normal'"),
+        ({"angle": "uniform"}, "angle = 'uniform'"),
+        ({"angle": "uniform", "dimension": 2, "rule": "at"}, "angle = 'uniform'"),
+        ({"angle": "normal"}, "angle = 'normal'"),
         ({"thermostat": "mbs"}, "thermostat = 'mbs'"),
     ],
 )
@@ -359,3 +359,16 @@ def test_collision_map(dimension, particles):
     rig = float(rigid_share(d, np.array(float(n))))
     error = drift.std() / np.sqrt(samples)
     assert abs(drift.mean() - (rig + (1 - rig) * r1)) < 4 * error + 1e-9
+
+
+@pytest.mark.parametrize("rule", ["srd", "srd+a"])
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("angle", [1e-7, 1e-12, 1e-200, 360 - 1e-13])
+def test_a_turn_below_rounding_is_refused(rule, dimension, angle):
+    with pytest.raises(ValueError, match=r"angle = .*turns too little"):
+        transport(rule, dimension=dimension, density=10, timestep=0.1, angle=angle)
+
+
+def test_a_density_at_which_nobody_meets_is_refused():
+    with pytest.raises(ValueError, match="density = 1e-300"):
+        transport("at", dimension=3, density=1e-300, timestep=0.1)

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 
 from mesokit.theory import (
+    GaussianMolecule,
     apparent_viscosity,
     dimer_oscillation_range,
     gaussian_stress_kernel,
@@ -192,7 +193,7 @@ def test_kernel_of_dimers_in_closed_form():
     k, t, b2, d = 0.6, np.array([0.0, 4, 40]), 9.0, 0.03
     q, e = k * k * b2 / 12, np.exp(-t / 26.8)
     expected = np.exp(-q) * np.sinh(q * e) / q * e * np.exp(-k * k * d * t)
-    found = gaussian_stress_kernel(k, t, linear_modes(2), 26.8, b2, d)
+    found = gaussian_stress_kernel(k, t, GaussianMolecule(linear_modes(2), 26.8, b2, d))
     assert found == pytest.approx(expected)
 
 
@@ -200,7 +201,7 @@ def test_kernel_of_dimers_in_closed_form():
 def test_kernel_of_long_waves_is_the_relaxation_modulus(modes):
     t = np.array([0.0, 2, 30])
     tau = rouse_times_from_slowest(modes, mode_time=50).stress
-    found = gaussian_stress_kernel(1e-3, t, modes, 50, 1.5, 0.01)
+    found = gaussian_stress_kernel(1e-3, t, GaussianMolecule(modes, 50, 1.5, 0.01))
     assert found == pytest.approx(relaxation_modulus(t, 1.0, tau), rel=1e-5)
 
 
@@ -222,7 +223,9 @@ def test_kernel_is_the_stress_of_moving_chains():
     product = (stresses[1] * stresses[0].conj()).real
     error = product.std() / np.sqrt(n)
     assert error < 0.01
-    expected = float(gaussian_stress_kernel(k, t, modes, mode_time, b2, diffusion))
+    expected = float(
+        gaussian_stress_kernel(k, t, GaussianMolecule(modes, mode_time, b2, diffusion))
+    )
     long_wave = float(relaxation_modulus(t, 1.0, chain(5, 10.0)))
     assert product.mean() == pytest.approx(expected, abs=4 * error)
     assert abs(expected - long_wave) > 8 * error  # so that the test can tell them apart
@@ -232,7 +235,9 @@ def test_finite_k_of_dimers():
     """The closed form leaves out q^2/6 of the kernel; without both terms it is the thesis."""
     t = np.linspace(0, 60, 25)
     closed = transverse_correlation_dimer(K30, t, NU, 0.5, 13.4, 9.0, 0.03)
-    full = transverse_correlation_finite_k(K30, t, NU, 0.5, linear_modes(2), 26.8, 9.0, 0.03)
+    full = transverse_correlation_finite_k(
+        K30, t, NU, 0.5, GaussianMolecule(linear_modes(2), 26.8, 9.0, 0.03)
+    )
     thesis = transverse_correlation_dimer(K30, t, NU, 0.5, 13.4)
     assert np.max(np.abs(closed - full)) < 2e-4
     assert 0.01 < np.max(np.abs(closed - thesis)) < 0.03
@@ -248,16 +253,18 @@ def test_finite_k_of_long_waves_is_that_of_poles(modes):
     k, t = 2e-3, np.linspace(0, 3e4, 20)
     tau = rouse_times_from_slowest(modes, mode_time=5000).stress
     poles = transverse_correlation_chain(k, t, NU, 0.1, tau)
-    full = transverse_correlation_finite_k(k, t, NU, 0.1, modes, 5000, 1.5)
+    full = transverse_correlation_finite_k(k, t, NU, 0.1, GaussianMolecule(modes, 5000, 1.5))
     assert full == pytest.approx(poles, abs=2e-4)
 
 
 def test_finite_k_does_not_depend_on_its_steps():
     t = np.linspace(0, 80, 30)
-    arguments = (2 * np.pi / 24, t, NU, 0.1, linear_modes(10), 89.0, 1.5, 0.006)
+    chain = GaussianMolecule(linear_modes(10), 89.0, 1.5, 0.006)
+    arguments = (2 * np.pi / 24, t, NU, 0.1, chain)
     coarse, fine = (transverse_correlation_finite_k(*arguments, steps=n) for n in (250, 1000))
     assert coarse == pytest.approx(fine, abs=1e-5)
-    assert transverse_correlation_finite_k(0.2, 0.0, NU, 0.1, linear_modes(3), 9.0, 1.0) == 1
+    trimer = GaussianMolecule(linear_modes(3), 9.0, 1.0)
+    assert transverse_correlation_finite_k(0.2, 0.0, NU, 0.1, trimer) == 1
 
 
 def test_refuses():
@@ -270,6 +277,8 @@ def test_refuses():
     with pytest.raises(ValueError, match="elasticity = 0"):
         transverse_poles(0.1, NU, 0, [13.4])
     with pytest.raises(ValueError, match="mode_time = 0"):
-        gaussian_stress_kernel(0.1, 1.0, linear_modes(2), 0, 9)
+        gaussian_stress_kernel(0.1, 1.0, GaussianMolecule(linear_modes(2), 0, 9))
     with pytest.raises(ValueError, match="steps = 3"):
-        transverse_correlation_finite_k(0.1, 1.0, NU, 0.5, linear_modes(2), 9, 9, steps=3)
+        transverse_correlation_finite_k(
+            0.1, 1.0, NU, 0.5, GaussianMolecule(linear_modes(2), 9, 9), steps=3
+        )

@@ -5,10 +5,10 @@ What takes time to import is imported inside functions, so that Ctrl-C is unders
 
 from __future__ import annotations
 
+import contextlib
+import os
 import sys
 from collections.abc import Sequence
-
-TEMPLATES = ("poiseuille", "obstacle", "couette", "shear", "kolmogorov", "bulk")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -16,6 +16,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
     Exit status: 0 done, 1 the run failed, 2 the case or the command is wrong, 130 interrupted.
     """
+    _settle()
     try:
         from mesokit.cli.end import status_of
 
@@ -23,4 +24,20 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except KeyboardInterrupt:
         print("mesokit: interrupted", file=sys.stderr)
         status = 130
+    with contextlib.suppress(OSError):  # a full disk, told where it can be: in the run's folder
+        sys.stderr.flush()
     raise SystemExit(status)
+
+
+def _settle() -> None:
+    """Make up for what the shell gives: streams that are closed, or know few letters, and settings
+    of libraries that pictures and kernels could not be made with."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115  for ever
+        elif hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")
+    os.environ["MPLBACKEND"] = "agg"  # there are no windows
+    for name in ("NUMBA_DISABLE_JIT", "NUMBA_NUM_THREADS"):  # kernels have threads of their own
+        os.environ.pop(name, None)

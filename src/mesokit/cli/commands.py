@@ -13,7 +13,7 @@ from mesokit import __version__
 from mesokit.errors import CaseError, RunError
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 
 @click.group(
@@ -41,15 +41,19 @@ def _settings(context: click.Context, option: click.Parameter, values: Sequence[
 
 
 SET = click.option(
-    "--set", "settings", multiple=True, callback=_settings, metavar="KEY=VALUE",
+    "--set",
+    "settings",
+    multiple=True,
+    callback=_settings,
+    metavar="KEY=VALUE",
     help="Replace a value of the case, such as fluid.density=5. May be repeated.",
-)  # fmt: skip
+)
 THREADS = click.option("--threads", type=click.IntRange(1), help="Threads (all cores unless said).")
 
 
 def read(path: Path, settings: dict[str, str]) -> Case:
     """The case in a file, with values replaced."""
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
     case = Case.from_toml(path, settings)
     for problem in case.missing_files():

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 
 import click
 
-from mesokit.cli import cases, pictures, runs  # noqa: F401  they register their commands
+from mesokit.cli import cases, pictures, runs, theory  # noqa: F401  they register their commands
 from mesokit.cli.commands import cli
-from mesokit.cli.words import reason
+from mesokit.cli.words import reason, say
 from mesokit.errors import MesokitError, RunError
 
 
@@ -38,10 +38,13 @@ def status_of(arguments: Sequence[str] | None) -> int:
         return 0
     except OSError as error:
         return _failed(reason(error), 2)
+    except UnicodeEncodeError as error:
+        near = error.object[max(error.start - 60, 0) : error.end]
+        return _failed(f"...{near!r}: a name that is not {error.encoding} text", 2)
     except MemoryError:
         return _failed("not enough memory for this case (mesokit check tells what it needs)", 1)
 
 
 def _failed(message: str, status: int) -> int:
-    click.echo(f"mesokit: error: {' '.join(message.split())}", err=True)
+    say(f"mesokit: error: {' '.join(message.split())}")
     return status

@@ -41,14 +41,26 @@ def _axes(context: click.Context, option: click.Parameter, text: str | None) -> 
 
 
 CHOICES: Sequence[Callable[[Any], Any]] = (
-    click.option("--region", callback=_ranges, metavar="X0:X1,Y0:Y1",
-                 help="Part of the box, in cells (all of it unless said)."),
-    click.option("--window", callback=_window, metavar="T0:T1",
-                 help="Part of the time since the start (all of it unless said)."),
-    click.option("--axes", callback=_axes, metavar="A,B",
-                 help="The two axes of the picture in 3D, such as x,z."),
+    click.option(
+        "--region",
+        callback=_ranges,
+        metavar="X0:X1,Y0:Y1",
+        help="Part of the box, in cells (all of it unless said).",
+    ),
+    click.option(
+        "--window",
+        callback=_window,
+        metavar="T0:T1",
+        help="Part of the time since the start (all of it unless said).",
+    ),
+    click.option(
+        "--axes",
+        callback=_axes,
+        metavar="A,B",
+        help="The two axes of the picture in 3D, such as x,z.",
+    ),
     click.option("--at", type=float, help="Place along the third axis where solids are shown."),
-)  # fmt: skip
+)
 
 
 def _choices(command: Any) -> Any:
@@ -94,7 +106,7 @@ def animate(
 ) -> None:
     """Make a film of the flow in RUN, from its flow-frames or its trajectory."""
     import mesokit
-    from mesokit.progress import FilmReporter
+    from mesokit.report.progress import FilmReporter
 
     require_run(run)
     files = mesokit.open(run)

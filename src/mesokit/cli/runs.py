@@ -11,7 +11,7 @@ from pathlib import Path
 import click
 
 from mesokit.cli.commands import CASE, RUN, SET, THREADS, cli, naming, read, require_run
-from mesokit.cli.words import reason
+from mesokit.cli.words import patience, reason, say
 from mesokit.errors import CaseError, RunError
 
 
@@ -28,17 +28,18 @@ def run(
     output: Path | None, overwrite: bool, quiet: bool,
 ) -> None:  # fmt: skip
     """Run CASE. Ctrl-C stops it at a checkpoint; mesokit resume goes on."""
-    from mesokit.derived import derive
-    from mesokit.progress import Reporter
+    from mesokit.method.protocol import method_of
+    from mesokit.report.progress import Reporter
 
     if seed is not None:
         settings = {**settings, "run.seed": str(seed)}
-    full = read(case, settings)
+    with patience("looking at the solids (the first time, what looks at them is compiled)"):
+        full = read(case, settings)
     output = output or Path(case.stem)
     _claim(output, overwrite)
     if not quiet:
-        for warning in derive(full, threads).warnings:
-            click.echo(f"warning: {warning}", err=True)
+        for warning in method_of(full).summary(full, threads).warnings:
+            say(f"warning: {warning}")
     from mesokit.simulation import Simulation
 
     with naming(case):
@@ -57,7 +58,7 @@ def run(
 @click.option("--quiet", is_flag=True, help="No progress, no summary; errors only.")
 def resume(run: Path, threads: int | None, quiet: bool) -> None:
     """Go on with RUN from its last checkpoint, to the same bits as if it had never stopped."""
-    from mesokit.progress import Reporter
+    from mesokit.report.progress import Reporter
 
     require_run(run)
     from mesokit.io.run_directory import RunDirectory
@@ -67,9 +68,9 @@ def resume(run: Path, threads: int | None, quiet: bool) -> None:
         with warnings.catch_warnings(record=True) as said:
             simulation = Simulation.resume(run, threads=threads)
         for warning in said:
-            click.echo(f"warning: {warning.message}", err=True)
+            say(f"warning: {warning.message}")
         if not (quiet or RunDirectory(run).checkpoint_file.exists()):
-            click.echo(f"{run}: no checkpoint yet; starting from step 0", err=True)
+            say(f"{run}: no checkpoint yet; starting from step 0")
         simulation.run(progress=Reporter(quiet))
     if not quiet:
         _show_results(run)
@@ -87,8 +88,13 @@ def info(run: Path) -> None:
 
 @cli.command()
 @click.argument("run", type=RUN)
-@click.option("--to", "path", type=click.Path(dir_okay=False, path_type=Path), required=True,
-              help="The file: .gsd, .lammpstrj or .xyz.")  # fmt: skip
+@click.option(
+    "--to",
+    "path",
+    type=click.Path(dir_okay=False, path_type=Path),
+    required=True,
+    help="The file: .gsd, .lammpstrj or .xyz.",
+)
 def export(run: Path, path: Path) -> None:
     """Write the trajectory of RUN as a file for OVITO, HOOMD-blue, VMD or LAMMPS."""
     import mesokit
@@ -118,7 +124,7 @@ def _claim(output: Path, overwrite: bool) -> None:
 
 def _files_of_run(output: Path) -> list[Path]:
     """What an earlier run has written into a folder; the case, which makes it a run, is last."""
-    from mesokit.case import Case
+    from mesokit.case.case import Case
     from mesokit.io.run_directory import RunDirectory
     from mesokit.report.flow import KINDS
 
@@ -131,7 +137,8 @@ def _files_of_run(output: Path) -> list[Path]:
     figures += [run.flow_file(kind, end) for kind in KINDS for end in (".png", ".mp4")]
     files = [run.data_file, run.checkpoint_file, run.log_file, run.provenance_file]
     solids = output.glob(run.wall_file("*").name)
-    return [*figures, *output.glob(".*.tmp"), *solids, run.trajectory_folder, *files, run.case_file]
+    files += [run.trajectory_folder, run.trajectory_remains, run.case_file]
+    return [*figures, *output.glob(".*.tmp"), *solids, *files]
 
 
 def _clear(output: Path) -> None:
@@ -151,7 +158,7 @@ def _run_errors(output: Path) -> Iterator[None]:
     except KeyboardInterrupt as stop:
         if not str(stop):  # stopped so hard that nothing is known
             raise
-        click.echo(f"mesokit: {stop}; go on with: mesokit resume {output}", err=True)
+        say(f"mesokit: {stop}; go on with: mesokit resume {output}")
         raise SystemExit(130) from None
     except OSError as error:
         raise RunError(reason(error)) from None

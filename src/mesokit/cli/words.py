@@ -2,8 +2,32 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
-from collections.abc import Sequence
+import threading
+from collections.abc import Iterator, Sequence
+
+SILENT = 2.0  # seconds
+
+
+def say(text: str) -> None:
+    """Write a line on standard error; if it is full or gone, nobody can be told."""
+    import click
+
+    with contextlib.suppress(OSError):
+        click.echo(text, err=True)
+
+
+@contextlib.contextmanager
+def patience(why: str) -> Iterator[None]:
+    """Say why it takes so long, where it does."""
+    timer = threading.Timer(SILENT, say, [f"mesokit: {why} ..."])
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
 
 
 def show_table(rows: Sequence[tuple[str, str, str]]) -> None:
@@ -15,11 +39,6 @@ def show_table(rows: Sequence[tuple[str, str, str]]) -> None:
     for row in rows:
         table.add_row(*row)
     Console(highlight=False, soft_wrap=True).print(table)
-
-
-def number(value: float | None, unit: str = "") -> str:
-    """A number with its unit, or that there is none."""
-    return "no formula" if value is None else f"{value:.4g} {unit}".rstrip()
 
 
 def reason(error: OSError) -> str:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mesokit.scalar import generic
+from mesokit.scalar.jit import generic
 
 
 class Chance(NamedTuple):

@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from pydantic import field_validator
 
-from mesokit.component import component, param
+from mesokit.case.component import component, param
 
 FASTEST = 1e6  # a surface's speed and rate of rotation: beyond it is a slip of the pen
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mesokit.case.trajectory import written
 from mesokit.errors import RunError
 from mesokit.io import h5md
 from mesokit.io.run_directory import RunDirectory
-from mesokit.io.trajectory import TrajectoryWriter, written
+from mesokit.io.trajectory import TrajectoryWriter
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 
 def require_frames(directory: RunDirectory, case: Case, step: int) -> None:
@@ -21,7 +22,8 @@ def require_frames(directory: RunDirectory, case: Case, step: int) -> None:
     if case.trajectory is None:
         return
     place, every = directory.trajectory_folder, case.trajectory.every
-    there = TrajectoryWriter(case.trajectory, place, *written(case)).steps()
+    particles = written(case.trajectory, case.groups)
+    there = TrajectoryWriter(case.trajectory, place, *particles).steps()
     if not len(there) and directory.data_file.exists():
         place = directory.data_file
         try:

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mesokit.case.snapshot import Snapshot
 from mesokit.errors import CaseError
 from mesokit.io.optional import package
-from mesokit.mpcd.snapshot import Snapshot
 
 if TYPE_CHECKING:
-    from mesokit.io.export import Moment, Particles
+    from mesokit.io.moments import Moment, Particles
 
 
 def require() -> ModuleType:

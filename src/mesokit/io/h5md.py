@@ -3,12 +3,13 @@
 /h5md        version, author, creator
 /parameters  case (TOML) and provenance (JSON); units: what a reduced unit is in SI, if known
 /connectivity  bonds (bonds, 2): places, in the rows of particles, of those that are linked
-/particles   fluid: box, position, velocity, image with step, time and value; id, mass, species
+/particles   one group, such as fluid: box, position, velocity, image with step, time and value;
+             id, mass, species
 /observables time series, one row for each frame of the trajectory if there is one
 /results     what each observable measured: value, error, expected, fit, x, comparisons
 
 What readers want decides three things. Coordinates on disk always have three columns, in 2D with
-z = 0 in a box one cell high (`dimension` of the fluid says 2). Lengths and times are in units that
+z = 0 in a box one cell high (`dimension` of the group says 2). Lengths and times are in units that
 have no SI name; their attribute is `reduced_unit`, as readers refuse a `unit` that they do not
 know (MDAnalysis: convert_units=False). Readers take row i of an observable to belong to frame i,
 so that profiles and correlations are kept under /results, and /observables leaves out what was
@@ -30,12 +31,14 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.trajectory import masses_and_kinds
 from mesokit.errors import RunError
 from mesokit.io.atomic import replacing
-from mesokit.observe.result import Comparison, Result
+from mesokit.method.protocol import method_of
+from mesokit.observe.shared.result import Comparison, Result
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
     from mesokit.io.trajectory import TrajectoryWriter
 
 UNITS = {"position": "a", "velocity": "a/tau", "time": "tau"}
@@ -50,8 +53,6 @@ def write(
     provenance: Mapping[str, Any],
     results: Iterable[Result],
     trajectory: TrajectoryWriter | None = None,
-    masses: NDArray[np.float64] | None = None,
-    species: NDArray[np.int64] | None = None,
 ) -> None:
     """Write the data file whole, or leave the old one.
 
@@ -61,7 +62,6 @@ def write(
     case, provenance: of the run.
     results: of all observables.
     trajectory: whose frames are copied one by one.
-    masses, species: (n,), for the particles of the trajectory.
 
     Raises RunError if it cannot be written.
     """
@@ -73,9 +73,9 @@ def write(
                 if trajectory is not None:
                     steps = trajectory.steps()
                     if len(steps) or not _kept(file, path):
-                        _particles(file, case, trajectory, steps, masses, species)
+                        _particles(file, case, trajectory, steps)
                     else:
-                        steps = file["particles/fluid/box/edges/step"][()]
+                        steps = particles_of(file)["box/edges/step"][()]
                 measured = file.create_group("results")
                 for result in results:
                     _result(measured, result)
@@ -93,9 +93,15 @@ def read_results(path: str | Path) -> dict[str, Result]:
 def frame_steps(path: str | Path) -> NDArray[np.int64]:
     """Steps of the frames in a data file. Raises RunError for a damaged file."""
     with opened(path) as file:
-        if "particles" not in file:
+        group = particles_of(file)
+        if group is None:
             return np.zeros(0, np.int64)
-        return np.asarray(file["particles/fluid/box/edges/step"][()], np.int64)
+        return np.asarray(group["box/edges/step"][()], np.int64)
+
+
+def particles_of(file: Any) -> Any:
+    """The group of the particles in a data file, None without a trajectory."""
+    return next(iter(file["particles"].values())) if "particles" in file else None
 
 
 @contextmanager
@@ -136,7 +142,7 @@ def _kept(file: Any, path: str | Path) -> bool:
             if name in old:
                 old.copy(name, file, expand_refs=False)
         if "connectivity" in file:
-            file["connectivity/bonds"].attrs["particles_group"] = file["particles/fluid"].ref
+            file["connectivity/bonds"].attrs["particles_group"] = particles_of(file).ref
         return "particles" in old
 
 
@@ -148,16 +154,17 @@ def _particles(
     case: Case,
     trajectory: TrajectoryWriter,
     steps: NDArray[np.int64],
-    masses: NDArray[np.float64] | None,
-    species: NDArray[np.int64] | None,
 ) -> None:
-    group, n, frames = file.create_group("particles/fluid"), len(trajectory.ids), len(steps)
+    group = file.create_group(f"particles/{case.groups[0].name}")
+    n, frames = len(trajectory.ids), len(steps)
+    mass, kind = masses_and_kinds(case.groups)
+    kind = kind[trajectory.ids]
     group.attrs["dimension"] = case.box.dimension
     group["id"] = trajectory.ids
-    group["mass"] = np.full(n, case.fluid.mass) if masses is None else masses
-    if case.fluid.molecule is not None or case.solutes is not None:
-        _bonds(file, group, case, trajectory.ids)
-    group["species"] = np.zeros(n, np.int32) if species is None else species
+    group["mass"], group["species"] = mass[kind], kind
+    bonds = method_of(case).bonds(case)
+    if len(bonds):
+        _bonds(file, group, bonds, trajectory.ids)
     group["step"] = steps
     group.create_dataset("time", (frames,), float).attrs["reduced_unit"] = UNITS["time"]
     sets = {}
@@ -185,25 +192,14 @@ def _particles(
     del group["step"], group["time"]  # the elements have linked them
 
 
-def _bonds(file: Any, group: Any, case: Case, ids: NDArray[np.int64]) -> None:
+def _bonds(file: Any, group: Any, pairs: NDArray[np.int64], ids: NDArray[np.int64]) -> None:
     """Rows of the trajectory whose particles are linked, as H5MD has it."""
-    pairs = bonds_of(case) - (ids[0] if len(ids) else 0)
+    pairs = pairs - (ids[0] if len(ids) else 0)
     there = ((pairs >= 0) & (pairs < len(ids))).all(axis=1)
     bonds = file.require_group("connectivity").create_dataset(
         "bonds", data=pairs[there], compression=4
     )
     bonds.attrs["particles_group"] = group.ref
-
-
-def bonds_of(case: Case) -> NDArray[np.int64]:
-    """Particle ids (bonds, 2) of all that are linked, in molecules of the fluid and of solutes."""
-    if case.solutes is not None:
-        return case.particles + case.solutes.bonds()
-    if case.fluid.molecule is None:
-        return np.zeros((0, 2), np.int64)
-    links = np.array(case.fluid.molecule.bonds, np.int64)
-    starts = np.arange(0, case.particles, case.fluid.molecule.length)
-    return (starts[:, None, None] + links).reshape(-1, 2)
 
 
 def _element(parent: Any, name: str, clock: Any) -> Any:
@@ -215,8 +211,8 @@ def _element(parent: Any, name: str, clock: Any) -> Any:
 
 def _box(group: Any, case: Case, frames: int) -> Any:
     box = group.create_group("box")
-    closed = {wall.axis for wall in case.walls if wall.shape == "plates"}
-    boundary = ["none" if axis in closed else "periodic" for axis in ("x", "y", "z")]
+    closed = method_of(case).closed_axes(case)
+    boundary = ["none" if axis in closed else "periodic" for axis in range(3)]
     box.attrs["dimension"] = 3
     box.attrs["boundary"] = np.array(boundary, dtype=h5py.string_dtype("ascii"))
     shape = (frames, 3, 3) if case.box.shear_rate else (frames, 3)
@@ -263,6 +259,7 @@ def _time_series(file: Any, result: Result, steps: NDArray[np.int64] | None) -> 
 def _result(parent: Any, result: Result) -> None:
     group = parent.create_group(result.name)
     group.attrs["quantity"], group.attrs["label"] = result.quantity, result.label
+    group.attrs["drawing"] = result.drawing
     group.attrs["theory"], group.attrs["samples"] = result.theory, result.samples
     group.attrs["units"] = json.dumps(dict(result.units))
     group.attrs["axes"] = json.dumps(list(result.x))
@@ -304,6 +301,7 @@ def _read_result(group: Any) -> Result:
     attrs = group.attrs
     return Result(
         quantity=str(attrs["quantity"]),
+        drawing=str(attrs["drawing"]),
         name=group.name.split("/")[-1],
         x={name: _load(group["x"][name]) for name in json.loads(attrs["axes"])},
         value=group["value"][()],

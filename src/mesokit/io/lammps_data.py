@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.component import one_of, show
+from mesokit.case.component import one_of, show
+from mesokit.case.snapshot import Snapshot, rows_of
 from mesokit.errors import CaseError
 from mesokit.io.optional import package
-from mesokit.mpcd.snapshot import Snapshot, rows_of
 
 # columns before the coordinates: number, molecule, type, charge
 STYLES = {"atomic": 2, "bond": 3, "angle": 3, "molecular": 3, "full": 4}

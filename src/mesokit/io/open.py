@@ -8,20 +8,18 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from mesokit.component import require_known
-from mesokit.errors import RunError
+from mesokit.case.component import require_known, show
+from mesokit.errors import CaseError, RunError
 from mesokit.io import checkpoint, h5md
 from mesokit.io.frames import require_frames
 from mesokit.io.run_directory import RunDirectory
+from mesokit.io.trajectory_reader import TrajectoryReader
+from mesokit.method.protocol import method_of
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
-    from mesokit.observe.result import Result
+    from mesokit.case.case import Case
+    from mesokit.observe.shared.result import Result
     from mesokit.report.flow import Film
-    from mesokit.si import SI
 
 
 class RunFiles:
@@ -38,7 +36,7 @@ class RunFiles:
     @cached_property
     def case(self) -> Case:
         """The resolved case."""
-        from mesokit.case import Case
+        from mesokit.case.case import Case
 
         return Case.from_toml(self.directory.case_file)
 
@@ -54,10 +52,11 @@ class RunFiles:
             return h5md.read_results(self._data())
 
     @cached_property
-    def si(self) -> SI:
+    def si(self) -> Any:
         """What the numbers are in SI units. Raises CaseError for a case without `units`."""
-        from mesokit.si import convert
-
+        convert = method_of(self.case).si
+        if convert is None:
+            raise CaseError(f"units: method {show(self.case.run.method)} does not know them in SI")
         return convert(self.case)
 
     @cached_property
@@ -106,7 +105,7 @@ class RunFiles:
         """
         from mesokit.io.export import export
 
-        return export(self, path)
+        return export(self.directory, self.case, lambda: self.trajectory, path)
 
     def _data(self) -> Path:
         if not self.directory.data_file.exists():
@@ -164,58 +163,6 @@ class RunFiles:
         return "\n".join(lines)
 
 
-class TrajectoryReader:
-    """Frames of the fluid: `reader[i]` is a dictionary, `reader.read("position")` all frames.
-
-    Particles are in the order of `id`. In 2D the third column that the file carries is left out.
-    """
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        with h5md.opened(path) as file:
-            group = file.get("particles/fluid")
-            self.fields: tuple[str, ...] = ()
-            self.dimension = 0
-            if group is None:
-                return
-            self.dimension = int(group.attrs["dimension"])
-            self.fields = tuple(n for n in ("position", "velocity", "image") if n in group)
-            self.step: NDArray[np.int64] = group["box/edges/step"][()]
-            self.time: NDArray[np.float64] = group["box/edges/time"][()]
-            self.edges: NDArray[np.float64] = group["box/edges/value"][()]
-            self.id: NDArray[np.int64] = group["id"][()]
-            self.mass: NDArray[np.float64] = group["mass"][()]
-            self.species: NDArray[np.int64] = group["species"][()]
-
-    def __len__(self) -> int:
-        return len(self.step)
-
-    def __getitem__(self, index: int) -> dict[str, NDArray[Any]]:
-        """The fields of one frame, with `step` and `time`."""
-        if not -len(self) <= index < len(self):
-            raise IndexError(f"frame {index} of {len(self)}")
-        index %= len(self)
-        frame = {name: self.read(name, slice(index, index + 1))[0] for name in self.fields}
-        return frame | {"step": self.step[index], "time": self.time[index]}
-
-    def read(self, field: str, frames: slice = slice(None)) -> NDArray[Any]:
-        """One field of some or all frames, (frames, n, d). Raises KeyError if it is not there."""
-        if field not in self.fields:
-            raise KeyError(f"no field {field!r}; there are {', '.join(self.fields)}")
-        with h5md.opened(self.path) as file:
-            data = file[f"particles/fluid/{field}/value"]
-            return np.asarray(data[frames, :, : self.dimension])
-
-    def __repr__(self) -> str:
-        return (
-            f"trajectory: {len(self)} frames of {len(self.id)} particles"
-            f" ({', '.join(self.fields) or 'ids only'})"
-        )
-
-
-def open_run(path: str | Path) -> RunFiles:
-    """What the run in the folder `path` has written. Raises RunError if there is no run.
-
-    Known to users as `mesokit.open`.
-    """
+def open(path: str | Path) -> RunFiles:
+    """What the run in the folder `path` has written. Raises RunError if there is no run."""
     return RunFiles(path)

@@ -14,14 +14,14 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mesokit.errors import RunError
+from mesokit.case.outside import outside_parts, require_parts
+from mesokit.errors import CaseError, RunError
 from mesokit.io import checkpoint
 from mesokit.io.atomic import write_text
-from mesokit.io.solid_files import keep_solids
-from mesokit.si import convert
+from mesokit.method.protocol import method_of
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 LIBRARIES = ("mesokit", "numpy", "scipy", "numba", "h5py", "matplotlib", "pydantic")
 
@@ -66,6 +66,11 @@ class RunDirectory:
         """Frames that are not in the data file yet."""
         return self.path / "trajectory"
 
+    @property
+    def trajectory_remains(self) -> Path:
+        """The same while it is being removed."""
+        return self.path / ".trajectory.done"
+
     def figure_file(self, name: str) -> Path:
         """Figure of one result."""
         return self.path / f"{name}.png"
@@ -76,7 +81,7 @@ class RunDirectory:
 
     @classmethod
     def create(cls, path: str | Path, case: Case) -> RunDirectory:
-        """Make the folder and write the resolved case, and what it reads its solids from.
+        """Make the folder and write the resolved case, and what it is made from.
 
         Raises RunError if something is there already, or the folder cannot be written.
         """
@@ -91,7 +96,8 @@ class RunDirectory:
             reason = (error.strerror or str(error)).lower()
             raise RunError(f"{path}: cannot make the folder: {reason}") from None
         try:
-            write_text(run.case_file, keep_solids(case, run).to_toml(run.path))
+            kept = method_of(case).keep_files(case, run.path)
+            write_text(run.case_file, kept.to_toml(run.path))
         except BaseException:  # a folder without a case holds no run, and would be in the way
             for left in run.path.glob(run.wall_file("*").name):
                 left.unlink(missing_ok=True)
@@ -114,7 +120,18 @@ class RunDirectory:
             raise RunError(f"{path}: no such folder")
         if not run.case_file.exists():
             raise RunError(f"{path}: holds no run; expected a file case.toml in it")
+        run.require_parts()
         return run
+
+    def require_parts(self) -> None:
+        """Raise RunError if the case has a part from outside mesokit that is not here."""
+        record: dict[str, Any] = {}
+        with contextlib.suppress(RunError):  # a damaged record is told elsewhere
+            record = self.read_provenance()
+        try:
+            require_parts(record.get("parts"))
+        except (RunError, CaseError) as error:
+            raise RunError(f"{self.path}: {error}") from None
 
     def read_provenance(self) -> dict[str, Any]:
         """What `write_provenance` wrote, {} if nothing. Raises RunError if it is damaged."""
@@ -133,15 +150,17 @@ class RunDirectory:
 def provenance(case: Case, threads: int) -> dict[str, Any]:
     """Where the numbers of a run come from, as it starts: case, versions, host, time.
 
-    `units` says what a reduced unit is in SI, None if the case does not.
+    `units` says what a reduced unit is in SI, None if the case does not; `parts` which classes come
+    from outside mesokit, and from where.
     `ended` and `failed` (why) are None and `timings` empty until someone fills them in.
     """
     text = case.to_toml()
     return {
         "case": text,
         "case_digest": checkpoint.digest(text),
-        "units": None if case.units is None else convert(case).record(),
+        "units": _units(case),
         "seed": case.run.seed,
+        "parts": outside_parts(case),
         "versions": {"python": platform.python_version()} | _versions(),
         "host": platform.node(),
         "system": platform.platform(),
@@ -155,6 +174,14 @@ def provenance(case: Case, threads: int) -> dict[str, Any]:
         "failed": None,
         "timings": {},
     }
+
+
+def _units(case: Case) -> dict[str, Any] | None:
+    convert = method_of(case).si
+    if case.units is None or convert is None:
+        return None
+    record: dict[str, Any] = convert(case).record()
+    return record
 
 
 def now() -> str:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from mesokit.component import show
+from mesokit.case.component import show
+from mesokit.case.snapshot import Snapshot
 from mesokit.errors import CaseError
-from mesokit.mpcd.snapshot import Snapshot
 
 
 def read_snapshot(path: str) -> Snapshot:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 import numpy as np
 
 if TYPE_CHECKING:
-    from mesokit.io.export import Moment, Particles
+    from mesokit.io.moments import Moment, Particles
 
 FIGURES = "%.9g"  # of a number: all that single precision has
 
@@ -52,10 +52,15 @@ def xyz(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
                 f'{len(kinds)}\nLattice="{lattice}" Properties=species:S:1:pos:R:3:id:I:1{velocity}'
                 f' Time={now.time:.9g} Step={now.step} pbc="{open_axes}"\n'
             )
-            _table(file, [
-                ("species", "%s", kinds), *_vector("x y z", FIGURES, now.position),
-                ("id", "%d", particles.number + 1), *_vector("vx vy vz", FIGURES, now.velocity),
-            ])  # fmt: skip
+            _table(
+                file,
+                [
+                    ("species", "%s", kinds),
+                    *_vector("x y z", FIGURES, now.position),
+                    ("id", "%d", particles.number + 1),
+                    *_vector("vx vy vz", FIGURES, now.velocity),
+                ],
+            )
 
 
 def _vector(names: str, form: str, values: Any) -> Iterator[tuple[str, str, Any]]:

@@ -1,4 +1,4 @@
-"""Which particles are written how often, and how their frames outlive a crash.
+"""Frames of a trajectory, and how they outlive a crash.
 
 While a run goes on, frames are kept in memory and written out in segments: when there are many,
 and before every checkpoint. A segment is one file, written whole. A run that goes on from a
@@ -11,50 +11,23 @@ from __future__ import annotations
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.component import component, param
 from mesokit.errors import RunError
 from mesokit.io.atomic import replacing
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
-    from mesokit.observe.protocol import RunningFluid
+    from mesokit.case.trajectory import Trajectory
 
-Quantity = Literal["position", "velocity", "image", "id"]
 Frame = dict[str, NDArray[Any]]
 LARGEST = 64 * 2**20  # bytes of frames kept in memory
 
 
-@component
-class Trajectory:
-    """Particles written to the H5MD file of the run."""
-
-    every: int = param(doc="steps between two frames", ge=1)
-    of: Literal["all", "fluid", "solutes"] = param(
-        "all", doc="whose particles: beads of solutes follow those of the fluid"
-    )
-    fields: tuple[Quantity, ...] = param(("position",), doc="what is written", min_length=1)
-    subset: int | None = param(
-        None, doc="only the first particles, so many (all unless said)", ge=1
-    )
-    precision: Literal["float32", "float64"] = param("float32", doc="of the stored numbers")
-    compression: int = param(4, doc="gzip level: 0 none, 9 smallest", ge=0, le=9)
-
-
-def written(case: Case) -> tuple[int, int]:
-    """Number of particles that the trajectory of a case may hold, and the id of the first."""
-    beads = case.solutes.beads if case.solutes is not None else 0
-    of = case.trajectory.of if case.trajectory is not None else "all"
-    number = {"all": case.particles + beads, "fluid": case.particles, "solutes": beads}[of]
-    return number, case.particles if of == "solutes" else 0
-
-
 class TrajectoryWriter:
-    """Frames of a running fluid, kept in the folder `folder`.
+    """Frames of a running simulation, kept in the folder `folder`.
 
     Particles are stored in the order of their ids. `first` is the id of the first
     that may be written. Call `record` where a frame is due, `flush`
@@ -69,17 +42,17 @@ class TrajectoryWriter:
         self._frames: list[Frame] = []
         self._bytes = 0
 
-    def record(self, fluid: RunningFluid) -> None:
-        """Take one frame. Raises RunError if a full memory cannot be written out."""
-        frame: Frame = {"step": np.array(fluid.step), "time": np.array(fluid.time)}
+    def record(self, engine: Any) -> None:
+        """Take one frame of an engine. Raises RunError if a full memory cannot be written out."""
+        frame: Frame = {"step": np.array(engine.step), "time": np.array(engine.time)}
         real = np.dtype(self.trajectory.precision)
         fields = self.trajectory.fields
         if "position" in fields:
-            frame["position"] = _inside(fluid.positions(self.ids).astype(real), fluid.box)
+            frame["position"] = _inside(engine.positions(self.ids).astype(real), engine.box)
         if "velocity" in fields:
-            frame["velocity"] = fluid.velocities(self.ids).astype(real)
+            frame["velocity"] = engine.velocities(self.ids).astype(real)
         if "image" in fields:
-            frame["image"] = fluid.images(self.ids).astype(np.int32)
+            frame["image"] = engine.images(self.ids).astype(np.int32)
         self._frames.append(frame)
         self._bytes += sum(array.nbytes for array in frame.values())
         if self._bytes >= LARGEST:
@@ -126,9 +99,9 @@ class TrajectoryWriter:
 
     def remove(self) -> None:
         """Delete all segments at once, after their frames have gone to the data file."""
+        done = self.folder.with_name(f".{self.folder.name}.done")
+        shutil.rmtree(done, ignore_errors=True)  # we may have been killed here before
         if self.folder.is_dir():
-            done = self.folder.with_name(f".{self.folder.name}.done")
-            shutil.rmtree(done, ignore_errors=True)
             self.folder.rename(done)  # all or none, should we be killed here
             shutil.rmtree(done, ignore_errors=True)
 

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
-from mesokit.component import component, param, tag
-from mesokit.observe import setting
-from mesokit.observe.molecules import KIND, bond_in_shear, bonds_of, molecule_of
-from mesokit.observe.protocol import Observable, RunningFluid
-from mesokit.observe.result import Array, Comparison, Result
-from mesokit.observe.tensor import TensorAccumulator
+from mesokit.case.component import component, param, tag
+from mesokit.engine import RunningFluid
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import KIND, bond_in_shear, bonds_of, molecule_of
+from mesokit.observe.shared.protocol import Observable
+from mesokit.observe.shared.result import Array, Comparison, Result
+from mesokit.observe.shared.tensor import TensorAccumulator
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 IN_SHEAR = "approximate: stretched by the flow, beads with the friction of free particles"
 
@@ -24,6 +25,7 @@ class BondLength(Observable):
     """Mean of the products of the components of bonds; their sum is the mean square bond length."""
 
     quantity: Literal["bond-length"] = tag("bond-length")
+    needs_fluid: ClassVar[bool] = False
     kind: int = param(1, doc=KIND, ge=1)
 
     def check(self, case: Case) -> None:
@@ -58,9 +60,9 @@ class BondLengthAccumulator(TensorAccumulator):
     def square(self) -> float:
         """Mean square length; nan in flow, between walls, and where other beads matter."""
         case = self.case
-        at_rest = not setting.driven(case) or (
-            setting.isothermal(case) and case.fluid.force.rule == "uniform" and not case.walls
-        )
+        force = case.fluid.force
+        falling = force.acts and force.uniform(case.box.dimension) is not None
+        at_rest = not setting.driven(case) or (setting.isothermal(case) and falling)
         if case.walls or not at_rest:
             return np.nan
         found = self.molecule.mean_square_bond(case.box.dimension, case.fluid.kT)
@@ -76,7 +78,7 @@ class BondLengthAccumulator(TensorAccumulator):
         case, box = self.case, self.case.box
         mean, error = self.summed(0, np.eye(box.dimension))
         expected, note = self.square(), ""
-        undisturbed = not case.walls and case.fluid.force.rule == "none"
+        undisturbed = not case.walls and not case.fluid.force.acts
         if box.shear_rate and not box.shear_frequency and undisturbed and setting.isothermal(case):
             flowing = bond_in_shear(case)
             if flowing is not None:

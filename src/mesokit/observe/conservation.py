@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.box import AXES
-from mesokit.component import component, tag
-from mesokit.observe import setting
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
-from mesokit.observe.result import Array, Comparison, Result
+from mesokit.case.box import AXES
+from mesokit.case.component import component, tag
+from mesokit.engine import RunningFluid
+from mesokit.method.mpcd.expected import setting
+from mesokit.observe.shared.protocol import Observable, State, pack, unpack
+from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 ENERGY = "m a^2/tau^2"
 ROWS = 4096  # kept of the time series; every other one is dropped when they are full
@@ -32,6 +33,7 @@ class Conservation(Observable):
     """
 
     quantity: Literal["conservation"] = tag("conservation")
+    needs_fluid: ClassVar[bool] = False
 
     def accumulator(self, case: Case) -> ConservationAccumulator:
         """An empty memory for it."""
@@ -117,6 +119,7 @@ class ConservationAccumulator:
         units |= {name: "m a/tau" for name in names if name.startswith("momentum")}
         return Result(
             quantity="conservation",
+            drawing="series",
             name=self.name,
             x={"time": rows[:, 1].copy(), "component": np.array(names)},
             value=value,

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from mesokit.component import component, tag
-from mesokit.observe import setting
-from mesokit.observe.field import Array, Field, FieldAccumulator
-from mesokit.observe.result import Result
-from mesokit.solids import solids_of
+from mesokit.case.component import component, tag
+from mesokit.geometry.solids.solids import solids_of
+from mesokit.method.mpcd.expected import setting
+from mesokit.observe.shared.field import Array, Field, FieldAccumulator
+from mesokit.observe.shared.result import Result
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 
 @component
@@ -51,6 +51,7 @@ class DensityFieldAccumulator(FieldAccumulator):
             )
         return Result(
             quantity="density-field",
+            drawing="map",
             name=self.name,
             x=self.coordinates,
             value=self.blocks.mean()[0],

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from mesokit import theory
-from mesokit.component import component, param, tag
+from mesokit.case.component import component, param, tag
+from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
-from mesokit.observe import setting
-from mesokit.observe.estimate import Estimate, of_mean
-from mesokit.observe.molecules import KIND, Group, group_of, spring_of
-from mesokit.observe.profile import Array, Profile, ProfileAccumulator
-from mesokit.observe.protocol import RunningFluid
-from mesokit.observe.result import Comparison, Result
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import KIND, Group, group_of, spring_of
+from mesokit.observe.shared.estimate import Estimate, of_mean
+from mesokit.observe.shared.profile import Array, Profile, ProfileAccumulator
+from mesokit.observe.shared.result import Comparison, Result
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 LABELS = {
     "particles": "density",
@@ -104,6 +104,7 @@ class DensityProfileAccumulator(ProfileAccumulator):
                     found.append(Comparison(where, value, error, float(mean @ expected), "1/cell"))
         return Result(
             quantity="density-profile",
+            drawing="profile",
             name=self.name,
             x={self.observable.axis: self.centres},
             value=density.value,
@@ -137,7 +138,7 @@ class DensityProfileAccumulator(ProfileAccumulator):
             return self.expected_of_molecules(decay)
         if decay == 0:
             return np.full(self.bins, density)
-        if len({kind.mass for kind in case.fluid.species}) > 1:
+        if case.fluid.mixed:
             return None
         height = self.edges[-1]
         scale = density * height * decay / np.expm1(decay * height)

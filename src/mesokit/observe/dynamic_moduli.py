@@ -10,17 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
-from mesokit.component import component, param, tag
+from mesokit.case.component import component, param, tag
+from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
-from mesokit.observe import setting
-from mesokit.observe.molecules import rouse_note, rouse_times_of, without_bonds
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
-from mesokit.observe.result import Array, Comparison, Result
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import rouse_note, rouse_times_of, without_bonds
+from mesokit.observe.shared.protocol import Observable, State, pack, unpack
+from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.observe.stress import PARTS, ROUSE, UNIT
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 LEAST_SAMPLES = 8  # in a period
 MODULI = {"G'": "storage", "G''": "loss"}
@@ -95,9 +96,12 @@ class DynamicModuliAccumulator:
     def state(self) -> State:
         """All it has to remember."""
         return pack(
-            blocks=self.blocks, squares=self.squares, products=self.products, began=self.began,
+            blocks=self.blocks,
+            squares=self.squares,
+            products=self.products,
+            began=self.began,
             samples=self.samples,
-        )  # fmt: skip
+        )
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Go on from `state()`."""
@@ -109,6 +113,7 @@ class DynamicModuliAccumulator:
         """Both moduli by parts."""
         return Result(
             quantity="dynamic-moduli",
+            drawing="moduli",
             name=self.name,
             x={"part": np.array([*self.parts, "total"]), "modulus": np.array(list(MODULI))},
             value=self.blocks.mean(),
@@ -161,9 +166,12 @@ class DynamicModuliAccumulator:
             scale = setting.mass_density(self.case) * self.case.box.shear_frequency
             found.append(
                 Comparison(
-                    "viscosity from the loss modulus", float(mean[-1, 1] / scale),
-                    float(error[-1, 1] / scale), float(expected[-1, 1] / scale), "a^2/tau",
+                    "viscosity from the loss modulus",
+                    float(mean[-1, 1] / scale),
+                    float(error[-1, 1] / scale),
+                    float(expected[-1, 1] / scale),
+                    "a^2/tau",
                     setting.caveat(self.case),
                 )
-            )  # fmt: skip
+            )
         return found

@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.box import AXES
-from mesokit.component import component, param, tag
+from mesokit.case.box import AXES
+from mesokit.case.component import component, param, tag
+from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
-from mesokit.observe import setting
-from mesokit.observe.estimate import of_ratio
-from mesokit.observe.field import Array, Field
-from mesokit.observe.origins import spread_ids
-from mesokit.observe.protocol import RunningFluid, State
-from mesokit.observe.result import Result
+from mesokit.observe.shared.estimate import of_ratio
+from mesokit.observe.shared.field import Array, Field
+from mesokit.observe.shared.protocol import State
+from mesokit.observe.shared.result import Result
+from mesokit.statistics import spread_ids
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 MOST_NUMBERS = 2**27  # of all frames together: half a gigabyte
 
@@ -66,10 +66,18 @@ class FlowFrames(Field):
 
     def numbers(self, case: Case) -> int:
         """Numbers kept of a whole run."""
-        lengths = [case.box.size[setting.axis_index(case, axis)] for axis in self.axes]
+        lengths = [case.box.size[case.box.index(axis)] for axis in self.axes]
         bins = lengths[0] * lengths[1] * self.bins_per_cell**2
         positions = min(self.particles, case.particles) * case.box.dimension
         return self.frames(case) * (bins * len(_parts(case)) + positions)
+
+    def warnings(self, case: Case) -> Iterator[str]:
+        """A window that is longer than the run."""
+        if self.window > case.run.steps:
+            yield (
+                f"window = {self.window}: more than run.steps = {case.run.steps}; there will be "
+                "one frame, of a window cut short"
+            )
 
     def accumulator(self, case: Case) -> FlowFramesAccumulator:
         """An empty memory for it."""
@@ -78,7 +86,7 @@ class FlowFrames(Field):
 
 def _parts(case: Case) -> list[str]:
     """What is kept of each bin. Velocities are weighted by mass, which a mixture has apart."""
-    mixture = len({kind.mass for kind in case.fluid.species}) > 1
+    mixture = case.fluid.mixed
     velocities = [f"velocity_{axis}" for axis in AXES[: case.box.dimension]]
     return ["density", *["mass_density"] * mixture, *velocities]
 
@@ -89,7 +97,7 @@ class FlowFramesAccumulator:
     def __init__(self, observable: FlowFrames, case: Case) -> None:
         observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
-        self.axes = tuple(setting.axis_index(case, axis) for axis in observable.axes)
+        self.axes = tuple(case.box.index(axis) for axis in observable.axes)
         lengths = [case.box.size[axis] for axis in self.axes]
         self.bins = tuple(length * observable.bins_per_cell for length in lengths)
         self.parts = _parts(case)
@@ -162,6 +170,7 @@ class FlowFramesAccumulator:
         x = {"time": np.array(times), first: self._centres(0), second: self._centres(1)}
         return Result(
             quantity="flow-frames",
+            drawing="frames",
             name=self.name,
             x=x | {"component": np.array(self.parts)},
             value=value.astype(float),
@@ -211,6 +220,7 @@ def average(result: Result) -> Result:
     return replace(
         result,
         quantity="velocity-field",
+        drawing="map",
         x={
             first: result.x[first],
             second: result.x[second],

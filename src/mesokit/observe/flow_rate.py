@@ -9,16 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
-from mesokit.box import AXES, Axis
-from mesokit.component import component, param, tag
-from mesokit.observe import recognise, setting
-from mesokit.observe.estimate import Estimate, of_mean
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
-from mesokit.observe.result import Comparison, Result
+from mesokit.case.box import AXES, Axis
+from mesokit.case.component import component, param, tag
+from mesokit.engine import RunningFluid
+from mesokit.method.mpcd.expected import recognise, setting
+from mesokit.observe.shared.estimate import Estimate, of_mean
+from mesokit.observe.shared.protocol import Observable, State, pack, unpack
+from mesokit.observe.shared.result import Comparison, Result
 from mesokit.statistics import Blocks, TimeSeries
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 FLUX = {2: "a^2/tau", 3: "a^3/tau"}  # by dimension
 
@@ -38,7 +39,7 @@ class FlowRate(Observable):
     def check(self, case: Case) -> None:
         """Raise CaseError for an axis that the box has not."""
         if self.axis is not None:
-            setting.axis_index(case, self.axis)
+            case.box.index(self.axis)
 
     def seen(self, case: Case) -> int:
         """Number of the axis in this case."""
@@ -87,6 +88,7 @@ class FlowRateAccumulator:
         found = self.comparisons(known, theory_name) if self.blocks.count else []
         return Result(
             quantity="flow-rate",
+            drawing="flow series",
             name=self.name,
             x={"time": time},
             value=value,
@@ -151,8 +153,10 @@ class FlowRateAccumulator:
         if coefficients is None or not push or setting.push_axis(case) != self.axis:
             return np.nan, ""
         viscosity, pipe, lattice = (
-            coefficients.viscosity, recognise.pipe(case), recognise.lattice(case),
-        )  # fmt: skip
+            coefficients.viscosity,
+            recognise.pipe(case),
+            recognise.lattice(case),
+        )
         if pipe is not None and pipe.axis == self.axis:
             rate = theory.hagen_poiseuille_flow_rate(pipe.radius, push, viscosity)
             area = np.prod(case.box.size) / case.box.size[self.axis]

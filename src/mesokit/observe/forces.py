@@ -9,21 +9,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
-from mesokit.box import AXES, Axis
-from mesokit.component import component, param, tag
+from mesokit.case.box import AXES, Axis
+from mesokit.case.component import component, param, tag
+from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
-from mesokit.geometry.plates import Plates
-from mesokit.observe import recognise, setting
-from mesokit.observe.estimate import Estimate, of_mean
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
-from mesokit.observe.result import Array, Comparison, Result, with_error
+from mesokit.geometry.shape.plates import Plates
+from mesokit.geometry.solids.solids import free_volume, slit_of, solids_of
+from mesokit.method.mpcd.expected import recognise, setting
+from mesokit.observe.shared.estimate import Estimate, of_mean
+from mesokit.observe.shared.protocol import Observable, State, pack, unpack
+from mesokit.observe.shared.result import Array, Comparison, Result, with_error
+from mesokit.observe.shared.walls import require_counted
 from mesokit.observe.wall_stress import PLATES, balance
-from mesokit.observe.walls import require_counted
-from mesokit.solids import free_volume, slit_of, solids_of
 from mesokit.statistics import Blocks, TimeSeries
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 FORCE, TORQUE = "m a/tau^2", "m a^2/tau^2"
 NUMBERS = 2**20  # of the time series, for all bodies together
@@ -70,7 +71,7 @@ class Forces(Observable):
         if self.area is not None and case.box.dimension == 2:
             raise CaseError("area: only in 3D; leave it out")
         if self.flow is not None:
-            setting.axis_index(case, self.flow, "flow")
+            case.box.index(self.flow, "flow")
         elif setting.push_axis(case) is None:
             raise CaseError("flow: missing; no force along one axis says which is that of the drag")
 
@@ -118,6 +119,7 @@ class ForcesAccumulator:
         units = {name: FORCE if name[0] == "f" else TORQUE for name in self.components}
         return Result(
             quantity="forces",
+            drawing="per solid",
             name=self.name,
             x={"body": np.array(self.bodies), "component": np.array(self.components)},
             value=self.blocks.mean()[:size].reshape(self.shape),
@@ -143,7 +145,8 @@ class ForcesAccumulator:
     def obstacles(self) -> list[int]:
         """Numbers of the bodies that stand in the flow: all but plates."""
         solids = solids_of(self.case)
-        return [i for i, wall in enumerate(solids.walls) if self.case.walls[wall].shape != "plates"]
+        walls = [self.case.walls[number] for number in solids.walls]
+        return [i for i, wall in enumerate(walls) if not isinstance(wall, Plates)]
 
     def plates(self) -> NDArray[np.int64]:
         """1 for each body that is a plate, 0 for the others."""
@@ -157,9 +160,9 @@ class ForcesAccumulator:
         nan where there is none, such as along slip plates, which hold nothing.
         """
         case = self.case
-        if case.fluid.force.rule == "sinusoidal":
+        if case.fluid.force.uniform(self.dimension) is None:
             rest = np.zeros(self.dimension)
-            rest[AXES.index(case.fluid.force.flow)] = np.nan
+            rest[[case.fluid.force.drives(axis) for axis in range(self.dimension)]] = np.nan
             return rest
         mass = setting.mass_density(case) * free_volume(case)
         total: Array = setting.acceleration(case) * mass
@@ -179,7 +182,7 @@ class ForcesAccumulator:
             expected[:, d:] = 0.0
         elif len(self.bodies) == 1:
             expected[0, :d] = self.total()
-        elif gap is not None and case.fluid.force.rule == "none":
+        elif gap is not None and not case.fluid.force.acts:
             expected[:, :] = 0.0
             torques = self.torques(gap)
             column = d if d == 2 else d + gap.axis
@@ -193,13 +196,17 @@ class ForcesAccumulator:
             return np.nan, np.nan
         rho = setting.mass_density(self.case)
         one_sided = 0.0
-        if not self.case.fluid.collision.rule.endswith("+a"):
+        if "angular momentum" not in self.case.fluid.collision.conserves:
             one_sided = rho * coefficients.viscosity_collisional
         length = self.case.box.size[gap.axis] if self.dimension == 3 else 1.0
         inner, outer = theory.taylor_couette_torque(
-            gap.inner, gap.outer, gap.inner_rate, gap.outer_rate, coefficients.dynamic_viscosity,
+            gap.inner,
+            gap.outer,
+            gap.inner_rate,
+            gap.outer_rate,
+            coefficients.dynamic_viscosity,
             one_sided,
-        )  # fmt: skip
+        )
         return length * inner, length * outer
 
     def comparisons(self, expected: Array) -> list[Comparison]:

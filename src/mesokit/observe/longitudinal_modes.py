@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from mesokit import theory
-from mesokit.component import component, tag
-from mesokit.observe import setting
-from mesokit.observe.decay import fit_curve, normalised
-from mesokit.observe.modes import SHOWN, Array, Modes, ModesAccumulator
-from mesokit.observe.result import Comparison, Result
+from mesokit.case.component import component, tag
+from mesokit.method.mpcd.expected import setting
+from mesokit.observe.shared.decay import fit_curve, normalised
+from mesokit.observe.shared.modes import SHOWN, Array, Modes, ModesAccumulator
+from mesokit.observe.shared.result import Comparison, Result
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 FIRST = 3  # steps left out of the fit, as for transverse modes
 LONGEST = 2.5  # periods that the fit looks at
@@ -54,6 +54,7 @@ class LongitudinalModesAccumulator(ModesAccumulator):
         first = self.equipartition() if self.undisturbed() else None
         return Result(
             quantity="longitudinal-modes",
+            drawing="modes",
             name=self.name,
             x={"time": time, "wavenumber": self.wavenumbers},
             value=value,

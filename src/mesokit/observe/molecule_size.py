@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
 from mesokit import theory
-from mesokit.component import component, param, tag
-from mesokit.observe import setting
-from mesokit.observe.molecules import KIND, beads_of, free_bond, gyration, modes_of, molecule_of
-from mesokit.observe.protocol import Observable, RunningFluid
-from mesokit.observe.result import Array, Comparison, Result
-from mesokit.observe.tensor import TensorAccumulator
+from mesokit.case.component import component, param, tag
+from mesokit.engine import RunningFluid
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import (
+    KIND,
+    beads_of,
+    free_bond,
+    gyration,
+    modes_of,
+    molecule_of,
+)
+from mesokit.observe.shared.protocol import Observable
+from mesokit.observe.shared.result import Array, Comparison, Result
+from mesokit.observe.shared.tensor import TensorAccumulator
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 PARTS = ("gyration", "end to end")
 
@@ -25,6 +33,7 @@ class MoleculeSize(Observable):
     """Mean gyration tensor; of chains also mean R R of the vector R from end to end."""
 
     quantity: Literal["molecule-size"] = tag("molecule-size")
+    needs_fluid: ClassVar[bool] = False
     molecules: int = param(2000, doc="molecules looked at", ge=1)
     kind: int = param(1, doc=KIND, ge=1)
 

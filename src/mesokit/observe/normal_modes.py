@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
-from mesokit.component import component, param, tag
-from mesokit.observe import setting
-from mesokit.observe.decay import fit_curve, normalised
-from mesokit.observe.molecules import (
+from mesokit.case.component import component, param, tag
+from mesokit.engine import RunningFluid
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import (
     KIND,
     beads_of,
     mode_times_of,
@@ -20,13 +20,14 @@ from mesokit.observe.molecules import (
     molecule_of,
     spring_of,
 )
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
-from mesokit.observe.result import Comparison, Result
+from mesokit.observe.shared.decay import fit_curve, normalised
+from mesokit.observe.shared.protocol import Observable, State, pack, unpack
+from mesokit.observe.shared.result import Comparison, Result
 from mesokit.observe.transverse_modes import FEWEST, LOWEST, decaying
 from mesokit.statistics import MultipleTau
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 SHOWN = 3  # modes whose times are compared
 
@@ -41,6 +42,7 @@ class NormalModes(Observable):
     """
 
     quantity: Literal["normal-modes"] = tag("normal-modes")
+    needs_fluid: ClassVar[bool] = False
     modes: int = param(5, doc="modes followed, from the slowest", ge=1)
     molecules: int = param(500, doc="molecules followed", ge=1)
     kind: int = param(1, doc=KIND, ge=1)
@@ -108,6 +110,7 @@ class NormalModesAccumulator:
             expected = np.exp(-lag[:, None] / times.mode[: self.count])
         return Result(
             quantity="normal-modes",
+            drawing="normal modes",
             name=self.name,
             x={"time": lag, "mode": np.arange(1, self.count + 1)},
             value=np.stack([c.value for c in every], axis=1),
@@ -149,10 +152,13 @@ class NormalModesAccumulator:
                 stiff = spring.k * self.eigenvalues[p] if spring else np.nan
                 found.append(
                     Comparison(
-                        f"mean square of mode {p + 1}", d * float(square.value[0]),
-                        d * float(square.error[0]), d * self.case.fluid.kT / stiff, "a^2",
+                        f"mean square of mode {p + 1}",
+                        d * float(square.value[0]),
+                        d * float(square.error[0]),
+                        d * self.case.fluid.kT / stiff,
+                        "a^2",
                     )
-                )  # fmt: skip
+                )
         return found
 
     def relaxation_time(self, correlator: MultipleTau) -> tuple[float, float] | None:

@@ -8,18 +8,19 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.box import AXES, Axis
-from mesokit.component import component, param, show, tag
+from mesokit.case.box import AXES, Axis
+from mesokit.case.component import component, param, show, tag
+from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
-from mesokit.observe import setting
-from mesokit.observe.estimate import of_mean
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
-from mesokit.observe.result import Array, Comparison, Result
-from mesokit.solids import solids_of
+from mesokit.geometry.solids.solids import solids_of
+from mesokit.method.mpcd.expected import setting
+from mesokit.observe.shared.estimate import of_mean
+from mesokit.observe.shared.protocol import Observable, State, pack, unpack
+from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.statistics import Blocks, TimeSeries, dominant_frequency, spectrum
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 ROWS = 16384  # of the time series
 
@@ -62,7 +63,7 @@ class Probe(Observable):
             raise CaseError(f"size = {show(self.size)}: expected lengths that fit the box")
         self._require_between_plates(case)
         if self.component is not None:
-            setting.axis_index(case, self.component, "component")
+            case.box.index(self.component, "component")
         if (self.speed is None) != (self.length is None):
             lone, other = ("speed", "length") if self.length is None else ("length", "speed")
             raise CaseError(f"{lone}: no effect without {other}; give both or neither")
@@ -142,6 +143,7 @@ class ProbeAccumulator:
         peak = dominant_frequency(values[:, self.component], interval)
         return Result(
             quantity="probe",
+            drawing="signal",
             name=self.name,
             x={"frequency": found.frequency},
             value=found.power,

@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from mesokit import theory
-from mesokit.box import AXES, Axis
-from mesokit.component import component, param, show, tag
+from mesokit.case.box import AXES, Axis
+from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
-from mesokit.observe import recognise, setting
-from mesokit.observe.estimate import Estimate, fit
-from mesokit.observe.protocol import Observable
-from mesokit.observe.result import Comparison, Result
-from mesokit.observe.shells import Array, ShellAccumulator, shell_edges, shell_volumes
-from mesokit.solids import FINE, solids_of
+from mesokit.geometry.solids.solids import FINE, solids_of
+from mesokit.method.mpcd.expected import recognise, setting
+from mesokit.observe.shared.estimate import Estimate, fit
+from mesokit.observe.shared.protocol import Observable
+from mesokit.observe.shared.result import Comparison, Result
+from mesokit.observe.shared.shells import Array, ShellAccumulator, shell_edges, shell_volumes
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 ENOUGH = 100  # relaxation times of a flow, for an error bar
 COMPONENTS = ("radial", "azimuthal", "axial")
@@ -121,6 +121,7 @@ class RadialProfileAccumulator(ShellAccumulator):
                 found += self.chi_square(value, expected, "against theory")
         return Result(
             quantity="radial-profile",
+            drawing="profile",
             name=self.name,
             x={"r": self.centres},
             value=value.value,
@@ -224,7 +225,7 @@ class RoundFlow:
         self.kind, self.component, self.round = "rest", "azimuthal", True
         self.profile: Callable[[Array], Array] | None = None
         self.surfaces: tuple[float, ...] = ()
-        forced = case.fluid.force.rule != "none"
+        forced = case.fluid.force.acts
         if pipe is not None and forced:
             self.axis, self.centre, self.radii = pipe.axis, pipe.centre, (0.0, pipe.radius)
             self.kind, self.component = "hagen-poiseuille", "axial"

@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 import numpy as np
 
 from mesokit import theory
-from mesokit.component import component, param, tag
+from mesokit.case.component import component, param, tag
+from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
-from mesokit.observe import setting
-from mesokit.observe.molecules import bond_viscosity, stress_in_shear
-from mesokit.observe.protocol import Observable, RunningFluid
-from mesokit.observe.result import Array, Comparison, Result
-from mesokit.observe.tensor import TensorAccumulator
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import bond_viscosity, stress_in_shear
+from mesokit.observe.shared.protocol import Observable
+from mesokit.observe.shared.result import Array, Comparison, Result
+from mesokit.observe.shared.tensor import TensorAccumulator
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 PARTS = ("kinetic", "collisional", "bond")  # the last one of molecules only
 ROUSE = "Rouse molecules, beads with the friction of free particles"
@@ -76,7 +77,7 @@ class StressAccumulator(TensorAccumulator):
             expected[-1, axis, axis] = -self.wholes * kT  # bonds pull as if beads were one
             expected[2:-1, axis, axis] = (self.carriers - self.wholes) * kT
         rate, coefficients = case.box.shear_rate, setting.transport(case)
-        if case.fluid.force.rule != "none":
+        if case.fluid.force.acts:
             expected[:] = np.nan
         elif rate:
             # the parts and the normal stresses are of higher order in the shear rate
@@ -162,8 +163,11 @@ class StressAccumulator(TensorAccumulator):
             weight[which, which], weight[which + 1, which + 1] = 1.0, -1.0
             found.append(
                 Comparison(
-                    f"{name} normal-stress difference", *self.summed(-1, weight), known[which],
-                    UNIT[d], ROUSE if bonded else "",
+                    f"{name} normal-stress difference",
+                    *self.summed(-1, weight),
+                    known[which],
+                    UNIT[d],
+                    ROUSE if bonded else "",
                 )
-            )  # fmt: skip
+            )
         return found

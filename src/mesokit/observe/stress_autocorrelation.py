@@ -8,17 +8,18 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.component import component, param, tag
+from mesokit.case.component import component, param, tag
+from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
-from mesokit.observe import setting
-from mesokit.observe.estimate import Estimate
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
-from mesokit.observe.result import Array, Comparison, Result
+from mesokit.method.mpcd.expected import setting
+from mesokit.observe.shared.estimate import Estimate
+from mesokit.observe.shared.protocol import Observable, State, pack, unpack
+from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.observe.stress import UNIT
 from mesokit.statistics import MultipleTau
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 NOISE = 1.0  # standard errors: the integral ends where G first falls below so many
 FREQUENCIES = 40
@@ -102,6 +103,7 @@ class StressAutocorrelationAccumulator:
             comparisons, extra = self.integrals(time, modulus)
         return Result(
             quantity="stress-autocorrelation",
+            drawing="modulus",
             name=self.name,
             x={"time": time},
             value=modulus.value,

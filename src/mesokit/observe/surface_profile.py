@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from mesokit.box import AXES, Axis
-from mesokit.component import component, param, show, tag
+from mesokit.case.box import AXES, Axis
+from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
-from mesokit.observe import setting
-from mesokit.observe.estimate import Estimate
-from mesokit.observe.protocol import Observable
-from mesokit.observe.result import Comparison, Result
-from mesokit.observe.shells import Array, ShellAccumulator, shell_edges, shell_volumes
-from mesokit.solids import FINE, solids_of
+from mesokit.geometry.solids.solids import FINE, solids_of
+from mesokit.method.mpcd.expected import setting
+from mesokit.observe.shared.estimate import Estimate
+from mesokit.observe.shared.protocol import Observable
+from mesokit.observe.shared.result import Comparison, Result
+from mesokit.observe.shared.shells import Array, ShellAccumulator, shell_edges, shell_volumes
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 LABELS = {
     "density": ("density", "1/cell"),
@@ -57,7 +57,7 @@ class SurfaceProfile(Observable):
         if self.solid is not None and self.solid not in names:
             raise CaseError(f"solid = {show(self.solid)}: expected one of {', '.join(names)}")
         if self.flow is not None:
-            setting.axis_index(case, self.flow, "flow")
+            case.box.index(self.flow, "flow")
             if self.of != "speed":
                 raise CaseError(f"flow: no effect with of = {self.of!r}; leave it out")
         elif self.of == "speed" and case.box.dimension == 3 and setting.push_axis(case) is None:
@@ -121,6 +121,7 @@ class SurfaceProfileAccumulator(ShellAccumulator):
         label, unit = LABELS[of]
         return Result(
             quantity="surface-profile",
+            drawing="profile",
             name=self.name,
             x={"distance": self.centres},
             value=value.value,

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.component import component, tag
-from mesokit.observe import setting
-from mesokit.observe.estimate import Estimate, of_ratio
-from mesokit.observe.profile import Array, Profile, ProfileAccumulator
-from mesokit.observe.result import Comparison, Result
+from mesokit.case.component import component, tag
+from mesokit.method.mpcd.expected import setting
+from mesokit.observe.shared.estimate import Estimate, of_ratio
+from mesokit.observe.shared.profile import Array, Profile, ProfileAccumulator
+from mesokit.observe.shared.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 CORRELATIONS = 0.02  # largest measured rise for (shear rate)^2 that molecular chaos leaves out
 
@@ -101,6 +101,7 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
                 )
         return Result(
             quantity="temperature-profile",
+            drawing="profile",
             name=self.name,
             x={self.observable.axis: self.centres},
             value=temperature.value,

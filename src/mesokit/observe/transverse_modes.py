@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from mesokit import theory
-from mesokit.component import component, tag
-from mesokit.observe import setting
-from mesokit.observe.decay import fit_curve, normalised
-from mesokit.observe.modes import SHOWN, Array, Modes, ModesAccumulator, transverse_units
-from mesokit.observe.molecules import (
+from mesokit.case.component import component, tag
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import (
     free_bond,
     modes_of,
     molecule_of,
     rouse_times_of,
     without_bonds,
 )
-from mesokit.observe.result import Comparison, Result
+from mesokit.observe.shared.decay import fit_curve, normalised
+from mesokit.observe.shared.modes import SHOWN, Array, Modes, ModesAccumulator, transverse_units
+from mesokit.observe.shared.result import Comparison, Result
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 LOWEST = (0.5, 0.2)  # of the correlation, that the fit looks at: later lags add little but noise
 FEWEST = 4  # lags; the lower limit serves where the sampling is too coarse for the upper one
@@ -64,6 +64,7 @@ class TransverseModesAccumulator(ModesAccumulator):
         fits = self.deviations() if bonded else self.viscosities(coefficients)
         return Result(
             quantity="transverse-modes",
+            drawing="modes",
             name=self.name,
             x={"time": time, "wavenumber": self.wavenumbers},
             value=value,
@@ -101,13 +102,13 @@ class TransverseModesAccumulator(ModesAccumulator):
                 self.wavenumbers, time[:, None], nu, elasticity, times.stress
             )
         diffusion = coefficients.diffusion / molecule.length
+        springs = theory.GaussianMolecule(
+            modes_of(molecule), times.mode[0], bond, diffusion, case.box.dimension
+        )
         curves = [
-            theory.transverse_correlation_finite_k(
-                k, time, nu, elasticity, modes_of(molecule), times.mode[0], bond, diffusion,
-                case.box.dimension,
-            )
+            theory.transverse_correlation_finite_k(k, time, nu, elasticity, springs)
             for k in self.wavenumbers
-        ]  # fmt: skip
+        ]
         return np.stack(curves, axis=1)
 
     def deviations(self) -> list[Comparison]:
@@ -128,10 +129,14 @@ class TransverseModesAccumulator(ModesAccumulator):
                 worst = int(np.argmax(np.abs(off)))
                 found.append(
                     Comparison(
-                        f"largest deviation at k = {k:.4g}/a, {name}", float(off[worst]),
-                        float(error[worst, i]), 0.0, "", f"at {time[worst]:.3g} tau",
+                        f"largest deviation at k = {k:.4g}/a, {name}",
+                        float(off[worst]),
+                        float(error[worst, i]),
+                        0.0,
+                        "",
+                        f"at {time[worst]:.3g} tau",
                     )
-                )  # fmt: skip
+                )
         return found
 
     def viscosities(self, coefficients: theory.Transport | None) -> list[Comparison]:

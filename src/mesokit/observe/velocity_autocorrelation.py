@@ -9,16 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
-from mesokit.component import component, param, tag
+from mesokit.case.component import component, param, tag
+from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
-from mesokit.observe import setting
-from mesokit.observe.estimate import Estimate
-from mesokit.observe.origins import Origins, spread_ids
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
-from mesokit.observe.result import Array, Comparison, Result
+from mesokit.method.mpcd.expected import setting
+from mesokit.observe.shared.estimate import Estimate
+from mesokit.observe.shared.origins import Origins
+from mesokit.observe.shared.protocol import Observable, State, pack, unpack
+from mesokit.observe.shared.result import Array, Comparison, Result
+from mesokit.statistics import spread_ids
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 
 @component
@@ -83,6 +85,7 @@ class VelocityAutocorrelationAccumulator:
             extra["tail"] = self.tail(time, coefficients)
         return Result(
             quantity="velocity-autocorrelation",
+            drawing="memory",
             name=self.name,
             x={"time": time},
             value=kept.value,
@@ -123,7 +126,7 @@ class VelocityAutocorrelationAccumulator:
         first = np.eye(n)[0]
         value, error = kept.scalar(kept.value[0], first)
         found = []
-        if len({kind.mass for kind in fluid.species}) < 2:
+        if not fluid.mixed:
             equipartition = fluid.kT / fluid.mass
             error = setting.with_start(self.case, error, equipartition)
             found.append(Comparison("value at lag 0", value, error, equipartition, "a^2/tau^2"))

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from mesokit.box import AXES
-from mesokit.component import component, tag
-from mesokit.observe import setting
-from mesokit.observe.estimate import of_ratio
-from mesokit.observe.field import Array, Field, FieldAccumulator
-from mesokit.observe.result import Result
+from mesokit.case.box import AXES
+from mesokit.case.component import component, tag
+from mesokit.method.mpcd.expected import setting
+from mesokit.observe.shared.estimate import of_ratio
+from mesokit.observe.shared.field import Array, Field, FieldAccumulator
+from mesokit.observe.shared.result import Result
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 
 @component
@@ -46,6 +46,7 @@ class VelocityFieldAccumulator(FieldAccumulator):
         components = np.array(AXES[: self.case.box.dimension])
         return Result(
             quantity="velocity-field",
+            drawing="map",
             name=self.name,
             x=self.coordinates | {"component": components},
             value=np.moveaxis(velocity.value, 0, -1),

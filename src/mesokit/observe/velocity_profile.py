@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from mesokit.box import Axis
-from mesokit.component import component, param, tag
-from mesokit.observe import setting
-from mesokit.observe.estimate import Estimate, fit, of_ratio
-from mesokit.observe.profile import Array, Profile, ProfileAccumulator
-from mesokit.observe.result import Comparison, Result
-from mesokit.solids import slit_of
+from mesokit.case.box import Axis
+from mesokit.case.component import component, param, tag
+from mesokit.geometry.solids.solids import slit_of
+from mesokit.method.mpcd.expected import setting
+from mesokit.observe.shared.estimate import Estimate, fit, of_ratio
+from mesokit.observe.shared.profile import Array, Profile, ProfileAccumulator
+from mesokit.observe.shared.result import Comparison, Result
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 VISCOSITY = "a^2/tau"
 ENOUGH = 100  # relaxation times of a flow, for an error bar
@@ -36,7 +36,7 @@ class VelocityProfile(Profile):
     def check(self, case: Case) -> None:
         """Raise CaseError for an axis that the box has not."""
         super(VelocityProfile, self).check(case)  # noqa: UP008  # the decorator makes a new class
-        setting.axis_index(case, self.seen(case), "component")
+        case.box.index(self.seen(case), "component")
 
     def seen(self, case: Case) -> Axis:
         """The axis of the velocity in this case."""
@@ -56,7 +56,7 @@ class VelocityProfileAccumulator(ProfileAccumulator):
     def __init__(self, observable: VelocityProfile, case: Case) -> None:
         super().__init__(observable, case, width=2)
         self.letter = observable.seen(case)
-        self.component = setting.axis_index(case, self.letter, "component")
+        self.component = case.box.index(self.letter, "component")
 
     def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
         """Momentum along the component, and mass."""
@@ -78,6 +78,7 @@ class VelocityProfileAccumulator(ProfileAccumulator):
                 comparisons += self.chi_square(velocity, expected, "against the line")
         return Result(
             quantity="velocity-profile",
+            drawing="profile",
             name=self.name,
             x={self.observable.axis: self.centres},
             value=velocity.value,

@@ -9,18 +9,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
-from mesokit.box import AXES, Axis
-from mesokit.component import component, param, show, tag
+from mesokit.case.box import AXES, Axis
+from mesokit.case.component import component, param, show, tag
+from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
-from mesokit.observe import recognise, setting
-from mesokit.observe.estimate import Estimate, fit, of_mean, of_ratio
-from mesokit.observe.protocol import Observable, RunningFluid, State, pack, unpack
-from mesokit.observe.result import Array, Comparison, Result
-from mesokit.solids import Solids, solids_of
+from mesokit.geometry.shape import array
+from mesokit.geometry.shape.cylinder import Cylinder
+from mesokit.geometry.shape.plates import Plates
+from mesokit.geometry.solids.solids import Solids, solids_of
+from mesokit.method.mpcd.expected import recognise, setting
+from mesokit.observe.shared.estimate import Estimate, fit, of_mean, of_ratio
+from mesokit.observe.shared.protocol import Observable, State, pack, unpack
+from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 SURE = 3.0  # standard errors by which the fluid must flow back
 STEP = 0.01  # by which the ends of a body are looked for
@@ -48,7 +52,7 @@ class Wake(Observable):
     def check(self, case: Case) -> None:
         """Raise CaseError without a body, a flow, or fluid behind the body."""
         if self.flow is not None:
-            setting.axis_index(case, self.flow, "flow")
+            case.box.index(self.flow, "flow")
         if self.solid is not None and (not case.walls or self.solid not in solids_of(case).names):
             names = ", ".join(solids_of(case).names) if case.walls else "none there"
             raise CaseError(f"solid = {show(self.solid)}: expected one of {names}")
@@ -69,8 +73,8 @@ class Wake(Observable):
         solids = solids_of(case)
         if self.solid is not None:
             return solids.names.index(self.solid)
-        shapes = [case.walls[wall].shape for wall in solids.walls]
-        return next((i for i, shape in enumerate(shapes) if shape != "plates"), None)
+        solid = [not isinstance(case.walls[wall], Plates) for wall in solids.walls]
+        return next((i for i, stands in enumerate(solid) if stands), None)
 
     def accumulator(self, case: Case) -> WakeAccumulator:
         """An empty memory for it."""
@@ -88,8 +92,8 @@ class Standing:
         self.axis = axis
         self.sign = -1.0 if setting.acceleration(case)[axis] < 0 else 1.0
         wall: Any = case.walls[solids.walls[number]]
-        wall = wall.of if wall.shape == "array" else wall
-        along = int(np.argmax(np.abs(wall.direction))) if wall.shape == "cylinder" else None
+        wall = wall.of if isinstance(wall, array.Array) else wall
+        along = int(np.argmax(np.abs(wall.direction))) if isinstance(wall, Cylinder) else None
         self.across = [k for k in range(case.box.dimension) if k not in (axis, along)]
         self.middle = np.array(solids.bodies[number].pieces[0].pivot)
         self.rear = _solid_until(solids, self.middle, axis, self.sign)
@@ -190,6 +194,7 @@ class WakeAccumulator:
         letter = AXES[self.body.axis]
         return Result(
             quantity="wake",
+            drawing="centreline",
             name=self.name,
             x={"distance": self.centres},
             value=velocity.value,

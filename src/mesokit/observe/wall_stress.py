@@ -7,21 +7,22 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 
 from mesokit import theory
-from mesokit.box import AXES
-from mesokit.component import component, tag
+from mesokit.case.box import AXES
+from mesokit.case.component import component, tag
+from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
-from mesokit.observe import setting
-from mesokit.observe.estimate import of_mean
-from mesokit.observe.molecules import spring_of
-from mesokit.observe.protocol import BlockAccumulator, Observable, RunningFluid
-from mesokit.observe.result import Array, Comparison, Result
-from mesokit.observe.walls import require_counted
-from mesokit.solids import slit_of
+from mesokit.geometry.solids.solids import slit_of
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import spring_of
+from mesokit.observe.shared.estimate import of_mean
+from mesokit.observe.shared.protocol import BlockAccumulator, Observable
+from mesokit.observe.shared.result import Array, Comparison, Result
+from mesokit.observe.shared.walls import require_counted
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
-    from mesokit.mpcd.molecule import Molecule
+    from mesokit.case.case import Case
+    from mesokit.method.mpcd.molecule import Molecule
 
 PLATES = ("lower", "upper")
 THIN = 1e-5  # of the height: what lies next to a plate
@@ -72,6 +73,7 @@ class WallStressAccumulator(BlockAccumulator):
         expected = self.expected()
         return Result(
             quantity="wall-stress",
+            drawing="tensor",
             name=self.name,
             x={"plate": np.array(PLATES), "component": np.array(AXES[: self.case.box.dimension])},
             value=self.blocks.mean(),
@@ -147,7 +149,7 @@ def balance(case: Case) -> Array:
             eta = coefficients.dynamic_viscosity if coefficients else np.nan
             drag = eta * (upper - lower) / height
             expected[:, axis] += np.array([drag, -drag])
-    if case.fluid.force.rule == "sinusoidal" or case.box.shear_rate:
+    if case.fluid.force.uniform(d) is None or case.box.shear_rate:
         expected[:, [axis for axis in range(d) if axis != across]] = np.nan
     return expected
 
@@ -161,7 +163,7 @@ def _pressure(case: Case, weight: float, height: float) -> tuple[float, float]:
         pressure = _contact(case, height) * kT
         return -pressure, pressure
     linked = case.fluid.molecule is not None or case.solutes is not None
-    if linked or len({kind.mass for kind in case.fluid.species}) > 1:
+    if linked or case.fluid.mixed:
         return np.nan, np.nan
     lost = setting.mass_density(case) * weight * height  # between the plates
     upper = lost / -np.expm1(-case.fluid.mass * weight * height / kT)

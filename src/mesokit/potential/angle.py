@@ -3,7 +3,8 @@
 import math
 
 from mesokit.potential.protocol import angular
-from mesokit.scalar import added_scaled, dot, scalar, scaled
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.vector import added_scaled, dot, scaled
 
 NO_LENGTH = 1e-24  # square of a length below which a bond has no direction
 

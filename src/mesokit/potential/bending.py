@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
-from mesokit.component import component, param, tag
-from mesokit.potential.protocol import angular
+from mesokit.case.component import component, param, tag
+from mesokit.potential.protocol import Angle, angular
 
 
 @component
-class Bending:
+class Bending(Angle):
     """U = kappa (1 - cos theta), theta the angle between two bonds in a row: 0 where straight."""
 
     rule: Literal["bending"] = tag("bending")

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import Literal, NamedTuple
 
-from mesokit.component import component, param, tag
-from mesokit.potential.protocol import central, torn
+from mesokit.case.component import component, param, tag
+from mesokit.potential.protocol import Bond, central, torn
 
 
 @component
-class FENE:
+class FENE(Bond):
     """U = -(k R0^2/2) ln(1 - r^2/R0^2): never longer than R0 (Warner 1972)."""
 
     rule: Literal["fene"] = tag("fene")

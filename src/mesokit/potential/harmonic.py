@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from typing import Literal, NamedTuple
 
-from mesokit.component import component, param, tag
-from mesokit.potential.protocol import central, torn
+from mesokit import theory
+from mesokit.case.component import component, param, tag
+from mesokit.potential.protocol import Bond, central, torn
 
 
 @component
-class Harmonic:
+class Harmonic(Bond):
     """U = K r^2: a spring without a length of its own; its mean square is d kT/2K in d dimensions.
 
     K is half the spring constant of U = k r^2/2, which rule "spring" has.
@@ -28,9 +29,13 @@ class Harmonic:
         """Parameters for the scalar functions below."""
         return Square(self.K)
 
+    def spring(self) -> theory.Spring:
+        """The spring without a length of its own that it is."""
+        return theory.spring(K=self.K)
+
 
 @component
-class Spring:
+class Spring(Bond):
     """U = (k/2) (r - length)^2: a spring about a length of its own (0 unless said)."""
 
     rule: Literal["spring"] = tag("spring")
@@ -45,6 +50,10 @@ class Spring:
     def kernel(self) -> AboutLength:
         """Parameters for the scalar functions below."""
         return AboutLength(self.k, self.length)
+
+    def spring(self) -> theory.Spring | None:
+        """The spring without a length of its own that it is, if it is one."""
+        return theory.spring(k=self.k) if self.length == 0 else None
 
 
 class Square(NamedTuple):

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
-from mesokit.component import component, param, tag
-from mesokit.potential.protocol import central, torn
+from mesokit.case.component import component, param, tag
+from mesokit.potential.protocol import Pair, central, torn
 
 
 @component
-class LennardJones:
+class LennardJones(Pair):
     """U = 4 epsilon ((sigma/r)^12 - (sigma/r)^6) up to the cut-off, shifted to 0 there."""
 
     rule: Literal["lennard-jones"] = tag("lennard-jones")
@@ -22,6 +22,11 @@ class LennardJones:
     def reach(self) -> float:
         """Distance beyond which there is no force."""
         return self.cutoff * self.sigma
+
+    @property
+    def diameter(self) -> float:
+        """How large a bead is."""
+        return self.sigma
 
     def kernel(self) -> TwelveSix:
         """Parameters for the scalar function below."""

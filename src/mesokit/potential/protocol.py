@@ -3,7 +3,69 @@
 The first argument is the potential's NamedTuple of parameters; its class picks the implementation.
 """
 
-from mesokit.scalar import generic
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any
+
+from mesokit import theory
+from mesokit.case.component import component
+from mesokit.case.registry import family
+from mesokit.scalar.jit import generic
+
+
+@family("bond", "rule", "mesokit.potential")
+@component
+class Bond(ABC):
+    """What links two beads: `central` and `torn` below."""
+
+    @property
+    @abstractmethod
+    def longest(self) -> float:
+        """Length that the bond cannot reach, infinite if there is none."""
+
+    @abstractmethod
+    def kernel(self) -> Any:
+        """Parameters for the scalar functions below."""
+
+    def spring(self) -> theory.Spring | None:
+        """The spring without a length of its own that it is, if it is one: what theory asks."""
+        return None
+
+
+@family("pair potential", "rule", "mesokit.potential")
+@component
+class Pair(ABC):
+    """What acts between any two beads, or a bead and a wall: `central` below."""
+
+    @property
+    @abstractmethod
+    def reach(self) -> float:
+        """Distance beyond which there is no force."""
+
+    @property
+    @abstractmethod
+    def diameter(self) -> float:
+        """How large a bead is: hardly any two come nearer."""
+
+    @abstractmethod
+    def kernel(self) -> Any:
+        """Parameters for the scalar functions below."""
+
+
+@family("angle potential", "rule", "mesokit.potential")
+@component
+class Angle(ABC):
+    """What acts on two bonds in a row: `angular` below."""
+
+    @property
+    @abstractmethod
+    def stiffness(self) -> float:
+        """Second derivative by the angle of a straight chain."""
+
+    @abstractmethod
+    def kernel(self) -> Any:
+        """Parameters for the scalar functions below."""
 
 
 @generic
@@ -18,6 +80,9 @@ def central(potential, square):
 @generic
 def torn(potential, square):
     """Whether a bond of this squared length is longer than it can be (a literal where none is)."""
+
+
+torn.otherwise(lambda potential, square: False)
 
 
 @generic

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Literal
 
-from mesokit.component import component, param, tag
+from mesokit.case.component import component, param, tag
 from mesokit.potential.lennard_jones import TwelveSix, twelve_six
+from mesokit.potential.protocol import Pair
 
 
 @component
-class WCA:
+class WCA(Pair):
     """Lennard-Jones cut off at its minimum 2^(1/6) sigma and shifted: beads that only repel.
 
     After Weeks, Chandler and Andersen (1971).
@@ -23,6 +24,11 @@ class WCA:
     def reach(self) -> float:
         """Distance beyond which there is no force."""
         return 2.0 ** (1.0 / 6.0) * self.sigma
+
+    @property
+    def diameter(self) -> float:
+        """How large a bead is."""
+        return self.sigma
 
     def kernel(self) -> TwelveSix:
         """Parameters for the scalar function of the Lennard-Jones potential."""

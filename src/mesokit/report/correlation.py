@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.observe.result import Result
+from mesokit.observe.shared.result import Result
 from mesokit.report.style import COLOURS, LINES, MARKERS, labelled
 
 SHOWN = 6  # curves in one figure
@@ -23,9 +23,15 @@ def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
         ax = figure.subplots() if ax is None else ax
     t = time[use]
     ax.errorbar(
-        t, result.value[use], result.error[use], fmt="o", mfc="white", color=COLOURS[0],
-        label=r"measured, $\pm$ one standard error", zorder=2,
-    )  # fmt: skip
+        t,
+        result.value[use],
+        result.error[use],
+        fmt="o",
+        mfc="white",
+        color=COLOURS[0],
+        label=r"measured, $\pm$ one standard error",
+        zorder=2,
+    )
     if result.expected is not None:
         label = f"theory: {result.theory}"
         ax.plot(t, result.expected[use], "-", color="black", label=label, zorder=3)
@@ -68,9 +74,14 @@ def draw_modulus(result: Result, figure: Any, ax: Any) -> None:
     w = result.extra["frequency"]
     for k, (name, label) in enumerate((("storage", "$G'$"), ("loss", "$G''$"))):
         right.errorbar(
-            w, result.extra[name], result.extra[f"{name}_error"], fmt=MARKERS[k], mfc="white",
-            color=COLOURS[k], label=label,
-        )  # fmt: skip
+            w,
+            result.extra[name],
+            result.extra[f"{name}_error"],
+            fmt=MARKERS[k],
+            mfc="white",
+            color=COLOURS[k],
+            label=label,
+        )
     right.set_xscale("log")
     right.set_yscale("log", nonpositive="mask")
     right.set_xlabel(labelled(r"frequency $\omega$", "1/tau"))
@@ -88,9 +99,15 @@ def _logarithmic(result: Result, ax: Any) -> None:
         if use.any():
             error = np.minimum(result.error[use], 0.999 * size[use])
             ax.errorbar(
-                time[use], size[use], error, fmt="o", mfc=fill, color=COLOURS[0], label=label,
+                time[use],
+                size[use],
+                error,
+                fmt="o",
+                mfc=fill,
+                color=COLOURS[0],
+                label=label,
                 zorder=2,
-            )  # fmt: skip
+            )
     if result.expected is not None:
         line, label = abs(result.expected), f"theory: {result.theory}"
         ax.plot(time[late], line[late], "-", color="black", label=label, zorder=3)
@@ -118,9 +135,16 @@ def draw_modes(result: Result, figure: Any, ax: Any) -> None:
     for i, k in enumerate(result.x["wavenumber"][:shown]):
         colour, use = COLOURS[i % len(COLOURS)], time <= end
         ax.errorbar(
-            time[use], result.value[use, i], result.error[use, i], fmt=MARKERS[i % len(MARKERS)],
-            mfc="white", color=colour, lw=0.8, label=f"$k = {k:.4g}/a$", zorder=2,
-        )  # fmt: skip
+            time[use],
+            result.value[use, i],
+            result.error[use, i],
+            fmt=MARKERS[i % len(MARKERS)],
+            mfc="white",
+            color=colour,
+            lw=0.8,
+            label=f"$k = {k:.4g}/a$",
+            zorder=2,
+        )
         if result.expected is not None:
             fine, line = time[use], result.expected[use, i]
             if "curve" in result.extra:
@@ -130,7 +154,7 @@ def draw_modes(result: Result, figure: Any, ax: Any) -> None:
     ax.axhline(0, color="0.6", lw=0.8, zorder=1)
     ax.set_xlim(0, end)
     ax.set_xlabel(labelled("time lag $t$", result.units["time"]))
-    kind = "T" if result.quantity.startswith("t") else "L"
+    kind = result.label[0].upper()  # transverse or longitudinal
     ax.set_ylabel(rf"$C_v^{kind}(k, t)\,/\,C_v^{kind}(k, 0)$")
     ax.legend(loc="upper right", ncols=1 + shown // 4)
 
@@ -142,16 +166,27 @@ def draw_normal_modes(result: Result, figure: Any, ax: Any) -> None:
     for i, p in enumerate(result.x["mode"][:SHOWN]):
         colour, use = COLOURS[i % len(COLOURS)], result.value[:, i] > 2 * result.error[:, i]
         ax.errorbar(
-            time[use], result.value[use, i], result.error[use, i], fmt=MARKERS[i % len(MARKERS)],
-            mfc="white", color=colour, lw=0.8, label=f"$p = {p}$", zorder=2,
-        )  # fmt: skip
+            time[use],
+            result.value[use, i],
+            result.error[use, i],
+            fmt=MARKERS[i % len(MARKERS)],
+            mfc="white",
+            color=colour,
+            lw=0.8,
+            label=f"$p = {p}$",
+            zorder=2,
+        )
         if result.expected is not None:
             line = result.expected[:, i] > 1e-3
             label = f"theory: {result.theory}" if i == 0 else None
             ax.plot(
-                time[line], result.expected[line, i], ls=LINES[i % len(LINES)], color="black",
-                lw=1, label=label,
-            )  # fmt: skip
+                time[line],
+                result.expected[line, i],
+                ls=LINES[i % len(LINES)],
+                color="black",
+                lw=1,
+                label=label,
+            )
     ax.set_yscale("log", nonpositive="mask")
     ax.set_xlabel(labelled("time lag $t$", result.units["time"]))
     ax.set_ylabel(r"$\langle X_p(0) X_p(t)\rangle\,/\,\langle X_p^2\rangle$")

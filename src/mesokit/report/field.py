@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mesokit.observe.flow_frames import average
-from mesokit.observe.result import Result
+from mesokit.observe.shared.result import Result
 from mesokit.report.flow import density, quiver, speed
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.field_source import FieldSource
@@ -20,7 +20,7 @@ from mesokit.report.flow.source import axes_of
 from mesokit.report.style import labelled, symbols
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 NO_FLUID = "0.85"  # grey of bins without fluid, where nobody knows the solids
 DENSITIES = 0.5, 99.5  # percent of the bins: from where to where the colours of a density go
@@ -29,7 +29,7 @@ FLAT = 0.5  # of the highest density: where the lowest is above it, colours star
 
 def draw(result: Result, ax: Any, case: Case | None) -> Any:
     """Speed and arrows, or density, into a new figure; into given axes the colours alone."""
-    if result.quantity == "flow-frames":
+    if result.drawing == "frames":
         result = average(result)
     axes = axes_of(result)
     setting = _setting(result, axes) if case is None else Setting.of(case, axes)

@@ -11,38 +11,31 @@ from typing import TYPE_CHECKING, Any
 
 from mesokit.errors import RunError
 from mesokit.io.atomic import replacing
-from mesokit.observe.result import Result
-from mesokit.report import correlation, field, forces, probe, profile, series, tensor, wake
+from mesokit.observe.shared.result import Result
+from mesokit.report import correlation, curve, field, forces, probe, profile, series, tensor, wake
 from mesokit.report.style import HEIGHT, STYLE, WIDTH, below
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
+# What a result says that it is drawn as. Maps know their own figure.
 DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
-    "conservation": series.draw,
-    "velocity-profile": profile.draw,
-    "density-profile": profile.draw,
-    "temperature-profile": profile.draw,
-    "mean-square-displacement": correlation.draw_displacement,
-    "velocity-autocorrelation": correlation.draw_memory,
-    "molecule-size": tensor.draw,
-    "normal-modes": correlation.draw_normal_modes,
-    "transverse-modes": correlation.draw_modes,
-    "longitudinal-modes": correlation.draw_modes,
-    "wall-stress": tensor.draw,
-    "stress": tensor.draw,
-    "dynamic-moduli": tensor.draw_moduli,
-    "stress-autocorrelation": correlation.draw_modulus,
-    "bond-length": tensor.draw,
-    "forces": forces.draw,
-    "radial-profile": profile.draw,
-    "surface-profile": profile.draw,
-    "wake": wake.draw,
-    "probe": probe.draw,
-    "flow-rate": series.draw_flow,
+    "curve": curve.draw,
+    "series": series.draw,
+    "flow series": series.draw_flow,
+    "profile": profile.draw,
+    "displacement": correlation.draw_displacement,
+    "memory": correlation.draw_memory,
+    "normal modes": correlation.draw_normal_modes,
+    "modes": correlation.draw_modes,
+    "modulus": correlation.draw_modulus,
+    "tensor": tensor.draw,
+    "moduli": tensor.draw_moduli,
+    "per solid": forces.draw,
+    "centreline": wake.draw,
+    "signal": probe.draw,
 }
-
-MAPS = ("velocity-field", "density-field", "flow-frames")  # which know their own figure
+MAPS = ("map", "frames")
 
 
 def plot(result: Result, ax: Any = None, case: Case | None = None) -> Any:
@@ -56,14 +49,14 @@ def plot(result: Result, ax: Any = None, case: Case | None = None) -> Any:
     from mesokit.report.notebook import ShownFigure
 
     with mpl.rc_context(STYLE):
-        if result.quantity in MAPS:
+        if result.drawing in MAPS:
             return field.draw(result, ax, case)
         if ax is not None:
-            DRAW[result.quantity](result, ax.figure, ax)
+            DRAW[result.drawing](result, ax.figure, ax)
             return ax.figure
         lines = 0.17 * len(result.comparisons)
         figure = ShownFigure(figsize=(WIDTH, HEIGHT + lines), layout="constrained")
-        DRAW[result.quantity](result, figure, None)
+        DRAW[result.drawing](result, figure, None)
         below(figure, result.comparisons)
         return figure
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.observe.result import Result
+from mesokit.observe.shared.result import Result
 from mesokit.report.style import COLOURS, MARKERS, labelled
 
 SHOWN = 12  # bodies in one figure
@@ -69,9 +69,15 @@ def _panel(ax: Any, result: Result, column: int, chosen: NDArray[np.intp]) -> No
     axis = "xyz".index(name[1])
     ax.axhline(0, color="0.6", lw=0.8, zorder=1)
     ax.errorbar(
-        place, result.value[chosen, column], result.error[chosen, column], fmt=MARKERS[axis],
-        mfc="white", color=COLOURS[axis], label=r"measured, $\pm$ one standard error", zorder=3,
-    )  # fmt: skip
+        place,
+        result.value[chosen, column],
+        result.error[chosen, column],
+        fmt=MARKERS[axis],
+        mfc="white",
+        color=COLOURS[axis],
+        label=r"measured, $\pm$ one standard error",
+        zorder=3,
+    )
     if result.expected is not None and np.isfinite(result.expected[chosen, column]).any():
         expected = result.expected[chosen, column]
         ax.hlines(expected, place - 0.35, place + 0.35, color="black", lw=1.5, label="theory")

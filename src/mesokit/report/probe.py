@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.observe.result import Result
+from mesokit.observe.shared.result import Result
 from mesokit.report.style import COLOURS, labelled
 
 
@@ -31,9 +31,14 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         return
     low = np.maximum(result.value - result.error, 1e-3 * result.value)
     bottom.fill_between(
-        frequency[use], low[use], (result.value + result.error)[use], color=COLOURS[0],
-        alpha=0.25, lw=0, label="one standard error",
-    )  # fmt: skip
+        frequency[use],
+        low[use],
+        (result.value + result.error)[use],
+        color=COLOURS[0],
+        alpha=0.25,
+        lw=0,
+        label="one standard error",
+    )
     bottom.plot(frequency[use], result.value[use], color=COLOURS[0], lw=1.2, label="measured")
     if np.isfinite(result.extra["dominant"]):
         bottom.axvline(

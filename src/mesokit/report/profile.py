@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.observe.result import Result
+from mesokit.observe.shared.result import Result
 from mesokit.report.style import COLOURS, labelled
 
 AXES = {"r": "distance from the axis $r$", "distance": "distance from the surface"}
@@ -31,9 +31,18 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         ax = figure.subplots()
     many = len(x) > 150
     ax.errorbar(
-        x, result.value, result.error, fmt="o", mfc="white", color=COLOURS[0], ms=2 if many else 4,
-        lw=0.8, capsize=0 if many else 2, label=r"measured, $\pm$ one standard error", zorder=2,
-    )  # fmt: skip
+        x,
+        result.value,
+        result.error,
+        fmt="o",
+        mfc="white",
+        color=COLOURS[0],
+        ms=2 if many else 4,
+        lw=0.8,
+        capsize=0 if many else 2,
+        label=r"measured, $\pm$ one standard error",
+        zorder=2,
+    )
     if result.expected is not None and np.isfinite(result.expected).any():
         name = NAMES.get(result.theory, result.theory)
         ax.plot(x, result.expected, "-", color="black", lw=1.5, label=f"theory: {name}", zorder=3)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.observe.result import Result
+from mesokit.observe.shared.result import Result
 from mesokit.report.style import COLOURS, LINES, labelled
 
 

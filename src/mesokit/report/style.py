@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from mesokit.observe.result import Comparison, with_error
+from mesokit.observe.shared.result import Comparison, with_error
 
 WIDTH, HEIGHT = 6.4, 4.8  # inches
 MARKERS = "osD^v<>pP*X"
@@ -13,6 +13,7 @@ LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)))
 # dark enough for white paper, and each of its own grey
 COLOURS = ("#1b4f8a", "#c1491d", "#2a7f4f", "#7a3b8f", "#8a6d1b", "#444444")
 STYLE: Any = {
+    "text.usetex": False,  # users' settings apply but for this: TeX may not be there
     "font.size": 10,
     "axes.labelsize": 11,
     "legend.fontsize": 9,

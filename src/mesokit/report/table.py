@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from mesokit.observe.result import Comparison, Result, with_error
+from mesokit.observe.shared.result import Comparison, Result, with_error
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.observe.result import Result
+from mesokit.observe.shared.result import Result
 from mesokit.report.style import COLOURS, MARKERS, labelled
 
 SYMBOLS = {
     "stress": r"$\sigma_{\alpha\beta}$",
-    "dynamic-moduli": "modulus",
-    "molecule-size": r"$\langle x_\alpha x_\beta\rangle$",
-    "bond-length": r"$\langle b_\alpha b_\beta\rangle$",
+    "modulus": "modulus",
+    "size of molecules": r"$\langle x_\alpha x_\beta\rangle$",
+    "products of bond components": r"$\langle b_\alpha b_\beta\rangle$",
 }
 
 
@@ -46,9 +46,15 @@ def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) 
         value = np.array([result.value[e] for e in chosen])
         error = np.array([result.error[e] for e in chosen])
         ax.errorbar(
-            place, value, error, fmt=MARKERS[number], mfc="white", color=COLOURS[number],
-            label=str(group), zorder=3,
-        )  # fmt: skip
+            place,
+            value,
+            error,
+            fmt=MARKERS[number],
+            mfc="white",
+            color=COLOURS[number],
+            label=str(group),
+            zorder=3,
+        )
         if result.expected is not None:
             expected = np.array([result.expected[e] for e in chosen])
             label = "theory" if number == len(groups) - 1 else None
@@ -59,7 +65,7 @@ def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) 
     ax.set_xlim(-0.6, len(inner) - 0.4)
     ax.set_title(title, fontsize=10)
     ax.margins(y=0.2)
-    ax.set_ylabel(labelled(SYMBOLS.get(result.quantity, "force per area"), result.units["value"]))
+    ax.set_ylabel(labelled(SYMBOLS.get(result.label, "force per area"), result.units["value"]))
     ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=2)  # below: no data there
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.observe.result import Result
+from mesokit.observe.shared.result import Result
 from mesokit.report.style import COLOURS, labelled
 
 
@@ -15,9 +15,16 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     ax = figure.subplots() if ax is None else ax
     ax.axhline(0, color="0.6", lw=0.8, zorder=1)
     ax.errorbar(
-        result.x["distance"], result.value, result.error, fmt="o", mfc="white", color=COLOURS[0],
-        lw=0.8, label=r"measured, $\pm$ one standard error", zorder=2,
-    )  # fmt: skip
+        result.x["distance"],
+        result.value,
+        result.error,
+        fmt="o",
+        mfc="white",
+        color=COLOURS[0],
+        lw=0.8,
+        label=r"measured, $\pm$ one standard error",
+        zorder=2,
+    )
     length, size = result.extra["recirculation"], result.extra["size"]
     found = [c for c in result.comparisons if c.what == "L_r/D"]
     if np.isfinite(length) and found:

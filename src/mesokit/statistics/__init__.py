@@ -12,6 +12,7 @@ from mesokit.statistics.fit import (
 )
 from mesokit.statistics.multiple_tau import Correlation, MultipleTau
 from mesokit.statistics.ratio import ratio
+from mesokit.statistics.sample import spread_ids
 from mesokit.statistics.spectrum import Frequency, Spectrum, dominant_frequency, spectrum
 from mesokit.statistics.time_series import TimeSeries
 
@@ -31,6 +32,7 @@ __all__ = [
     "plateau_error",
     "ratio",
     "spectrum",
+    "spread_ids",
     "weighted_line",
     "weighted_polynomial",
 ]

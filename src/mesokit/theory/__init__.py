@@ -89,6 +89,7 @@ from mesokit.theory.transverse_chain import (
 )
 from mesokit.theory.transverse_dimer import dimer_oscillation_range, transverse_correlation_dimer
 from mesokit.theory.transverse_finite_k import (
+    GaussianMolecule,
     gaussian_stress_kernel,
     transverse_correlation_finite_k,
 )
@@ -114,6 +115,7 @@ from mesokit.theory.zimm_times import zimm_times
 __all__ = [
     "BondLength",
     "ChainExponents",
+    "GaussianMolecule",
     "NormalModes",
     "Origin",
     "PoiseuilleFit",

@@ -6,7 +6,7 @@ import numpy as np
 
 from mesokit.theory._check import dimension_two_or_three, one_of, positive
 from mesokit.theory.srd_angular_table import cell_table, rigid_share
-from mesokit.theory.transport import AngleDistribution, Rule, Thermostat, cell_means, transport
+from mesokit.theory.transport import Angle, Rule, Thermostat, cell_means, transport
 
 
 def shear_warming(
@@ -14,10 +14,9 @@ def shear_warming(
     dimension: int,
     density: float,
     timestep: float,
-    angle: float | None = None,
+    angle: Angle = None,
     kT: float = 1.0,
     mass: float = 1.0,
-    angle_distribution: AngleDistribution = "fixed",
     thermostat: Thermostat = "none",
 ) -> float:
     """w in T = kT + w m rate^2: the temperature about the linear profile of a held, sheared fluid.
@@ -38,7 +37,7 @@ def shear_warming(
     >>> round(shear_warming("at", 3, 10, 1e-6), 4)  # 1/36 at a small timestep
     0.0278
     """
-    given = (rule, dimension, density, timestep, angle, kT, mass, angle_distribution, thermostat)
+    given = (rule, dimension, density, timestep, angle, kT, mass, thermostat)
     friction = 2 * timestep * transport(*given).viscosity_kinetic / dimension
     if rule.startswith("srd") and thermostat == "none":
         raise ValueError("thermostat = 'none': expected one that holds the temperature")

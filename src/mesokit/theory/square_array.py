@@ -98,11 +98,15 @@ def _flow(n: int, powers: Powers, logarithm: float, x: Array, y: Array) -> list[
     whirls = [(c * (p * p - n * n), p - 2) for c, p in powers]
     log = np.log(r)
     parts = (
-        (sum(c * r**float(p) for c, p in powers) + logarithm * r * log,
-         sum(c * p * r ** float(p - 1) for c, p in powers) + logarithm * (log + 1)),
-        (sum(c * r**float(p) for c, p in whirls) + logarithm * 2 / r,
-         sum(c * p * r ** float(p - 1) for c, p in whirls) - logarithm * 2 / r**2),
-    )  # fmt: skip
+        (
+            sum(c * r ** float(p) for c, p in powers) + logarithm * r * log,
+            sum(c * p * r ** float(p - 1) for c, p in powers) + logarithm * (log + 1),
+        ),
+        (
+            sum(c * r ** float(p) for c, p in whirls) + logarithm * 2 / r,
+            sum(c * p * r ** float(p - 1) for c, p in whirls) - logarithm * 2 / r**2,
+        ),
+    )
     sine, cosine = np.sin(n * angle), np.cos(n * angle)
     out = []
     for value, slope in parts:

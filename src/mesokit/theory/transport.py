@@ -14,8 +14,9 @@ from mesokit.theory.srd_angular_table import cell_table, rigid_share
 
 Array = NDArray[np.float64]
 Rule = Literal["srd", "srd+a", "at", "at+a"]
-AngleDistribution = Literal["fixed", "uniform"]
+Angle = float | Literal["uniform"] | None
 Thermostat = Literal["none", "maxwell-boltzmann", "rescale"]
+ROUNDING = 1e-13  # what a collision must forget at least to be told from a rounding error
 
 
 @dataclass(frozen=True)
@@ -45,10 +46,9 @@ def transport(
     dimension: int,
     density: float,
     timestep: float,
-    angle: float | None = None,
+    angle: Angle = None,
     kT: float = 1.0,
     mass: float = 1.0,
-    angle_distribution: AngleDistribution = "fixed",
     thermostat: Thermostat = "none",
 ) -> Transport:
     """Transport coefficients of an MPCD fluid at molecular chaos, with exact Poisson occupancy.
@@ -58,10 +58,9 @@ def transport(
         dimension: 2 or 3.
         density: mean number of particles per cell, M.
         timestep: time between two collisions.
-        angle: rotation angle in degrees, SRD with a fixed angle only. In 2D its sign is random, in
-            3D its axis.
+        angle: rotation angle in degrees, SRD only. In 2D its sign is random, in 3D its axis; in 2D
+            "uniform" draws it from [0, 360).
         kT, mass: thermal energy and particle mass.
-        angle_distribution: "uniform" draws the angle from [0, 360), 2D SRD only.
         thermostat: "none"; "maxwell-boltzmann", which gives each cell a fresh relative kinetic
             energy each step; "rescale", which sets that energy to its mean.
 
@@ -84,10 +83,10 @@ def transport(
     >>> round(t.viscosity, 4), round(t.diffusion, 4), round(t.schmidt, 2)
     (0.87, 0.0515, 16.91)
     """
-    _check(rule, dimension, density, timestep, angle, kT, mass, angle_distribution, thermostat)
+    _check(rule, dimension, density, timestep, angle, kT, mass, thermostat)
     n, p = _poisson(density)
     seen = n * p / density  # occupancy of the cell of a tagged particle
-    r1, r2, cosine = _rotation(dimension, angle)
+    r1, r2, cosine = _rotation(dimension, fixed_angle(angle))
     angular = rule.endswith("+a")
     if angular:
         rigid = rigid_share(dimension, n)
@@ -103,7 +102,12 @@ def transport(
 
         An empty neighbourhood (N = 0) cannot hold the tagged particle, so the weights sum to 1.
         """
-        return kT / mass * timestep * (1 / float(np.sum(seen * (1 - one_minus_g))) - 0.5)
+        forgotten = float(np.sum(seen * (1 - one_minus_g)))
+        if fixed_angle(angle) is not None and forgotten < ROUNDING:
+            raise ValueError(f"angle = {angle!r}: turns too little to tell the viscosity")
+        if forgotten == 0:
+            raise ValueError(f"density = {density!r}: too few particles ever meet")
+        return kT / mass * timestep * (1 / forgotten - 0.5)
 
     def moved(q: Array) -> float:
         return float(np.sum(p * (1 - r1 * s1) * q)) / (density * timestep)
@@ -145,33 +149,41 @@ def transport(
     )
 
 
+def takes_angle(rule: str) -> bool:
+    """Whether a rule turns velocities by an angle, which `transport` then asks for.
+
+    >>> takes_angle("srd"), takes_angle("at+a")
+    (True, False)
+    """
+    return rule.startswith("srd")
+
+
+def fixed_angle(angle: Angle) -> float | None:
+    """The angle, unless there is none or it is uniform."""
+    return None if isinstance(angle, str) else angle
+
+
 def _check(
     rule: str,
     dimension: int,
     density: float,
     timestep: float,
-    angle: float | None,
+    angle: Angle,
     kT: float,
     mass: float,
-    angle_distribution: str,
     thermostat: str,
 ) -> None:
     one_of(("srd", "srd+a", "at", "at+a"), rule=rule)
     dimension_two_or_three(dimension)
     positive(density=density, timestep=timestep, kT=kT, mass=mass)
-    one_of(("fixed", "uniform"), angle_distribution=angle_distribution)
     one_of(("none", "maxwell-boltzmann", "rescale"), thermostat=thermostat)
-    uniform = angle_distribution == "uniform"
-    if uniform and (dimension == 3 or rule.startswith("at")):
-        raise ValueError(
-            f"angle_distribution = 'uniform': expected 'fixed' for rule {rule!r} in {dimension}D"
-        )
-    if rule.startswith("at") or uniform:
+    if isinstance(angle, str):
+        one_of(("uniform",), angle=angle)
+        if dimension == 3 or rule.startswith("at"):
+            raise ValueError(f"angle = 'uniform': expected degrees for {rule!r} in {dimension}D")
+    elif rule.startswith("at"):
         if angle is not None:
-            raise ValueError(
-                f"angle = {angle!r}: expected None for rule {rule!r}"
-                f" with angle_distribution {angle_distribution!r}"
-            )
+            raise ValueError(f"angle = {angle!r}: expected None for rule {rule!r}")
     elif angle is None:
         raise ValueError(f"angle = None: expected degrees for rule {rule!r}")
     elif not 0 < angle < 360 or (dimension == 2 and angle == 180):
@@ -183,12 +195,12 @@ def _check(
 
 
 def cell_means(
-    dimension: int, density: float, angle: float | None, rule: str, thermostat: str
+    dimension: int, density: float, angle: Angle, rule: str, thermostat: str
 ) -> tuple[Array, Array, Array]:
     """Occupancies N, their Poisson probabilities, and what a cell keeps of a velocity, r1 s1."""
     n, p = _poisson(density)
     rigid = rigid_share(dimension, n) if rule.endswith("+a") else 1 / n
-    r1 = _rotation(dimension, angle)[0]
+    r1, _, _ = _rotation(dimension, fixed_angle(angle))
     return n, p, r1 * _thermostat(thermostat, np.rint(dimension * n * (1 - rigid)))[0]
 
 

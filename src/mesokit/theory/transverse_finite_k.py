@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -11,15 +13,22 @@ from mesokit.theory.normal_modes import NormalModes
 Array = NDArray[np.float64]
 
 
-def gaussian_stress_kernel(
-    k: float,
-    time: ArrayLike,
-    modes: NormalModes,
-    mode_time: float,
-    bond_squared: float,
-    centre_diffusion: float = 0.0,
-    dimension: int = 3,
-) -> Array:
+class GaussianMolecule(NamedTuple):
+    """A molecule of springs without rest length, by Rouse dynamics.
+
+    modes: as `linear_modes(10)`. mode_time: slowest time of its normal modes, twice the slowest
+    stress time. bond_squared: <b^2> of a free bond, see `mean_square_bond`. centre_diffusion:
+    diffusion coefficient of its centre of mass. dimension: of space.
+    """
+
+    modes: NormalModes
+    mode_time: float
+    bond_squared: float
+    centre_diffusion: float = 0.0
+    dimension: int = 3
+
+
+def gaussian_stress_kernel(k: float, time: ArrayLike, molecule: GaussianMolecule) -> Array:
     """Relaxation modulus G(k, t)/(phi kT) of Gaussian molecules at a finite wave number.
 
     For k = 0 the sum of exp(-t/tau_p) over the stress times. The Fourier mode of the stress is that
@@ -29,12 +38,7 @@ def gaussian_stress_kernel(
         G/(phi kT) = sum_ij [L exp(-r L t)]_ij exp(-k^2 <(y_i(t) - y_j(0))^2>/2)/(k s)^2.
 
     Parameters:
-        k: wave number above 0; time: delays, 0 or more, any shape.
-        modes: of the molecule, as `linear_modes(10)`.
-        mode_time: slowest time of its normal modes, twice the slowest stress time.
-        bond_squared: <b^2> of a free bond, see `mean_square_bond`.
-        centre_diffusion: diffusion coefficient of its centre of mass.
-        dimension: of space.
+        k: wave number above 0; time: delays, 0 or more, any shape; molecule: what it is made of.
 
     Raises ValueError for a value out of range. Source: derived in docs/theory-polymers.md. Exact
     for Rouse dynamics of springs without rest length. Of dimers exp(-q) sinh(q e)/q e exp(-k^2 D
@@ -42,9 +46,11 @@ def gaussian_stress_kernel(
     `transverse_correlation_dimer` leaves out q^2/6.
 
     >>> from mesokit.theory import linear_modes
-    >>> gaussian_stress_kernel(0.3, [0, 10], linear_modes(2), 26.8, 9).round(5).tolist()
+    >>> dimer = GaussianMolecule(linear_modes(2), mode_time=26.8, bond_squared=9)
+    >>> gaussian_stress_kernel(0.3, [0, 10], dimer).round(5).tolist()
     [0.93544, 0.44334]
     """
+    modes, mode_time, bond_squared, centre_diffusion, dimension = molecule
     positive(k=k, mode_time=mode_time, bond_squared=bond_squared, dimension=dimension)
     not_negative(centre_diffusion=centre_diffusion)
     t = np.asarray(time, dtype=float)
@@ -67,11 +73,7 @@ def transverse_correlation_finite_k(
     time: ArrayLike,
     viscosity: float,
     elasticity: float,
-    modes: NormalModes,
-    mode_time: float,
-    bond_squared: float,
-    centre_diffusion: float = 0.0,
-    dimension: int = 3,
+    molecule: GaussianMolecule,
     steps: int = 1000,
 ) -> Array:
     """Normalised autocorrelation of a transverse velocity mode, with the kernel for finite k.
@@ -79,7 +81,7 @@ def transverse_correlation_finite_k(
     The solution of C' = -nu k^2 C - k^2 phi kT/rho int_0^t G(k, t - s)/(phi kT) C(s) ds.
 
     Parameters: `k` wave number above 0; `time` delays, 0 or more, any shape; `viscosity` nu,
-    kinematic, and `elasticity` phi kT/rho as in `transverse_poles`; the others as in
+    kinematic, and `elasticity` phi kT/rho as in `transverse_poles`; `molecule` as in
     `gaussian_stress_kernel`; `steps` of the solution up to the latest time, to be shorter than the
     fastest stress time. Raises ValueError for a value out of range. Source: D. Toneian, diploma
     thesis, TU Wien (2015), eq. (5.1.7), with the kernel derived in docs/theory-polymers.md;
@@ -87,8 +89,9 @@ def transverse_correlation_finite_k(
     timestep and k below 1 in cells.
 
     >>> from mesokit.theory import linear_modes
+    >>> dimer = GaussianMolecule(linear_modes(2), mode_time=26.8, bond_squared=9)
     >>> transverse_correlation_finite_k(
-    ...     2 * np.pi / 30, [5.0, 10, 20], 0.8705, 0.5, linear_modes(2), 26.8, 9
+    ...     2 * np.pi / 30, [5.0, 10, 20], 0.8705, 0.5, dimer
     ... ).round(4).tolist()
     [0.6286, 0.1423, -0.3034]
     """
@@ -100,8 +103,7 @@ def transverse_correlation_finite_k(
     from scipy.interpolate import CubicSpline
 
     grid = np.linspace(0, t.max(), 2 * steps + 1)
-    molecule = (modes, mode_time, bond_squared, centre_diffusion, dimension)
-    kernel = k * k * elasticity * gaussian_stress_kernel(k, grid, *molecule)
+    kernel = k * k * elasticity * gaussian_stress_kernel(k, grid, molecule)
     damping = viscosity * k * k
     coarse = _solve(kernel[::2], damping, grid[2])
     fine = _solve(kernel, damping, grid[1])[::2]

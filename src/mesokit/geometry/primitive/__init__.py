@@ -10,7 +10,7 @@ from types import ModuleType
 from typing import Any
 
 from mesokit.geometry.primitive import ball, brick, capsule, half_space, rod, sampled, wave
-from mesokit.scalar import seldom
+from mesokit.scalar.jit import seldom
 
 PRIMITIVES: tuple[ModuleType, ...] = (half_space, ball, rod, capsule, brick, wave, sampled)
 KINDS = {module.__name__.rpartition(".")[2]: number for number, module in enumerate(PRIMITIVES)}

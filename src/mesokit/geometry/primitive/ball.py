@@ -1,8 +1,8 @@
 """Disk or sphere: centre in p[0:3], radius in p[6]."""
 
 from mesokit.geometry.primitive.numbers import length, offset, unit
-from mesokit.pointer import real
-from mesokit.scalar import scalar
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.pointer import real
 
 CONVEX = True
 

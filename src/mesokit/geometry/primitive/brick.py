@@ -5,11 +5,11 @@ Cosine and sine of the angle are in p[6] and p[7].
 
 import math
 
-from numba.cpython.unsafe.tuple import tuple_setitem
-
 from mesokit.geometry.primitive.numbers import offset, vector
-from mesokit.pointer import real
-from mesokit.scalar import scalar, scaled
+from mesokit.scalar.intrinsics import with_item
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.pointer import real
+from mesokit.scalar.vector import scaled
 
 CONVEX = True
 
@@ -19,7 +19,7 @@ def turned(p, a, sine):
     """The vector a, turned by the angle whose sine is given."""
     x = real(p, 6) * a[0] - sine * a[1]
     y = sine * a[0] + real(p, 6) * a[1]
-    return tuple_setitem(tuple_setitem(a, 0, x), 1, y)
+    return with_item(with_item(a, 0, x), 1, y)
 
 
 @scalar
@@ -29,7 +29,7 @@ def distance(p, samples, r):
     beyond, deepest = 0.0, -math.inf
     for k in range(len(r)):
         q = abs(x[k]) - half[k]
-        beyond += max(q, 0.0) ** 2
+        beyond += max(q, 0.0) * max(q, 0.0)
         deepest = max(deepest, q)
     return math.sqrt(beyond) if beyond > 0.0 else deepest
 
@@ -42,12 +42,12 @@ def normal(p, samples, r):
     deepest, face = -math.inf, 0
     for k in range(len(r)):
         q = abs(x[k]) - half[k]
-        out = tuple_setitem(out, k, math.copysign(max(q, 0.0), x[k]))
-        beyond += max(q, 0.0) ** 2
+        out = with_item(out, k, math.copysign(max(q, 0.0), x[k]))
+        beyond += max(q, 0.0) * max(q, 0.0)
         if q > deepest:
             deepest, face = q, k
     if beyond > 0.0:
         out = scaled(1.0 / math.sqrt(beyond), out)
     else:
-        out = tuple_setitem(scaled(0.0, r), face, math.copysign(1.0, x[face]))
+        out = with_item(scaled(0.0, r), face, math.copysign(1.0, x[face]))
     return turned(p, out, real(p, 7))

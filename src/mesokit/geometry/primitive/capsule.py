@@ -4,8 +4,9 @@ p[7] is one over the square of the line's length.
 """
 
 from mesokit.geometry.primitive.numbers import length, offset, unit, vector
-from mesokit.pointer import real
-from mesokit.scalar import added_scaled, dot, scalar
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.pointer import real
+from mesokit.scalar.vector import added_scaled, dot
 
 CONVEX = True
 

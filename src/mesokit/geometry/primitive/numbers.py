@@ -2,10 +2,10 @@
 
 import math
 
-from numba.cpython.unsafe.tuple import tuple_setitem
-
-from mesokit.pointer import real  # noqa: F401  the text of functions below uses it
-from mesokit.scalar import dot, elementwise, scalar, scaled
+from mesokit.scalar.intrinsics import with_item
+from mesokit.scalar.jit import elementwise, scalar
+from mesokit.scalar.pointer import real  # noqa: F401  the text of functions below uses it
+from mesokit.scalar.vector import dot, scaled
 
 
 @elementwise
@@ -31,5 +31,5 @@ def unit(a):
     """The vector of length 1; the first axis where there is no direction."""
     size = length(a)
     if size < 1e-300:
-        return tuple_setitem(scaled(0.0, a), 0, 1.0)
+        return with_item(scaled(0.0, a), 0, 1.0)
     return scaled(1.0 / size, a)

@@ -1,8 +1,9 @@
 """Cylinder without ends: a point of its axis in p[0:3], unit vector in p[3:6], radius in p[6]."""
 
 from mesokit.geometry.primitive.numbers import length, offset, unit, vector
-from mesokit.pointer import real
-from mesokit.scalar import added_scaled, dot, scalar
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.pointer import real
+from mesokit.scalar.vector import added_scaled, dot
 
 CONVEX = True
 

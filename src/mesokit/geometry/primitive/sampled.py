@@ -8,11 +8,12 @@ along an axis on which the grid repeats itself, 0 where beyond it there is only 
 import math
 
 import numpy as np
-from numba.cpython.unsafe.tuple import tuple_setitem
 
 from mesokit.geometry.primitive.numbers import length, unit
-from mesokit.pointer import real
-from mesokit.scalar import dot, scalar, scaled
+from mesokit.scalar.intrinsics import floor, with_item
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.pointer import real
+from mesokit.scalar.vector import dot, scaled
 
 CONVEX = False
 
@@ -25,12 +26,12 @@ def inside_grid(p, r):
         count = real(p, 4 + k)
         q = (r[k] - real(p, k)) / real(p, 3)
         if real(p, 9 + k) > 0.5:
-            q -= count * np.floor(q / count)
+            q -= count * floor(q / count)
         else:
             near = min(max(q, 0.0), count - 1.0)
-            off = tuple_setitem(off, k, (q - near) * real(p, 3))
+            off = with_item(off, k, (q - near) * real(p, 3))
             q = near
-        x = tuple_setitem(x, k, q)
+        x = with_item(x, k, q)
     return x, off
 
 
@@ -51,8 +52,8 @@ def split(x):
     """The first point of the cell of the grid that x is in, and how far from it x is."""
     base, part = x, x
     for k in range(len(x)):
-        base = tuple_setitem(base, k, np.floor(x[k]))
-        part = tuple_setitem(part, k, x[k] - np.floor(x[k]))
+        base = with_item(base, k, floor(x[k]))
+        part = with_item(part, k, x[k] - floor(x[k]))
     return base, part
 
 
@@ -71,7 +72,7 @@ def interpolated(p, samples, x):
             for k in range(len(x)):
                 if k != j:
                     share *= part[k] if (which >> k) & 1 else 1.0 - part[k]
-            gradient = tuple_setitem(gradient, j, gradient[j] + share * sample)
+            gradient = with_item(gradient, j, gradient[j] + share * sample)
     return value, gradient
 
 
@@ -128,7 +129,7 @@ def distance(p, samples, r):
     value, _ = interpolated(p, samples, x)
     beyond = dot(off, off)
     clear = value / real(p, 8)
-    return math.sqrt(max(clear, 0.0) ** 2 + beyond) if beyond > 0.0 else clear
+    return math.sqrt(max(clear, 0.0) * max(clear, 0.0) + beyond) if beyond > 0.0 else clear
 
 
 @scalar
@@ -138,8 +139,8 @@ def normal(p, samples, r):
     value, gradient = interpolated(p, samples, x)
     if dot(off, off) == 0.0:
         return unit(gradient)
-    weight = max(value, 0.0) / (real(p, 8) ** 2 * real(p, 3))
+    weight = max(value, 0.0) / (real(p, 8) * real(p, 8) * real(p, 3))
     for k in range(len(r)):
         if off[k] == 0.0:
-            off = tuple_setitem(off, k, weight * gradient[k])
+            off = with_item(off, k, weight * gradient[k])
     return unit(off)

@@ -7,12 +7,11 @@ where the fluid lies above and -1 where it lies below.
 
 import math
 
-import numpy as np
-from numba.cpython.unsafe.tuple import tuple_setitem
-
-from mesokit.elementary import sincos_turn
-from mesokit.pointer import real
-from mesokit.scalar import scalar, scaled
+from mesokit.scalar.elementary import sincos_turn
+from mesokit.scalar.intrinsics import floor, with_item
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.pointer import real
+from mesokit.scalar.vector import scaled
 
 CONVEX = False
 
@@ -22,7 +21,7 @@ def height_and_slope(p, r):
     """Height above the curve, and the slope of the curve there."""
     along, across = int(real(p, 3)), int(real(p, 4))
     phase = (r[along] - real(p, along)) * real(p, 6)
-    s, c = sincos_turn(phase - np.floor(phase))
+    s, c = sincos_turn(phase - floor(phase))
     height = r[across] - real(p, across) - real(p, 5) * c
     return height, -real(p, 5) * 2.0 * math.pi * real(p, 6) * s
 
@@ -40,5 +39,5 @@ def normal(p, samples, r):
     """Unit normal into the fluid."""
     _, slope = height_and_slope(p, r)
     size = real(p, 7) / math.sqrt(1.0 + slope * slope)
-    out = tuple_setitem(scaled(0.0, r), int(real(p, 4)), size)
-    return tuple_setitem(out, int(real(p, 3)), -slope * size)
+    out = with_item(scaled(0.0, r), int(real(p, 4)), size)
+    return with_item(out, int(real(p, 3)), -slope * size)

@@ -3,65 +3,39 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from mesokit.method.protocol import method_of
+from mesokit.report.flow.data import Array, Beads
 from mesokit.report.flow.region import Region
 from mesokit.report.style import COLOURS
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
-    from mesokit.io.open import TrajectoryReader
-    from mesokit.report.flow.data import Array
+    from mesokit.case.case import Case
+    from mesokit.io.trajectory_reader import TrajectoryReader
 
-FULL, SMALLEST = 0.5, 1.6  # diameter without a pair potential, in cells; least one, in points
+SMALLEST = 1.6  # diameter, in points
 EDGE, BOND = 0.2, 0.45  # widths of the edge and of bonds, of the diameter
 ABOVE = 6  # the solids
-
-
-@dataclass(frozen=True)
-class Beads:
-    """Beads at one time, molecules whole, so that some may lie outside the box.
-
-    Parameters
-    ----------
-    places: (n, 2) along the axes of the picture.
-    kinds: (n,) from 0.
-    bonds: (m, 2) rows of `places`.
-    diameter: in cells.
-    repeats: vectors (2,) by which all of it repeats.
-    time: of the frame.
-    """
-
-    places: Array
-    kinds: NDArray[np.int64]
-    bonds: NDArray[np.int64]
-    diameter: float
-    repeats: tuple[tuple[float, float], ...]
-    time: float
 
 
 class BeadFrames:
     """The beads that a trajectory has."""
 
     def __init__(self, case: Case, reader: TrajectoryReader, axes: tuple[str, str]) -> None:
-        from mesokit.io.h5md import bonds_of
-
-        assert case.solutes is not None
+        method, (first, *others) = method_of(case), case.groups
         self.case, self.reader = case, reader
         self.columns = [case.box.axes.index(axis) for axis in axes]
-        self.rows = np.flatnonzero(reader.id >= case.particles)
-        self.kinds = reader.species[self.rows] - max(len(case.fluid.species), 1)
-        bonds = bonds_of(case) - (reader.id[self.rows[0]] if len(self.rows) else 0)
+        self.rows = np.flatnonzero(reader.id >= first.number)
+        self.kinds = reader.species[self.rows] - len(first.kinds)
+        bonds = method.bonds(case) - (reader.id[self.rows[0]] if len(self.rows) else 0)
         self.bonds = bonds[(bonds < len(self.rows)).all(axis=1)]
-        pair = case.solutes.pair
-        self.diameter = FULL if pair is None else pair.sigma
-        closed = {wall.axis for wall in case.walls if wall.shape == "plates"}
-        lengths = zip(case.box.axes, case.box.size, strict=True)
-        self.periods = np.array([np.inf if a in closed else float(n) for a, n in lengths])
+        self.diameter = others[0].diameter
+        closed = method.closed_axes(case)
+        sizes = enumerate(case.box.size)
+        self.periods = np.array([np.inf if k in closed else float(n) for k, n in sizes])
 
     def at(self, time: float | None = None) -> Beads:
         """In the frame that is nearest to a time, the last one unless said."""
@@ -111,7 +85,7 @@ def frames_of(
     case: Case, trajectory: TrajectoryReader | None, axes: tuple[str, str]
 ) -> BeadFrames | None:
     """The beads of a run, None if it kept none of them."""
-    if trajectory is None or case.solutes is None or not len(trajectory):
+    if trajectory is None or len(case.groups) == 1 or not len(trajectory):
         return None
     if "position" not in trajectory.fields:
         return None
@@ -139,6 +113,11 @@ def draw(ax: Any, beads: Beads, region: Region) -> None:
                 autolim=False,
             )
             ax.plot(
-                *places[own].T, "o", color=colour, markersize=size, markeredgewidth=EDGE * size / 2,
-                markeredgecolor="white", zorder=ABOVE,
-            )  # fmt: skip
+                *places[own].T,
+                "o",
+                color=colour,
+                markersize=size,
+                markeredgewidth=EDGE * size / 2,
+                markeredgecolor="white",
+                zorder=ABOVE,
+            )

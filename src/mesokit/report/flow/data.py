@@ -3,15 +3,34 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from mesokit.report.flow.beads import Beads
-
 Array = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True)
+class Beads:
+    """Beads at one time, molecules whole, so that some may lie outside the box.
+
+    Parameters
+    ----------
+    places: (n, 2) along the axes of the picture.
+    kinds: (n,) from 0.
+    bonds: (m, 2) rows of `places`.
+    diameter: in cells.
+    repeats: vectors (2,) by which all of it repeats.
+    time: of the frame.
+    """
+
+    places: Array
+    kinds: NDArray[np.int64]
+    bonds: NDArray[np.int64]
+    diameter: float
+    repeats: tuple[tuple[float, float], ...]
+    time: float
 
 
 @dataclass(frozen=True)

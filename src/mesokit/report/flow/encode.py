@@ -27,9 +27,15 @@ def mp4(path: Path, pictures: Iterator[Pixels], fps: float) -> None:
     pictures = chain([first], pictures)
     height, width = (2 * (side // 2) for side in first.shape[:2])
     writer = write_frames(
-        path, (width, height), fps=fps, codec="libx264", quality=QUALITY, macro_block_size=1,
-        ffmpeg_log_level="quiet", output_params=["-f", "mp4", "-movflags", "+faststart"],
-    )  # fmt: skip
+        path,
+        (width, height),
+        fps=fps,
+        codec="libx264",
+        quality=QUALITY,
+        macro_block_size=1,
+        ffmpeg_log_level="quiet",
+        output_params=["-f", "mp4", "-movflags", "+faststart"],
+    )
     count = 0
     try:
         writer.send(None)

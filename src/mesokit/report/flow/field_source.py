@@ -1,11 +1,11 @@
-"""Pictures from the observables velocity-field and density-field."""
+"""Pictures from maps: of a velocity, whose results have components, or of a density."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.observe.result import Result
+from mesokit.observe.shared.result import Result
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.setting import Setting
 
@@ -15,7 +15,7 @@ class FieldSource:
 
     def __init__(self, setting: Setting, result: Result) -> None:
         self.setting, self.result, self.axes = setting, result, setting.axes
-        self.gives = frozenset({result.quantity.removesuffix("-field")})
+        self.gives = frozenset({"velocity" if "component" in result.x else "density"})
         self.time = np.zeros(0)
         self.whole = np.zeros(0, np.int64)
 

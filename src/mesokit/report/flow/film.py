@@ -8,32 +8,41 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.component import show
+from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.io.atomic import replacing
-from mesokit.progress import FilmReporter, Reporter
 from mesokit.report.flow.beads import BeadFrames, frames_of
 from mesokit.report.flow.encode import ENCODERS, Pixels
 from mesokit.report.flow.kinds import panels_of, quieted
 from mesokit.report.flow.region import Ranges, frames_in, region_of
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import Source, choose_one, sources
+from mesokit.report.progress import FilmReporter, Reporter
 from mesokit.report.style import symbols
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
-    from mesokit.io.open import TrajectoryReader
-    from mesokit.observe.result import Result
+    from mesokit.case.case import Case
+    from mesokit.io.trajectory_reader import TrajectoryReader
+    from mesokit.observe.shared.result import Result
     from mesokit.report.flow.canvas import Canvas
 
 SCALED = 24  # frames that the colours are chosen from
 DPI = {".mp4": 160, ".gif": 100}
 FASTEST = 100.0  # frames per second
+
+
+class View(NamedTuple):
+    """Which part of the flow is shown: a region, a window of time, a plane and where it lies."""
+
+    region: Ranges | None = None
+    window: tuple[float, float] | None = None
+    axes: tuple[str, str] | None = None
+    at: float | None = None
 
 
 @dataclass(frozen=True)
@@ -61,12 +70,9 @@ def animate(
     trajectory: TrajectoryReader | None,
     path: str | Path,
     kind: str = "speed",
-    region: Ranges | None = None,
-    window: tuple[float, float] | None = None,
-    axes: tuple[str, str] | None = None,
-    at: float | None = None,
     fps: float = 15.0,
     progress: Reporter | None = None,
+    **choices: Any,
 ) -> Film:
     """Write a film with a picture for each frame of the observable flow-frames, or a trajectory.
 
@@ -74,9 +80,10 @@ def animate(
     ----------
     case, results, trajectory: of the run.
     path: the file, which ends in .mp4 or .gif.
-    kind, region, window, axes, at: as for `picture`.
+    kind: as for `picture`.
     fps: frames shown per second.
     progress: what tells how it goes (nothing does unless said).
+    choices: `region`, `window`, `axes` and `at`, as for `picture`.
 
     Raises CaseError for an ending or a choice that there is not, RunError where the run kept no
     frames or the file cannot be written. Whatever goes wrong, an old file stays as it was.
@@ -88,21 +95,21 @@ def animate(
     >>> simulation.animate(Path(tempfile.mkdtemp()) / "film.gif", "quiver").frames
     2
     """
-    path = Path(path)
+    view, path = View(**choices), Path(path)
     ending = path.suffix.lower()
     if ending not in ENCODERS:
         raise CaseError(f"output = {show(str(path))}: expected a name that ends in .mp4 or .gif")
     if not isinstance(fps, numbers.Real) or not 0 < fps <= FASTEST:
         raise CaseError(f"fps = {show(fps)}: expected a number above 0, at most {FASTEST:g}")
     panels = panels_of(kind)
-    found = sources(case, results, trajectory, axes)
+    found = sources(case, results, trajectory, view.axes)
     source = choose_one(found, {panel.NEEDS for panel in panels}, kind)
-    frames = frames_in(source.time, window)
+    frames = frames_in(source.time, view.window)
     whole = np.intersect1d(frames, source.whole)
     frames = whole if len(whole) else frames
-    section = Section(case, source.axes, at)
+    section = Section(case, source.axes, view.at)
     first = source.flow(frames[:1])
-    shown = region_of(region, first.axes, first.size)
+    shown = region_of(view.region, first.axes, first.size)
     from mesokit.report.flow.canvas import Canvas
 
     some = frames[np.unique(np.linspace(0, len(frames) - 1, SCALED).astype(int))]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.observe.flow_frames import weights
-from mesokit.observe.result import Result
+from mesokit.observe.shared.result import Result
 from mesokit.report.flow.data import Array, Flow
 from mesokit.report.flow.setting import Setting
 

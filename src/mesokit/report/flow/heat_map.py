@@ -14,6 +14,11 @@ def heat_map(ax: Any, flow: Flow, values: Array, region: Region, scale: Scale) -
     x, y = region.bins(flow.size, values.shape)
     dx, dy = spacing(flow, values)
     ax.imshow(
-        values[x, y].T, origin="lower", cmap=scale.colours, vmin=scale.low, vmax=scale.high,
-        extent=(x.start * dx, x.stop * dx, y.start * dy, y.stop * dy), interpolation="nearest",
-    )  # fmt: skip
+        values[x, y].T,
+        origin="lower",
+        cmap=scale.colours,
+        vmin=scale.low,
+        vmax=scale.high,
+        extent=(x.start * dx, x.stop * dx, y.start * dy, y.stop * dy),
+        interpolation="nearest",
+    )

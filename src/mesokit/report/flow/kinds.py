@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
-from mesokit.component import nearest, one_of, show
+from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError
 from mesokit.report.flow import density, particles, quiver, speed, streamlines, vorticity
 from mesokit.report.flow.data import Flow

@@ -36,6 +36,11 @@ def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
         np.clip(np.sqrt(COVERED * area / max(len(shown), 1) * 4 / np.pi), SMALLEST, LARGEST)
     )
     ax.plot(
-        shown[:, 0], shown[:, 1], "o", color="black", markersize=size, markeredgewidth=0,
+        shown[:, 0],
+        shown[:, 1],
+        "o",
+        color="black",
+        markersize=size,
+        markeredgewidth=0,
         rasterized=len(shown) > MANY,
-    )  # fmt: skip
+    )

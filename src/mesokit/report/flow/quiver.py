@@ -65,16 +65,35 @@ def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
     number, (width, height) = max(len(x), len(y)), _inches(ax)
     thick = min(THICKEST, THICK * max(width, height) / number)
     drawn = ax.quiver(
-        x, y, velocity[..., 0].T, velocity[..., 1].T, angles="xy", scale_units="xy",
-        scale=reach * number / max(region.extent), pivot="mid", color="black", units="inches",
-        width=thick, headwidth=4.5, headlength=5, headaxislength=4.5, minlength=0.5,
-    )  # fmt: skip
+        x,
+        y,
+        velocity[..., 0].T,
+        velocity[..., 1].T,
+        angles="xy",
+        scale_units="xy",
+        scale=reach * number / max(region.extent),
+        pivot="mid",
+        color="black",
+        units="inches",
+        width=thick,
+        headwidth=4.5,
+        headlength=5,
+        headaxislength=4.5,
+        minlength=0.5,
+    )
     known = _round(reach)
     above = 0.14 if width > KEY_BESIDE else 0.36
     ax.quiverkey(
-        drawn, 0.97, 1 + above / height, known, f"{known:g} {symbols('a/tau')}", labelpos="W",
-        labelsep=0.08, fontproperties={"size": 9}, coordinates="axes",
-    )  # fmt: skip
+        drawn,
+        0.97,
+        1 + above / height,
+        known,
+        f"{known:g} {symbols('a/tau')}",
+        labelpos="W",
+        labelsep=0.08,
+        fontproperties={"size": 9},
+        coordinates="axes",
+    )
 
 
 def _inches(ax: Any) -> tuple[float, float]:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.component import show
+from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.report.flow.data import Array
 

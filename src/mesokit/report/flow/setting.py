@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mesokit.observe.setting import obstructed
+from mesokit.method.protocol import method_of
 from mesokit.report.flow.data import Array, Flow
 from mesokit.report.flow.solids import Section
-from mesokit.solids import solids_of
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
+    from mesokit.case.case import Case
 
 SURE, LEAST = 0.5, 0.1  # parts of a bin that are fluid, for its colours to count, to be drawn
 UNUSUAL = 4.0  # times the median error, above which a bin's colours do not count
@@ -46,12 +45,13 @@ class Setting:
 
     def share(self, shape: tuple[int, ...]) -> Array | None:
         """Part of each bin (nx, ny) that is fluid, None where no solid is in the way."""
-        if self.case is None or not obstructed(self.case):
+        solids = None if self.case is None else method_of(self.case).solids(self.case)
+        if solids is None or not solids.obstruct:
             return None
         kept = self._shares
         if shape not in kept:
             columns = self.columns[0], self.columns[1]
-            kept[shape] = solids_of(self.case).open_share(columns, shape)
+            kept[shape] = solids.open_share(columns, shape)
         return kept[shape]
 
     @cached_property
@@ -77,6 +77,14 @@ class Setting:
         if density is not None and share is not None:
             density = np.where(share > LEAST, density / np.maximum(share, LEAST), np.nan)
         return Flow(
-            self.axes, self.size, self.dimension, self.periodic, density, velocity, particles,
-            error, noise, sure,
-        )  # fmt: skip
+            self.axes,
+            self.size,
+            self.dimension,
+            self.periodic,
+            density,
+            velocity,
+            particles,
+            error,
+            noise,
+            sure,
+        )

@@ -6,15 +6,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesokit.box import AXES
-from mesokit.component import show
+from mesokit.case.box import AXES
+from mesokit.case.component import show
 from mesokit.errors import CaseError
+from mesokit.method.protocol import method_of
 from mesokit.report.flow.data import Array
 from mesokit.report.flow.region import Region
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
-    from mesokit.solids import Solids
+    from mesokit.case.case import Case
+    from mesokit.geometry.solids.solids import Solids
 
 POINTS = 600  # along the longer side of a picture
 BEYOND = 0.02, 0.08  # of the longer and the shorter side: the strip of a plate that is shown
@@ -23,9 +24,8 @@ FILL, EDGE, HATCH = "0.85", "black", "////"
 
 def solids_of(case: Case) -> Solids | None:
     """What says where the solids of a case are, None without any."""
-    from mesokit import solids
-
-    return solids.solids_of(case) if case.walls else None
+    solids: Solids | None = method_of(case).solids(case)
+    return solids
 
 
 class Section:

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.component import show
+from mesokit.case.component import show
 from mesokit.errors import CaseError, RunError
 from mesokit.report.flow.data import Flow
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
-    from mesokit.io.open import TrajectoryReader
-    from mesokit.observe.result import Result
+    from mesokit.case.case import Case
+    from mesokit.io.trajectory_reader import TrajectoryReader
+    from mesokit.observe.shared.result import Result
 
 Axes = tuple[str, str]
 WORDS = {"velocity": "velocities", "density": "densities", "particles": "positions of particles"}
@@ -81,14 +81,15 @@ def sources(
 
     kept = [result for result in results.values() if result.samples]
     maps: list[tuple[Axes, Result]] = []
-    for quantity in ("flow-frames", "velocity-field", "density-field"):
-        maps += [(axes_of(r), r) for r in kept if r.quantity == quantity]
+    for drawing in ("frames", "map"):
+        found_now = [r for r in kept if r.drawing == drawing]
+        maps += [(axes_of(r), r) for r in sorted(found_now, key=lambda r: "component" not in r.x)]
     _check(case, axes)
     chosen = axes or (maps[0][0] if maps else ("x", "y"))
     found = Found(chosen, [axes for axes, _ in maps if set(axes) != set(chosen)])
     for over, result in maps:
         if set(over) == set(chosen):
-            make = FrameSource if result.quantity == "flow-frames" else FieldSource
+            make = FrameSource if result.drawing == "frames" else FieldSource
             found.append(make(Setting.of(case, chosen), result))
     if trajectory is not None and "position" in trajectory.fields and len(trajectory):
         found.append(TrajectorySource(case, trajectory, chosen))

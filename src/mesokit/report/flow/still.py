@@ -13,9 +13,9 @@ from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import choose, sources
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
-    from mesokit.io.open import TrajectoryReader
-    from mesokit.observe.result import Result
+    from mesokit.case.case import Case
+    from mesokit.io.trajectory_reader import TrajectoryReader
+    from mesokit.observe.shared.result import Result
 
 CHOICES = ("region", "window", "axes", "at")  # what a user may say of a picture, and of a film
 

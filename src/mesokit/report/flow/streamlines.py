@@ -38,10 +38,17 @@ def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
     long = max(region.extent)
     colours = scale(flow, reach)
     ax.streamplot(
-        x, y, u, v, color=np.ma.hypot(u, v), cmap=colours.colours, linewidth=0.9, arrowsize=0.8,
+        x,
+        y,
+        u,
+        v,
+        color=np.ma.hypot(u, v),
+        cmap=colours.colours,
+        linewidth=0.9,
+        arrowsize=0.8,
         density=[max(LINES * side / long, FEWEST) for side in region.extent],
         norm=Normalize(colours.low, colours.high),
-    )  # fmt: skip
+    )
 
 
 def _nodes(flow: Flow, region: Region) -> tuple[Array, Array, Array]:

@@ -7,20 +7,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.method.protocol import method_of
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.setting import Setting
 
 if TYPE_CHECKING:
-    from mesokit.case import Case
-    from mesokit.io.open import TrajectoryReader
+    from mesokit.case.case import Case
+    from mesokit.io.trajectory_reader import TrajectoryReader
 
 
 class TrajectorySource:
-    """The frames of a trajectory, without solutes; its density is known if all the fluid is in."""
+    """The frames of the first group of particles; their density is known if all of them are in."""
 
     def __init__(self, case: Case, reader: TrajectoryReader, axes: tuple[str, str]) -> None:
         self.reader, self.axes, self.time = reader, axes, reader.time
-        self.setting, self.kT = Setting.of(case, axes), case.fluid.kT
+        thermal = method_of(case).kT
+        self.setting, self.kT = Setting.of(case, axes), thermal(case) if thermal else 0.0
         self.whole = np.arange(len(reader))
         self.rows = np.flatnonzero(reader.id < case.particles)
         known = {"particles"}

@@ -1,0 +1,198 @@
+"""A case: everything that defines a run, as a Python object and as a TOML file."""
+
+from __future__ import annotations
+
+import functools
+import typing
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from mesokit import method as methods
+from mesokit.case import checks, toml
+from mesokit.case.box import Box
+from mesokit.case.component import build, component, known_keys, nearest, param, show
+from mesokit.case.registry import FAMILIES
+from mesokit.case.run import Run
+from mesokit.case.trajectory import Group, Trajectory
+from mesokit.case.units import Units
+from mesokit.errors import CaseError
+
+SECTIONS = "the sections of the method"  # where these come among the fields that all cases have
+FIELDS: dict[str, Any] = {
+    "run": (Run, param(doc="how long, and how safe")),
+    "box": (Box, param(doc="the box")),
+    SECTIONS: (),
+    "observe": (None, param((), doc="what is measured; key `[[observe]]`")),
+    "trajectory": (
+        Trajectory | None, param(None, doc="particles to write (none unless said)")
+    ),
+    "units": (
+        Units | None, param(None, doc="what the units are in SI (reduced units unless said)")
+    ),
+    "title": (str, param("", doc="for the figures")),
+}  # fmt: skip
+
+
+class Case:
+    """Everything that defines a run.
+
+    Beside `run`, `box`, `observe`, `trajectory`, `units` and `title` it has the sections of its
+    method, `run.method`: those of an MPCD fluid are `fluid`, `solutes` and `walls`.
+
+    Raises CaseError for values out of range and for combinations without a physics.
+
+    Examples:
+        >>> from mesokit import Fluid
+        >>> case = Case(run=Run(steps=100), box=Box([30, 30]), fluid=Fluid(density=5))
+        >>> print(case.to_toml()[:37])
+        [run]
+        steps = 100
+        warmup = 0
+        seed = 1
+    """
+
+    run: Run
+    box: Box
+    observe: tuple[Any, ...]
+    trajectory: Trajectory | None
+    units: Units | None
+    title: str
+    _method: ClassVar[Any]  # typed in `mesokit.method.protocol`, which knows cases
+    if TYPE_CHECKING:
+        __dataclass_fields__: ClassVar[dict[str, Any]]
+
+        def __getattr__(self, section: str) -> Any: ...
+
+    def __new__(cls, *given: Any, **sections: Any) -> Case:
+        """A case of the class that `run.method` asks for."""
+        if cls is Case:
+            run = given[0] if given else sections.get("run")
+            cls = case_class(method_named(run))
+            _require_sections(cls, sections, "Case.")
+        return object.__new__(cls)
+
+    def __init__(self, *given: Any, **sections: Any) -> None:
+        raise TypeError("a case is made by its class")  # that of its method has another
+
+    def __post_init__(self) -> None:
+        method = self._method
+        if self.run.method != method.name:
+            raise CaseError(
+                f"run.method = {show(self.run.method)}: the sections are those of "
+                f"{show(method.name)}; make a new case"
+            )
+        if self.units is not None and method.si is None:
+            raise CaseError(f"units: method {show(method.name)} does not know them in SI")
+        method.check(self)
+        checks.check(self, method.name, method.observables, self.groups)
+
+    def __reduce__(self) -> Any:
+        return _again, ({name: getattr(self, name) for name in type(self)._fields()},)
+
+    @property
+    def groups(self) -> tuple[Group, ...]:
+        """The groups of particles, in the order of their numbers."""
+        groups: tuple[Group, ...] = self._method.groups(self)
+        return groups
+
+    @property
+    def particles(self) -> int:
+        """Number of particles of the first group: of a fluid, without what is dissolved in it."""
+        return self.groups[0].number
+
+    @classmethod
+    def from_toml(cls, path: str | Path, overrides: Mapping[str, Any] | None = None) -> Case:
+        """Read a case file.
+
+        Parameters:
+            path: the file. File names in it are relative to its folder.
+            overrides: values that replace those of the file, by key path, such as
+                {"fluid.density": "5"}; a text is read as a TOML value, else taken as it is. One
+                of several [[wall]] or [[observe]] is named by its number from 1, and an
+                observable by its name: "observe.velocity-profile.every".
+
+        Raises CaseError: one line with file, key, value and what was expected.
+        """
+        path = Path(path)
+        try:
+            data = toml.parse(toml.read(path))
+            for key, value in (overrides or {}).items():
+                toml.override(data, key, value)
+            made = case_class(method_named(data.get("run")))
+            keys = made._method.keys
+            return build(made, _by_field(made, data), keys, path.parent)
+        except CaseError as error:
+            raise CaseError(f"{path}: {error}") from None
+
+    def to_toml(self, folder: Path | None = None) -> str:
+        """The case as a file, with every default written out; `from_toml` gives an equal case.
+
+        Files in the folder that the file is for are named without it: they may be moved together.
+        """
+        return toml.write(self, self._method.keys, folder)
+
+    def missing_files(self) -> list[str]:
+        """'key = file' for each file or folder that the start needs and that is not there."""
+        missing: list[str] = self._method.missing_files(self)
+        return missing
+
+    @classmethod
+    def _fields(cls) -> list[str]:
+        return known_keys(cls)
+
+
+@functools.cache
+def case_class(name: str) -> type[Case]:
+    """The class of the cases of a method: the fields of all cases, and its sections."""
+    method = methods.load(name)
+    hints = typing.get_type_hints(method.sections, include_extras=True)
+    sections = {key: (hint, getattr(method.sections, key)) for key, hint in hints.items()}
+    fields: dict[str, Any] = {}
+    for key, field in FIELDS.items():
+        fields |= sections if key == SECTIONS else {key: field}
+    observable: Any = next(base for base in FAMILIES if issubclass(method.observables[0], base))
+    fields["observe"] = (tuple[observable, ...], fields["observe"][1])
+    body = {
+        "__annotations__": {key: hint for key, (hint, _) in fields.items()},
+        "__doc__": Case.__doc__,
+        "__module__": __name__,
+        **{key: default for key, (_, default) in fields.items()},
+        "_method": method,
+    }
+    return component(type("Case", (Case,), body))
+
+
+def method_named(run: Any) -> str:
+    """The method that a section `run` names, or its table; a wrong name is left to its check."""
+    name = run.get("method", "mpcd") if isinstance(run, dict) else getattr(run, "method", None)
+    return name if isinstance(name, str) and name in methods.modules() else "mpcd"
+
+
+def _again(fields: dict[str, Any]) -> Case:
+    return Case(**fields)
+
+
+def _by_field(made: type[Case], data: dict[str, Any]) -> dict[str, Any]:
+    """The tables of a file by the names of the fields."""
+    keys: Mapping[str, str] = made._method.keys
+    for field, key in keys.items():
+        if field in data:
+            raise CaseError(f"{field}: unknown key; did you mean [[{key}]]?")
+    for key in (*keys.values(), "observe"):
+        if isinstance(data.get(key), dict):
+            raise CaseError(f"{key}: expected [[{key}]], in double brackets")
+    fields = {key: field for field, key in keys.items()}
+    values = {fields.get(key, key): value for key, value in data.items()}
+    _require_sections(made, values)
+    return values
+
+
+def _require_sections(made: type[Case], given: Mapping[str, Any], where: str = "") -> None:
+    """Raise CaseError for what is no section of a case of this method."""
+    method, known = made._method, made._fields()
+    for key in given:
+        if key not in known:
+            names = [method.keys.get(name, name) for name in known] if not where else known
+            hint = nearest(key, names) or f"; valid here: {', '.join(names)}"
+            raise CaseError(f"{where}{key}: unknown key of method {show(method.name)}{hint}")

@@ -1,0 +1,97 @@
+"""What every method checks of a case: observables, and the trajectory."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from mesokit.case.box import AXES
+from mesokit.case.component import name_of, one_of, show, tag_of
+from mesokit.case.trajectory import Group, written
+from mesokit.errors import CaseError
+
+MOST_BINS = 2**24  # of one observable: some gigabytes
+
+
+def check(case: Any, method: str, observables: tuple[type, ...], groups: Sequence[Group]) -> None:
+    """Raise CaseError for the first observable that cannot be measured, and for a trajectory
+    without particles. The method offers these observables; `groups` are those of the case."""
+    for problem in (
+        *offered(case, method, observables),
+        *names(case),
+        *bins(case),
+        *trajectory(case, groups),
+    ):
+        raise CaseError(problem)
+    for i, observable in enumerate(case.observe):
+        try:
+            observable.check(case)
+        except CaseError as error:
+            reason = str(error).removeprefix(f"{observable.label}: ")
+            joint = "." if re.match(r"\w+ = ", reason) else f" ({observable.label}): "
+            raise CaseError(f"observe[#{i + 1}]{joint}{reason}") from None
+
+
+def offered(case: Any, method: str, observables: tuple[type, ...]) -> Iterator[str]:
+    """Observables of the method, or of somebody who says that they are for it."""
+    for i, observable in enumerate(case.observe):
+        if not isinstance(observable, observables) and method not in observable.methods:
+            found = [tag_of(each) for each in observables]
+            known = [name for _, name in filter(None, found)]
+            yield (
+                f"observe[#{i + 1}].quantity = {show(name_of(observable))}: method {show(method)} "
+                f"does not offer it; expected {one_of(known)}"
+            )
+
+
+def names(case: Any) -> Iterator[str]:
+    """Results are kept by name."""
+    seen: dict[str, int] = {}
+    for i, observable in enumerate(case.observe):
+        label = observable.label
+        if label in seen:
+            yield (
+                f"observe[#{i + 1}].name: {show(label)} is also the name of "
+                f"observe[#{seen[label]}]; give one of them a name"
+            )
+        seen[label] = i + 1
+        if not label.replace("-", "").replace("_", "").isalnum():
+            yield (
+                f"observe[#{i + 1}].name = {show(label)}: expected letters, digits, '-' and '_' "
+                "(it names a file)"
+            )
+
+
+def bins(case: Any) -> Iterator[str]:
+    """No more than fit into the memory."""
+    for i, observable in enumerate(case.observe):
+        per_cell = getattr(observable, "bins_per_cell", None)
+        if per_cell is None:
+            continue
+        axes = getattr(observable, "axes", None) or (getattr(observable, "axis", "x"),)
+        lengths: dict[str, int] = dict(zip(AXES, case.box.size, strict=False))
+        number = math.prod(lengths.get(axis, 1) * per_cell for axis in axes)
+        if number > MOST_BINS:
+            yield (
+                f"observe[#{i + 1}].bins_per_cell = {per_cell}: {number} bins in this box; "
+                f"expected at most {MOST_BINS}"
+            )
+
+
+def trajectory(case: Any, groups: Sequence[Group]) -> Iterator[str]:
+    """Particles that exist, each field once."""
+    given = case.trajectory
+    if given is None:
+        return
+    known = ["all", *(group.name for group in groups)]
+    number, _ = written(given, groups)
+    if given.of not in known:
+        yield f"trajectory.of = {show(given.of)}: expected {one_of(known)}"
+    elif number == 0:
+        yield f"trajectory.of = {show(given.of)}: there is no such particle"
+    elif given.subset is not None and given.subset > number:
+        yield f"trajectory.subset = {given.subset}: there are only {number} particles"
+    if len(set(given.fields)) < len(given.fields):
+        yield f"trajectory.fields = {show(given.fields)}: expected each field once"

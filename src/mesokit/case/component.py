@@ -1,0 +1,361 @@
+"""What every part of a case is made of: a frozen dataclass that checks its values.
+
+A component is at once the Python object, the section of the case file, the stored metadata and
+the row of the documentation. Write plain type hints: numbers are taken strictly (no strings, no
+booleans; a whole float passes as an int), lists and arrays become tuples, unions of components
+are told apart by their tag (such as `rule` or `quantity`), unknown keys are refused.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import difflib
+import functools
+import math
+import numbers
+import operator
+import re
+import types
+import typing
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Annotated, Any, TypeVar, dataclass_transform
+
+import pydantic
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidationInfo,
+)
+from pydantic_core import PydanticCustomError
+
+from mesokit.case.registry import FAMILIES, Family, register
+from mesokit.errors import CaseError
+
+T = TypeVar("T")
+
+
+def _located(name: str, info: ValidationInfo) -> str:
+    """A file name that holds wherever it is read: from the folder of the case on, or from here."""
+    folder = (info.context or {}).get("folder") or Path.cwd()
+    return str((folder / name).resolve())
+
+
+FileName = Annotated[str, AfterValidator(_located)]
+TAGS = ("rule", "shape", "quantity", "substance")
+
+
+def param(default: Any = ..., *, doc: str, unit: str = "", **limits: Any) -> Any:
+    """A field of a component: default (none: required), one-line meaning, unit, gt/ge/lt/le."""
+    return Field(default, description=doc, json_schema_extra={"unit": unit}, **limits)
+
+
+def tag(value: str) -> Any:
+    """The field, one of TAGS, whose value names the component in a case file."""
+    return Field(value, description="name of the component", kw_only=True)
+
+
+@dataclass_transform(frozen_default=True)
+def component(cls: type[T]) -> type[T]:
+    """Make a class a frozen, validated dataclass that raises CaseError for bad values.
+
+    Examples:
+        >>> @component
+        ... class Spring:
+        ...     stiffness: float = param(1.0, doc="spring constant", unit="kT/a^2", gt=0)
+        >>> Spring(stiffness=-1)
+        Traceback (most recent call last):
+        mesokit.errors.CaseError: Spring.stiffness = -1: expected a number above 0
+    """
+    hints = typing.get_type_hints(cls, include_extras=True)
+    cls.__annotations__ = {name: strict(hints[name]) for name in cls.__annotations__}
+    config = ConfigDict(extra="forbid", allow_inf_nan=False, validate_default=True)
+    made = pydantic.dataclasses.dataclass(cls, frozen=True, config=config)
+    validated_init = made.__init__
+
+    @functools.wraps(validated_init)
+    def __init__(self: Any, *args: Any, **kwargs: Any) -> None:
+        try:
+            validated_init(self, *args, **kwargs)
+        except ValidationError as error:
+            raise CaseError(first_line(made, error, start=made.__name__)) from None
+
+    setattr(made, "__init__", __init__)  # noqa: B010 (mypy forbids assigning to a method)
+    if found := tag_of(made):
+        register(typing.cast(type, made), found[1])
+    return typing.cast(type[T], made)
+
+
+def is_component(hint: Any) -> bool:
+    """Whether a type is a component."""
+    return isinstance(hint, type) and hasattr(hint, "__pydantic_fields__")
+
+
+def tag_of(cls: Any) -> tuple[str, str] | None:
+    """The tag field of a component and its value, such as ("rule", "srd")."""
+    for field in dataclasses.fields(cls):
+        if field.name in TAGS:
+            return field.name, cls.__pydantic_fields__[field.name].default
+    return None
+
+
+def name_of(part: Any) -> str:
+    """The name of a component in a case file: the value of its tag."""
+    found = tag_of(type(part))
+    assert found is not None, f"{type(part).__name__} has no tag"
+    return found[1]
+
+
+def build(
+    cls: type[T],
+    values: dict[str, Any],
+    rename: dict[str, str] | None = None,
+    folder: Path | None = None,
+) -> T:
+    """A component from nested dictionaries, as read from a case file.
+
+    `rename` maps field names of the outermost component to the keys to show in messages; file
+    names are relative to `folder`, or to the working directory.
+    Raises CaseError with the full key path, the given value and what was expected.
+    """
+    try:
+        return pydantic.TypeAdapter(cls).validate_python(values, context={"folder": folder})
+    except ValidationError as error:
+        raise CaseError(first_line(cls, error, rename or {})) from None
+
+
+# --- type hints ---------------------------------------------------------------------------------
+
+
+def strict(hint: Any) -> Any:
+    """The type hint with our rules for numbers, lists and tagged unions written into it."""
+    if hint is float:
+        return Annotated[float, BeforeValidator(_real)]
+    if hint is int:
+        return Annotated[int, BeforeValidator(_whole)]
+    if isinstance(hint, type) and hint in FAMILIES:
+        return Annotated[Any, FAMILIES[hint]]
+    origin, args = typing.get_origin(hint), typing.get_args(hint)
+    if origin is tuple:
+        inner = tuple(arg if arg is Ellipsis else strict(arg) for arg in args)
+        return Annotated[tuple[inner], BeforeValidator(_list)]  # type: ignore[valid-type]
+    if origin in (typing.Union, types.UnionType):
+        members = [arg for arg in args if is_component(arg)]
+        if len(members) > 1:
+            field = tag_of(members[0])
+            assert field is not None, f"{members[0].__name__} has no tag"
+            others = [arg for arg in args if arg not in members]
+            union = _union(members)
+            tagged = Annotated[union, Field(discriminator=field[0])]  # type: ignore[valid-type]
+            return _union([tagged, *others])
+        return _union([strict(arg) for arg in args])
+    return hint
+
+
+def _union(hints: Sequence[Any]) -> Any:
+    return functools.reduce(operator.or_, hints)
+
+
+def _real(value: Any) -> float:
+    if not isinstance(value, numbers.Real) or isinstance(value, bool):
+        raise PydanticCustomError("number", "expected a number")
+    with contextlib.suppress(OverflowError):
+        if math.isfinite(number := float(value)):
+            return number
+    raise PydanticCustomError("number", "expected a finite number")
+
+
+def _whole(value: Any) -> int:
+    if isinstance(value, numbers.Real) and not isinstance(value, bool):
+        whole: Any = int(value) if isinstance(value, numbers.Integral) else float(value)
+        if not abs(whole) < 2**63:
+            raise PydanticCustomError("whole", "expected a whole number of at most 63 bits")
+        if whole == int(whole):
+            return int(whole)
+    raise PydanticCustomError("whole", "expected a whole number")
+
+
+def _list(value: Any) -> Any:
+    if isinstance(value, str) or not isinstance(value, Iterable) or isinstance(value, dict):
+        raise PydanticCustomError("list", "expected a list")
+    return tuple(value)
+
+
+# --- messages -----------------------------------------------------------------------------------
+
+
+def first_line(
+    cls: Any, error: ValidationError, rename: dict[str, str] | None = None, start: str = ""
+) -> str:
+    """The most telling of the errors as one line: key path, value, what was expected."""
+    entries = sorted(error.errors(), key=lambda e: not _is_unknown(e))  # a typo explains the rest
+    first = entries[0]
+    path, holder, here = _walk(cls, first["loc"], rename or {}, start)
+    kind, context = first["type"], first.get("ctx", {})
+    if _is_unknown(first):
+        known = known_keys(holder, rename if holder is cls else None)
+        hint = nearest(str(first["loc"][-1]), known) or f"; valid here: {', '.join(known)}"
+        return f"{path}: unknown key{hint}"
+    if kind in ("missing", "missing_argument"):
+        return f"{path}: missing; it has no default"
+    if kind in ("union_tag_not_found", "union_tag_invalid"):
+        path += "." + str(context["discriminator"]).strip("'")
+        known = names_of(here)
+        if kind == "union_tag_not_found":
+            return f"{path}: missing; expected {one_of(known)}"
+        return f"{path} = {show(context['tag'])}: {_choice(context['tag'], known)}"
+    words = _expected(first)
+    if kind == "value_error" and _names_key_of(here if first["loc"] else cls, words):
+        return f"{path}.{words}" if path else words
+    if not first["loc"]:  # a check of the whole component says it all
+        return f"{path}: {words}" if path else words
+    return f"{path} = {show(first['input'])}: {words}"
+
+
+def known_keys(cls: Any, rename: dict[str, str] | None = None) -> list[str]:
+    """The keys that a component takes in a case file."""
+    return [(rename or {}).get(f.name, f.name) for f in dataclasses.fields(cls)]
+
+
+def nearest(given: str, known: Iterable[str]) -> str:
+    """'; did you mean X?' for the closest valid name, or nothing."""
+    plain = {name.lower().replace("_", "-"): name for name in known}
+    close = difflib.get_close_matches(given.lower().replace("_", "-"), plain, 1, 0.5)
+    return f"; did you mean {show(plain[close[0]])}?" if close else ""
+
+
+def require_known(given: Iterable[str], known: Sequence[str]) -> None:
+    """Raise CaseError for a name that is not known.
+
+    >>> require_known(["regoin"], ["region", "window"])
+    Traceback (most recent call last):
+        ...
+    mesokit.errors.CaseError: regoin: unknown; expected 'region' or 'window'; did you mean 'region'?
+    """
+    for name in given:
+        if name not in known:
+            raise CaseError(f"{name}: unknown; expected {one_of(known)}{nearest(name, known)}")
+
+
+def one_of(names: Sequence[str]) -> str:
+    """'a', 'b' or 'c'."""
+    quoted = [show(name) for name in names]
+    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} or {quoted[-1]}"
+
+
+def show(value: Any, longest: int = 60) -> str:
+    """A value as the user would write it, cut to a readable length."""
+    if isinstance(value, bool):
+        text = str(value).lower()
+    elif isinstance(value, dict):
+        text = "{" + ", ".join(f"{_printable(k)} = {show(v)}" for k, v in value.items()) + "}"
+    elif isinstance(value, list | tuple):
+        text = "[" + ", ".join(show(v) for v in value) + "]"
+    elif isinstance(value, float):
+        text = f"{value:.12g}"
+    else:
+        text = " ".join(repr(value).split())
+    return text if len(text) <= longest else text[: longest - 3] + "..."
+
+
+def _printable(key: str) -> str:
+    return key if key.isprintable() else repr(key)
+
+
+def _is_unknown(entry: Any) -> bool:
+    return entry["type"] in ("extra_forbidden", "unexpected_keyword_argument")
+
+
+def _choice(given: Any, known: Sequence[str]) -> str:
+    return f"expected {one_of(known)}{nearest(str(given), known)}"
+
+
+def _names_key_of(here: Any, words: str) -> bool:
+    """Whether a message begins with a key of the component that it is about."""
+    key = re.match(r"(\w+)(\[#\d+\])?(\.| = |: )", words)
+    return key is not None and any(key[1] in c.__pydantic_fields__ for c in _members(here))
+
+
+def _walk(
+    cls: Any, loc: Sequence[int | str], rename: dict[str, str], start: str
+) -> tuple[str, Any, Any]:
+    """Key path as the user wrote it, the component that holds the last key, and its type."""
+    if loc and isinstance(loc[0], int):  # a positional argument in Python
+        names = list(cls.__pydantic_fields__)
+        names = [n for n in names if n not in TAGS]
+        loc = (names[loc[0]] if loc[0] < len(names) else "?", *loc[1:])
+    path, here, holder = start, cls, cls
+    for item in loc:
+        if isinstance(item, int):
+            path += f"[#{item + 1}]"
+            continue
+        options = _members(here)
+        tagged = [c for c in options if (tag_of(c) or ("", ""))[1] == item]
+        if tagged and not is_component(here):  # a step that only names the member of a union
+            here = tagged[0]
+            continue
+        if options:
+            holder = options[0]
+        elif here is not cls and isinstance(item, str) and typing.get_origin(here) is not dict:
+            continue  # a branch of a union of plain types
+        shown = rename.get(item, item) if holder is cls else item
+        path += ("." if path else "") + _printable(shown)
+        fields = holder.__pydantic_fields__
+        here = _hint_of(fields[item]) if item in fields else None
+    return path, holder, here
+
+
+def _hint_of(field: Any) -> Any:
+    """The type hint of a field, of which pydantic keeps the annotations apart."""
+    families = [mark for mark in field.metadata if isinstance(mark, Family)]
+    return Annotated[field.annotation, families[0]] if families else field.annotation
+
+
+def names_of(hint: Any) -> list[str]:
+    """The tags by which a case file can choose among the components of a type hint."""
+    if isinstance(hint, Family):
+        return hint.names()
+    if is_component(hint):
+        return [name[1] for name in [tag_of(hint)] if name]
+    return [name for arg in typing.get_args(hint) for name in names_of(arg)]
+
+
+def _members(hint: Any) -> list[Any]:
+    """The components that a type hint names."""
+    if is_component(hint):
+        return [hint]
+    if isinstance(hint, Family):
+        return list(hint.parts.values())
+    return [found for arg in typing.get_args(hint) for found in _members(arg)]
+
+
+_LIMITS = {
+    "greater_than": ("gt", "a number above"),
+    "greater_than_equal": ("ge", "a number of at least"),
+    "less_than": ("lt", "a number below"),
+    "less_than_equal": ("le", "a number of at most"),
+    "too_short": ("min_length", "a longer list, length at least"),
+    "too_long": ("max_length", "a shorter list, length at most"),
+}
+
+
+def _expected(entry: Any) -> str:
+    kind, context = entry["type"], entry.get("ctx", {})
+    if kind in _LIMITS:
+        key, words = _LIMITS[kind]
+        return f"expected {words} {context[key]:g}"
+    if kind == "literal_error":
+        names = [name.strip(" '") for name in context["expected"].replace(" or ", ",").split(",")]
+        return _choice(entry["input"], names)
+    if kind == "value_error":
+        return str(context["error"])
+    return {
+        "dataclass_type": "expected a table",
+        "string_type": "expected a text in quotes",
+        "bool_type": "expected true or false",
+        "model_attributes_type": "expected a table",
+    }.get(kind, str(entry["msg"]))

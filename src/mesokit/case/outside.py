@@ -1,0 +1,53 @@
+"""Parts of a case that mesokit does not bring: which they are, and whether they are here."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+from collections.abc import Iterator
+from typing import Any
+
+from mesokit.case.component import is_component, name_of, tag_of
+from mesokit.case.registry import FAMILIES, address, family_of
+from mesokit.errors import RunError
+
+
+def outside_parts(case: Any) -> list[dict[str, str]]:
+    """What a record says of each: family, name, class, and the distribution with its version.
+
+    A part that a script defines has no distribution.
+    """
+    found = []
+    for part in _components(case):
+        if type(part).__module__.split(".")[0] != "mesokit" and tag_of(type(part)):
+            family, name = family_of(part), name_of(part)
+            record = {"family": address(family.base), "name": name, "class": address(type(part))}
+            found.append(record | dict(family.brought_by(name)))
+    return [record for i, record in enumerate(found) if record not in found[:i]]
+
+
+def require_parts(record: Any) -> None:
+    """Raise RunError for the first part of `outside_parts` that is not here."""
+    for part in record if isinstance(record, list) else []:
+        module, _, base = part["family"].partition(":")
+        if not module.startswith("mesokit."):
+            raise RunError(f"{part['family']} is no family of parts")
+        family = FAMILIES[getattr(importlib.import_module(module), base)]
+        if family.find(part["name"]) is None:
+            cure = "import the module that defines it first"
+            if "distribution" in part:
+                cure = f"install {part['distribution']} {part['version']}"
+            raise RunError(
+                f"{family.title} {part['name']!r} of this run, {part['class']}, is not here; {cure}"
+            )
+
+
+def _components(part: Any) -> Iterator[Any]:
+    """A component and all that it holds."""
+    if isinstance(part, tuple):
+        for element in part:
+            yield from _components(element)
+    elif is_component(type(part)):
+        yield part
+        for field in dataclasses.fields(part):
+            yield from _components(getattr(part, field.name))

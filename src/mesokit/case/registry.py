@@ -1,0 +1,180 @@
+"""Families of parts, such as collision rules, and which parts there are of each.
+
+A part is registered by being defined: a component that is a subclass of its family's base. Those of
+mesokit are files in one folder; others are defined by a script before it builds a case, or brought
+by an installed package whose entry point says where. Entry points are looked up and loaded only
+where a case names a part that is not known yet.
+"""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Callable, Iterable, Mapping
+from importlib import metadata
+from typing import Any, TypeVar
+
+from pydantic import GetCoreSchemaHandler, ValidationError, ValidationInfo
+from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
+
+from mesokit.errors import CaseError
+
+T = TypeVar("T", bound=type)
+
+
+class Family:
+    """All parts of one sort, by the value of their tag.
+
+    `title` is what messages call one of them, `tag` the key that names it in a case file, `group`
+    that of the entry points by which packages bring more.
+    """
+
+    def __init__(self, base: type, title: str, tag: str, group: str) -> None:
+        self.base, self.title, self.tag, self.group = base, title, tag, group
+        self.parts: dict[str, type[Any]] = {}
+
+    def add(self, name: str, part: type) -> None:
+        """Register a part. Raises CaseError if another has its name."""
+        known = self.parts.get(name)
+        if known is not None and address(known) != address(part):
+            raise CaseError(
+                f"{address(part)}: {self.title} {name!r} is {address(known)} already; choose "
+                f"another {self.tag}"
+            )
+        self.parts[name] = part
+
+    def names(self) -> list[str]:
+        """The names that a case file can say, those that packages bring included."""
+        brought = [e.name for e in self._entries() if self._may_have(e)]
+        return list(dict.fromkeys([*self.parts, *brought]))
+
+    def find(self, name: str) -> type | None:
+        """The part of that name, None if there is none. Raises CaseError if it cannot be loaded."""
+        if name not in self.parts:
+            self._load(name)
+        return self.parts.get(name)
+
+    def brought_by(self, name: str) -> Mapping[str, str]:
+        """Distribution and version that have an entry point for a part; {} for a script's."""
+        place = address(self.parts[name])
+        for entry in self._entries():
+            if entry.name == name and entry.value.replace(" ", "") == place and entry.dist:
+                return {"distribution": entry.dist.name, "version": entry.dist.version}
+        return {}
+
+    def _entries(self) -> Iterable[metadata.EntryPoint]:
+        return metadata.entry_points(group=self.group)
+
+    def _load(self, name: str) -> None:
+        entries = [entry for entry in self._entries() if entry.name == name]
+        if not entries:
+            return
+        sources = sorted({_source(entry) for entry in entries})
+        if len(sources) > 1:
+            raise CaseError(
+                f"{self.title} {name!r} is brought by {' and by '.join(sources)}; remove one"
+            )
+        try:
+            entries[0].load()
+        except CaseError:
+            raise
+        except Exception as error:
+            reason = " ".join(f"{type(error).__name__}: {error}".split())
+            raise CaseError(
+                f"{self.title} {name!r} of {sources[0]} cannot be loaded: {reason}"
+            ) from error
+        if name not in self.parts and self._may_have(entries[0]):
+            raise CaseError(
+                f"entry point {name!r} of {sources[0]}: {entries[0].value} is no {self.title} with "
+                f"{self.tag} = {name!r}"
+            )
+
+    def _may_have(self, entry: metadata.EntryPoint) -> bool:
+        """Whether no family of the same group is known to have the part."""
+        others = [f for f in FAMILIES.values() if f.group == self.group]
+        return not any(entry.name in family.parts for family in others)
+
+    # --- validation -----------------------------------------------------------------------------
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        return core_schema.with_info_plain_validator_function(self._validated)
+
+    def _validated(self, value: Any, info: ValidationInfo) -> Any:
+        """A part as it is, or built from a table that names it."""
+        if isinstance(value, self.base):
+            if type(value) not in self.parts.values():
+                raise PydanticCustomError(
+                    "part", f"{address(type(value))} lacks @component, or was defined anew"
+                )
+            return value
+        if not isinstance(value, Mapping):
+            raise PydanticCustomError("dataclass_type", "expected a table")
+        if self.tag in value:
+            name = value[self.tag]
+        elif len(self.parts) == 1:
+            (name,) = self.parts
+        else:
+            raise PydanticCustomError("union_tag_not_found", "", {"discriminator": self.tag})
+        try:
+            part = self.find(name) if isinstance(name, str) else None
+        except CaseError as error:
+            raise PydanticCustomError("part", "{reason}", {"reason": str(error)}) from None
+        if part is None:
+            context = {"discriminator": self.tag, "tag": name}
+            raise PydanticCustomError("union_tag_invalid", "", context)
+        try:
+            return part.__pydantic_validator__.validate_python(value, context=info.context)  # type: ignore[attr-defined]
+        except ValidationError as error:
+            raise ValidationError.from_exception_data(
+                error.title, [_inside(name, entry) for entry in error.errors()]
+            ) from None
+
+
+FAMILIES: dict[type, Family] = {}
+
+
+def family(title: str, tag: str, group: str) -> Callable[[T], T]:
+    """Make a class the base of a family of parts."""
+
+    def decorate(base: T) -> T:
+        FAMILIES[base] = Family(base, title, tag, group)
+        return base
+
+    return decorate
+
+
+def register(part: type, name: str) -> None:
+    """Add a component to the families whose base it is a subclass of."""
+    for base, found in FAMILIES.items():
+        if issubclass(part, base):
+            found.add(name, part)
+
+
+def family_of(part: Any) -> Family:
+    """The family of a component, the first of several."""
+    return next(found for base, found in FAMILIES.items() if isinstance(part, base))
+
+
+def parts_in(path: Iterable[str], package: str, base: type[Any]) -> tuple[type[Any], ...]:
+    """The parts that the files of a folder define, in the order of their names."""
+    for module in pkgutil.iter_modules(path, f"{package}."):
+        importlib.import_module(module.name)
+    found = FAMILIES[base].parts.values()
+    return tuple(part for part in found if part.__module__.startswith(f"{package}."))
+
+
+def address(part: type) -> str:
+    """Module and name of a class, as an entry point says it."""
+    return f"{part.__module__}:{part.__qualname__}"
+
+
+def _source(entry: metadata.EntryPoint) -> str:
+    return f"{entry.dist.name} {entry.dist.version}" if entry.dist else entry.value
+
+
+def _inside(name: str, entry: Any) -> InitErrorDetails:
+    """The error of a part, under its name."""
+    kind = PydanticCustomError(entry["type"], entry["msg"], entry.get("ctx"))
+    return {"type": kind, "loc": (name, *entry["loc"]), "input": entry["input"]}

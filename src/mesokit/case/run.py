@@ -1,0 +1,32 @@
+"""How long a run is, and how often it is made safe."""
+
+from __future__ import annotations
+
+from pydantic import field_validator
+
+from mesokit import method as methods
+from mesokit.case.component import component, nearest, one_of, param
+
+
+@component
+class Run:
+    """Length of a run, its random numbers and its checkpoints."""
+
+    steps: int = param(doc="steps to run after the warm-up", ge=0)
+    warmup: int = param(0, doc="steps before them that no observable sees", ge=0)
+    seed: int = param(1, doc="the same seed gives the same bits", ge=0, lt=2**56)
+    method: str = param("mpcd", doc="how the particles move")
+    checkpoint_minutes: float = param(
+        10.0, doc="write a checkpoint this often", unit="minutes", gt=0
+    )
+    checkpoint_every: int | None = param(
+        None, doc="write a checkpoint every so many steps as well", ge=1
+    )
+
+    @field_validator("method")
+    @classmethod
+    def _one_that_there_is(cls, name: str) -> str:
+        if name not in methods.METHODS and name not in methods.modules():
+            known = sorted(methods.modules())
+            raise ValueError(f"expected {one_of(known)}{nearest(name, known)}")
+        return name

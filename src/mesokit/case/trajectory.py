@@ -1,0 +1,96 @@
+"""Which particles of a case are written, and how often."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.component import component, param
+
+Quantity = Literal["position", "velocity", "image", "id"]
+WIDTHS = {"image": 4, "id": 8}  # bytes of a field; the others follow the precision
+COMPRESSED = 0.9  # thermal noise hardly compresses
+
+
+class Kind(NamedTuple):
+    """Equal particles: mass of each, and how many there are."""
+
+    mass: float
+    number: int
+
+
+class Group(NamedTuple):
+    """Particles with consecutive numbers, such as a fluid or its solutes, kind after kind.
+
+    `diameter` is that of a particle in pictures, in cells.
+    """
+
+    name: str
+    kinds: tuple[Kind, ...]
+    diameter: float = 0.5
+
+    @property
+    def number(self) -> int:
+        """How many particles."""
+        return sum(kind.number for kind in self.kinds)
+
+
+@component
+class Trajectory:
+    """Particles written to the H5MD file of the run."""
+
+    every: int = param(doc="steps between two frames", ge=1)
+    of: str = param("all", doc='whose particles: "all", or, of an MPCD fluid, "fluid" or "solutes"')
+    fields: tuple[Quantity, ...] = param(("position",), doc="what is written", min_length=1)
+    subset: int | None = param(
+        None, doc="only the first particles, so many (all unless said)", ge=1
+    )
+    precision: Literal["float32", "float64"] = param("float32", doc="of the stored numbers")
+    compression: int = param(4, doc="gzip level: 0 none, 9 smallest", ge=0, le=9)
+
+
+def written(trajectory: Trajectory, groups: Sequence[Group]) -> tuple[int, int]:
+    """How many particles the trajectory may hold, and the number of the first.
+
+    >>> fluid, solutes = Group("fluid", (Kind(1.0, 90),)), Group("solutes", (Kind(5.0, 10),))
+    >>> written(Trajectory(every=1, of="solutes"), [fluid, solutes])
+    (10, 90)
+    """
+    first = 0
+    for group in groups:
+        if group.name == trajectory.of:
+            return group.number, first
+        first += group.number
+    return first, 0
+
+
+def masses_and_kinds(groups: Sequence[Group]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """The mass of each kind of particles, and the kind of each particle, by number.
+
+    >>> masses_and_kinds([Group("fluid", (Kind(1.0, 3),)), Group("solutes", (Kind(5.0, 2),))])
+    (array([1., 5.]), array([0, 0, 0, 1, 1]))
+    """
+    kinds = [kind for group in groups for kind in group.kinds]
+    return (
+        np.array([kind.mass for kind in kinds], float),
+        np.repeat(np.arange(len(kinds)), [kind.number for kind in kinds]),
+    )
+
+
+def stored_bytes(
+    trajectory: Trajectory | None, groups: Sequence[Group], dimension: int, steps: int
+) -> int:
+    """About how many bytes a trajectory takes in a file after so many steps."""
+    if trajectory is None:
+        return 0
+    number = 4 if trajectory.precision == "float32" else 8
+    per_particle = sum(
+        WIDTHS.get(name, number) * (1 if name == "id" else dimension) for name in trajectory.fields
+    )
+    particles, _ = written(trajectory, groups)
+    frames = steps // trajectory.every + 1
+    shrink = COMPRESSED if trajectory.compression else 1.0
+    return round(frames * min(trajectory.subset or particles, particles) * per_particle * shrink)

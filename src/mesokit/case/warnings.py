@@ -1,0 +1,51 @@
+"""What any method warns of: runs that leave nothing, or more than the machine can hold."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mesokit.case.amounts import size_text
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+
+def run_warnings(case: Case, memory: int, trajectory: int) -> Iterator[str]:
+    """What one should know before a run that takes so many bytes of memory and of disk."""
+    run = case.run
+    if not case.observe and case.trajectory is None:
+        yield "no [[observe]] and no [trajectory]: the run will leave nothing but its last state"
+    for i, observable in enumerate(case.observe):
+        if observable.every > run.steps:
+            yield (
+                f"observe[#{i + 1}].every = {observable.every}: more than run.steps = {run.steps}; "
+                f"{observable.label} takes no sample"
+            )
+        else:
+            yield from (f"observe[#{i + 1}].{text}" for text in observable.warnings(case))
+    if case.trajectory is not None:
+        if case.trajectory.every > run.steps:
+            yield f"trajectory.every = {case.trajectory.every}: more than run.steps = {run.steps}"
+        free = shutil.disk_usage(Path.cwd()).free
+        if trajectory > min(20e9, 0.8 * free):
+            yield (
+                f"the trajectory takes about {size_text(trajectory)} "
+                f"({size_text(free)} are free here); raise trajectory.every or set "
+                "trajectory.subset"
+            )
+    available = _machine_memory()
+    if available and memory > 0.9 * available:
+        yield (
+            f"the run needs {size_text(memory)} of memory, this machine has {size_text(available)}"
+        )
+
+
+def _machine_memory() -> int | None:
+    try:
+        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, ValueError, OSError):
+        return None

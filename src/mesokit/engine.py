@@ -1,0 +1,99 @@
+"""What an engine answers: the verbs of a run, and what observables may ask of its particles.
+
+An engine holds the state of a simulation in memory and moves it on. Each method of simulation
+(`mesokit.method`) has one or more of them: an MPCD fluid has one for the threads of a CPU. All
+arrays here are in the order of particle numbers, whatever the layout in memory is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.floating[Any]]
+Integers = NDArray[np.int64]
+State = dict[str, NDArray[Any]]
+
+
+class Particles(Protocol):
+    """What observables and trajectories may ask of any engine; d is the dimension.
+
+    `positions` (n, d) lie in the box, or where the particles have really gone to if `unwrapped`;
+    `images` (n, d) counts the boxes between the two. `ids` picks some particles (all unless said).
+    """
+
+    n: int
+    dimension: int
+    box: Array
+
+    @property
+    def step(self) -> int: ...
+    @property
+    def time(self) -> float: ...
+    def positions(self, ids: Integers | None = None, unwrapped: bool = False) -> Array: ...
+    def images(self, ids: Integers | None = None) -> NDArray[np.int32]: ...
+
+
+class Engine(Particles, Protocol):
+    """What a simulation asks of an engine."""
+
+    def advance(self, steps: int, measure_stress: bool = False) -> None:
+        """Run some steps, in compiled code; 0 only loads or compiles it.
+
+        `measure_stress` says that an observable needs the stress of the last of them. Raises
+        RunError where the physics has broken down.
+        """
+
+    def end_warmup(self) -> None:
+        """Forget what was summed up during the warm-up: no observable may see it."""
+
+    def state(self) -> State:
+        """All that the next step depends on, as arrays by particle number. Raises RunError."""
+
+    def restore(self, state: State) -> None:
+        """Go on from `state()`, to the same bits on any number of threads.
+
+        Raises KeyError, ValueError or IndexError for a state of another case.
+        """
+
+    @property
+    def seconds(self) -> dict[str, float]:
+        """Time spent so far in each stage of the step."""
+
+
+class RunningFluid(Particles, Protocol):
+    """What observables may ask of an engine whose particles are a fluid.
+
+    `totals` gives number, momentum (d,) and kinetic energy of all particles. `moments` gives
+    number, mass (*bins), momentum (d, *bins) and sum of m v^2 (*bins) in equal bins over the
+    whole box along `axes`. `modes` gives sum m e^(-i k r) (K,) and sum m v e^(-i k r) (K, d).
+    `bond_vectors` (bonds, d) lead from the first to the second particle of each bond.
+    `whole_positions` are those of whole molecules, each bead next to its first, whatever images
+    they lie in: under shear `unwrapped` positions do not know how far images have slid.
+    `stress` holds "kinetic", "collisional" and, of molecules, "bond" (d, d) of the last step if an
+    observer due at it declares `measures = ("stress",)`. `wall_impulse` (surfaces, d + 1 or d + 3)
+    is the momentum and angular momentum given to the lower and the upper plate of a slit, or to
+    each body, during the last `wall_steps` steps, for `measures = ("walls",)`.
+    """
+
+    def totals(self) -> tuple[int, Array, float]: ...
+    def moments(
+        self, axes: tuple[int, ...], bins: tuple[int, ...]
+    ) -> tuple[Array, Array, Array, Array]: ...
+    def modes(
+        self, wavevectors: Array
+    ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]: ...
+    def velocities(self, ids: Integers | None = None) -> Array: ...
+    def masses(self, ids: Integers | None = None) -> Array: ...
+    def bond_vectors(self) -> Array: ...
+    def whole_positions(self, ids: Integers | None = None) -> Array: ...
+    def potential_energy(self) -> float: ...
+    @property
+    def stress(self) -> Mapping[str, Array]: ...
+    @property
+    def wall_impulse(self) -> Array: ...
+    @property
+    def wall_steps(self) -> int: ...

@@ -1,0 +1,178 @@
+"""Beads of solutes: their flight through a timestep, and their part in the collisions.
+
+Beads keep the image that they started in: bonds are plain differences. Each bead adds up the forces
+on it in one order, so that threads share the beads without sharing sums; few beads are one
+thread's.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mesokit.case.box import at_time, fold, peculiar, unfold
+from mesokit.execute.beads.interactions import Force, Virial
+from mesokit.execute.beads.neighbours import refresh
+from mesokit.execute.beads.state import (
+    FIRST_NUMBER,
+    GROUP,
+    Beads,
+    load_folded,
+    load_place,
+    load_velocity,
+    store_place,
+    store_velocity,
+)
+from mesokit.execute.beads.traverse import each_on_bead
+from mesokit.execute.beads.verlet import drift, flown, kick, verlet
+from mesokit.execute.cpu.grid import cell_index, in_cell
+from mesokit.execute.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
+from mesokit.execute.cpu.physics import kind_of_solid, momentum_scale
+from mesokit.execute.cpu.stress import add_flux
+from mesokit.execute.cpu.strips.layout import record_length, share
+from mesokit.execute.cpu.strips.rows import load_values, store_values
+from mesokit.execute.cpu.threads import Team, meet
+from mesokit.geometry.solids.none import Nothing
+from mesokit.method.mpcd.collision.protocol import collide, contribute
+from mesokit.method.mpcd.field.none import Zero
+from mesokit.method.mpcd.field.protocol import acceleration
+from mesokit.scalar.cache import inner
+from mesokit.scalar.jit import by_type, scalar
+from mesokit.scalar.vector import added, added_scaled, dot, scaled
+
+LEAST = 4  # groups for a thread: fewer do not pay for the gate
+
+
+class Moving(NamedTuple):
+    """The beads from the first to that before the last, and the thread that moves them."""
+
+    team: Team
+    beads: Beads
+    first: int
+    last: int
+    impulse: Any
+    measured: int
+
+
+@by_type
+def move_beads(team, now, physics, fluid, beads):
+    """Do what the flags ask: the pending collision, the flight, the cells (see `stream`)."""
+    if len(beads) == 0:
+        return lambda team, now, physics, fluid, beads: None
+    return lambda team, now, physics, fluid, beads: _move(team, now, physics, fluid, beads)
+
+
+@inner
+def _move(team, now, physics, fluid, beads):
+    groups = (len(beads.cell) + GROUP - 1) // GROUP
+    together = team.threads if groups >= LEAST * team.threads else 1
+    if team.thread >= together:
+        return
+    some = Team(team.thread, together, team.gate, team.clock)
+    first, last = share(groups, team.thread, together)
+    first, last = first * GROUP, min(last * GROUP, len(beads.cell))
+    measured = now.flags & MEASURE_STRESS
+    if now.flags & COLLIDE:  # v: the collision at t
+        before = now.counter.step - (1 if now.flags & STREAM else 0)
+        box = at_time(now.box, before * physics.timestep)
+        for i in range(first, last):
+            collide_bead(beads, i, physics, box, now.old, fluid.cells.coefficients)
+        if measured and not now.flags & STREAM:
+            for i in range(first, last):
+                add_bead_flux(beads, i, now.box, now.old.shift, beads.tensor[1, i // GROUP])
+    if now.flags & STREAM:  # r, v: t -> t + dt; cells at t + dt
+        moving = Moving(some, beads, first, last, fluid.taken.impulse[team.thread], measured)
+        verlet(moving, now, physics, beads.potentials.substeps)
+        if measured:
+            for i in range(first, last):
+                add_bead_flux(beads, i, now.box, now.grid.shift, beads.tensor[0, i // GROUP])
+        for i in range(first, last):
+            bin_bead(beads, i, physics, now)
+
+
+@scalar
+def collide_bead(beads, i, physics, box, grid, coefficients):
+    """Velocity after the collision in its cell."""
+    r, v, boxes = load_folded(beads, i, box, grid.shift)
+    start = np.uint64(beads.cell[i]) * np.uint64(record_length(len(physics.coefficients)))
+    needed = load_values(coefficients, start, physics.coefficients)
+    v = collide(physics.rule, needed, v, in_cell(r, grid))
+    _, v = unfold(box, r, v, boxes)
+    store_velocity(beads, i, v)
+
+
+@scalar
+def bin_bead(beads, i, physics, now):
+    """The cell of a bead, and what it adds to the sums of that cell."""
+    r, v, boxes = load_folded(beads, i, now.box, now.grid.shift)
+    beads.cell[i] = cell_index(r, now.grid)
+    who, m = (FIRST_NUMBER + i, 0), beads.mass
+    kept, own = contribute(physics.rule, now.counter, who, m, v, in_cell(r, now.grid))
+    _, kept = unfold(now.box, r, kept, boxes)
+    store_velocity(beads, i, kept)
+    terms = scaled(m, v) + (m * dot(v, v),) + own
+    store_values(beads.given, np.uint64(i * len(terms)), terms)
+
+
+@drift.register(Moving)
+def _(moving, counter, physics):
+    meet(moving.team)  # nobody looks at the places before any more
+    for i in range(moving.first, moving.last):
+        drift_bead(moving.beads, i, counter, physics, moving.impulse)
+
+
+@by_type
+def drift_bead(beads, i, counter, physics, impulse):
+    """Straight flight, with reflections."""
+    return _drift if kind_of_solid(physics) is Nothing else _drift_among_solids
+
+
+def _drift(beads, i, counter, physics, impulse):
+    r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
+    store_place(beads, i, added_scaled(r, physics.timestep, v))
+
+
+def _drift_among_solids(beads, i, counter, physics, impulse):
+    r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
+    r, v = flown(physics, counter, FIRST_NUMBER + i, beads.mass, r, v, impulse)
+    store_place(beads, i, r)
+    store_velocity(beads, i, v)
+
+
+@kick.register(Moving)
+def _(moving, step, box, physics):
+    beads, team, zero = moving.beads, moving.team, physics.zero
+    meet(team)
+    refresh(team, beads.neighbours, box, beads.r, (moving.first, moving.last), zero)
+    if moving.measured:
+        for i in range(moving.first, moving.last):
+            virial = Virial(physics.timestep, beads.tensor[2, i // GROUP])
+            each_on_bead(virial, (), beads, i, load_place(beads, i, zero), box)
+    scale, faults = momentum_scale(physics), beads.faults[team.thread]
+    force = Force(physics.timestep, moving.impulse, scale, step, faults)
+    for i in range(moving.first, moving.last):
+        kick_bead(force, beads, i, box, physics)
+
+
+@scalar
+def kick_bead(asked, beads, i, box, physics):
+    """Change of the velocity of a bead by the forces on it."""
+    r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
+    force = each_on_bead(asked, scaled(0.0, physics.zero), beads, i, r, box)
+    v = added_scaled(v, physics.timestep * beads.potentials.inverse_mass, force)
+    store_velocity(beads, i, pushed(physics.field, physics.timestep, r, v))
+
+
+@by_type
+def pushed(field, time, r, v):
+    """The velocity after the body force."""
+    if field.instance_class is Zero:
+        return lambda field, time, r, v: v
+    return lambda field, time, r, v: added_scaled(v, time, acceleration(field, r))
+
+
+@scalar
+def add_bead_flux(beads, i, box, shift, tensor):
+    """What a bead carries of the stress; its velocity in its cell is that of the image there."""
+    r, v, _ = load_folded(beads, i, box, scaled(0.0, shift))
+    place, u, _ = fold(box, r, v, shift)
+    add_flux(tensor, beads.mass, peculiar(box, r, v), u, added(place, shift))

@@ -1,0 +1,227 @@
+"""Which beads are near which: lists that hold for as long as nobody has gone half a skin.
+
+A list is in the order of the beads' numbers and reaches beyond the potential: what it holds too
+much adds nothing, so that forces have the same bits whenever it was made. A bead with more
+neighbours than its list has room for looks at all beads.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mesokit.case.box import SLIDING, fold
+from mesokit.execute.cpu.strips.rows import load_values, store_values
+from mesokit.execute.cpu.threads import meet
+from mesokit.scalar.elementary import short_rint
+from mesokit.scalar.intrinsics import floor, with_item
+from mesokit.scalar.jit import by_type, scalar, seldom
+from mesokit.scalar.vector import added_scaled, dot, scaled
+
+CROWDED, NOWHERE = -1, -1  # the length of a list that did not fit; no cell, beyond a wall
+AT, MADE = 0, 1  # places in `Neighbours.offset`
+GAP = 8  # numbers between those of two threads: each has a cache line of its own
+
+
+class Neighbours(NamedTuple):
+    """Lists, and what they were made from.
+
+    reach: how far the potential and the skin go; skin: how far the list goes beyond the potential.
+    cells (d,), inverse (d,): their number along each axis, and per length of the box.
+    head (cells,), following (beads,): the beads of each cell, one leading to the next, -1 last.
+    count (beads,), near (beads, most): the lists.
+    made_at (beads, d), boxes (beads,): where beads were then, and in which image along y.
+    offset (2,): of the images then, and whether there is a list at all.
+    moved (threads, GAP): square of the farthest that a bead of each thread has gone.
+    """
+
+    reach: float
+    skin: float
+    cells: tuple[int, ...]
+    inverse: tuple[float, ...]
+    head: Any
+    following: Any
+    count: Any
+    near: Any
+    made_at: Any
+    boxes: Any
+    offset: Any
+    moved: Any
+
+
+@by_type
+def apart(box, r, other):
+    """The vector from r to the nearest image of the other."""
+    return _apart_sliding if box.instance_class in SLIDING else _apart
+
+
+def _apart(box, r, other):
+    return nearest_image(box, r, other)
+
+
+@scalar
+def nearest_image(box, r, other):
+    """That of a box whose images stand still."""
+    separation = added_scaled(other, -1.0, r)
+    for k in range(len(r)):
+        boxes = short_rint(separation[k] * box.inverse[k])
+        separation = with_item(separation, k, separation[k] - boxes * box.size[k])
+    return separation
+
+
+def _apart_sliding(box, r, other):
+    up = short_rint((other[1] - r[1]) * box.inverse[1])
+    return nearest_image(box, r, with_item(other, 0, other[0] - up * box.offset))
+
+
+@by_type
+def offset_of_images(box):
+    """How far the image above is displaced now."""
+    return (lambda box: box.offset) if box.instance_class in SLIDING else (lambda box: 0.0)
+
+
+@scalar
+def cell_along(lists, k, x):
+    """Number of the cell along an axis of a coordinate in the box."""
+    return min(max(int(floor(x * lists.inverse[k])), 0), lists.cells[k] - 1)
+
+
+@scalar
+def slipped(lists, box):
+    """How far the images have slid since the lists were made."""
+    moved = offset_of_images(box) - lists.offset[AT]
+    return moved - short_rint(moved * box.inverse[0]) * box.size[0]
+
+
+@scalar
+def note_moves(lists, box, thread, places, share_of, zero):
+    """Find how far the beads of this thread have gone against what is next to them."""
+    (first, last), slip, farthest = share_of, slipped(lists, box), 0.0
+    for i in range(first, last):
+        at = np.uint64(i * len(zero))
+        moved = added_scaled(
+            load_values(places, at, zero), -1.0, load_values(lists.made_at, at, zero)
+        )
+        moved = with_item(moved, 0, moved[0] - lists.boxes[i] * slip)
+        square = dot(moved, moved)
+        farthest = max(farthest, square if square >= 0.0 else np.inf)  # lost beads too
+    lists.moved[thread, 0] = farthest
+
+
+@scalar
+def stale(lists, box, threads):
+    """Whether the lists must be made anew; the answer is the same in all threads."""
+    farthest = 0.0
+    for t in range(threads):
+        farthest = max(farthest, lists.moved[t, 0])
+    gone = 2.0 * math.sqrt(farthest) + abs(slipped(lists, box))
+    return lists.offset[MADE] == 0.0 or gone > lists.skin
+
+
+@by_type
+def refresh(team, lists, box, places, share_of, zero):
+    """Make the lists anew if they may miss somebody; nothing without a pair potential."""
+    return _refresh if len(lists) else lambda team, lists, box, places, share_of, zero: None
+
+
+def _refresh(team, lists, box, places, share_of, zero):
+    (lists,), (first, last) = lists, share_of
+    note_moves(lists, box, team.thread, places, share_of, zero)
+    meet(team)
+    if stale(lists, box, team.threads):
+        meet(team)  # all have seen that
+        if team.thread == 0:
+            sort_into_cells(lists, box, places, zero)
+        meet(team)
+        for i in range(first, last):
+            make_list(lists, box, places, i, zero)
+
+
+@seldom
+def sort_into_cells(lists, box, places, zero):
+    """The beads of each cell, and where all of them are."""
+    lists.head[:] = -1
+    still = scaled(0.0, zero)
+    for i in range(len(lists.following)):
+        at = np.uint64(i * len(zero))
+        r = load_values(places, at, zero)
+        store_values(lists.made_at, at, r)
+        lists.boxes[i] = floor(r[1] * box.inverse[1])
+        r, _, _ = fold(box, r, still, still)
+        cell = cell_of(lists, r)
+        lists.following[i] = lists.head[cell]
+        lists.head[cell] = i
+    lists.offset[AT], lists.offset[MADE] = offset_of_images(box), 1.0
+
+
+@scalar
+def cell_of(lists, r):
+    """Number of the cell of a place in the box."""
+    cell, stride = 0, 1
+    for k in range(len(r)):
+        cell += cell_along(lists, k, r[k]) * stride
+        stride *= lists.cells[k]
+    return cell
+
+
+@seldom
+def make_list(lists, box, places, i, zero):
+    """All within reach of bead i, in order."""
+    d, still, found = len(zero), scaled(0.0, zero), 0
+    mine = load_values(places, np.uint64(i * d), zero)
+    r, _, _ = fold(box, mine, still, still)
+    slide = offset_of_images(box)
+    rows, layers = lists.cells[0], lists.cells[0] * lists.cells[1]
+    along_z, _ = next_along(lists, box, d - 1, r[d - 1])
+    along_y, up = next_along(lists, box, 1, r[1])
+    for b in range(3):  # the image above or below may be displaced along x
+        x = r[0] - up[b] * slide
+        x -= math.floor(x * box.inverse[0]) * box.size[0]
+        along_x, _ = next_along(lists, box, 0, x)
+        for c in range(3 if d == 3 else 1):
+            layer = along_z[c] if d == 3 else 0
+            for a in range(3):
+                if min(along_x[a], along_y[b], layer) >= 0:
+                    cell = along_x[a] + along_y[b] * rows + layer * layers
+                    found = list_cell(lists, box, places, i, mine, cell, found, zero)
+    lists.count[i] = found if found <= lists.near.shape[1] else CROWDED
+
+
+@scalar
+def list_cell(lists, box, places, i, mine, cell, found, zero):
+    """Add those of a cell to the list of bead i; how many it has then."""
+    square, most = lists.reach * lists.reach, lists.near.shape[1]
+    j = lists.head[cell]
+    while j >= 0:
+        separation = apart(box, mine, load_values(places, np.uint64(j * len(zero)), zero))
+        if j != i and dot(separation, separation) <= square:
+            if found < most:
+                put_in_order(lists.near, i, found, j)
+            found += 1
+        j = lists.following[j]
+    return found
+
+
+@scalar
+def next_along(lists, box, k, x):
+    """The cells before, at and after x along an axis, NOWHERE for none, and the boxes crossed."""
+    cells, here = lists.cells[k], cell_along(lists, k, x)
+    if cells == 1:
+        return (NOWHERE, here, NOWHERE), (0.0, 0.0, 0.0)
+    before, after, back, on = here - 1, here + 1, 0.0, 0.0
+    repeats = box.inverse[k] > 0.0
+    if before < 0:
+        before, back = (cells - 1 if repeats else NOWHERE), -1.0
+    if after >= cells:
+        after, on = (0 if repeats else NOWHERE), 1.0
+    return (before, here, after), (back, 0.0, on)
+
+
+@scalar
+def put_in_order(near, i, found, j):
+    """Insert j into the list of i."""
+    place = found
+    while place > 0 and near[i, place - 1] > j:
+        near[i, place] = near[i, place - 1]
+        place -= 1
+    near[i, place] = j

@@ -1,0 +1,153 @@
+"""What observables ask of the beads of solutes, and what a checkpoint keeps of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.box import fold
+from mesokit.errors import RunError
+from mesokit.execute.beads.interactions import Energy
+from mesokit.execute.beads.neighbours import MADE, refresh
+from mesokit.execute.beads.state import load_place
+from mesokit.execute.beads.torn import refuse_torn
+from mesokit.execute.beads.traverse import each_on_bead
+from mesokit.execute.cpu.strips.rows import load_values, store_values
+from mesokit.execute.cpu.threads import Team
+from mesokit.scalar.cache import kernel
+from mesokit.scalar.vector import scaled
+
+if TYPE_CHECKING:
+    from mesokit.execute.cpu.memory import Memory
+
+Floats = NDArray[np.float64]
+ALONE = Team(0, 1, np.zeros(1, np.int64), np.zeros(1, np.int64))
+
+
+class SoluteReadings:
+    """The beads of a fluid in memory, by their numbers from 0."""
+
+    def __init__(self, memory: Memory) -> None:
+        case = memory.numbers.case
+        assert case.solutes is not None and memory.solutes
+        self.memory, self.given = memory, case.solutes
+        self.state_of: Any = memory.solutes
+        self.shape = self.given.beads, memory.numbers.dimension
+        self.bonds = self.given.bonds()
+
+    @property
+    def places(self) -> Floats:
+        """Places (beads, d), every molecule whole, as if the box had no bounds; a view."""
+        return self.state_of.r.reshape(self.shape)
+
+    @property
+    def velocities(self) -> Floats:
+        """Velocities (beads, d) in the images of `places`; a view."""
+        return self.state_of.v.reshape(self.shape)
+
+    def folded(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
+        """Places in the box, velocities there, and boxes that each bead is away."""
+        r, v = self.places.copy(), self.velocities.copy()
+        boxes = np.zeros(self.shape)
+        rows = r.reshape(-1), v.reshape(-1), boxes.reshape(-1)
+        fold_beads(self.memory.box, *rows, self.memory.physics.zero)
+        return r, v, boxes.astype(np.int32)
+
+    def whole(self) -> Floats:
+        """Places (beads, d) with the first bead of each molecule in the box."""
+        first = self.first_beads()
+        places, _, _ = self.folded()
+        return places[first] + (self.places - self.places[first])
+
+    def first_beads(self) -> NDArray[np.int64]:
+        """The first bead of the molecule of each bead."""
+        found = []
+        for kind, polymer in enumerate(self.given.polymers):
+            start = self.given.first_bead(kind)
+            starts = start + polymer.length * np.arange(polymer.number)
+            found.append(np.repeat(starts, polymer.length))
+        return np.concatenate(found)
+
+    def masses(self) -> Floats:
+        """Masses (beads,)."""
+        return np.full(self.shape[0], self.given.mass)
+
+    def kinds(self) -> NDArray[np.int64]:
+        """The place of each bead's polymer in solutes.polymers."""
+        count = [polymer.number * polymer.length for polymer in self.given.polymers]
+        return np.repeat(np.arange(len(count)), count)
+
+    def bond_vectors(self) -> Floats:
+        """From the first to the second bead of each bond (bonds, d)."""
+        return self.places[self.bonds[:, 1]] - self.places[self.bonds[:, 0]]
+
+    def totals(self) -> tuple[int, Floats, float]:
+        """Number of beads, their momentum (d,) and kinetic energy."""
+        (_, v, _), m = self.folded(), self.given.mass
+        return len(v), m * v.sum(axis=0), 0.5 * m * float((v**2).sum())
+
+    def potential_energy(self) -> float:
+        """Of bonds, angles, pairs and walls."""
+        box, zero = self.memory.box, self.memory.physics.zero
+        return float(energy_of(ALONE, self.state_of, box, zero))
+
+    def begin(self, places: Floats, velocities: Floats) -> None:
+        """Give the beads their first places and velocities (beads, d)."""
+        self.places[:], self.velocities[:] = places, velocities
+        self.forget_lists()
+
+    def state(self) -> dict[str, NDArray[Any]]:
+        """Places and velocities."""
+        return {"solute_r": self.state_of.r.copy(), "solute_v": self.state_of.v.copy()}
+
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.state_of.r[:], self.state_of.v[:] = state["solute_r"], state["solute_v"]
+        self.state_of.faults[:] = 0
+        self.forget_lists()
+
+    def forget_lists(self) -> None:
+        """Neighbours are found anew at the next step."""
+        for lists in self.state_of.neighbours:
+            lists.offset[MADE] = 0.0
+
+    def check(self) -> None:
+        """That no bond was torn, and no bead lost, in the last steps. Raises RunError."""
+        substeps = self.state_of.potentials.substeps
+        if self.given.bond is not None:
+            advice = f"take more sub-steps than {substeps} (solutes.substeps), or a stiffer bond"
+            refuse_torn(self.state_of.faults, self.given.bond.longest, "beads", advice)
+        sound = np.isfinite(self.state_of.r) & np.isfinite(self.state_of.v)
+        if not sound.all():
+            bead = int(np.argmin(sound)) // self.shape[1]
+            raise RunError(
+                f"step {self.memory.step}: bead {bead + 1} is lost: the forces on it are too large "
+                f"for the sub-step; take more sub-steps than {substeps} (solutes.substeps)"
+            )
+
+
+@kernel
+def fold_beads(box, r, v, boxes, zero):
+    """Bring beads into the box."""
+    d, none = len(zero), scaled(0.0, zero)
+    for i in range(len(r) // d):
+        at = np.uint64(i * d)
+        place, velocity, crossed = fold(
+            box, load_values(r, at, zero), load_values(v, at, zero), none
+        )
+        store_values(r, at, place)
+        store_values(v, at, velocity)
+        store_values(boxes, at, crossed)
+
+
+@kernel
+def energy_of(team, beads, box, zero):
+    """Potential energy of all beads."""
+    number, total = len(beads.cell), (0.0,)
+    refresh(team, beads.neighbours, box, beads.r, (0, number), zero)
+    for i in range(number):
+        total = each_on_bead(Energy(), total, beads, i, load_place(beads, i, zero), box)
+    (energy,) = total
+    return energy

@@ -1,0 +1,81 @@
+"""The beads of solutes in memory, and what holds them."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mesokit.case.box import fold
+from mesokit.execute.cpu.strips.rows import load_values, store_values
+from mesokit.scalar.jit import scalar
+
+GROUP = 64  # beads whose part in the stress is added up by itself
+FIRST_NUMBER = 2**31  # of a bead in random streams, beyond those of all particles
+
+
+class Beads(NamedTuple):
+    """Beads, what holds them, and memory for a step.
+
+    mass: of a bead; potentials: of type `Potentials`; neighbours: (Neighbours,) or ().
+    r, v (beads * d,): places, whole molecules in one image, and velocities there.
+    bond_starts (beads + 1,), bonds: to whom each bead is linked.
+    angle_starts (beads + 1,), angles (n, 4): the angles that each bead is in, and as which bead.
+    near_wall: (solid, distance) for the potential of walls, or ().
+    faults (threads, 8): step and beads of the first bond that tore.
+    cell (beads,): of the grid; head (cells,), following (beads,): the beads of each cell.
+    given: what each bead adds to the sums of its cell, as long as `terms`, side by side.
+    answers: what the cells of beads need to collide; leads (beads,): whose cell has one.
+    solvent: (mean number, mass of a particle) for random solvent, or ().
+    tensor (3, groups, 2 d d): what groups of beads add to the stress: before
+    and after the collision, and by forces.
+    """
+
+    mass: float
+    potentials: tuple
+    neighbours: tuple
+    r: Any
+    v: Any
+    bond_starts: Any
+    bonds: Any
+    angle_starts: Any
+    angles: Any
+    near_wall: tuple
+    faults: Any
+    cell: Any
+    head: Any
+    following: Any
+    given: Any
+    terms: tuple[float, ...]
+    answers: Any
+    leads: Any
+    solvent: tuple
+    tensor: Any
+
+
+@scalar
+def load_place(beads, i, zero):
+    """Where bead i is, in the image that it started in."""
+    return load_values(beads.r, np.uint64(i * len(zero)), zero)
+
+
+@scalar
+def load_velocity(beads, i, zero):
+    """Its velocity there."""
+    return load_values(beads.v, np.uint64(i * len(zero)), zero)
+
+
+@scalar
+def store_place(beads, i, r):
+    """Move bead i to r."""
+    store_values(beads.r, np.uint64(i * len(r)), r)
+
+
+@scalar
+def store_velocity(beads, i, v):
+    """Give bead i the velocity v."""
+    store_values(beads.v, np.uint64(i * len(v)), v)
+
+
+@scalar
+def load_folded(beads, i, box, shift):
+    """Place, velocity and boxes crossed of the image of bead i in the box (see `fold`)."""
+    return fold(box, load_place(beads, i, shift), load_velocity(beads, i, shift), shift)

@@ -1,0 +1,86 @@
+"""All bonds, angles, pairs and walls that act on a bead, whatever is asked of them.
+
+Each bead has a sum of its own (see `interactions`), always added up in one order, so that threads
+share the beads without sharing sums.
+"""
+
+from mesokit.execute.beads.interactions import of_three, of_two, of_wall
+from mesokit.execute.beads.neighbours import CROWDED, apart
+from mesokit.execute.beads.state import load_place
+from mesokit.scalar.jit import by_type, elementwise, scalar
+from mesokit.scalar.vector import added, added_scaled
+
+
+@scalar
+def each_on_bead(asked, total, beads, i, r, box):
+    """Of all that acts on bead i, which is at r."""
+    given = beads.potentials
+    total = each_bond(given.bond, asked, total, beads, i, r)
+    total = each_angle(given.angle, asked, total, beads, i, r)
+    total = each_pair(given.pair, asked, total, beads, i, r, box)
+    return at_wall(given.wall, asked, total, beads, r)
+
+
+@elementwise
+def nothing(total):
+    """The sum of no parts."""
+    return "0.0"
+
+
+@by_type
+def each_bond(bond, asked, total, beads, i, r):
+    """Of all bonds of bead i."""
+    return _each_bond if len(bond) else lambda bond, asked, total, beads, i, r: total
+
+
+def _each_bond(bond, asked, total, beads, i, r):
+    (potential,), part = bond, nothing(total)
+    for n in range(beads.bond_starts[i], beads.bond_starts[i + 1]):
+        j = beads.bonds[n]
+        separation = added_scaled(r, -1.0, load_place(beads, j, r))
+        part = of_two(asked, part, potential, separation, i, j)
+    return added(total, part)
+
+
+@by_type
+def each_angle(angle, asked, total, beads, i, r):
+    """Of all angles that bead i is in."""
+    return _each_angle if len(angle) else lambda angle, asked, total, beads, i, r: total
+
+
+def _each_angle(angle, asked, total, beads, i, r):
+    (potential,), part = angle, nothing(total)
+    for n in range(beads.angle_starts[i], beads.angle_starts[i + 1]):
+        a = load_place(beads, beads.angles[n, 0], r)
+        b = load_place(beads, beads.angles[n, 1], r)
+        c = load_place(beads, beads.angles[n, 2], r)
+        before, after = added_scaled(b, -1.0, a), added_scaled(c, -1.0, b)
+        part = of_three(asked, part, potential, before, after, beads.angles[n, 3])
+    return added(total, part)
+
+
+@by_type
+def each_pair(pair, asked, total, beads, i, r, box):
+    """Of all beads near bead i; one whose list is too short looks at all, itself too."""
+    return _each_pair if len(pair) else lambda pair, asked, total, beads, i, r, box: total
+
+
+def _each_pair(pair, asked, total, beads, i, r, box):
+    (potential,), (lists,), part = pair, beads.neighbours, nothing(total)
+    count = lists.count[i]
+    for n in range(count if count != CROWDED else len(lists.count)):
+        j = lists.near[i, n] if count != CROWDED else n
+        separation = apart(box, load_place(beads, j, r), r)
+        part = of_two(asked, part, potential, separation, i, j)
+    return added(total, part)
+
+
+@by_type
+def at_wall(wall, asked, total, beads, r):
+    """Of the nearest surface."""
+    return _at_wall if len(wall) else lambda wall, asked, total, beads, r: total
+
+
+def _at_wall(wall, asked, total, beads, r):
+    (potential,) = wall
+    return of_wall(asked, total, potential, beads.near_wall, r)

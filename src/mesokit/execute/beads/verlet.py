@@ -1,0 +1,55 @@
+"""Velocity Verlet, for the beads of solutes and the molecules of a fluid alike.
+
+Half a kick, then a drift and a kick for each sub-step, the last kick a half one.
+"""
+
+from mesokit.case.box import at_time
+from mesokit.execute.cpu.bounce import bounce
+from mesokit.execute.cpu.physics import for_time
+from mesokit.geometry.protocol import free
+from mesokit.method.mpcd.streaming import fall
+from mesokit.scalar.jit import by_type, generic, scalar
+from mesokit.scalar.random import Counter
+from mesokit.scalar.vector import scaled
+
+SUBSTEP_BITS = 40  # sub-steps stand above these bits of a step's number in random streams
+
+
+@by_type
+def verlet(moving, now, physics, substeps):
+    """Positions and velocities a timestep later, in sub-steps."""
+    return _verlet
+
+
+def _verlet(moving, now, physics, substeps):
+    step, time = now.counter.step, physics.timestep / substeps
+    for n in range(substeps + 1):
+        if n > 0:  # r: t + (n - 1) h -> t + n h
+            at = Counter(now.counter.seed, step + (n << SUBSTEP_BITS))
+            drift(moving, at, for_time(physics, time))
+        box = at_time(now.box, (step - 1) * physics.timestep + n * time)
+        # v: the second half of the kick of that sub-step, and the first half of the next one's
+        span = time if 0 < n < substeps else 0.5 * time
+        kick(moving, step, box, for_time(physics, span))
+
+
+@generic
+def drift(moving, counter, physics):
+    """Straight flight for a timestep, with reflections."""
+
+
+@generic
+def kick(moving, step, box, physics):
+    """Change of the velocities by the forces of where the beads are, kept for a timestep.
+
+    `box` is that of now, `step` the number by which torn bonds are noted.
+    """
+
+
+@scalar
+def flown(physics, counter, number, m, r, v, impulse):
+    """Position and velocity a timestep later of a bead that may hit a surface."""
+    rest = scaled(0.0, physics.zero)
+    if free(physics.solid, r, v, rest, physics.timestep):
+        return fall(r, v, rest, physics.timestep)
+    return bounce(physics, counter, number, m, r, v, rest, impulse)

@@ -1,0 +1,111 @@
+"""One pass over all cells: from the sums over their particles to what these need to collide."""
+
+import numpy as np
+
+from mesokit.execute.cpu.strips.layout import LANES, QUAD, record_length, share, sums_length
+from mesokit.execute.cpu.strips.records import spread, take
+from mesokit.execute.cpu.strips.rows import load_scratch, load_values, store_scratch, store_values
+from mesokit.execute.cpu.strips.terms import nothing_found, read_sums
+from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
+from mesokit.method.mpcd.collision.protocol import freedom
+from mesokit.method.mpcd.thermostat.protocol import draw, guess
+from mesokit.scalar.cache import inner
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.random import CELL, words
+from mesokit.scalar.vector import added
+
+MOST_DRAWS = 1000  # of a thermostat's random number, each accepted with more than 95 %
+
+
+@scalar
+def total_block(sums, start, count, totals, terms):
+    """Add up what the threads found for these cells, and clear it.
+
+    A thread that found nothing in four cells is passed over, so that no other writes to its memory.
+    """
+    none = nothing_found(terms)
+    for i in range(LANES):
+        store_scratch(totals, i, none)
+    together = count - count % QUAD
+    length = np.uint64(sums_length(len(terms)))
+    for t in range(sums.shape[0]):
+        for i in range(0, together, QUAD):
+            found = np.int64(0)
+            for j in range(QUAD):
+                found |= sums[t, np.uint64(start + i + j) * length]
+            if found != 0:
+                take(sums[t], start + i, i, totals, terms)
+        for i in range(together, count):
+            cell = np.uint64(start + i) * length
+            store_scratch(
+                totals, i, added(load_scratch(totals, i, none), load_values(sums[t], cell, none))
+            )
+            store_values(sums[t], cell, none)
+
+
+@scalar
+def put_block(coefficients, start, count, rows, c):
+    """Write the rows to the records of these cells."""
+    together = count - count % QUAD
+    for i in range(0, together, QUAD):
+        spread(coefficients, start + i, i, rows, c)
+    for i in range(together, count):
+        store_values(
+            coefficients,
+            np.uint64(start + i) * np.uint64(record_length(len(c))),
+            load_scratch(rows, i, c),
+        )
+
+
+@scalar
+def draw_with_care(physics, counter, cell, free):
+    """The thermostat's random number where a guess was not sure."""
+    x, good = draw(physics.thermostat, counter, cell, free, 0)
+    attempt = 1
+    while not good and attempt < MOST_DRAWS:
+        x, good = draw(physics.thermostat, counter, cell, free, attempt)
+        attempt += 1
+    return x
+
+
+@scalar
+def needs_of_cell(physics, counter, cell, found, certain):
+    """What the particles of a cell need in order to collide, and whether that is sure.
+
+    A thermostat only guesses its random number, unless it must be `certain`: that takes longer.
+    """
+    sums = read_sums(physics, found)
+    chance, free = words(counter, CELL, cell, 0), freedom(physics.rule, sums.number)
+    x, sure = guess(physics.thermostat, chance[2:], free)
+    if certain:
+        x = draw_with_care(physics, counter, cell, free)
+    return coefficients_of(physics.rule, physics.thermostat, x, chance[:2], sums), sure
+
+
+@inner
+def collide(team, now, physics, fluid):
+    """Coefficients of every cell from its sums, which are cleared for the next step."""
+    cells, scratch = fluid.cells, fluid.scratch
+    rows, totals = scratch.coefficients[team.thread], scratch.terms[team.thread]
+    doubtful, none = scratch.marks[team.thread], nothing_found(physics.terms)
+    batches = (cells.number + LANES - 1) // LANES
+    if fluid.particles.filling.molecules == 0:  # a random solvent is only where beads are
+        batches = 0
+    first, last = share(batches, team.thread, team.threads)
+    for b in range(first, last):
+        start = b * LANES
+        count = min(LANES, cells.number - start)
+        total_block(cells.sums, start, count, totals, physics.terms)
+        in_doubt = np.int64(0)
+        for i in range(LANES):
+            found = load_scratch(totals, i, none)
+            answer, sure = needs_of_cell(physics, now.counter, start + i, found, False)
+            doubtful[i] = 1 - np.int64(sure)
+            in_doubt |= doubtful[i]
+            store_scratch(rows, i, answer)
+        for i in range(count if in_doubt != 0 else 0):
+            if doubtful[i] != 0:
+                found = load_scratch(totals, i, none)
+                answer, _ = needs_of_cell(physics, now.counter, start + i, found, True)
+                store_scratch(rows, i, answer)
+        put_block(cells.coefficients, start, count, rows, physics.coefficients)

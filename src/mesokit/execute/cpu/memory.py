@@ -1,0 +1,227 @@
+"""The arrays of a fluid in memory, and the parameters of its physics as kernels take them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.execute.beads.allocate import beads_of
+from mesokit.execute.beads.registers import bead_size
+from mesokit.execute.cpu.grid import Grid
+from mesokit.execute.cpu.groups import Cells, Fluid, Particles, Scratch, Taken, Walls
+from mesokit.execute.cpu.near_solids import FEW
+from mesokit.execute.cpu.physics import Physics
+from mesokit.execute.cpu.sort import Order
+from mesokit.execute.cpu.strips.layout import (
+    BLOCK,
+    LANES,
+    ROW,
+    SCRATCH_ROW,
+    STRIPS,
+    blocks_for,
+    places_of_beads,
+    record_length,
+    strips_for,
+    sums_length,
+    zeros,
+)
+from mesokit.execute.virtual.allocate import solid_particles, with_clearance
+from mesokit.execute.virtual.slit import SlitParticles
+from mesokit.geometry.solids.none import Nothing
+
+if TYPE_CHECKING:
+    from mesokit.execute.cpu.numbers import Numbers
+
+Floats = NDArray[np.float64]
+
+
+class Memory:
+    """A fluid in memory: its arrays, and what its step is told of its physics.
+
+    `step` steps have been done. Arrays of all threads are made here, so that memory is known.
+    """
+
+    def __init__(self, numbers: Numbers, threads: int, measures: Sequence[str]) -> None:
+        case, d = numbers.case, numbers.dimension
+        self.numbers, self.threads, self.step = numbers, threads, 0
+        self.measures = frozenset(measures)
+        self._tables: list[Any] = []  # which compiled code knows by address
+        self.physics = self._physics()
+        self._allocate()
+        self.solutes = beads_of(case.solutes, self) if case.solutes else ()
+        zero, cells = (0.0,) * d, tuple(float(n) for n in numbers.cells)
+        self.grid = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
+
+    @property
+    def box(self) -> tuple:
+        """The box as it is after the last step."""
+        numbers = self.numbers
+        return numbers.case.box.kernel(numbers.closed, self.step * numbers.timestep)
+
+    def _physics(self) -> Physics:
+        numbers, fluid, d = self.numbers, self.numbers.case.fluid, self.numbers.dimension
+        return Physics(
+            rule=fluid.collision.kernel(d, fluid.kT),
+            thermostat=fluid.thermostat.kernel(fluid.kT, numbers.least_energy),
+            field=fluid.force.kernel(numbers.case.box.size),
+            solid=self._solid(),
+            masses=(numbers.heaviest,) if numbers.uniform else (),
+            energy=numbers.energy,
+            timestep=fluid.timestep,
+            kT=fluid.kT,
+            molecule=self._molecule(),
+            zero=(0.0,) * d,
+            coefficients=(0.0,) * numbers.coefficient_count,
+            terms=(0,) * len(numbers.scales),
+            scales=numbers.scales,
+        )
+
+    def _solid(self) -> tuple:
+        """Parameters of the solids; plates alone have a kernel of their own."""
+        numbers = self.numbers
+        if numbers.solids is None:
+            return Nothing()
+        if numbers.slit is not None:
+            return numbers.slit.kernel(numbers.case.box.size)
+        bodies, tables = with_clearance(numbers.case, numbers.solids)
+        self._tables.append(tables)
+        return bodies
+
+    def _molecule(self) -> tuple:
+        """Parameters of what holds molecules together."""
+        fluid = self.numbers.case.fluid
+        if fluid.molecule is None:
+            return ()
+        kernel, links = fluid.molecule.kernel(
+            self.numbers.dimension, fluid.timestep, fluid.kT, fluid.mass
+        )
+        self._tables.append(links)
+        return kernel
+
+    def _allocate(self) -> None:
+        numbers, d = self.numbers, self.numbers.dimension
+        beads, molecules = numbers.beads, numbers.filling.molecules
+        self.rows = 2 * d + (not numbers.uniform)
+        self.strips, virtual = strips_for(molecules, beads), strips_for(numbers.n_virtual)
+        self.real_blocks = blocks_for(self.strips * LANES)
+        # where particles lie; among molecules some places are empty
+        self.places = np.arange(numbers.n)
+        if beads > 1:
+            self.places = places_of_beads(molecules, beads).ravel()
+        lanes = (self.real_blocks + blocks_for(numbers.n_virtual)) * BLOCK
+        ident = np.arange(lanes, dtype=np.int32)  # beyond n: virtual particles
+        ident[self.places] = np.arange(numbers.n)
+        data, image = zeros(lanes // BLOCK * self.rows * ROW), zeros((d, lanes), np.int32)
+        cell = zeros(lanes, np.int32)
+        self.fluid = Fluid(
+            Particles(data, cell, ident, image, numbers.filling, self.rows),
+            self._cells(),
+            zeros((2, self.strips * (LANES // FEW))),
+            self._scratch(),
+            self._taken(),
+        )
+        spare = zeros(numbers.n)
+        ends = zeros((self.threads, numbers.number_of_cells), np.int32)
+        self.order = Order(zeros(numbers.n, np.int32), ends, spare, spare.view(np.int32))
+        self.walls = self._walls(virtual)
+
+    def _cells(self) -> Cells:
+        every = (
+            self.numbers.number_of_cells + 1
+        )  # in the last, lanes that must not act leave their terms
+        width = sums_length(len(self.physics.terms))
+        return Cells(
+            self.numbers.number_of_cells,
+            zeros(every * record_length(self.numbers.coefficient_count)),
+            zeros((self.threads, every * width), np.int64),
+        )
+
+    def _scratch(self) -> Scratch:
+        d, threads, beads = self.numbers.dimension, self.threads, self.numbers.beads
+        most = max(self.numbers.coefficient_count, 2 * d)
+        return Scratch(
+            coefficients=zeros((threads, most * SCRATCH_ROW)),
+            terms=zeros((threads, (len(self.physics.terms) + 1) * SCRATCH_ROW), np.int64),
+            marks=zeros((threads, LANES), np.int64),
+            clear=zeros((threads, beads * SCRATCH_ROW), np.int32),
+            beads=zeros((threads, beads * bead_size(d) if beads > 1 else 1)),
+        )
+
+    def _taken(self) -> Taken:
+        numbers, d, threads = self.numbers, self.numbers.dimension, self.threads
+        bodies = len(numbers.solids.bodies) if numbers.solids else 0
+        surfaces = 2 if numbers.slit else bodies
+        strips = self.strips if "stress" in self.measures else 1
+        return Taken(
+            impulse=zeros((threads, surfaces * (d + (1 if d == 2 else 3))), np.int64),
+            tensor=zeros((2 + (numbers.beads > 1), strips, 2 * d * d)),
+            faults=zeros((threads, 8), np.int64),
+        )
+
+    def _walls(self, strips: int) -> Walls:
+        numbers, density = self.numbers, self.numbers.case.fluid.density
+        slit: Any = ()
+        solids: Any = ()
+        if numbers.slit is not None and numbers.virtual in ("fill", "extrapolate"):
+            first = self.real_blocks * STRIPS
+            slit = SlitParticles(numbers.n_virtual, strips, first, zeros((2, numbers.dimension)))
+        elif numbers.slit is None and numbers.solids is not None and numbers.virtual != "none":
+            about = numbers.case, numbers.solids, numbers.cells
+            solids = solid_particles(*about, self.threads, self.rows, numbers.masses())
+        return Walls(
+            top_up=(density,) if numbers.virtual == "top-up" else (),
+            gradient=(1.0,) if numbers.virtual == "extrapolate" else (),
+            slit=slit,
+            solids=solids,
+        )
+
+    @property
+    def wall_rates(self) -> Floats:
+        """How the fluid's velocity rises with the distance from surfaces; a view."""
+        virtual = self.walls.slit or self.walls.solids
+        return virtual.rates if virtual else np.zeros((2, self.numbers.dimension))
+
+    def fill(self, positions: Floats, velocities: Floats, images: Any = 0) -> None:
+        """Write what is known of each particle (n, d), by particle number, in the present order."""
+        particles, d, masses = self.fluid.particles, self.numbers.dimension, self.numbers.masses()
+        who, data = particles.ident[self.places], particles.data
+        for k in range(d):
+            data[self.at(k)] = positions[who, k]
+            data[self.at(d + k)] = velocities[who, k]
+        particles.image[:, self.places] = np.broadcast_to(images, positions.shape)[who].T
+        if self.rows > 2 * d:
+            data[self.at(2 * d)] = masses[who]
+            if self.walls.slit:  # virtual particles get masses in proportion
+                lanes = np.arange(self.real_blocks * BLOCK, len(particles.cell))
+                number = self.walls.slit.number
+                data[self.at(2 * d, lanes)] = masses[0]
+                sample = masses[(np.arange(number) * 7919) % len(masses)]
+                data[self.at(2 * d, lanes[:number])] = sample
+        self.fluid.room[:] = 0.0
+
+    def read(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
+        """Positions and velocities as they lie in memory, and images (n, d), by particle number."""
+        particles, d = self.fluid.particles, self.numbers.dimension
+        who = particles.ident[self.places]
+        out = np.empty((self.numbers.n, 2 * d))
+        for k in range(2 * d):
+            out[who, k] = particles.data[self.at(k)]
+        images = np.empty((self.numbers.n, d), np.int32)
+        images[who] = particles.image[:, self.places].T
+        return out[:, :d], out[:, d:], images
+
+    def at(self, row: int, places: Any = None) -> NDArray[np.int64]:
+        """Where a row's values lie in memory: those of all particles, or at these places."""
+        places = self.places if places is None else places
+        return places // BLOCK * (self.rows * ROW) + row * ROW + places % BLOCK
+
+    @property
+    def bytes_held(self) -> int:
+        """Memory of all arrays."""
+        fluid = self.fluid
+        arrays = [*fluid.particles[:4], *fluid.cells[1:], fluid.room, *fluid.scratch, *fluid.taken]
+        arrays += [self.order.order, self.order.ends, self.order.spare]
+        return sum(array.nbytes for array in arrays)

@@ -1,0 +1,59 @@
+"""What the particles obey: parameters of each part, whose types pick the compiled physics."""
+
+from typing import Any, NamedTuple
+
+from mesokit.scalar.jit import scalar
+
+
+class Physics(NamedTuple):
+    """Parameters of the parts, and tuples as long as what is kept for particles and cells."""
+
+    rule: tuple
+    thermostat: tuple
+    field: tuple
+    solid: tuple
+    masses: tuple  # (mass,) or () for a row of masses in each strip
+    energy: tuple  # how cells learn their kinetic energy
+    timestep: float
+    kT: float
+    molecule: Any  # what holds the beads of molecules together, or () for single particles
+    zero: tuple  # the zero vector
+    coefficients: tuple  # as long as what a particle needs of its cell in order to collide
+    terms: tuple  # as long as what it adds to the sums of its cell
+    scales: tuple  # whole numbers per unit of each of these terms; momentum comes first
+
+
+@scalar
+def momentum_scale(physics):
+    """Whole numbers per unit of momentum in fixed-point sums."""
+    return physics.scales[0]
+
+
+@scalar
+def for_time(physics, time):
+    """The same physics for another timestep."""
+    return Physics(
+        physics.rule,
+        physics.thermostat,
+        physics.field,
+        physics.solid,
+        physics.masses,
+        physics.energy,
+        time,
+        physics.kT,
+        physics.molecule,
+        physics.zero,
+        physics.coefficients,
+        physics.terms,
+        physics.scales,
+    )
+
+
+def kind_of_solid(physics: Any) -> type:
+    """The class of the solid, from the numba type of `Physics`."""
+    return field_of(physics, "solid").instance_class
+
+
+def field_of(group: Any, name: str) -> Any:
+    """The numba type of a field, from that of a named tuple."""
+    return group.types[group.fields.index(name)]

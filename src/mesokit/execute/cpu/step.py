@@ -1,0 +1,66 @@
+"""The step: its stages in order, run by all threads together, and the loop over steps."""
+
+from mesokit.case.box import at_time
+from mesokit.execute.beads.coupling import answer_beads, join_beads
+from mesokit.execute.beads.flight import move_beads
+from mesokit.execute.cpu.clock import CELLS, FINISH, START, SWEEP, lap
+from mesokit.execute.cpu.collide import collide
+from mesokit.execute.cpu.grid import moved_grid
+from mesokit.execute.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM, Now
+from mesokit.execute.cpu.sweep import stream
+from mesokit.execute.cpu.threads import meet
+from mesokit.execute.virtual.stages import fill_walls, follow_flow, recoil, top_up_walls
+from mesokit.scalar.cache import inner, kernel
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.random import Counter, grid_shift
+
+
+@inner
+def step(team, now, physics, fluid, beads, walls):
+    """One collision interval: r, v from t to t + dt."""
+    stream(team, now, physics, fluid)  # v: the collision at t; r, v: t -> t + dt; cell sums
+    move_beads(team, now, physics, fluid, beads)  # the same for solutes, in sub-steps
+    fill_walls(team, now, physics, fluid, walls)  # virtual particles at t + dt
+    meet(team)
+    follow_flow(team, now, physics, fluid, walls)  # what they will need to know of the fluid
+    top_up_walls(team, now, physics, fluid, walls)  # those that depend on the fluid's number
+    lap(team, SWEEP)
+    join_beads(team, now, physics, fluid, beads)  # cells with solutes: sums of both
+    collide(team, now, physics, fluid)  # thermostat and rule at t + dt: coefficients of each cell
+    answer_beads(team, physics, fluid.cells, beads)
+    meet(team)
+    lap(team, CELLS)
+    recoil(team, now, physics, fluid, walls)  # what the collision takes from virtual particles
+
+
+@kernel
+def advance(team, course, physics, fluid, beads, walls):
+    """Run some steps; velocities are those after the collision of the last when it returns."""
+    lap(team, START)
+    now = Now(Counter(course.seed, course.done), course.box, course.grid, course.grid, 0)
+    for n in range(course.steps):
+        now = next_step(course, now, physics, n)
+        step(team, now, physics, fluid, beads, walls)
+    if course.steps > 0:
+        now = last_collision(course, now)
+        stream(team, now, physics, fluid)
+        move_beads(team, now, physics, fluid, beads)
+        meet(team)
+        lap(team, FINISH)
+
+
+@scalar
+def next_step(course, now, physics, n):
+    """The nth step. The collision of step n is done while streaming to n + 1: see `stream`."""
+    counter = Counter(course.seed, course.done + n + 1)
+    box = at_time(now.box, (course.done + n + 1) * physics.timestep)
+    grid = moved_grid(now.grid, grid_shift(counter, physics.zero, course.grid_shift), course.closed)
+    flags = course.flags & ~MEASURE_STRESS | STREAM | (COLLIDE if n > 0 else 0)
+    flags |= course.flags & MEASURE_STRESS if n == course.steps - 1 else 0
+    return Now(counter, box, now.grid, grid, flags)
+
+
+@scalar
+def last_collision(course, now):
+    """What is left to do after the last step."""
+    return Now(now.counter, now.box, now.grid, now.grid, course.flags | COLLIDE)

@@ -1,0 +1,270 @@
+"""What observables ask of a fluid in memory."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.box import SLIDING
+from mesokit.execute.beads.readings import SoluteReadings
+from mesokit.execute.cpu.memory import Floats, Memory
+from mesokit.execute.cpu.strips.layout import LANES, SCRATCH_ROW, sums_length, zeros
+from mesokit.execute.cpu.threads import Threads
+from mesokit.execute.measure import sums as measure
+from mesokit.method.mpcd import topology
+from mesokit.scalar.fixed_point import ROUNDER_BITS
+
+if TYPE_CHECKING:
+    from mesokit.potential import Bond, Pair
+
+Moments = tuple[Floats, Floats, Floats, Floats]
+
+
+class Readings:
+    """What can be read of a fluid in memory, by threads that look together."""
+
+    def __init__(self, memory: Memory, threads: Threads) -> None:
+        self.memory, self.numbers, self.threads = memory, memory.numbers, threads
+        self.n, self.beads, self.dimension = (
+            memory.numbers.n,
+            memory.numbers.beads,
+            memory.numbers.dimension,
+        )
+        self.wall_steps = 0
+        self._asked: tuple[NDArray, NDArray[np.int32]] | None = None  # ids, and their slots
+        self._seen: dict[tuple, Moments] = {}  # moments at this step, for several observables
+        self.stress: dict[str, Floats] = {}
+        self.solutes = SoluteReadings(memory) if memory.solutes else None
+
+    def forget(self) -> None:
+        """The particles have moved on."""
+        self._seen.clear()
+
+    def totals(self) -> tuple[int, Floats, float]:
+        """Number of particles, momentum (d,) and kinetic energy, beads of solutes included."""
+        total = self.per_strip().sum(axis=0)
+        number, momentum, energy = (
+            self.n,
+            total[: self.dimension],
+            0.5 * float(total[self.dimension]),
+        )
+        if self.solutes is not None:
+            beads, theirs, more = self.solutes.totals()
+            number, momentum, energy = number + beads, momentum + theirs, energy + more
+        return number, momentum, energy
+
+    def per_strip(self) -> Floats:
+        """Momentum, sum of m v^2 and largest component of velocity in each strip."""
+        out = np.zeros((self.memory.strips, self.dimension + 2))
+        self.threads.run(measure.totals, self.memory.physics, self.memory.fluid.particles, out)
+        return out
+
+    def moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
+        """Number, mass, momentum (d, ...) and sum of m v^2 in bins along one or two axes."""
+        key = axes, bins
+        if key not in self._seen:
+            self._seen[key] = self._moments(axes, bins)
+        return self._seen[key]
+
+    def _moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
+        d, threads, size = self.dimension, self.threads.size, math.prod(bins)
+        two = (axes + axes)[:2], tuple(float(n) for n in (*bins, 1)[:2])
+        names = ["momentum"] * d + ["mass", "energy"]
+        scales = tuple(self.numbers.units[name] for name in names)
+        length = sums_length(d + 2)
+        part = zeros((threads, size * length), np.int64)
+        place = np.zeros((threads, LANES), np.int32)
+        terms = np.zeros((threads, (d + 2) * SCRATCH_ROW), np.int64)
+        chosen = measure.Bins(*two, scales, place, terms)
+        particles = self.memory.fluid.particles
+        self.threads.run(
+            measure.bin_sums, self.memory.physics, self.memory.box, particles, chosen, part
+        )
+        total = part.sum(axis=0).reshape(size, length)[:, : d + 3]
+        number, sums = total[:, 0], total[:, 1:] - total[:, :1] * ROUNDER_BITS
+        values = (sums / np.array(scales)).T.reshape(-1, *bins)
+        return number.astype(float).reshape(bins), values[d], values[:d], values[d + 1]
+
+    def modes(self, wavevectors: NDArray) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Sums of m exp(-i k r) (K,) and of m v exp(-i k r) (K, d) for wave vectors (K, d)."""
+        waves = np.ascontiguousarray(wavevectors, float) / (2.0 * math.pi)
+        d, scale = self.dimension, self.numbers.units["momentum"]
+        part = np.zeros((self.threads.size, len(waves), 2 + 2 * d), np.int64)
+        particles = self.memory.fluid.particles
+        self.threads.run(
+            measure.modes, self.memory.physics, self.memory.box, particles, waves, scale, part
+        )
+        total = part.sum(axis=0) / scale
+        return total[:, 0] + 1j * total[:, 1], total[:, 2 : 2 + d] + 1j * total[:, 2 + d :]
+
+    def positions(self, ids: NDArray | None = None, unwrapped: bool = False) -> Floats:
+        """Positions (n, d) by particle id, in the box or as if it had no bounds."""
+        return self._gather(ids, unwrapped)[0]
+
+    def velocities(self, ids: NDArray | None = None) -> Floats:
+        """Velocities (n, d) by particle id."""
+        return self._gather(ids, False)[1]
+
+    def images(self, ids: NDArray | None = None) -> NDArray[np.int32]:
+        """How many times each particle left the box along each axis (n, d), by particle id."""
+        return self._gather(ids, False)[2]
+
+    def masses(self, ids: NDArray | None = None) -> Floats:
+        """Masses (n,) by particle id: kinds are numbered one after the other, then come solutes."""
+        mass = self.numbers.masses()
+        if ids is None:
+            return mass
+        if self.solutes is not None:
+            mass = np.concatenate([mass, self.solutes.masses()])
+        return mass[ids]
+
+    def species(self, ids: NDArray | None = None) -> NDArray[np.int64]:
+        """Kind of each particle (n,), by particle id: its place in fluid.species, then those of
+        solutes.polymers."""
+        kind = self.numbers.kinds()
+        if ids is None:
+            return kind
+        if self.solutes is not None:
+            kind = np.concatenate([kind, len(self.numbers.counts) + self.solutes.kinds()])
+        return kind[ids]
+
+    def bonds(self) -> NDArray[np.int64]:
+        """Particle ids (bonds, 2) of all pairs that are linked; molecule after molecule."""
+        molecule = self.numbers.case.fluid.molecule
+        links = np.array(molecule.bonds if molecule else (), np.int64).reshape(-1, 2)
+        starts = np.arange(0, self.n, self.beads)
+        return (starts[:, None, None] + links).reshape(-1, 2) if len(links) else links
+
+    def bond_vectors(self) -> Floats:
+        """From the first to the second particle of each bond (bonds, d)."""
+        if self.solutes is not None:
+            return self.solutes.bond_vectors()
+        return self._between(self.bonds())
+
+    def whole_positions(self, ids: NDArray | None = None) -> Floats:
+        """Positions (n, d) by particle id, in the box but for beads that hang over its ends.
+
+        Those are where their molecule has them, next to its first bead, which is in the box.
+        `ids`, if given, name molecule after molecule with all of its beads.
+        """
+        if self.solutes is not None and ids is not None:
+            return self.solutes.whole()[ids - self.n]
+        r, _, image = self._gather(ids, False)
+        if self.beads == 1:
+            return r
+        first = np.repeat(np.arange(0, len(r), self.beads), self.beads)
+        return r[first] + self._way(r, image, first, np.arange(len(r)))
+
+    def potential_energy(self) -> float:
+        """Of all bonds, angles and pairs of beads, and of solutes near walls."""
+        if self.solutes is not None:
+            return self.solutes.potential_energy()
+        molecule = self.numbers.case.fluid.molecule
+        if molecule is None:
+            return 0.0
+        starts = np.arange(0, self.n, self.beads)[:, None, None]
+        total = self._central_energy(molecule.bond, self.bonds())
+        if molecule.pair is not None:
+            pairs = (starts + np.array(topology.pairs(self.beads))).reshape(-1, 2)
+            total += self._central_energy(molecule.pair, pairs)
+        if molecule.bending is not None and molecule.angles:
+            beads = (starts + np.array(molecule.angles)).reshape(-1, 3)
+            before, after = self._between(beads[:, :2]), self._between(beads[:, 1:])
+            out = np.zeros(len(beads))
+            measure.angle_energies(
+                molecule.bending.kernel(), before, after, self.memory.physics.zero, out
+            )
+            total += float(out.sum())
+        return total
+
+    def _central_energy(self, potential: Bond | Pair, pairs: NDArray[np.int64]) -> float:
+        out = (self._between(pairs) ** 2).sum(axis=1)
+        measure.central_energies(potential.kernel(), out)
+        return float(out.sum())
+
+    def _between(self, pairs: NDArray[np.int64]) -> Floats:
+        """Vectors (n, d) between beads of one molecule."""
+        r, _, image = self._gather(None, False)
+        return self._way(r, image, *pairs.T)
+
+    def _way(self, r: Floats, image: NDArray, first: NDArray, second: NDArray) -> Floats:
+        """From one bead to another, whatever images they lie in."""
+        boxes = image[second] - image[first]
+        way = r[second] - r[first] + boxes * self.numbers.box
+        box = self.memory.box
+        if isinstance(box, SLIDING):
+            way[:, 0] += boxes[:, 1] * box.offset
+        return way
+
+    def _gather(self, ids: NDArray | None, unwrapped: bool) -> tuple[Floats, Floats, NDArray]:
+        """Places, velocities, images by particle id; those of beads of solutes follow the fluid."""
+        if self.solutes is None or ids is None or (ids < self.n).all():
+            return self._gather_fluid(ids, unwrapped)
+        own = ids < self.n
+        r, v, image = self.solutes.folded()
+        if unwrapped:
+            r, v = self.solutes.places, self.solutes.velocities
+        beads = np.where(own, 0, ids - self.n)
+        r, v, image = r[beads], v[beads], image[beads]
+        if own.any():
+            r[own], v[own], image[own] = self._gather_fluid(ids[own], unwrapped)
+        return r, v, image
+
+    def _gather_fluid(self, ids: NDArray | None, unwrapped: bool) -> tuple[Floats, Floats, NDArray]:
+        slots = np.arange(self.n, dtype=np.int32) if ids is None else self._slots(ids)
+        shape = self.n if ids is None else len(ids), self.dimension
+        out = np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32)
+        looked = measure.Looked(slots, *out)
+        particles = self.memory.fluid.particles
+        self.threads.run(
+            measure.gather_by_id, self.memory.physics, self.memory.box, particles, unwrapped, looked
+        )
+        return out
+
+    def _slots(self, ids: NDArray) -> NDArray[np.int32]:
+        """Place of each particle in `ids`, by particle id, -1 if none; kept for the next time."""
+        if self._asked is None or not np.array_equal(self._asked[0], ids):
+            slots = np.full(self.n, -1, np.int32)
+            slots[ids] = np.arange(len(ids))
+            self._asked = ids.copy(), slots
+        return self._asked[1]
+
+    def find_stress(self) -> None:
+        """Stress of the step that ends now, positive where the fluid above drags the one below.
+
+        Kinetic: momentum carried in the flight, which is the mean of the values before and after
+        the collision. Collisional: momentum handed over within cells (Winkler and Huang 2009).
+        Bond: momentum handed over within molecules, the mean over the flight.
+        """
+        d = self.dimension
+        parts = self.memory.fluid.taken.tensor.sum(axis=1)
+        if self.solutes is not None:
+            theirs = self.solutes.state_of.tensor.sum(axis=1)
+            parts = np.concatenate([parts[:2] + theirs[:2], theirs[2:]])
+        before, after, *bond = parts.reshape(-1, 2, d, d)
+        volume = math.prod(self.numbers.case.box.size)
+        self.stress = {
+            "kinetic": -0.5 * (before[0] + after[0]) / volume,
+            "collisional": -(after[1] - before[1]) / (volume * self.numbers.timestep),
+        }
+        if bond:
+            self.stress["bond"] = -bond[0][0] / (volume * self.numbers.timestep)
+
+    @property
+    def wall_impulse(self) -> Floats:
+        """What surfaces took since the last call: momentum (d), then angular momentum (1 or 3).
+
+        A row for each: the lower and upper plate of a slit, or the bodies in order.
+        """
+        columns = self.dimension + (1 if self.dimension == 2 else 3)
+        taken = self.memory.fluid.taken.impulse.sum(axis=0).astype(float).reshape(-1, columns)
+        self.forget_walls()
+        return taken / self.numbers.units["momentum"]
+
+    def forget_walls(self) -> None:
+        """Count anew what surfaces take."""
+        self.memory.fluid.taken.impulse[:] = 0
+        self.wall_steps = 0

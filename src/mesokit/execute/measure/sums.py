@@ -1,0 +1,161 @@
+"""Sums over all particles that observables ask for; the same bits for any number of threads.
+
+Each strip writes its own partial sum, to be added in order; or the sums are of whole numbers.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mesokit.case.box import fold
+from mesokit.execute.cpu.stages import add_strip
+from mesokit.execute.cpu.strips.layout import LANES, lanes_in, share, strip_at, strips_in
+from mesokit.execute.cpu.strips.rows import load_particle, mass_of, store_scratch
+from mesokit.potential.angle import bend
+from mesokit.potential.protocol import central
+from mesokit.scalar.cache import kernel
+from mesokit.scalar.elementary import sincos_turn
+from mesokit.scalar.fixed_point import ROUNDER_BITS, fixed, integers, rounded
+from mesokit.scalar.intrinsics import floor, with_item
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.vector import dot, scaled
+
+
+@kernel
+def totals(team, physics, particles, out):
+    """Momentum, sum of m v^2 and largest component of |v| in each strip: out (strips, d + 2)."""
+    zero, data, rows = physics.zero, particles.data, particles.rows
+    filling, d = particles.filling, len(zero)
+    first, last = share(strips_in(filling), team.thread, team.threads)
+    for b in range(first, last):
+        strip = data[strip_at(b, rows)]
+        for i in range(lanes_in(filling, b)):
+            v = load_particle(strip, i, d, zero)
+            m = mass_of(physics.masses, strip, i, 2 * d)
+            for k in range(d):
+                out[b, k] += m * v[k]
+                out[b, d + 1] = max(out[b, d + 1], abs(v[k]))
+            out[b, d] += m * dot(v, v)
+
+
+class Bins(NamedTuple):
+    """Bins along one or two axes, and memory: `number` holds 1.0 where there is no second axis."""
+
+    axes: tuple
+    number: tuple
+    scales: tuple  # whole numbers per unit of momentum (d), mass and m v^2
+    place: Any  # (threads, LANES)
+    terms: Any  # (threads, ...)
+
+
+@kernel
+def bin_sums(team, physics, box, particles, bins, sums):
+    """Number, momentum, mass and m v^2 in bins, as fixed-point sums.
+
+    `sums` is (threads, bins * (d + 3)), to be zero.
+    """
+    zero, data, rows = physics.zero, particles.data, particles.rows
+    filling, scales, d = particles.filling, bins.scales, len(zero)
+    place, quanta, out = bins.place[team.thread], bins.terms[team.thread], sums[team.thread]
+    terms = integers(scales)
+    first, last = share(strips_in(filling), team.thread, team.threads)
+    for b in range(first, last):
+        strip = data[strip_at(b, rows)]
+        for i in range(LANES):
+            r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
+            r, v, _ = fold(box, r, v, scaled(0.0, zero))
+            m = mass_of(physics.masses, strip, i, 2 * d)
+            index = 0.0
+            for k in range(2):
+                axis, number = bins.axes[k], bins.number[k]
+                x = floor(r[axis] / box.size[axis] * number)
+                index = index * number + min(max(x, 0.0), number - 1.0)
+            place[i] = np.int32(index)
+            store_scratch(quanta, i, rounded(scaled(m, v) + (m, m * dot(v, v)), scales))
+        add_strip(place, quanta, out, lanes_in(filling, b), terms, ())
+
+
+@kernel
+def modes(team, physics, box, particles, waves, scale, out):
+    """Fourier sums of mass and momentum as fixed-point sums: out (threads, waves, 2 (1 + d)).
+
+    `waves` are wave vectors over 2 pi, in turns per length. Each row holds mass times cosine and
+    minus sine, then the same of each component of the momentum; each sum has a multiple of LANES
+    terms, zero in spare lanes.
+    """
+    zero, data, rows = physics.zero, particles.data, particles.rows
+    filling, d = particles.filling, len(zero)
+    first, last = share(strips_in(filling), team.thread, team.threads)
+    for b in range(first, last):
+        strip = data[strip_at(b, rows)]
+        lanes = lanes_in(filling, b)
+        for w in range(len(waves)):
+            wave = load_row(waves, w, zero)
+            sums = integers((0.0, 0.0) + zero + zero)
+            for i in range(LANES):
+                r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
+                r, v, _ = fold(box, r, v, scaled(0.0, zero))
+                m = mass_of(physics.masses, strip, i, 2 * d)
+                m = m if i < lanes else 0.0
+                phase = dot(wave, r)
+                s, c = sincos_turn(phase - floor(phase))
+                c, s = m * c, -m * s
+                values = (c, s) + scaled(c, v) + scaled(s, v)
+                for k in range(len(sums)):
+                    sums = with_item(sums, k, sums[k] + fixed(values[k], scale))
+            for k in range(len(sums)):
+                out[team.thread, w, k] += sums[k] - np.int64(LANES * ROUNDER_BITS)
+
+
+@scalar
+def load_row(vectors, i, zero):
+    """One row of an array of vectors as a tuple."""
+    for k in range(len(zero)):
+        zero = with_item(zero, k, vectors[i, k])
+    return zero
+
+
+class Looked(NamedTuple):
+    """Who is looked at, and what is found of them."""
+
+    slots: Any  # by particle number: the place among those looked at, or -1
+    position: Any
+    velocity: Any
+    image: Any
+
+
+@kernel
+def gather_by_id(team, physics, box, particles, unwrapped, looked):
+    """Positions, velocities and images of those that have a slot."""
+    zero, data, rows = physics.zero, particles.data, particles.rows
+    filling, image, d = particles.filling, particles.image, len(zero)
+    first, last = share(strips_in(filling), team.thread, team.threads)
+    for b in range(first, last):
+        strip = data[strip_at(b, rows)]
+        for i in range(lanes_in(filling, b)):
+            j = b * LANES + i
+            slot = looked.slots[particles.ident[j]]
+            if slot < 0:
+                continue
+            r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
+            crossed = scaled(0.0, zero)
+            if not unwrapped:
+                r, v, crossed = fold(box, r, v, crossed)
+            for k in range(d):
+                looked.position[slot, k] = r[k] + (image[k, j] * box.size[k] if unwrapped else 0.0)
+                looked.velocity[slot, k] = v[k]
+                looked.image[slot, k] = image[k, j] + np.int32(crossed[k])
+
+
+@kernel
+def central_energies(potential, squares):
+    """Squared distances become the energies of pairs that are so far apart."""
+    for i in range(len(squares)):
+        squares[i] = central(potential, squares[i])[0]
+
+
+@kernel
+def angle_energies(potential, before, after, zero, out):
+    """Energies of bonds (n, d) that follow one another."""
+    for i in range(len(out)):
+        out[i] = bend(potential, load_row(before, i, zero), load_row(after, i, zero))[0]

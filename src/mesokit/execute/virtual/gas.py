@@ -1,0 +1,24 @@
+"""Virtual particles are a thermal gas, and surfaces take the momentum that they gain."""
+
+import math
+
+from mesokit.execute.cpu.bounce import take
+from mesokit.geometry.solids.bodies import BODY, from_pivot
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.pointer import whole, word
+from mesokit.scalar.random import normals, words
+from mesokit.scalar.vector import scaled
+
+
+@scalar
+def thermal(physics, m, counter, purpose, number, draw):
+    """The velocity of a particle of mass m of a gas at rest."""
+    a, b, c, d = words(counter, purpose, number, draw)
+    return scaled(math.sqrt(physics.kT / m), normals(physics.zero, a, b, c, d))
+
+
+@scalar
+def body_takes(impulse, solid, term, r, p, scale):
+    """Add the momentum p, taken at r, to what the body of a term took."""
+    lever = from_pivot(solid.tables, term, r)
+    take(impulse, whole(word(solid.tables, BODY), term), lever, p, scale)

@@ -1,0 +1,91 @@
+"""What shapes that are read from a file share.
+
+The file is read once for each shape, whose solid is then what the file held, whatever becomes of
+it. A run keeps the distances themselves, so that it goes on with the same solid.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import math
+from abc import abstractmethod
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mesokit.case.component import FileName, component, param, show
+from mesokit.errors import CaseError
+from mesokit.geometry.region import Region
+from mesokit.geometry.samples.distances import Floats, Grid, fitted, slope
+from mesokit.geometry.shape_protocol import Shape
+
+if TYPE_CHECKING:
+    from mesokit.geometry.region import Room
+
+
+@component
+class FromFile(Shape):
+    """A shape given by samples of its signed distance, which are made from a file."""
+
+    file: FileName = param(doc="file, relative to that of the case")
+
+    @functools.cached_property
+    def contents(self) -> bytes:
+        """What the file held when it was first needed. Raises CaseError."""
+        try:
+            return Path(self.file).read_bytes()
+        except FileNotFoundError:
+            raise self.wrong("no such file") from None
+        except OSError as error:
+            raise self.wrong(f"cannot be read: {(error.strerror or str(error)).lower()}") from None
+
+    @functools.cached_property
+    def digest(self) -> str:
+        """Of its contents; empty where there are none, which whoever reads them will say."""
+        try:
+            return hashlib.sha256(self.contents).hexdigest()
+        except CaseError:
+            return ""
+
+    def wrong(self, reason: str) -> CaseError:
+        """The error that says what is wrong with the file."""
+        return CaseError(f"file = {show(self.file, 500)}: {reason}")
+
+    @abstractmethod
+    def grid(self, room: Room) -> Grid:
+        """Its signed distance, positive outside."""
+
+    def body(self, room: Room) -> Region:
+        """What lies within the surface."""
+        grid = self.grid(room)
+        if grid.values.ndim != room.dimension:
+            raise self.wrong(f"{grid.values.ndim}D, in a {room.dimension}D box")
+        size = slope(grid)
+        if not 0.5 < size < 2.0:
+            raise self.unfit(room, size)
+        try:
+            found = fitted(grid, room)
+        except ValueError as error:
+            raise self.wrong(str(error)) from None
+        samples = found[0][0].samples
+        if samples is None or not samples.min() < 0.0:  # what smoothing has left
+            raise self.unfit(room, math.nan)
+        return found
+
+    def unfit(self, room: Room, size: float) -> CaseError:
+        """The error for samples whose gradient at the surface is so large; nan: without surface."""
+        if math.isnan(size):
+            return self.wrong("no surface: all samples have one sign")
+        return self.wrong(
+            f"the gradient at the surface is {size:.3g}; expected a signed distance, for which it "
+            "is 1, in cells"
+        )
+
+    @abstractmethod
+    def notes(self, room: Room, samples: Floats) -> Iterator[str]:
+        """What users should know of the solid that the samples describe, key first."""
+
+    def kept(self) -> dict[str, Any]:
+        """What it shares with the `Sampled` that a run keeps of it."""
+        return {"fluid": self.fluid, "surface": self.surface, "virtual": self.virtual}

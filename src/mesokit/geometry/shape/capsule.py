@@ -1,0 +1,46 @@
+"""A rod with round ends."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+from mesokit.case.component import component, param, tag
+from mesokit.geometry import region
+from mesokit.geometry.shape_protocol import Simple
+
+if TYPE_CHECKING:
+    from mesokit.geometry.region import Room
+
+
+@component
+class Capsule(Simple):
+    """All places within a radius of the straight line between two ends."""
+
+    shape: Literal["capsule"] = tag("capsule")
+    start: tuple[float, ...] = param(doc="centre of one round end", unit="a")
+    end: tuple[float, ...] = param(doc="centre of the other", unit="a")
+    radius: float = param(doc="its radius", unit="a", gt=0)
+
+    def __post_init__(self) -> None:
+        if self.start == self.end:
+            raise ValueError("end = start: expected another place; a ball is a disk or a sphere")
+
+    def body(self, room: Room) -> region.Region:
+        """What lies within the surface."""
+        return region.capsule(self.start, self.end, self.radius)
+
+    def pivot(self, room: Room) -> tuple[float, ...]:
+        """The place about which it turns and torques are taken."""
+        return tuple(0.5 * (a + b) for a, b in zip(self.start, self.end, strict=True))
+
+    def axis_of_rotation(self, room: Room) -> tuple[float, ...]:
+        """Unit vector about which a rotation given as a number turns."""
+        if room.dimension == 2:
+            return (0.0, 0.0, 1.0)
+        span = [b - a for a, b in zip(self.start, self.end, strict=True)]
+        size = sum(x * x for x in span) ** 0.5
+        return tuple(x / size for x in span)
+
+    def vectors(self) -> dict[str, Any]:
+        """Its parameters that have one number for each axis, by key."""
+        return {"start": self.start, "end": self.end}

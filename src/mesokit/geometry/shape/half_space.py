@@ -1,0 +1,42 @@
+"""Everything behind a plane."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import field_validator
+
+from mesokit.case.component import component, param, tag
+from mesokit.geometry import region
+from mesokit.geometry.shape_protocol import Simple
+
+if TYPE_CHECKING:
+    from mesokit.geometry.region import Room
+
+
+@component
+class HalfSpace(Simple):
+    """Everything behind a plane, such as a floor or an inclined wall."""
+
+    shape: Literal["half-space"] = tag("half-space")
+    point: tuple[float, ...] = param(doc="a place on the plane", unit="a")
+    normal: tuple[float, ...] = param(doc="direction from the plane into the fluid")
+
+    @field_validator("normal")
+    @classmethod
+    def _a_direction(cls, normal: tuple[float, ...]) -> tuple[float, ...]:
+        if not any(normal):
+            raise ValueError("expected a direction, not all zero")
+        return normal
+
+    def body(self, room: Room) -> region.Region:
+        """What lies within the surface."""
+        return region.half_space(self.point, self.normal)
+
+    def pivot(self, room: Room) -> tuple[float, ...]:
+        """The place about which it turns and torques are taken."""
+        return self.point
+
+    def vectors(self) -> dict[str, Any]:
+        """Its parameters that have one number for each axis, by key."""
+        return {"point": self.point, "normal": self.normal}

@@ -1,0 +1,247 @@
+"""A solid given by a closed surface of triangles."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import io
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+from mesokit.case.component import component, param, show, tag
+from mesokit.errors import CaseError
+from mesokit.geometry.samples.distances import Grid, volume
+from mesokit.geometry.samples.from_file import FromFile
+from mesokit.geometry.samples.simplices import signed_distance
+
+if TYPE_CHECKING:
+    from mesokit.geometry.region import Room
+
+Floats = NDArray[np.float64]
+REACH = 2.0  # cells around the surface in which distances are kept
+FORMATS = ("stl", "obj", "ply")
+ABOVE = 1e-6  # of the height of a mesh: its cross-section is taken so far above flat faces
+MOST_SAMPLES = 2**27
+OFF = 0.05  # part of the volume that samples may miss
+
+
+class Closed(NamedTuple):
+    """A closed surface or outline: the corners (n, d, d) of its triangles or straight pieces,
+    whether it is that of a hollow, and its volume or area (None: not known)."""
+
+    corners: Floats
+    hollow: bool = False
+    size: float | None = None
+
+
+@component
+class Mesh(FromFile):
+    """The inside of a triangle mesh (STL, OBJ or PLY): in 2D a cross-section of it.
+
+    It has to be watertight. What is inside of any of its closed surfaces is solid; one that is
+    turned inside out and lies in another is a hollow. Features smaller than the spacing are
+    smoothed. Reading meshes takes the package trimesh: pip install 'mesokit[mesh]'.
+    """
+
+    shape: Literal["mesh"] = tag("mesh")
+    position: tuple[float, ...] | None = param(
+        None,
+        doc="where the origin of the mesh is put (the corner of the box unless said)",
+        unit="a",
+    )
+    scale: float = param(1.0, doc="cells per unit of length of the mesh", unit="a", gt=0)
+    height: float | None = param(
+        None, doc="where a 2D box cuts the mesh, along its z, scaled (at 0 unless said)", unit="a"
+    )
+    spacing: float = param(0.25, doc="distance between samples of the distance", unit="a", gt=0)
+
+    @functools.cached_property
+    def closed(self) -> list[Closed]:
+        """The closed surfaces it consists of, scaled, the largest first. Raises CaseError."""
+        try:
+            trimesh = importlib.import_module("trimesh")
+        except ImportError:
+            raise self.wrong(
+                "meshes need the package trimesh: pip install 'mesokit[mesh]'"
+            ) from None
+        kind = Path(self.file).suffix.lower().lstrip(".")
+        if kind not in FORMATS:
+            raise self.wrong("expected a name ending in .stl, .obj or .ply")
+        contents = self.contents
+        try:
+            mesh = trimesh.load(io.BytesIO(contents), file_type=kind, force="mesh")
+            faces = len(mesh.faces)
+        except Exception:  # each format has its own words for a damaged file
+            faces = 0
+        if faces == 0:
+            raise self.wrong(f"expected a triangle mesh in {kind.upper()} format")
+        if not mesh.is_watertight:
+            raise self.wrong(
+                "the mesh is not watertight: it has holes or loose triangles; close it first"
+            )
+        corners = self.scale * np.asarray(mesh.triangles, float)
+        if not mesh.is_winding_consistent:
+            return [Closed(corners)]
+        return _bodies(corners, np.asarray(mesh.faces))
+
+    def grid(self, room: Room) -> Grid:
+        """Its signed distance, positive outside."""
+        if room.dimension == 3 and self.height is not None:
+            raise CaseError(f"height = {self.height:g}: only in 2D; leave it out")
+        place = np.array(self.pivot(room))
+        parts = [Closed(part.corners + place, part.hollow, part.size) for part in self._parts(room)]
+        low, high = _ends(parts)
+        low, high = low - REACH, high + REACH
+        counts = tuple(math.ceil(span / self.spacing) + 1 for span in high - low)
+        if math.prod(counts) > MOST_SAMPLES:
+            raise CaseError(
+                f"spacing = {self.spacing:g}: {math.prod(counts)} samples of the distance; "
+                f"expected at most {MOST_SAMPLES}"
+            )
+        values = np.full(counts, REACH)
+        for part in parts:
+            self._add(values, low, part)
+        return Grid(values, tuple(float(x) for x in low), self.spacing)
+
+    def _add(self, values: Floats, low: Floats, part: Closed) -> None:
+        """Fill in a body, or cut out a hollow, as far as its distances reach."""
+        ends = part.corners.min(axis=(0, 1)), part.corners.max(axis=(0, 1))
+        first = np.floor((ends[0] - REACH - low) / self.spacing).astype(int).clip(0)
+        last = np.ceil((ends[1] + REACH - low) / self.spacing).astype(int)
+        window = tuple(slice(a, b + 1) for a, b in zip(first, last, strict=True))
+        here = values[window]
+        origin = tuple(float(x) for x in low + self.spacing * first)
+        own = signed_distance(part.corners, origin, here.shape, self.spacing, REACH)
+        values[window] = np.maximum(here, -own) if part.hollow else np.minimum(here, own)
+
+    def _parts(self, room: Room) -> list[Closed]:
+        """Its closed surfaces, or in 2D their outlines, each before those that lie in it."""
+        return self.closed if room.dimension == 3 else self._section()
+
+    def unfit(self, room: Room, size: float) -> CaseError:
+        """The error for samples that miss the mesh."""
+        low, high = _ends(self._parts(room))
+        return CaseError(
+            f"spacing = {self.spacing:g}: too coarse for file {show(self.file, 500)}, which is "
+            f"{' x '.join(f'{x:.3g}' for x in high - low)} cells; expected a smaller spacing, or "
+            "a larger scale"
+        )
+
+    def notes(self, room: Room, samples: Floats) -> Iterator[str]:
+        """What users should know: volume that the samples miss, a mesh larger than the box."""
+        parts = self._parts(room)
+        exact, found = _size(parts), volume(samples, self.spacing)
+        if exact is not None and abs(found - exact) > OFF * exact:
+            yield (
+                f"spacing = {self.spacing:g}: the sampled solid has {found:.4g} cells, the mesh "
+                f"{exact:.4g}; expected a smaller spacing"
+            )
+        low, high = _ends(parts)
+        for axis, (length, shut) in enumerate(zip(room.size, room.closed, strict=True)):
+            beyond = high[axis] - low[axis] - length
+            if beyond > 0.5 * self.spacing and not shut:
+                yield (
+                    f"file = {show(self.file, 500)}: the mesh reaches over the box by "
+                    f"{beyond:.4g} cells along {'xyz'[axis]}, and overlaps its own images"
+                )
+
+    def _section(self) -> list[Closed]:
+        """The outlines in which a plane across z cuts it."""
+        low, high = _ends(self.closed)
+        bottom, top = float(low[2]), float(high[2])
+        level = (self.height or 0.0) + ABOVE * (top - bottom)
+        found = [
+            Closed(outline, part.hollow, abs(_area(outline)) if part.size else None)
+            for part in self.closed
+            if len(outline := _cut(part.corners, level))
+        ]
+        if not found:
+            raise CaseError(
+                f"height = {self.height or 0.0:g}: the mesh lies between {bottom:g} and {top:g}"
+            )
+        return found
+
+    def pivot(self, room: Room) -> tuple[float, ...]:
+        """The place about which it turns and torques are taken."""
+        return self.position or (0.0,) * room.dimension
+
+    def vectors(self) -> dict[str, Any]:
+        """Its parameters that have one number for each axis, by key."""
+        return {} if self.position is None else {"position": self.position}
+
+
+def _bodies(corners: Floats, faces: NDArray[np.intp]) -> list[Closed]:
+    """The closed surfaces that triangles make, by the numbers of their corners."""
+    ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
+    count = int(faces.max()) + 1
+    graph = sparse.coo_matrix((np.ones(len(ends)), ends.T), shape=(count, count))
+    which = sparse.csgraph.connected_components(graph, directed=False)[1][faces[:, 0]]
+    order = np.argsort(which, kind="stable")
+    parts = np.split(corners[order], np.flatnonzero(np.diff(which[order])) + 1)
+    sizes = [float(np.linalg.det(part - part[0, 0]).sum()) / 6.0 for part in parts]
+    outward = math.copysign(1.0, sum(sizes))
+    found: list[Closed] = []
+    for i in sorted(range(len(parts)), key=lambda i: -abs(sizes[i])):
+        inverted = outward * sizes[i] < 0.0
+        hollow = inverted and any(_surrounds(part.corners, parts[i][0, 0]) for part in found)
+        found.append(Closed(parts[i], hollow, abs(sizes[i])))
+    return found
+
+
+def _surrounds(corners: Floats, place: Floats) -> bool:
+    """Whether a place is inside of a closed surface: the solid angles of its triangles add up."""
+    if (place < corners.min(axis=(0, 1))).any() or (place > corners.max(axis=(0, 1))).any():
+        return False
+    a, b, c = np.moveaxis(corners - place, 1, 0)
+    x, y, z = (np.linalg.norm(v, axis=1) for v in (a, b, c))
+    ab, bc, ca = (np.einsum("ij,ij->i", u, v) for u, v in ((a, b), (b, c), (c, a)))
+    angles = np.arctan2(np.linalg.det(corners - place), x * y * z + ab * z + bc * x + ca * y)
+    return bool(abs(angles.sum()) > math.pi)  # halves of solid angles
+
+
+def _cut(corners: Floats, level: float) -> Floats:
+    """The outline (n, 2, 2) in which a plane across z cuts a closed surface, one way round."""
+    above = corners[..., 2] > level
+    cut = above.any(axis=1) & ~above.all(axis=1)
+    outline = []
+    for places, over in zip(corners[cut], above[cut], strict=True):
+        lonely = int(np.flatnonzero(over == (over.sum() == 1))[0])
+        ends = []
+        for other in ((lonely + 1) % 3, (lonely + 2) % 3):
+            a, b = places[lonely], places[other]
+            ends.append(a[:2] + (level - a[2]) / (b[2] - a[2]) * (b[:2] - a[:2]))
+        outline.append(ends if over[lonely] else ends[::-1])
+    return np.array(outline)
+
+
+def _area(outline: Floats) -> float:
+    """Within an outline, signed."""
+    return 0.5 * float(np.linalg.det(outline - outline[0, 0]).sum())
+
+
+def _ends(parts: Sequence[Closed]) -> tuple[Floats, Floats]:
+    """The lowest and the highest coordinates of them all."""
+    low = np.min([part.corners.min(axis=(0, 1)) for part in parts], axis=0)
+    return low, np.max([part.corners.max(axis=(0, 1)) for part in parts], axis=0)
+
+
+def _size(parts: Sequence[Closed]) -> float | None:
+    """Volume or area of them all; None if it is not known, or bodies may overlap."""
+    total = 0.0
+    seen: list[tuple[Floats, Floats]] = []
+    for part in parts:
+        if part.size is None:
+            return None
+        total += -part.size if part.hollow else part.size
+        if not part.hollow:
+            low, high = _ends([part])
+            if any((low < other[1]).all() and (high > other[0]).all() for other in seen):
+                return None
+            seen.append((low, high))
+    return total

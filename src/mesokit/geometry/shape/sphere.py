@@ -1,0 +1,34 @@
+"""A sphere."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+from mesokit.case.component import component, param, tag
+from mesokit.geometry import region
+from mesokit.geometry.shape_protocol import Simple
+
+if TYPE_CHECKING:
+    from mesokit.geometry.region import Room
+
+
+@component
+class Sphere(Simple):
+    """A sphere (3D)."""
+
+    dimensions: ClassVar[tuple[int, ...]] = (3,)
+    shape: Literal["sphere"] = tag("sphere")
+    centre: tuple[float, ...] = param(doc="its centre", unit="a")
+    radius: float = param(doc="its radius", unit="a", gt=0)
+
+    def body(self, room: Room) -> region.Region:
+        """What lies within the surface."""
+        return region.ball(self.centre, self.radius)
+
+    def pivot(self, room: Room) -> tuple[float, ...]:
+        """The place about which it turns and torques are taken."""
+        return self.centre
+
+    def vectors(self) -> dict[str, Any]:
+        """Its parameters that have one number for each axis, by key."""
+        return {"centre": self.centre}

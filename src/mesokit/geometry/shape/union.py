@@ -1,0 +1,42 @@
+"""Several shapes as one solid."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+from mesokit.case.component import component, param, tag
+from mesokit.geometry import region
+from mesokit.geometry.composite import middle, require_plain
+from mesokit.geometry.shape_protocol import Joinable, Repeatable
+
+if TYPE_CHECKING:
+    from mesokit.geometry.region import Room
+
+
+@component
+class Union(Repeatable):
+    """Everything that is in any of its parts, with one surface."""
+
+    shape: Literal["union"] = tag("union")
+    parts: tuple[Joinable, ...] = param(
+        doc="shapes, of which each says where its fluid is", min_length=1
+    )
+
+    def __post_init__(self) -> None:
+        require_plain(self.parts, "union")
+
+    def body(self, room: Room) -> region.Region:
+        """What lies within the surface."""
+        return region.union(part.sided(part.body(room), room) for part in self.parts)
+
+    def pivot(self, room: Room) -> tuple[float, ...]:
+        """The place about which it turns and torques are taken."""
+        return middle(self.parts, room)
+
+    def vectors(self) -> dict[str, Any]:
+        """Its parameters that have one number for each axis, by key."""
+        return {
+            f"parts[#{i + 1}].{key}": value
+            for i, part in enumerate(self.parts)
+            for key, value in part.vectors().items()
+        }

@@ -1,0 +1,161 @@
+"""What all walls and shapes of solids share."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
+
+from mesokit.case.box import Axis
+from mesokit.case.component import component, param
+from mesokit.case.registry import family
+from mesokit.errors import CaseError
+from mesokit.geometry.region import Region, Term, complement, images
+from mesokit.geometry.solids.reach import reaches
+from mesokit.geometry.surface import Surface
+
+if TYPE_CHECKING:
+    from mesokit.geometry.region import Room
+
+Virtual = Literal["extrapolate", "fill", "top-up", "none"]
+VIRTUAL = (
+    "virtual particles in the cells that the surface cuts: 'fill' the solid part with a gas at the "
+    "surface's velocity, 'extrapolate' the fluid's velocity into that gas, 'top-up' each cell to "
+    "the mean density, or 'none' (a slip surface has none)"
+)
+
+MOST_TERMS = 4096  # of a complement, which has one for each choice of a part from every term
+
+
+class Piece(NamedTuple):
+    """A term of a body, and the place about which it turns and its torque is taken."""
+
+    term: Term
+    pivot: tuple[float, ...]
+
+
+def pieces_of(region: Region, pivot: Sequence[float], room: Room) -> list[Piece]:
+    """The terms of a region and their periodic images, of which each has its own pivot."""
+    return [
+        Piece(term, tuple(x + dx for x, dx in zip(pivot, by, strict=True)))
+        for term, by in images(region, room)
+    ]
+
+
+class Body(NamedTuple):
+    """What has one surface and one force on it; the rate of rotation is a vector of three."""
+
+    name: str
+    surface: Surface
+    virtual: str
+    pieces: list[Piece]
+    rotation: tuple[float, ...]
+
+
+@family("shape", "shape", "mesokit.shape")
+@component
+class Wall(ABC):
+    """What the fluid cannot enter."""
+
+    dimensions: ClassVar[tuple[int, ...]] = (2, 3)
+    virtual: Virtual = param("extrapolate", doc=VIRTUAL, kw_only=True)
+    name: str | None = param(
+        None, doc="name in the results (shape and number unless said)", kw_only=True, min_length=1
+    )
+
+    @property
+    def closed_axes(self) -> tuple[Axis, ...]:
+        """Axes of the box that it closes."""
+        return ()
+
+    @abstractmethod
+    def surfaces(self) -> dict[str, Surface]:
+        """Its surfaces, by key."""
+
+    @abstractmethod
+    def bodies(self, room: Room, label: str) -> list[Body]:
+        """What it is made of: a body for each surface, named after it or `label`."""
+
+    def vectors(self) -> dict[str, Any]:
+        """Its parameters that have one number for each axis, by key."""
+        return {}
+
+
+def closed_axes(walls: Iterable[Wall]) -> set[Axis]:
+    """Axes that walls close; the box is periodic along the others."""
+    return {axis for wall in walls for axis in wall.closed_axes}
+
+
+@component
+class Shape(Wall):
+    """A solid: where it is, what its surface does, and on which side of it the fluid is."""
+
+    fluid: Literal["outside", "inside"] = param(
+        "outside", doc="side of the surface on which the fluid is", kw_only=True
+    )
+    surface: Surface = param(Surface(), doc="what its surface does", kw_only=True)
+
+    def sided(self, within: Region, room: Room) -> Region:
+        """The solid, given what lies within the surface."""
+        return complement(within) if self.fluid == "inside" else within
+
+    @abstractmethod
+    def body(self, room: Room) -> Region:
+        """What lies within the surface."""
+
+    @abstractmethod
+    def pivot(self, room: Room) -> tuple[float, ...]:
+        """The place about which it turns and torques are taken."""
+
+    def pieces(self, room: Room) -> list[Piece]:
+        """The solid in this box, in pieces, with what its images put into the box."""
+        if self.fluid == "outside":
+            return pieces_of(self.body(room), self.pivot(room), room)
+        everywhere = tuple(term for term, _ in images(self.body(room), room) if reaches(term, room))
+        if math.prod(map(len, everywhere)) > MOST_TERMS:
+            raise CaseError(
+                "fluid = 'inside': too many parts whose outsides overlap; expected fewer of them"
+            )
+        return [Piece(term, self.pivot(room)) for term in complement(everywhere)]
+
+    def surfaces(self) -> dict[str, Surface]:
+        """Its surface, by key."""
+        return {"surface": self.surface}
+
+    def bodies(self, room: Room, label: str) -> list[Body]:
+        """What it is made of: a body for each surface, named after it or `label`."""
+        name = self.name or label
+        return [Body(name, self.surface, self.virtual, self.pieces(room), self.turning(room))]
+
+    def turning(self, room: Room) -> tuple[float, ...]:
+        """Its rate of rotation, as a vector of three."""
+        rate = self.surface.rotation
+        if isinstance(rate, tuple):
+            return rate
+        return tuple((rate or 0.0) * x for x in self.axis_of_rotation(room))
+
+    def axis_of_rotation(self, room: Room) -> tuple[float, ...]:
+        """Unit vector about which a rotation given as a number turns."""
+        return (0.0, 0.0, 1.0)
+
+
+# What other shapes can be made of. One family lies within the other.
+
+
+@family("shape to repeat", "shape", "mesokit.shape")
+@component
+class Repeatable(Shape):
+    """A shape of which there can be an array."""
+
+
+@family("part of a union", "shape", "mesokit.shape")
+@component
+class Joinable(Repeatable):
+    """A shape that can also be part of a union."""
+
+
+@family("simple shape", "shape", "mesokit.shape")
+@component
+class Simple(Joinable):
+    """A shape that can also be part of an intersection."""

@@ -1,0 +1,99 @@
+"""Planes above which there is no solid near a place: a flight above one needs no search.
+
+Loops run once when a case is built. Points come as rows of an array.
+"""
+
+import math
+
+from mesokit.geometry.solids.bodies import (
+    NEAR,
+    NOBODY,
+    STARTS,
+    home_cell,
+    in_box,
+    nearest,
+    part_normal,
+    term_clearance,
+)
+from mesokit.geometry.solids.flight import curves_away
+from mesokit.geometry.solids.survey import point
+from mesokit.scalar.cache import kernel
+from mesokit.scalar.intrinsics import with_item
+from mesokit.scalar.jit import by_type, scalar, seldom
+from mesokit.scalar.pointer import whole, word
+from mesokit.scalar.vector import added_scaled, dot, outer, scaled
+
+
+@kernel
+def planes_above(solid, like, away, columns, points, planes):
+    """Normal and height n r of a plane above which no solid is within `away` of each point."""
+    d = len(like)
+    for i in range(len(points)):
+        r = point(points, i, like)
+        c, part, term = nearest(solid.tables, r)
+        n = with_item(scaled(0.0, like), 0, 1.0)
+        top = away
+        if term != NOBODY:
+            n = part_normal(solid.tables, part, r)
+            alone = True
+            for j in near_terms(solid.tables, r):
+                other, _ = term_clearance(solid.tables, whole(word(solid.tables, NEAR), j), r)
+                alone &= other >= away or whole(word(solid.tables, NEAR), j) == term
+            if alone and curves_away(solid.tables, part):
+                top = -c
+            else:
+                top = highest(solid, r, n, away, columns)
+        for k in range(d):
+            planes[i, k] = n[k]
+        planes[i, d] = dot(n, r) + top
+
+
+@scalar
+def near_terms(tables, r):
+    """Places in the list of those near the cell of r."""
+    cell = home_cell(tables, r)
+    return range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1))
+
+
+@seldom
+def highest(solid, r, n, away, columns):
+    """Highest solid above r in the direction n, within a ball: no more than found from columns.
+
+    Each is followed down by empty balls about its axis, as far as these contain all of it.
+    """
+    d, side = len(r), 2.0 * away / columns
+    half = 0.5 * side * math.sqrt(d - 1.0)
+    top = -away
+    for number in range(columns ** (d - 1)):
+        foot, rest = r, number
+        for k in range(d - 1):
+            step = side * (rest % columns + 0.5) - away
+            foot = added_scaled(foot, step, across(n, k))
+            rest //= columns
+        t = away
+        while t > top:
+            c, _, _ = nearest(solid.tables, in_box(solid, added_scaled(foot, t, n)))
+            if c <= 1.01 * half:
+                break
+            t -= math.sqrt(c * c - half * half)
+        top = max(top, t)
+    return top
+
+
+@by_type
+def across(n, k):
+    """The kth direction at a right angle to n."""
+    return _across_2d if len(n) == 2 else _across_3d
+
+
+def _across_2d(n, k):
+    return (-n[1], n[0])
+
+
+def _across_3d(n, k):
+    least = 0
+    for j in range(1, 3):
+        least = j if abs(n[j]) < abs(n[least]) else least
+    first = outer(n, with_item((0.0, 0.0, 0.0), least, 1.0))
+    first = scaled(1.0 / math.sqrt(dot(first, first)), first)
+    return first if k == 0 else outer(n, first)

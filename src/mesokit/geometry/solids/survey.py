@@ -1,0 +1,230 @@
+"""What is near which cell: the tables that spare particles the search for solids.
+
+Loops over cells and terms, run once when a case is built. Points come as rows of an array.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+from mesokit.geometry.solids.bodies import (
+    REACH,
+    in_box,
+    nearest,
+    nearest_within,
+    part_normal,
+    term_clearance,
+)
+from mesokit.geometry.solids.cut_cube import share_beyond
+from mesokit.scalar.cache import kernel
+from mesokit.scalar.intrinsics import floor, with_item
+from mesokit.scalar.jit import scalar, seldom
+from mesokit.scalar.vector import dot, scaled
+
+SLACK = 1e-9  # cells: sums of lengths are rounded
+
+
+@scalar
+def point(points, i, like):
+    """Row i as a tuple."""
+    for k in range(len(like)):
+        like = with_item(like, k, points[i, k])
+    return like
+
+
+class Blocks(NamedTuple):
+    """Cubes of cells that fill the box, and the terms that may matter to a cell of each."""
+
+    edge: int  # cells
+    starts: Any  # where the list of each begins in `near`
+    near: Any
+    least: Any  # clearance of the middle of each: a bound of the distance, from below
+
+
+@scalar
+def block_centre(block, edge, solid, like):
+    """Middle of a cube of cells; x varies fastest."""
+    for k in range(len(like)):
+        along = -(-int(solid.size[k]) // edge)
+        like = with_item(like, k, (block % along + 0.5) * edge)
+        block //= along
+    return like
+
+
+@scalar
+def block_at(r, edge, solid):
+    """Number of the cube of cells around a place."""
+    block, stride = 0, 1
+    for k in range(len(r)):
+        block += int(r[k]) // edge * stride
+        stride *= -(-int(solid.size[k]) // edge)
+    return block
+
+
+@kernel
+def near_blocks(solid, like, away, above, blocks):
+    """Count, or list once `near` has room, the terms that may be `away` or nearer from any part of
+    a cell in each block, or be the nearest to its middle, of those that may in the block above.
+
+    A clearance is never more than the distance, which changes no more than the place does: so what
+    is left out is farther than that from all cells of the block.
+    """
+    span = 0.5 * math.sqrt(float(len(like)))
+    inside = span * (blocks.edge - 1)  # from the middle of the block to that of a cell
+    for block in range(len(blocks.starts) - 1):
+        r = block_centre(block, blocks.edge, solid, like)
+        parent = block_at(r, above.edge, solid)
+        first, last = above.starts[parent], above.starts[parent + 1]
+        if len(blocks.near) == 0:
+            closest = math.inf
+            for place in range(first, last):
+                c, _ = term_clearance(solid.tables, above.near[place], r)
+                closest = min(closest, c)
+            # nothing that was left out of the list is nearer than this
+            blocks.least[block] = min(
+                closest, above.least[parent] + SLACK + span * (above.edge - 1)
+            )
+        limit = span + away + inside
+        if blocks.edge > 1:
+            limit = max(limit, blocks.least[block] + 2.0 * inside)
+        found = 0
+        for place in range(first, last):
+            term = above.near[place]
+            c, _ = term_clearance(solid.tables, term, r)
+            if c <= limit:
+                if len(blocks.near) > 0:
+                    blocks.near[blocks.starts[block] + found] = term
+                found += 1
+        if len(blocks.near) == 0:
+            blocks.starts[block + 1] = blocks.starts[block] + found
+
+
+@kernel
+def term_clearances(solid, r, out):
+    """Clearance of one place from each term."""
+    for term in range(len(out)):
+        out[term], _ = term_clearance(solid.tables, term, r)
+
+
+@kernel
+def clearances(solid, least, like, points, out):
+    """A lower bound of the distance of each point from the solid, exact within REACH."""
+    for i in range(len(points)):
+        out[i] = bound(solid, least, in_box(solid, point(points, i, like)), like)
+
+
+@seldom
+def bound(solid, least, r, like):
+    """Clearance of r, in the box; far from all solids, what the middle of its cell lets it have."""
+    c, _, _ = nearest(solid.tables, r)
+    if c < REACH:
+        return c
+    cell, stride, away = 0, 1, 0.0
+    for k in range(len(like)):
+        length = int(solid.size[k])
+        i = min(max(int(floor(r[k])), 0), length - 1)
+        cell += i * stride
+        stride *= length
+        away += (r[k] - i - 0.5) ** 2
+    return max(c, least[cell] - math.sqrt(away))
+
+
+@kernel
+def who_is_near(solid, like, points, terms, clearance, normals):
+    """Nearest term (-1: none within reach), clearance and normal at each point."""
+    for i in range(len(points)):
+        r = in_box(solid, point(points, i, like))
+        c, part, term = nearest(solid.tables, r)
+        terms[i], clearance[i] = term, c
+        n = part_normal(solid.tables, part, r) if term >= 0 else scaled(0.0, like)
+        for k in range(len(like)):
+            normals[i, k] = n[k]
+
+
+@kernel
+def depths(solid, like, away, points, terms, clearance, normals):
+    """Nearest term (-1: none so near), clearance and normal at each point, exact up to `away` if
+    the lists of the solid are."""
+    for i in range(len(points)):
+        r = in_box(solid, point(points, i, like))
+        c, part, term = nearest_within(solid.tables, away, r)
+        terms[i], clearance[i] = term, c
+        n = part_normal(solid.tables, part, r) if term >= 0 else scaled(0.0, like)
+        for k in range(len(like)):
+            normals[i, k] = n[k]
+
+
+@kernel
+def cut(solid, like, points, half, pieces, out):
+    """Whether cubes of half a side `half` about the points hold both fluid and solid, as far as
+    pieces of them, so many along each axis, can tell; 1 if they may, else 0."""
+    d = len(like)
+    small = half / pieces
+    corner = small * math.sqrt(float(d))
+    for i in range(len(points)):
+        c, _, _ = nearest(solid.tables, in_box(solid, point(points, i, like)))
+        whole = half * math.sqrt(float(d))
+        if abs(c) > whole:
+            out[i] = 0
+            continue
+        fluid, inside = False, False
+        for number in range(pieces**d):
+            r, rest = point(points, i, like), number
+            for k in range(d):
+                step = 2.0 * (rest % pieces) + 1.0 - pieces
+                r = with_item(r, k, r[k] + small * step)
+                rest //= pieces
+            c, _, _ = nearest(solid.tables, in_box(solid, r))
+            fluid |= c > -corner
+            inside |= c < corner
+        out[i] = 1 if fluid and inside else 0
+
+
+@kernel
+def open_volume(solid, like, points, side, out):
+    """Part of cubes about the points that is fluid: cubes cut by a plane, the nearest surface."""
+    for i in range(len(points)):
+        r = in_box(solid, point(points, i, like))
+        c, part, term = nearest(solid.tables, r)
+        if term < 0:
+            out[i] = 1.0
+            continue
+        n = part_normal(solid.tables, part, r)
+        out[i] = share_beyond(c / side, n)
+
+
+class Planes(NamedTuple):
+    """What `planes` finds for each cube: of its plane the normal and the height over the middle,
+    the term of the surface (-1 for none), and the place on it that is next to the middle."""
+
+    normals: Any
+    heights: Any
+    terms: Any
+    feet: Any
+
+
+@kernel
+def planes(solid, like, away, shifts, points, open_share, found):
+    """The plane that cuts unit cubes about the points as the solid does: it has the normal of the
+    surface nearest to the middle, and leaves `open_share` of the cube to the fluid in the mean over
+    the shifts. Terms are -1 where no surface is within `away`.
+    """
+    for i in range(len(points)):
+        r = in_box(solid, point(points, i, like))
+        c, part, term = nearest_within(solid.tables, away, r)
+        found.terms[i] = term
+        if term < 0:
+            continue
+        n = part_normal(solid.tables, part, r)
+        low, high = -2.0, 2.0  # no corner of a shifted cube is farther from the middle
+        for _ in range(40):
+            middle, share = 0.5 * (low + high), 0.0
+            for j in range(len(shifts)):
+                share += share_beyond(middle - dot(n, point(shifts, j, like)), n)
+            if share < open_share[i] * len(shifts):
+                low = middle
+            else:
+                high = middle
+        found.heights[i] = 0.5 * (low + high)
+        for k in range(len(like)):
+            found.normals[i, k] = n[k]
+            found.feet[i, k] = r[k] - c * n[k]

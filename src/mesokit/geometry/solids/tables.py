@@ -1,0 +1,164 @@
+"""Solids as tables for compiled code: their parts, and which of them are near each cell."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import CaseError
+from mesokit.geometry.primitive import WIDTH
+from mesokit.geometry.region import Room
+from mesokit.geometry.shape_protocol import Body, Piece
+from mesokit.geometry.solids import survey
+from mesokit.geometry.solids.bodies import (
+    BODY,
+    DIFFUSE,
+    FIRST,
+    KINDS,
+    NEAR,
+    NO_SLIP,
+    NOBODY,
+    NUMBERS,
+    PIVOT,
+    REACH,
+    SAMPLES,
+    SIGNS,
+    SIZE,
+    SLIP,
+    STARTS,
+    SURFACES,
+    Bodies,
+)
+from mesokit.geometry.solids.survey import Blocks
+from mesokit.scalar.pointer import address
+
+EDGES = (64, 8, 1)  # cells: blocks, and blocks within them
+MOST_NEAR = 2**31 - 1  # places in a list are 32-bit
+FARTHEST = 8.0  # cells from a surface at which anybody asks
+RULES = {"no-slip": NO_SLIP, "slip": SLIP, "diffuse": DIFFUSE}
+
+
+class SolidTables:
+    """Bodies in a room: the parameters that compiled code takes, and the tables that it reads."""
+
+    def __init__(self, room: Room, bodies: list[Body]) -> None:
+        self.room, self.bodies = room, bodies
+        self.size, self.dimension = room.size, len(room.size)
+        self.like = (0.0,) * self.dimension
+        self._tables: list[NDArray[Any]] = []
+        pieces = [(piece, row) for row, body in enumerate(bodies) for piece in body.pieces]
+        self.kernel = self._kernel(pieces)
+        pieces = self._in_reach(pieces)
+        self.kernel = self._kernel(pieces)
+        self._terms = len(pieces)
+        self.kernel = self.reaching(REACH)
+
+    def _in_reach(self, pieces: list[tuple[Piece, int]]) -> list[tuple[Piece, int]]:
+        """Those that no place in the box is too far from to matter: most images are not."""
+        middle = tuple(0.5 * length for length in self.size)
+        clearance = np.zeros(len(pieces))
+        survey.term_clearances(self.kernel, middle, clearance)
+        far = 0.5 * math.hypot(*self.size) + FARTHEST
+        return [piece for piece, c in zip(pieces, clearance, strict=True) if c <= far]
+
+    def reaching(self, away: float) -> Bodies:
+        """Parameters for compiled code, with lists of the terms within `away` of each cell."""
+        blocks = self._near_cells(away)
+        self.least, starts, near = blocks.least, blocks.starts, blocks.near
+        places = self._places.copy()
+        places[STARTS], places[NEAR] = self._keep(starts), self._keep(near)
+        return self.kernel._replace(tables=self._keep(places, np.int64))
+
+    def _near_cells(self, away: float) -> Blocks:
+        """The terms near each cell: fewer and fewer are asked, in blocks that get smaller."""
+        every = np.arange(self._terms)
+        blocks = Blocks(2 * max(self.size), np.array([0, len(every)]), every, np.full(1, np.inf))
+        for edge in EDGES:
+            if edge < blocks.edge:
+                blocks = self._near(away, blocks, edge)
+        return blocks
+
+    def _near(self, away: float, above: Blocks, edge: int) -> Blocks:
+        """What may matter in smaller blocks."""
+        number = math.prod(-(-length // edge) for length in self.size)
+        starts, least = np.zeros(number + 1, np.int64), np.zeros(number)
+        counted = Blocks(edge, starts, np.zeros(0, np.int64), least)
+        survey.near_blocks(self.kernel, self.like, away, above, counted)
+        if starts[-1] > MOST_NEAR:
+            raise CaseError(
+                f"wall: {starts[-1]} parts of solids are near cells of this box; expected at most "
+                f"{MOST_NEAR}: fewer parts, or a smaller box"
+            )
+        listed = counted._replace(near=np.zeros(max(starts[-1], 1), np.int64))
+        survey.near_blocks(self.kernel, self.like, away, above, listed)
+        return listed
+
+    def _keep(self, table: Any, kind: Any = np.int32) -> int:
+        """Keep a table as long as this object lives; its address."""
+        table = np.ascontiguousarray(table, kind)
+        self._tables.append(table)
+        return address(table)
+
+    def _kernel(self, pieces: list[tuple[Piece, int]]) -> Bodies:
+        """Parameters for compiled code, still without its tables."""
+        parts = [part for piece, _ in pieces for part in piece.term]
+        numbers = np.array([part.numbers for part in parts]).reshape(-1, WIDTH)
+        samples, total = [np.zeros(1)], 1
+        begin: dict[int, int] = {}  # images share their samples
+        for i, part in enumerate(parts):
+            if part.samples is None:
+                continue
+            if id(part.samples) not in begin:
+                begin[id(part.samples)] = total
+                samples.append(part.samples.ravel())
+                total += part.samples.size
+            numbers[i, 7] = begin[id(part.samples)]
+        pivots = np.zeros((len(pieces), 3))
+        for i, (piece, _) in enumerate(pieces):
+            pivots[i, : self.dimension] = piece.pivot
+        inverse = tuple(
+            0.0 if shut else 1.0 / length
+            for shut, length in zip(self.room.closed, self.size, strict=True)
+        )
+        self.body_of_term = np.array([row for _, row in pieces], np.int32)
+        self._body_of = np.array([*self.body_of_term, NOBODY])  # of no term: the last
+        self.pivots = pivots
+        surfaces = [self._surface(body) for body in self.bodies]
+        tables = {
+            KINDS: self._keep([part.code for part in parts]),
+            SIGNS: self._keep([part.sign for part in parts], float),
+            NUMBERS: self._keep(numbers, float),
+            SAMPLES: self._keep(np.concatenate(samples), float),
+            FIRST: self._keep(np.cumsum([0, *(len(piece.term) for piece, _ in pieces)])),
+            BODY: self._keep(self.body_of_term),
+            PIVOT: self._keep(pivots, float),
+            SURFACES: self._keep(surfaces, float),
+        }
+        self._places = np.zeros(SIZE + 3, np.int64)
+        for number, place in tables.items():
+            self._places[number] = place
+        self._places[SIZE : SIZE + self.dimension] = self.size
+        size = tuple(float(length) for length in self.size)
+        unsure = self._keep(np.zeros(math.prod(self.size)), np.float32)
+        no_plane = self._keep(np.full(math.prod(self.size), -1))
+        return Bodies(
+            size,
+            inverse,
+            address(self._places),
+            clear=unsure,
+            parts=1.0,
+            plane_of=no_plane,
+            planes=0,
+            reach=0.0,
+            stride=0.0,
+            lowest=size,
+            highest=size,
+        )
+
+    def _surface(self, body: Body) -> list[float]:
+        velocity = list(body.surface.velocity or ()) + [0.0] * 3
+        fills = body.surface.rule != "slip" and body.virtual != "none"
+        return [RULES[body.surface.rule], *velocity[:3], *body.rotation, float(fills)]

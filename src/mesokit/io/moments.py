@@ -1,0 +1,40 @@
+"""What a file for other programs holds: particles, and one frame of them."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+
+class Particles(NamedTuple):
+    """What does not change from frame to frame: (n,) numbers from 0, kinds from 0, masses.
+
+    `bonds` (b, 2) of rows; `size` (3,) of the box, one cell deep in 2D; `closed` axes.
+    """
+
+    number: NDArray[np.int64]
+    kind: NDArray[np.int64]
+    mass: Array
+    bonds: NDArray[np.int64]
+    dimension: int
+    size: Array
+    closed: tuple[bool, bool, bool]
+
+
+class Moment(NamedTuple):
+    """One frame in three dimensions, z = 0 in 2D.
+
+    `position` (n, 3) in the cell spanned by (L_x, 0, 0), (tilt, L_y, 0) and (0, 0, L_z) from the
+    origin on; `velocity` and `image` (n, 3), counts of these edges, or None.
+    """
+
+    step: int
+    time: float
+    tilt: float
+    position: Array
+    velocity: Array | None
+    image: Array | None

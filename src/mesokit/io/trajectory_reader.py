@@ -1,0 +1,60 @@
+"""The frames of a run that has ended."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.io import h5md
+
+
+class TrajectoryReader:
+    """Frames of the particles: `reader[i]` is a dictionary, `reader.read("position")` all frames.
+
+    Particles are in the order of `id`. In 2D the third column that the file carries is left out.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        with h5md.opened(path) as file:
+            group = h5md.particles_of(file)
+            self.fields: tuple[str, ...] = ()
+            self.dimension = 0
+            if group is None:
+                return
+            self.dimension = int(group.attrs["dimension"])
+            self.fields = tuple(n for n in ("position", "velocity", "image") if n in group)
+            self.step: NDArray[np.int64] = group["box/edges/step"][()]
+            self.time: NDArray[np.float64] = group["box/edges/time"][()]
+            self.edges: NDArray[np.float64] = group["box/edges/value"][()]
+            self.id: NDArray[np.int64] = group["id"][()]
+            self.mass: NDArray[np.float64] = group["mass"][()]
+            self.species: NDArray[np.int64] = group["species"][()]
+
+    def __len__(self) -> int:
+        return len(self.step)
+
+    def __getitem__(self, index: int) -> dict[str, NDArray[Any]]:
+        """The fields of one frame, with `step` and `time`."""
+        if not -len(self) <= index < len(self):
+            raise IndexError(f"frame {index} of {len(self)}")
+        index %= len(self)
+        frame = {name: self.read(name, slice(index, index + 1))[0] for name in self.fields}
+        return frame | {"step": self.step[index], "time": self.time[index]}
+
+    def read(self, field: str, frames: slice = slice(None)) -> NDArray[Any]:
+        """One field of some or all frames, (frames, n, d). Raises KeyError if it is not there."""
+        if field not in self.fields:
+            raise KeyError(f"no field {field!r}; there are {', '.join(self.fields)}")
+        with h5md.opened(self.path) as file:
+            data = h5md.particles_of(file)[f"{field}/value"]
+            return np.asarray(data[frames, :, : self.dimension])
+
+    def __repr__(self) -> str:
+        return (
+            f"trajectory: {len(self)} frames of {len(self.id)} particles"
+            f" ({', '.join(self.fields) or 'ids only'})"
+        )

@@ -1,0 +1,147 @@
+"""Brownian motion, as the rest of the package knows it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mesokit.case.amounts import duration_text, number, size_text
+from mesokit.case.component import show
+from mesokit.case.trajectory import Group, Kind, stored_bytes
+from mesokit.case.warnings import run_warnings
+from mesokit.errors import CaseError
+from mesokit.method.brownian.engine import Brownians
+from mesokit.method.brownian.section import Sections
+from mesokit.method.protocol import Method, Row, Summary
+from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
+from mesokit.statistics import spread_ids
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.engine import Array, Integers
+
+RATE = 14e6  # particle-steps per second of a thread, where the project measures (docs/benchmark.md)
+BYTES = {2: 24, 3: 36}  # for each particle
+MOST_PARTICLES = 2**31 - 1  # numbers of random words are 32-bit
+
+
+class Displacement:
+    """The mean square displacement of free particles: 2 D t along each axis (Einstein 1905)."""
+
+    def __init__(self, case: Case, observable: Any) -> None:
+        if observable.of != "particles" or observable.kind != 1:
+            raise CaseError("of: expected 'particles'; there are no molecules")
+        chosen = observable.components or case.box.axes
+        self.axes = tuple(case.box.index(axis, "components") for axis in chosen)
+        self.length, self.number = 1, case.particles
+        self.diffusion, self.timestep = case.brownian.diffusion, case.brownian.timestep
+
+    def beads(self, wanted: int) -> Integers:
+        """Numbers (n, 1) of so many particles, evenly spread."""
+        return spread_ids(wanted, self.number)[:, None]
+
+    def expected(self, steps: Integers) -> Array:
+        """2 d D t."""
+        return 2 * len(self.axes) * self.diffusion * self.timestep * steps
+
+    def coefficient(self) -> tuple[float, str]:
+        """D, which is exact."""
+        return self.diffusion, "exact"
+
+    def diffusive_from(self) -> float:
+        """From the first step on."""
+        return 0.0
+
+    def legend(self) -> str:
+        """The formula."""
+        return f"{2 * len(self.axes)} D t"
+
+
+def check(case: Case) -> None:
+    """Raise CaseError for a box or a trajectory that has no meaning here."""
+    if not 1 <= case.particles <= MOST_PARTICLES:
+        raise CaseError(
+            f"brownian.density = {show(case.brownian.density)}: {case.particles} particles in this "
+            f"box; expected 1 to {MOST_PARTICLES}"
+        )
+    if case.box.shear_rate or case.box.shear_frequency:
+        raise CaseError("box: not with shear; the particles of method 'brownian' drift with no one")
+    if case.trajectory is not None and "velocity" in case.trajectory.fields:
+        raise CaseError("trajectory.fields: not 'velocity'; Brownian particles have none")
+
+
+def groups(case: Case) -> tuple[Group, ...]:
+    """One group of particles without a mass of their own: it is written as 1."""
+    return (Group("particles", (Kind(1.0, case.brownian.number(case.box)),)),)
+
+
+def summary(case: Case, threads: int | None = None) -> Summary:
+    """Derived numbers, cost, and warnings."""
+    threads = threads or os.cpu_count() or 1
+    given, d, steps = case.brownian, case.box.dimension, case.run.warmup + case.run.steps
+    step = (2 * d * given.diffusion * given.timestep) ** 0.5
+    memory = case.particles * BYTES[d] + 200_000_000
+    stored = stored_bytes(case.trajectory, case.groups, d, case.run.steps)
+    seconds = case.particles * steps / (RATE * threads)
+    rows: list[Row] = [
+        ("particles", f"{case.particles:,}".replace(",", " "), ""),
+        ("length of a step", number(step, "a"), "root mean square"),
+        ("displacement", number(step * steps**0.5, "a"), "root mean square, over the run"),
+        ("run time", duration_text(seconds), f"estimate: {threads} thread{'s' * (threads > 1)}"),
+        ("memory", size_text(memory), "estimate"),
+    ]
+    if stored:
+        rows.append(("trajectory", size_text(stored), "estimate"))
+    warnings = [*run_warnings(case, memory, stored)]
+    if step > 0.5 * min(case.box.size):
+        warnings.append(f"brownian.timestep: a step is {step:.3g} long, more than half of the box")
+    return Summary(tuple(rows), tuple(warnings), seconds)
+
+
+def first_state(case: Case, arrays: Mapping[str, Any]) -> Array | None:
+    """The positions to start from, None if they are to be drawn. Raises CaseError."""
+    file = case.brownian.positions
+    key = "positions" if file is None else f"brownian.positions = {file!r}"
+    if not arrays and file is None:
+        return None
+    try:
+        found = np.asarray(arrays["positions"] if arrays else np.load(file), float)
+    except (OSError, ValueError, TypeError):
+        raise CaseError(f"{key}: expected an array of numbers") from None
+    if arrays and file is not None:
+        raise CaseError(f"{key}: not with an array of positions beside")
+    shape = case.particles, case.box.dimension
+    if found.shape != shape or not np.isfinite(found).all():
+        raise CaseError(f"{key}: expected finite numbers of shape {shape}, not {found.shape}")
+    return found
+
+
+def _engine(case: Case, threads: int, measures: Sequence[str]) -> Brownians:
+    return Brownians(case, threads)
+
+
+def _missing_files(case: Case) -> list[str]:
+    file = case.brownian.positions
+    missing = file is not None and not Path(file).exists()
+    return [f"brownian.positions = {show(file, 500)}: no such file"] if missing else []
+
+
+METHOD = Method(
+    name="brownian",
+    sections=Sections,
+    observables=(MeanSquareDisplacement,),
+    expected={"mean-square-displacement": Displacement},
+    check=check,
+    groups=groups,
+    timestep=lambda case: float(case.brownian.timestep),
+    summary=summary,
+    missing_files=_missing_files,
+    arrays=("positions",),
+    first_state=first_state,
+    engine=_engine,
+    start=Brownians.start,
+)

@@ -1,0 +1,28 @@
+"""The section of a case of Brownian motion."""
+
+from __future__ import annotations
+
+from mesokit.case.box import Box
+from mesokit.case.component import FileName, component, param
+
+
+@component
+class Brownian:
+    """Particles that diffuse freely in the periodic box: dx = sqrt(2 D dt) xi along each axis."""
+
+    density: float = param(1.0, doc="particles per cell", unit="1/a^d", gt=0)
+    diffusion: float = param(1.0, doc="diffusion coefficient D", unit="a^2/time", gt=0)
+    timestep: float = param(0.01, doc="time of a step", ge=1e-9, le=1e6)
+    positions: FileName | None = param(
+        None, doc="start from these: file .npy with an (n, d) array (drawn unless said)", unit="a"
+    )
+
+    def number(self, box: Box) -> int:
+        """How many particles there are."""
+        return round(self.density * box.volume)
+
+
+class Sections:
+    """What a case of Brownian motion has beside the sections of every case."""
+
+    brownian: Brownian = param(Brownian(), doc="the particles")

@@ -1,0 +1,108 @@
+"""Solutes that are fine alone and wrong with the rest of a case: see `combinations`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from mesokit.case.component import name_of, one_of, show
+from mesokit.case.registry import family_of
+from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.method.mpcd.molecule import MOST_SUBSTEPS, UNSTABLE
+from mesokit.potential.thermal import mean_square
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.method.mpcd.solutes import Solutes
+
+MOST_BEADS = 2**31 - 1  # their numbers are 32-bit
+
+
+def solutes(case: Case) -> Iterator[str]:
+    """Beads that fit into the box and that the fluid can carry."""
+    given = case.solutes
+    if given is None:
+        return
+    if case.fluid.molecule is not None:
+        yield "solutes: not with fluid.molecule; expected a fluid of single particles"
+    if given.beads > MOST_BEADS:
+        yield f"solutes.polymers: {given.beads} beads; expected at most {MOST_BEADS}"
+    yield from _sizes(case, given)
+    yield from _substeps(case, given)
+    if given.solvent == "random":
+        yield from _random_solvent(case)
+
+
+def _sizes(case: Case, given: Solutes) -> Iterator[str]:
+    """No bead that sees two images of another, no bond that could lead to either of two."""
+    closed = closed_axes(case.walls)
+    lengths = dict(zip(case.box.axes, case.box.size, strict=True))
+    shortest = min((n for axis, n in lengths.items() if axis not in closed), default=math.inf)
+    if given.pair is not None and given.pair.reach > 0.5 * shortest:
+        yield (
+            f"solutes.pair: it reaches {given.pair.reach:.3g}, more than half of the box of "
+            f"{shortest}"
+        )
+    for kind in range(len(given.polymers)):
+        molecule = given.molecule(kind)
+        if molecule is None:
+            continue
+        longest = molecule.bond.longest
+        kernels = molecule.bond_potentials
+        size = math.sqrt(mean_square(kernels, case.box.dimension, case.fluid.kT, longest))
+        if size > 0.5 * shortest:
+            yield (
+                f"solutes.bond: its root-mean-square length {size:.3g} is more than half of the "
+                f"box of {shortest}"
+            )
+    if given.wall is None:
+        return
+    if not case.walls:
+        yield "solutes.wall: there are no walls; give some, or leave it out"
+    for axis in closed:
+        if given.wall.reach > 0.5 * lengths[axis]:
+            yield (
+                f"solutes.wall: it reaches {given.wall.reach:.3g}, more than half of the "
+                f"{lengths[axis]} between the plates"
+            )
+
+
+def _substeps(case: Case, given: Solutes) -> Iterator[str]:
+    """Sub-steps short enough for the stiffest spring."""
+    fluid, d = case.fluid, case.box.dimension
+    need = given.needed_substeps(d, fluid.timestep, fluid.kT)
+    if given.substeps is None:
+        if need > MOST_SUBSTEPS:
+            yield (
+                f"solutes: the stiffest potential needs {need} sub-steps in a timestep; expected "
+                f"at most {MOST_SUBSTEPS}: softer potentials, or a shorter fluid.timestep"
+            )
+        return
+    phase = given.frequency(d, fluid.kT) * fluid.timestep / given.substeps
+    if phase >= UNSTABLE:
+        yield (
+            f"solutes.substeps = {given.substeps}: the stiffest potential turns by {phase:.3g} rad "
+            f"in each, and velocity Verlet is unstable from {UNSTABLE:g} on; expected {need}"
+        )
+
+
+def _random_solvent(case: Case) -> Iterator[str]:
+    """A solvent at rest, of which nothing can be measured."""
+    key = "solutes.solvent = 'random'"
+    if "angular momentum" in case.fluid.collision.conserves:
+        yield f"{key}: not with fluid.collision.rule = {show(name_of(case.fluid.collision))}"
+    if case.fluid.species:
+        yield f"{key}: not with fluid.species"
+    if case.walls:
+        yield f"{key}: not with walls; there is no fluid that they could hold"
+    if case.box.shear_rate != 0.0:
+        yield f"{key}: not with box.shear_rate; the solvent is at rest"
+    for i, observable in enumerate(case.observe):
+        if observable.needs_fluid:
+            others = family_of(observable).parts.items()
+            expected = [name for name, part in others if not part.needs_fluid]
+            yield (
+                f"observe[#{i + 1}].quantity = {show(name_of(observable))}: there is no fluid to "
+                f"measure; expected {one_of(expected)}"
+            )

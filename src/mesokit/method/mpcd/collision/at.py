@@ -1,0 +1,128 @@
+"""Andersen thermostat collisions: draw the velocities of a cell anew about their mean."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar, Literal, NamedTuple
+
+from mesokit import theory
+from mesokit.case.component import component, tag
+from mesokit.method.mpcd.collision.protocol import (
+    CollisionRule,
+    Gas,
+    coefficients,
+    collide,
+    contribute,
+    freedom,
+)
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.random import PARTICLE_VELOCITY, normals, words
+from mesokit.scalar.vector import scaled
+
+
+@component
+class AT(CollisionRule):
+    """Draw relative velocities from the Maxwell distribution; momentum is conserved (MPC-AT-a).
+
+    It is its own thermostat.
+    Source: Noguchi, Kikuchi and Gompper, EPL 78, 10005 (2007).
+    """
+
+    rule: Literal["at"] = tag("at")
+
+    conserves: ClassVar[tuple[str, ...]] = ("mass", "momentum")
+    isothermal: ClassVar[bool] = True
+    rates: ClassVar[dict[int, float]] = {2: 80.0, 3: 58.0}
+
+    def kernel(self, dimension: int, kT: float) -> AT2 | AT3:
+        """Parameters for the scalar functions below."""
+        return AT2(kT) if dimension == 2 else AT3(kT)
+
+    def own_sums(self, dimension: int) -> tuple[str, ...]:
+        """The momentum of the drawn velocities."""
+        return ("momentum",) * dimension
+
+    def coefficient_count(self, dimension: int, stretched: bool) -> int:
+        """How many numbers `coefficients` gives; `stretched` says that a thermostat acts."""
+        return dimension
+
+    def in_theory(self) -> dict[str, Any]:
+        """The name by which `mesokit.theory` knows it."""
+        return {"rule": "at"}
+
+    def bead_diffusion(self, gas: Gas, mass: float) -> float:
+        """Diffusion coefficient of a bead of this mass alone in the gas."""
+        return theory.bead_diffusion(
+            "at", gas.dimension, gas.density, gas.timestep, None, mass, gas.kT, gas.mass
+        )
+
+
+class AT2(NamedTuple):
+    """Thermal energy of the drawn velocities."""
+
+    kT: float
+
+
+class AT3(NamedTuple):
+    """Thermal energy of the drawn velocities."""
+
+    kT: float
+
+
+@scalar
+def thermal_velocity(counter, who, kT, m, like):
+    """A velocity from the Maxwell distribution, with as many components as `like`."""
+    a, b, c, d = words(counter, PARTICLE_VELOCITY, who[0], who[1])
+    x = normals(like, a, b, c, d)
+    width = math.sqrt(kT / m)
+    return scaled(width, x)
+
+
+@contribute.register(AT2)
+def _(rule, counter, who, m, v, r):
+    w = thermal_velocity(counter, who, rule.kT, m, v)
+    return w, (m * w[0], m * w[1])
+
+
+@contribute.register(AT3)
+def _(rule, counter, who, m, v, r):
+    w = thermal_velocity(counter, who, rule.kT, m, v)
+    return w, (m * w[0], m * w[1], m * w[2])
+
+
+@freedom.register(AT2)
+def _(rule, n):
+    return 2.0 * (n - 1.0)
+
+
+@freedom.register(AT3)
+def _(rule, n):
+    return 3.0 * (n - 1.0)
+
+
+@coefficients.register(AT2)
+def _(rule, thermostat, variate, chance, cell):
+    mass, momentum, sums = cell.mass, cell.momentum, cell.sums
+    share = 1.0 / mass
+    return (momentum[0] - sums[0]) * share, (momentum[1] - sums[1]) * share
+
+
+@coefficients.register(AT3)
+def _(rule, thermostat, variate, chance, cell):
+    mass, momentum, sums = cell.mass, cell.momentum, cell.sums
+    share = 1.0 / mass
+    return (
+        (momentum[0] - sums[0]) * share,
+        (momentum[1] - sums[1]) * share,
+        (momentum[2] - sums[2]) * share,
+    )
+
+
+@collide.register(AT2)
+def _(rule, c, v, r):
+    return v[0] + c[0], v[1] + c[1]
+
+
+@collide.register(AT3)
+def _(rule, c, v, r):
+    return v[0] + c[0], v[1] + c[1], v[2] + c[2]

@@ -1,0 +1,137 @@
+"""What a collision rule answers: a few questions, each for one particle or one cell.
+
+`CollisionRule` is what a case holds: parameters, and what others ask of the rule. Over the
+particles of a cell the execution layer sums, for every rule, their number, mass, momentum m v and
+m v^2; a rule adds sums of its own. `r` is a position relative to the centre of the shifted cell.
+The first argument is the rule's NamedTuple of parameters; its class picks the implementation.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar, NamedTuple
+
+from mesokit import theory
+from mesokit.case.component import component
+from mesokit.case.registry import family
+from mesokit.scalar.jit import generic
+from mesokit.theory.transport import Thermostat as NamedThermostat
+
+
+class Gas(NamedTuple):
+    """A fluid of single particles of one mass, as theory takes it.
+
+    `thermostat` is the name that `mesokit.theory` has for it, None if it has none.
+    """
+
+    dimension: int
+    density: float
+    timestep: float
+    kT: float
+    mass: float
+    thermostat: NamedThermostat | None
+
+
+@family("collision rule", "rule", "mesokit.collision")
+@component
+class CollisionRule(ABC):
+    """How the particles of a cell exchange momentum."""
+
+    conserves: ClassVar[tuple[str, ...]]  # of "mass", "momentum", "energy", "angular momentum"
+    needs_energy: ClassVar[bool] = False  # whether `coefficients` asks for the sum of m v^2
+    isothermal: ClassVar[bool] = False  # whether it holds the temperature itself
+    one_temperature: ClassVar[bool] = True  # of all kinds of particles in a mixture
+    # million particle-steps per second of one thread, by dimension: for estimates of the run time
+    rates: ClassVar[Mapping[int, float]] = {2: 60.0, 3: 33.0}
+
+    @abstractmethod
+    def kernel(self, dimension: int, kT: float) -> Any:
+        """Parameters for the scalar functions below: a NamedTuple, whose class picks them."""
+
+    @abstractmethod
+    def own_sums(self, dimension: int) -> tuple[str, ...]:
+        """What each of its sums is like: "momentum" (of a component), "mass" or "energy"."""
+
+    @abstractmethod
+    def coefficient_count(self, dimension: int, stretched: bool) -> int:
+        """How many numbers `coefficients` gives; `stretched` says that a thermostat acts."""
+
+    def problems(self, dimension: int) -> Iterator[str]:
+        """What is wrong with it in this dimension, key first."""
+        yield from ()
+
+    def in_theory(self) -> dict[str, Any] | None:
+        """The name and angle by which `mesokit.theory` knows it; None if it does not."""
+        return None
+
+    def transport(self, gas: Gas) -> theory.Transport | None:
+        """Transport coefficients; None without a theory. May raise ValueError for odd numbers."""
+        known = self.in_theory()
+        if known is None or gas.thermostat is None:
+            return None
+        return theory.transport(**known, **gas._asdict())
+
+    def shear_warming(self, gas: Gas) -> float | None:
+        """Rise of the temperature of a held gas, over mass and squared shear rate."""
+        known = self.in_theory()
+        if known is None or gas.thermostat is None:
+            return None
+        return theory.shear_warming(**known, **gas._asdict())
+
+    def temperature_offset(self, gas: Gas, mean_free_path: float) -> float:
+        """Largest known (T - kT)/kT of the gas at rest."""
+        known = self.in_theory()
+        if known is None or gas.thermostat is None:
+            return 0.0
+        return theory.temperature_offset(
+            known["rule"],
+            gas.thermostat,
+            gas.dimension,
+            gas.density,
+            mean_free_path,
+        )
+
+    def bead_diffusion(self, gas: Gas, mass: float) -> float | None:
+        """Diffusion coefficient of a bead of this mass alone in the gas; None without a theory."""
+        return None
+
+
+class Cell(NamedTuple):
+    """What the particles of a cell add up to.
+
+    Their number, mass and momentum, `energy` the sum of m v^2, `sums` what a rule asked for.
+    """
+
+    number: float
+    mass: float
+    momentum: tuple[float, ...]
+    energy: float
+    sums: tuple[float, ...]
+
+
+@generic
+def contribute(rule, counter, who, m, v, r):
+    """The velocity that a particle keeps until it collides, and what it adds to the rule's sums.
+
+    `who` is the index and the draw of its random words: no two particles of a step share them.
+    """
+
+
+@generic
+def freedom(rule, n):
+    """Degrees of freedom that n particles have beside the conserved ones of their cell."""
+
+
+@generic
+def coefficients(rule, thermostat, variate, chance, cell):
+    """What every particle of a cell needs in order to collide.
+
+    `cell` is what they add up to (see `Cell`), `variate` the thermostat's random number, `chance`
+    two random words.
+    """
+
+
+@generic
+def collide(rule, c, v, r):
+    """Velocity after the collision, from the coefficients c of the cell."""

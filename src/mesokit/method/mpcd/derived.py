@@ -1,0 +1,168 @@
+"""What follows from a case before it runs: numbers, cost, and warnings."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import os
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mesokit.case.trajectory import stored_bytes
+from mesokit.geometry.shape.plates import Plates
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.numbers import Derived
+from mesokit.method.mpcd.warnings import cautions
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+# factors of time, rate
+COSTS = {"thermostat": 1.15, "walls": 1.25, "solids": 1.3, "shear": 1.2, "thread": 0.85}
+# seconds more for each particle-step of a molecule, and for each of its sub-steps
+FLOCK, SUBSTEP = 5e-9, 1e-9
+BEAD, BEAD_SUBSTEP = 100e-9, 45e-9  # and for each step and sub-step of a bead of a solute
+SAMPLE = 12e-9  # seconds for each particle in each sample of an observable
+BYTES = {
+    "particle 2D": 68,
+    "particle 3D": 88,
+    "cell 2D": 60,
+    "cell 3D": 110,
+    "program": 250e6,
+    "bead": 500,
+}
+
+
+def derive(case: Case, threads: int | None = None) -> Derived:
+    """Derived numbers of a case, run on so many threads (all cores unless said).
+
+    >>> from mesokit import Box, Case, Run
+    >>> numbers = derive(Case(run=Run(steps=1000), box=Box([30, 30, 30])), threads=1)
+    >>> numbers.particles, round(numbers.transport.viscosity, 2)
+    (270000, 0.87)
+    """
+    threads = threads or os.cpu_count() or 1
+    fluid, dimension = case.fluid, case.box.dimension
+    steps = case.run.warmup + case.run.steps
+    transport = setting.transport(case)
+    flow, across, speed = _flow(case)
+    nu = transport.viscosity if transport else None
+    length = _length(case, across)
+    builds_up = flow != "lees-edwards"  # that one starts with its linear profile
+    rate = fluid.collision.rates[dimension] * 1e6 * (1 + (threads - 1) * COSTS["thread"])
+    for cost, applies in (
+        ("thermostat", fluid.thermostat.acts),
+        ("walls", bool(case.walls)),
+        ("solids", setting.obstructed(case)),
+        ("shear", case.box.shear_rate != 0),
+    ):
+        rate /= COSTS[cost] if applies else 1
+    substeps = None
+    if fluid.molecule is not None:
+        substeps = fluid.molecule.number_of_substeps(
+            dimension, fluid.timestep, fluid.kT, fluid.mass
+        )
+        rate = 1 / (1 / rate + (FLOCK + SUBSTEP * substeps) / threads)
+    beads, bead_seconds = 0, 0.0
+    if case.solutes is not None:
+        beads = case.solutes.beads
+        substeps = case.solutes.number_of_substeps(dimension, fluid.timestep, fluid.kT)
+        bead_seconds = beads * (BEAD + BEAD_SUBSTEP * substeps) * steps
+    memory = beads * BYTES["bead"] + case.particles * BYTES[f"particle {dimension}D"]
+    memory += case.box.volume * BYTES[f"cell {dimension}D"] * threads
+    numbers = Derived(
+        particles=case.particles,
+        particle_steps=case.particles * steps,
+        transport=transport,
+        flow=flow,
+        flow_speed=speed,
+        flow_size=length,
+        reynolds=speed * length / nu if speed is not None and nu else None,
+        mach=speed / transport.sound_speed if speed is not None and transport else None,
+        steady_time=_steady_time(case, across, nu) if nu and speed and builds_up else None,
+        heating=_heating(case, across, nu) if nu else None,
+        seconds=case.particles * steps / rate + bead_seconds + _observe_seconds(case),
+        memory=round(memory + BYTES["program"]),
+        trajectory=stored_bytes(case.trajectory, case.groups, dimension, case.run.steps),
+        substeps=substeps,
+        assumed=f"{threads} thread{'s' * (threads > 1)}, {rate / 1e6:.0f} million "
+        "particle-steps/s between samples",
+        warnings=(),
+    )
+    return Derived(**{**vars(numbers), "warnings": tuple(cautions(case, numbers, across))})
+
+
+def _flow(case: Case) -> tuple[str, int, float | None]:
+    """Kind of the steady flow, axis number across it, and its largest speed.
+
+    For a channel with obstacles these are what they would be without: an upper bound.
+    """
+    if setting.obstructed(case):
+        plates = tuple(wall for wall in case.walls if isinstance(wall, Plates))
+        if len(plates) == 1 and not plates[0].diffuse:
+            bare = dataclasses.replace(case, walls=plates, observe=(), trajectory=None)
+            kind, across, speed = _flow(bare)
+            if speed is not None and setting.surface_speed(case) > speed:
+                return "of moving surfaces", across, setting.surface_speed(case)
+            return kind if kind == "rest" else f"{kind}, as without obstacles", across, speed
+        if setting.surface_speed(case) and not case.fluid.force.acts:
+            return "of moving surfaces", 1, setting.surface_speed(case)
+    kinds, across, squares = [], 1, np.zeros(201)
+    for i in range(case.box.dimension):
+        flow = setting.flow(case, i)
+        if flow.profile is None:
+            return flow.kind, flow.across, None
+        speeds = flow.profile(np.linspace(0, case.box.size[flow.across], len(squares)))
+        if np.any(speeds):
+            kinds.append(flow.kind)
+            across = flow.across
+        squares = squares + speeds**2
+    return (kinds or ["rest"])[0], across, float(np.sqrt(squares.max()))
+
+
+def _length(case: Case, across: int) -> float:
+    """Size across the flow: of the box, or 1/k of a Kolmogorov flow."""
+    waves, size = case.fluid.force.waves_across(), float(case.box.size[across])
+    return size if waves is None else size / (2 * math.pi * waves)
+
+
+def _wavenumber(case: Case, across: int) -> float:
+    """Of the slowest shear mode."""
+    if case.walls:
+        return math.pi / case.box.size[across]
+    return (
+        1 / _length(case, across)
+        if case.fluid.force.waves_across()
+        else (2 * math.pi / case.box.size[across])
+    )
+
+
+def _steady_time(case: Case, across: int, viscosity: float) -> float:
+    return 1 / (viscosity * _wavenumber(case, across) ** 2)
+
+
+def _heating(case: Case, across: int, viscosity: float) -> float | None:
+    """Relative rise of the temperature by viscous heating over the run; None if held.
+
+    About solids that move, of a flow that falls to zero over the whole box: they heat it no less.
+    """
+    if setting.isothermal(case):
+        return None
+    length = float(case.box.size[across])
+    y = np.linspace(0, length, 401)
+    profiles = [setting.flow(case, i).profile for i in range(case.box.dimension)]
+    dissipation = sum(
+        viscosity * float(np.mean(np.gradient(u(y), y) ** 2)) for u in profiles if u is not None
+    )
+    dissipation = max(dissipation, viscosity * (setting.surface_speed(case) / length) ** 2)
+    time = (case.run.warmup + case.run.steps) * case.fluid.timestep
+    return 2 / case.box.dimension * case.fluid.mass * dissipation * time / case.fluid.kT
+
+
+def _observe_seconds(case: Case) -> float:
+    seconds = 0.0
+    for observable in case.observe:
+        seen = min(case.particles, getattr(observable, "particles", case.particles))
+        seconds += case.run.steps // observable.every * seen * SAMPLE
+    return seconds

@@ -1,0 +1,157 @@
+"""How particles and molecules of a case move away from where they were."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.errors import CaseError
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import (
+    free_diffusion,
+    group_of,
+    kirkwood,
+    modes_of,
+    rouse_note,
+    spring_of,
+    without_solutes,
+)
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+Array = NDArray[np.floating[Any]]
+Integers = NDArray[np.int64]
+
+
+class Displacement:
+    """What theory expects of the mean square displacement of those that an observable follows.
+
+    Raises CaseError without an axis or a molecule to follow.
+    """
+
+    def __init__(self, case: Case, observable: Any) -> None:
+        self.case, self.of, self.kind = case, observable.of, observable.kind
+        self.axes = _axes(case, observable.components)
+        self.group = group_of(case, self.of, self.kind)
+        self.length, self.number = self.group.length, self.group.number
+        self.molecule = self.group.molecule
+
+    def beads(self, wanted: int) -> Integers:
+        """Numbers (molecules, length) of so many molecules, evenly spread, or of all."""
+        return self.group.beads(wanted)
+
+    def legend(self) -> str:
+        """What the theory is called in a figure."""
+        label = setting.chaos_label(self.case)
+        return label if self.molecule is None else label.replace("molecular chaos", "Rouse")
+
+    @property
+    def mass(self) -> float:
+        """Of one bead."""
+        solutes = self.case.solutes
+        if solutes is None or self.of == "particles":
+            return self.case.fluid.mass
+        return solutes.mass
+
+    def alone(self) -> float | None:
+        """Diffusion coefficient of one bead alone; None where what it drags along drags it."""
+        of = self.of
+        if self.case.solutes is None:
+            return free_diffusion(self.case)
+        if of == "particles":
+            return None
+        return free_diffusion(self.case) if self.case.solutes.solvent == "random" else None
+
+    def expected(self, steps: Integers) -> Array | None:
+        """Molecular chaos, of molecules Rouse's; None without a theory."""
+        fluid, molecule, alone = self.case.fluid, self.molecule, self.alone()
+        if alone is None or not set(self.axes) <= set(setting.quiet_axes(self.case)):
+            return None
+        d, dt, kT, mass = len(self.axes), fluid.timestep, fluid.kT, self.mass
+        g = theory.decorrelation_from_diffusion(alone, dt, kT, mass)
+        if molecule is None:
+            return theory.msd_molecular_chaos(steps, dt, g, d, kT, mass)
+        if self.case.walls:
+            return None
+        if self.of == "centres":
+            return theory.msd_molecular_chaos(steps, dt, g, d, kT, mass * molecule.length)
+        spring = spring_of(molecule)
+        if spring is None:
+            return None
+        modes = modes_of(molecule).eigenvalues
+        return theory.msd_rouse_beads(steps, dt, g, modes, spring.k, d, kT, mass)
+
+    def diffusive_from(self) -> float:
+        """The lag from which on the displacement is a straight line.
+
+        That is when a particle has forgotten its velocity, which it does in m D/kT, and, of
+        solutes, when the flow that they had set going has spread over the box; in a molecule, when
+        a bead has forgotten where in the molecule it is. What drags beads along in a fluid of
+        molecules changes as the molecule turns, so that its centre is in no hurry either.
+        """
+        alone = free_diffusion(self.case, self.of)
+        start = 5 * alone * self.mass / self.case.fluid.kT if alone else 0.0
+        solute = self.case.solutes is not None and self.of != "particles"
+        if solute:
+            start = max(start, self.spreading())
+        if self.molecule is None:
+            return start
+        slowest = self.slowest(alone)
+        if self.of == "centres":
+            return start if solute else max(start, slowest or 0.0)
+        return np.inf if slowest is None else max(start, 5 * slowest)
+
+    def spreading(self) -> float:
+        """Five times the longest time in which momentum spreads, L^2/(4 pi^2 nu); 0 without one."""
+        assert self.case.solutes is not None
+        solvent = without_solutes(self.case)
+        if self.case.solutes.solvent == "random" or solvent is None:
+            return 0.0
+        return 5 * max(self.case.box.size) ** 2 / (4 * np.pi**2 * solvent.viscosity)
+
+    def slowest(self, alone: float | None) -> float | None:
+        """The longest relaxation time of the molecules, by Rouse's theory; None without one."""
+        spring = spring_of(self.molecule) if self.molecule else None
+        if spring is None or alone is None or self.molecule is None:
+            return None
+        friction = self.case.fluid.kT / alone
+        times = theory.rouse_times(modes_of(self.molecule), friction, K=spring.K)
+        return float(times.mode[0])
+
+    def coefficient(self) -> tuple[float, str]:
+        """The diffusion coefficient of theory, nan if there is none, and what to say of it."""
+        nothing, alone = float("nan"), self.alone()
+        note = setting.chaos(self.case, "correlated collisions add 10 to 18 %")
+        solutes, molecule = self.case.solutes, self.molecule
+        if solutes is not None and alone is None:
+            if self.of == "particles":
+                return nothing, setting.caveat(self.case)
+            whole = self.of == "centres" or molecule is None
+            dragged = kirkwood(self.case, self.kind) if whole else None
+            if dragged is None:
+                return nothing, "no theory of such beads in a fluid"
+            return dragged, "Kirkwood, smeared over cells, less what images of the box take"
+        if alone is None:
+            return nothing, note
+        if molecule is None:
+            return alone, "molecular chaos, exact for a bead alone" if solutes else note
+        if self.case.walls:
+            return nothing, note
+        return alone / molecule.length, rouse_note(self.case)
+
+
+def _axes(case: Case, components: tuple[str, ...] | None) -> tuple[int, ...]:
+    """The axes that count. Raises CaseError if there is none, or if images slide along one."""
+    if components is None:
+        axes = setting.quiet_axes(case)
+        if not axes:
+            raise CaseError("components: every axis has a flow or a wall; name those to follow")
+        return axes
+    axes = tuple(case.box.index(axis, "components") for axis in components)
+    if case.box.shear_rate and 0 in axes:
+        raise CaseError("components: not 'x' under box.shear_rate, whose images slide")
+    return axes

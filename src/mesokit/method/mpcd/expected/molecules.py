@@ -1,0 +1,291 @@
+"""What observables of molecules share: who belongs to which, and the modes of their springs."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.errors import CaseError
+from mesokit.method.mpcd.expected import setting
+from mesokit.statistics import spread_ids
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.method.mpcd.molecule import Molecule
+
+
+Array = NDArray[np.floating[Any]]
+KIND = "which molecules: the kind of solutes.polymers, from 1; 1 where the fluid is of molecules"
+
+
+def molecule_of(case: Case, quantity: str = "this", kind: int = 1) -> Molecule:
+    """What the fluid is made of, or a kind of solutes. Raises CaseError if there is no such."""
+    solutes = case.solutes
+    if solutes is None:
+        if case.fluid.molecule is None:
+            raise CaseError(f"{quantity} needs molecules; give fluid.molecule or solutes")
+        if kind != 1:
+            raise CaseError(f"kind = {kind}: expected 1 in a fluid of molecules")
+        return case.fluid.molecule
+    if kind > len(solutes.polymers):
+        raise CaseError(f"kind = {kind}: expected 1 to {len(solutes.polymers)} (solutes.polymers)")
+    molecule = solutes.molecule(kind - 1)
+    if molecule is None:
+        raise CaseError(f"{quantity} needs molecules; solutes.polymers[#{kind}] are monomers")
+    return molecule
+
+
+class Group(NamedTuple):
+    """Particles of one kind: the id of the first, beads of a molecule, molecules, what they are."""
+
+    first: int
+    length: int
+    number: int
+    molecule: Molecule | None
+
+    def beads(self, wanted: int | None = None) -> NDArray[np.int64]:
+        """Ids (molecules, length) of all molecules, or of some that are evenly spread."""
+        chosen = np.arange(self.number) if wanted is None else spread_ids(wanted, self.number)
+        return self.first + chosen[:, None] * self.length + np.arange(self.length)
+
+
+def group_of(case: Case, of: str, kind: int = 1) -> Group:
+    """Those that an observable of "particles" (of the fluid), "beads", "centres" or "ends" follows.
+
+    Raises CaseError if there are none.
+    """
+    molecule, solutes = case.fluid.molecule, case.solutes
+    if of == "particles" and (solutes is None or solutes.solvent == "fluid"):
+        if kind != 1:
+            raise CaseError(f"kind = {kind}: only with of = 'beads', 'centres' or 'ends'")
+        length = molecule.length if molecule else 1
+        return Group(0, length, case.particles // length, molecule)
+    if solutes is None:
+        found = molecule_of(case, f"of = {of!r}", kind)
+        return Group(0, found.length, case.particles // found.length, found)
+    if of == "particles":
+        raise CaseError("of = 'particles': a random solvent has none; expected 'beads'")
+    if kind > len(solutes.polymers):
+        raise CaseError(f"kind = {kind}: expected 1 to {len(solutes.polymers)} (solutes.polymers)")
+    polymer = solutes.polymers[kind - 1]
+    if of == "ends":
+        molecule_of(case, f"of = {of!r}", kind)
+    first = case.particles + solutes.first_bead(kind - 1)
+    return Group(first, polymer.length, polymer.number, solutes.molecule(kind - 1))
+
+
+def beads_of(case: Case, wanted: int | None = None, kind: int = 1) -> NDArray[np.int64]:
+    """Ids of the beads (molecules, length) of all molecules, or of some that are evenly spread.
+
+    Beads of solutes are numbered after the particles of the fluid.
+    """
+    molecule_of(case, kind=kind)
+    return group_of(case, "beads", kind).beads(wanted)
+
+
+def bonds_of(case: Case, kind: int = 1) -> slice:
+    """Where the bonds of a kind are among all `bond_vectors`."""
+    if case.solutes is None:
+        return slice(None)
+    count, first = 0, 0
+    for k in range(kind):
+        molecule, first = case.solutes.molecule(k), first + count
+        count = len(molecule.bonds) * case.solutes.polymers[k].number if molecule else 0
+    return slice(first, first + count)
+
+
+def modes_of(molecule: Molecule) -> theory.NormalModes:
+    """Normal modes of its springs."""
+    if molecule.topology == "ring":
+        return theory.ring_modes(molecule.length)
+    if molecule.arms is not None:
+        return theory.star_modes(molecule.arms, (molecule.length - 1) // molecule.arms)
+    return theory.linear_modes(molecule.length)
+
+
+def spring_of(molecule: Molecule) -> theory.Spring | None:
+    """The springs between beads; None where beads feel anything else, and Rouse's theory ends."""
+    if molecule.bending is not None or molecule.pair is not None:
+        return None
+    return molecule.bond.spring()
+
+
+def without_bonds(case: Case) -> theory.Transport | None:
+    """Transport coefficients of the same fluid of single particles; None if it has solutes."""
+    if case.solutes is not None:
+        return None
+    fluid = dataclasses.replace(case.fluid, molecule=None)
+    return setting.transport(dataclasses.replace(case, fluid=fluid, observe=(), trajectory=None))
+
+
+def without_solutes(case: Case) -> theory.Transport | None:
+    """The same of what the solutes are in, be there any."""
+    return without_bonds(dataclasses.replace(case, solutes=None, observe=(), trajectory=None))
+
+
+def rouse_times_of(case: Case, kind: int = 1) -> theory.RouseTimes | None:
+    """Relaxation times of molecules whose beads have the friction of free particles."""
+    molecule, friction = molecule_of(case, kind=kind), friction_of(case)
+    spring = spring_of(molecule)
+    if friction is None or spring is None:
+        return None
+    return theory.rouse_times(modes_of(molecule), friction, K=spring.K)
+
+
+def rouse_note(case: Case) -> str:
+    """How good Rouse's theory is where beads are said to have the friction of free particles."""
+    if case.solutes is None and setting.mean_free_path(case) < 1:
+        return "approximate: Rouse; beads drag one another along"
+    if case.solutes is not None:
+        return "approximate: Rouse; beads that share a cell lose less momentum than apart"
+    return "Rouse; beads with the friction of free particles"
+
+
+def friction_of(case: Case) -> float | None:
+    """kT over the diffusion coefficient of a bead alone; None where the fluid remembers it."""
+    diffusion = free_diffusion(case)
+    if diffusion is None or (case.solutes is not None and case.solutes.solvent == "fluid"):
+        return None
+    return case.fluid.kT / diffusion
+
+
+def free_diffusion(case: Case, of: str = "beads") -> float | None:
+    """Diffusion coefficient of a particle or bead alone by molecular chaos; None if unknown."""
+    fluid, solutes = case.fluid, case.solutes
+    if solutes is None or of == "particles":
+        alone = without_solutes(case)
+        return None if alone is None else alone.diffusion
+    if fluid.species or not fluid.thermostat.canonical:
+        return None
+    return fluid.collision.bead_diffusion(setting.gas(case), solutes.mass)
+
+
+class Solution(NamedTuple):
+    """Ideal chains in a fluid at rest, as theory takes them: the first arguments of Kirkwood's and
+    Zimm's."""
+
+    beads: int
+    friction: float
+    viscosity: float
+    bond_length: float
+    kT: float
+
+
+def solution_of(case: Case, kind: int) -> Solution | None:
+    """Chains of a kind that drag the fluid along, in 3D without walls; None for others."""
+    assert case.solutes is not None
+    molecule = case.solutes.molecule(kind - 1)
+    bond, alone = free_bond(case, kind) if molecule else None, free_diffusion(case)
+    solvent = without_solutes(case)
+    if molecule is None or bond is None or alone is None or solvent is None:
+        return None
+    if molecule.topology != "chain" or case.box.dimension == 2 or case.walls:
+        return None
+    eta = solvent.viscosity * case.fluid.density * case.fluid.mass
+    return Solution(molecule.length, case.fluid.kT / alone, eta, math.sqrt(bond), case.fluid.kT)
+
+
+def kirkwood(case: Case, kind: int) -> float | None:
+    """Diffusion coefficient of monomers and ideal chains that drag the fluid along, in this cubic
+    box; None for other molecules and boxes."""
+    assert case.solutes is not None
+    size, solution = case.box.size, solution_of(case, kind)
+    if case.solutes.molecule(kind - 1) is None and case.solutes.pair is None:
+        solution = monomers_of(case)
+    if solution is None or len(set(size)) > 1:
+        return None
+    free = theory.kirkwood_in_cells(*solution)
+    return theory.diffusion_in_box(free, size[0], solution.viscosity, solution.kT)
+
+
+def monomers_of(case: Case) -> Solution | None:
+    """Beads alone that drag the fluid along, in 3D without walls."""
+    alone, solvent = free_diffusion(case), without_solutes(case)
+    if alone is None or solvent is None or case.box.dimension == 2 or case.walls:
+        return None
+    eta = solvent.viscosity * case.fluid.density * case.fluid.mass
+    return Solution(1, case.fluid.kT / alone, eta, 1.0, case.fluid.kT)
+
+
+def mode_times_of(case: Case, kind: int = 1) -> tuple[theory.RouseTimes | None, str]:
+    """Relaxation times of molecules at rest, and whose theory says so: Rouse or Zimm."""
+    if case.solutes is None or case.solutes.solvent == "random":
+        return rouse_times_of(case, kind), rouse_note(case)
+    note = "approximate: Zimm; hydrodynamics pre-averaged, large box"
+    solution = solution_of(case, kind)
+    if solution is None:
+        return None, "no theory of these molecules in a fluid"
+    try:
+        return theory.zimm_times(*solution), note
+    except ValueError:  # beads so large for their bonds that they would overlap
+        return None, "no theory of bonds as short as these"
+
+
+def stress_in_shear(case: Case) -> theory.ShearStress | None:
+    """Viscosity (dynamic) and normal-stress differences of Rouse molecules in steady shear."""
+    c, times = without_bonds(case), rouse_times_of(case)
+    if c is None or times is None:
+        return None
+    fluid = case.fluid
+    modulus = fluid.density / molecule_of(case).length * fluid.kT
+    eta = c.viscosity * setting.mass_density(case)
+    return theory.maxwell_shear(case.box.shear_rate, modulus, times.stress, eta)
+
+
+def bond_viscosity(case: Case) -> float | None:
+    """What bonds add to the viscosity (dynamic) of slow flow; None without a theory.
+
+    Of springs without a length of their own it is that of any flow.
+    """
+    c = without_bonds(case)
+    if c is None:
+        return None
+    molecule, times = molecule_of(case), rouse_times_of(case)
+    molecules = case.fluid.density / molecule.length
+    if times is not None:
+        return molecules * case.fluid.kT * float(times.stress.sum())
+    d, kT = case.box.dimension, case.fluid.kT
+    square = molecule.mean_square_bond(d, kT) if molecule.length == 2 else None
+    if square is None:
+        return None
+    return theory.dumbbell_viscosity(molecules, kT / c.diffusion, square / d)
+
+
+def bond_in_shear(case: Case) -> float | None:
+    """Mean square bond length in steady shear: Rouse, of trimers with hydrodynamic interaction."""
+    c = without_bonds(case)
+    if c is None:
+        return None
+    times, bond = rouse_times_of(case), free_bond(case)
+    if times is None or bond is None:
+        return None
+    molecule, rate, kT = molecule_of(case), case.box.shear_rate, case.fluid.kT
+    spring = spring_of(molecule)
+    if molecule.topology == "chain" and molecule.length == 3 and case.box.dimension == 3 and spring:
+        eta = c.viscosity * setting.mass_density(case)
+        radius = kT / (6 * math.pi * eta * c.diffusion)
+        try:
+            return theory.trimer_bond_length(spring.K, rate, eta, radius, kT) ** 2
+        except ValueError:  # bonds shorter than beads are large
+            return None
+    modes, dimension = modes_of(molecule), case.box.dimension
+    return theory.size_in_shear(modes, rate, float(times.stress[0]), bond, dimension).bond
+
+
+def free_bond(case: Case, kind: int = 1) -> float | None:
+    """Mean square length of a bond that is not in a ring; None without a theory."""
+    spring = spring_of(molecule_of(case, kind=kind))
+    if spring is None:
+        return None
+    return theory.mean_square_bond(K=spring.K, dimension=case.box.dimension, kT=case.fluid.kT)
+
+
+def gyration(r: Array) -> Array:
+    """Gyration tensors (molecules, d, d) of beads at r (molecules, length, d)."""
+    arm = r - r.mean(axis=1, keepdims=True)
+    return np.einsum("mia,mib->mab", arm, arm) / r.shape[1]

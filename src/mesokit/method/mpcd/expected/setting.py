@@ -1,0 +1,309 @@
+"""What theory needs to know of a case: coefficients, the state at rest, and the steady flow."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.case.box import AXES, Axis
+from mesokit.case.component import name_of
+from mesokit.geometry import shape_protocol as walls
+from mesokit.geometry.solids.solids import free_volume, slit_of, solids_of
+from mesokit.method.mpcd.collision import Gas
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.geometry.shape.plates import Plates
+
+Array = NDArray[np.floating[Any]]
+# third-order Gauss points: exact bin averages of the parabolas that flows are made of
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
+
+
+def transport(case: Case) -> theory.Transport | None:
+    """Transport coefficients of the fluid; None where `caveat` says why there is no theory."""
+    if caveat(case):
+        return None
+    try:
+        return case.fluid.collision.transport(gas(case))
+    except ValueError:  # such as a half turn in 2D
+        return None
+
+
+def gas(case: Case) -> Gas:
+    """What the theory of a fluid is a function of."""
+    fluid = case.fluid
+    return Gas(
+        case.box.dimension,
+        fluid.density,
+        fluid.timestep,
+        fluid.kT,
+        fluid.mass,
+        fluid.thermostat.in_theory,
+    )
+
+
+def caveat(case: Case) -> str:
+    """Why there is no theory of the transport coefficients, "" where there is."""
+    if case.fluid.mixed:
+        return "no theory of a mixture"
+    if case.fluid.molecule is not None:
+        return "no theory of a fluid of molecules"
+    if case.solutes is not None:
+        return "no theory of a fluid with solutes"
+    return "theory needs the full grid shift" if case.fluid.grid_shift < 1 else ""
+
+
+def mean_free_path(case: Case) -> float:
+    """Thermal velocity times timestep, in cells."""
+    return float(case.fluid.timestep * (case.fluid.kT / case.fluid.mass) ** 0.5)
+
+
+def chaos(case: Case, off: str) -> str:
+    """The note of a number that molecular chaos gives: `off` says how far off where particles
+    meet again before they have flown a cell."""
+    if caveat(case):
+        return caveat(case)
+    if mean_free_path(case) < 1:
+        return f"approximate: molecular chaos; {off}"
+    return "molecular chaos"
+
+
+def chaos_label(case: Case) -> str:
+    """The same for the legend of a figure."""
+    return "molecular chaos" + (", approximate" if mean_free_path(case) < 1 else "")
+
+
+def warming(case: Case) -> float | None:
+    """Rise of the temperature of a held fluid for each unit of the shear rate squared, as it is
+    counted about the linear profile; None without a theory."""
+    if caveat(case):
+        return None
+    rise = case.fluid.collision.shear_warming(gas(case))
+    return None if rise is None else case.fluid.mass * rise
+
+
+def offset(case: Case) -> float:
+    """Largest known (T - kT)/kT of the fluid at rest."""
+    return case.fluid.collision.temperature_offset(gas(case), mean_free_path(case))
+
+
+def temperature_note(case: Case) -> str:
+    """How far a thermostat is known to miss kT, "" below 0.1 %."""
+    if case.fluid.mixed:
+        for part in (case.fluid.thermostat, case.fluid.collision):
+            if not part.one_temperature:
+                return (
+                    f"approximate: {name_of(part)} holds the kinds of a mixture at different "
+                    "temperatures"
+                )
+        return ""
+    percent = 100 * offset(case)
+    if abs(percent) <= 0.1:
+        return ""
+    way = "warm" if percent > 0 else "cold"
+    return f"approximate: this thermostat reads up to {abs(percent):.2g} % {way}"
+
+
+def mass_density(case: Case) -> float:
+    """Mass per cell, of solutes too."""
+    fluid = case.fluid.density * case.fluid.mass
+    return fluid if case.solutes is None else fluid + solute_mass(case) / free_volume(case)
+
+
+def carriers(case: Case) -> tuple[float, float]:
+    """Particles and beads per cell, and how many of these move as one: molecules count once.
+
+    The latter is nan where beads of different molecules feel one another.
+    """
+    density, molecule, solutes = case.fluid.density, case.fluid.molecule, case.solutes
+    if solutes is None:
+        return density, density / (1 if molecule is None else molecule.length)
+    volume = free_volume(case)
+    wholes = sum(polymer.number for polymer in solutes.polymers) / volume
+    if solutes.pair is not None:
+        wholes = float("nan")
+    return density + solutes.beads / volume, density + wholes
+
+
+def solute_mass(case: Case) -> float:
+    """Mass of all beads of solutes, on which forces on the fluid act as well."""
+    return case.solutes.beads * case.solutes.mass if case.solutes is not None else 0.0
+
+
+def superficial_mass(case: Case) -> float:
+    """What the momentum of fluid and solutes is divided by for their superficial velocity."""
+    return mass_density(case) * case.box.volume
+
+
+def isothermal(case: Case) -> bool:
+    """Whether something holds the fluid at kT everywhere."""
+    return case.fluid.thermostat.acts or case.fluid.collision.isothermal
+
+
+def acceleration(case: Case) -> Array:
+    """The uniform acceleration (d,), zero without one."""
+    dimension = case.box.dimension
+    return np.array(case.fluid.force.uniform(dimension) or (0.0,) * dimension, float)
+
+
+def push_axis(case: Case) -> int | None:
+    """Number of the only axis along which a uniform force drives the fluid, None for another."""
+    axes = np.flatnonzero(acceleration(case))
+    return int(axes[0]) if len(axes) == 1 else None
+
+
+def with_start(case: Case, error: float, expected: float) -> float:
+    """The error of a number proportional to kT, in a fluid that keeps the energy it started with.
+
+    Drawn velocities have an energy that is off by sqrt(2/(d N)), for ever where nothing heats or
+    cools the fluid: one run cannot average over it.
+    """
+    if isothermal(case) or (case.walls and driven(case)):
+        return error
+    return float(np.hypot(error, expected * (2 / (case.box.dimension * case.particles)) ** 0.5))
+
+
+def driven(case: Case) -> bool:
+    """Whether anything makes the fluid flow."""
+    moving = any(surface.moves for wall in case.walls for surface in wall.surfaces().values())
+    return bool(case.box.shear_rate or case.fluid.force.acts or moving)
+
+
+def closed_axes(case: Case) -> set[int]:
+    """Axes that plates close."""
+    return {AXES.index(axis) for axis in walls.closed_axes(case.walls)}
+
+
+def obstructed(case: Case) -> bool:
+    """Whether there are solids other than the plates of a slit."""
+    return bool(case.walls) and slit_of(case) is None
+
+
+def quiet_axes(case: Case) -> tuple[int, ...]:
+    """Axes that no wall closes and along which nothing flows."""
+    closed = closed_axes(case)
+    return tuple(
+        axis
+        for axis in range(case.box.dimension)
+        if axis not in closed and flow(case, axis).kind == "rest"
+    )
+
+
+class Flow(NamedTuple):
+    """The steady velocity along one axis as a function of the coordinate along another.
+
+    `profile` maps coordinates to velocities, None where there is no theory; `kind` names it.
+    """
+
+    kind: str
+    across: int
+    profile: Callable[[Array], Array] | None
+
+    def bins(self, axis: int, edges: Array) -> Array | None:
+        """Mean velocity in each bin along `axis`, (bins,); None without theory."""
+        if self.profile is None:
+            return None
+        if axis != self.across:
+            return np.full(len(edges) - 1, np.nan)
+        return bin_average(self.profile, edges)
+
+
+def bin_average(function: Callable[[Array], Array], edges: Array) -> Array:
+    """Average of a smooth function over each bin, (bins,); exact for polynomials up to x^5."""
+    middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
+    points = middle[:, None] + half[:, None] * _NODES
+    return np.asarray(function(points.ravel()).reshape(points.shape) @ _WEIGHTS / 2)
+
+
+def flow(case: Case, component: int) -> Flow:
+    """The steady flow along axis number `component`."""
+    box, plates = case.box, slit_of(case)
+    if plates is None and case.walls:
+        return Flow("round solids", 1, None) if driven(case) else Flow("rest", 1, np.zeros_like)
+    if plates and not (box.shear_rate and plates.lower.rule == plates.upper.rule == "slip"):
+        return _slit(case, plates, component)
+    if box.shear_rate:
+        if case.fluid.force.acts:
+            return Flow("driven shear", 1, None)
+        if component != 0:
+            return Flow("rest", 1, np.zeros_like)
+        if box.shear_frequency:
+            return Flow("oscillating shear", 1, None)
+        rate, length = box.shear_rate, float(box.size[1])
+        return Flow("lees-edwards", 1, lambda y: theory.lees_edwards_velocity(y, length, rate))
+    force = case.fluid.force
+    if force.uniform(box.dimension) is None:
+        coefficients = transport(case)
+        viscosity = coefficients.viscosity if coefficients else None
+        return Flow(*force.steady_flow(component, box.size, viscosity))
+    if acceleration(case)[component]:
+        return Flow("accelerating", 1, None)
+    return Flow("rest", 1, np.zeros_like)
+
+
+def flowing_axes(case: Case) -> list[Axis]:
+    """Axes along which the steady flow goes, or may go where there is no theory of it."""
+    found = []
+    for i, axis in enumerate(case.box.axes):
+        _, across, profile = flow(case, i)
+        if profile is None or np.any(profile(np.linspace(0, case.box.size[across], 201))):
+            found.append(axis)
+    return found
+
+
+def surface_velocity(surface: object, component: int) -> float:
+    """Velocity of a plate along one axis."""
+    velocity = getattr(surface, "velocity", None)
+    return float(velocity[component]) if velocity else 0.0
+
+
+def surface_speed(case: Case) -> float:
+    """Of the fastest place on a solid's surface: no place in the fluid that it drags is faster."""
+    motion = solids_of(case).motion.values() if obstructed(case) else ()
+    return max((speed for speed, _ in motion), default=0.0)
+
+
+def _slit(case: Case, wall: Plates, component: int) -> Flow:
+    across = AXES.index(wall.axis)
+    if case.box.shear_rate:  # no-slip plates across the vorticity hold it back
+        return Flow("sheared slit", across, None)
+    if component == across:
+        return Flow("rest", across, np.zeros_like)
+    height, push = float(case.box.size[across]), float(acceleration(case)[component])
+    lower, upper = (surface_velocity(s, component) for s in (wall.lower, wall.upper))
+    sticky = [s.rule == "no-slip" for s in (wall.lower, wall.upper)]
+    force = case.fluid.force
+    if force.uniform(case.box.dimension) is None and force.drives(component):
+        return Flow(f"{name_of(force)} slit", across, None)
+    if not any(sticky):
+        return Flow("plug", across, None if push else np.zeros_like)
+    kind = "poiseuille" if push else "couette" if lower != upper and all(sticky) else "rest"
+    if not push:
+        lower, upper = (lower if sticky[0] else upper), (upper if sticky[1] else lower)
+        return Flow(kind, across, lambda y: theory.couette_velocity(y, height, upper, lower))
+    coefficients = transport(case)
+    if coefficients is None:
+        return Flow(kind, across, None)
+    nu = coefficients.viscosity
+    if all(sticky):
+        return Flow(
+            kind,
+            across,
+            lambda y: (
+                theory.couette_velocity(y, height, upper, lower)
+                + theory.poiseuille_velocity(y, height, push, nu)
+            ),
+        )
+
+    # a slip plate is the middle of a slit twice as high
+    def half(y: Array) -> Array:
+        distance = y if sticky[0] else height - y
+        wall_speed = lower if sticky[0] else upper
+        return wall_speed + theory.poiseuille_velocity(distance, 2 * height, push, nu)
+
+    return Flow("half poiseuille", across, half)

@@ -1,0 +1,10 @@
+"""Body forces. A new one is a file here."""
+
+from __future__ import annotations
+
+from mesokit.case.registry import parts_in
+from mesokit.method.mpcd.field.protocol import Force
+
+RULES = parts_in(__path__, __name__, Force)
+
+__all__ = ["RULES", "Force"]

@@ -1,0 +1,39 @@
+"""No body force."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal, NamedTuple
+
+from mesokit.case.component import component, tag
+from mesokit.method.mpcd.field.protocol import Force, acceleration
+
+
+@component
+class NoForce(Force):
+    """Particles fly straight."""
+
+    rule: Literal["none"] = tag("none")
+
+    acts: ClassVar[bool] = False
+
+    @property
+    def largest(self) -> float:
+        """Largest size of the acceleration."""
+        return 0.0
+
+    def uniform(self, dimension: int) -> tuple[float, ...]:
+        """The acceleration, which is the same everywhere."""
+        return (0.0,) * dimension
+
+    def kernel(self, size: tuple[int, ...]) -> Zero:
+        """Parameters for the scalar function below."""
+        return Zero()
+
+
+class Zero(NamedTuple):
+    """No acceleration."""
+
+
+@acceleration.register(Zero)
+def _(field, r):
+    return ()

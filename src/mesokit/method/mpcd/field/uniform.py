@@ -1,0 +1,47 @@
+"""The same acceleration everywhere: gravity, or the pressure gradient that drives a channel."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal, NamedTuple
+
+from mesokit.case.component import component, param, tag
+from mesokit.method.mpcd.field.protocol import Force, acceleration
+
+
+@component
+class Uniform(Force):
+    """A uniform acceleration."""
+
+    rule: Literal["uniform"] = tag("uniform")
+    acceleration: tuple[float, ...] = param(
+        doc="one number for each axis", unit="a/time^2", min_length=2, max_length=3
+    )
+
+    @property
+    def largest(self) -> float:
+        """Largest size of the acceleration."""
+        return math.hypot(*self.acceleration)
+
+    def uniform(self, dimension: int) -> tuple[float, ...]:
+        """The acceleration, which is the same everywhere."""
+        return self.acceleration
+
+    def vectors(self) -> dict[str, tuple[float, ...]]:
+        """Its parameters that have one number for each axis, by key."""
+        return {"acceleration": self.acceleration}
+
+    def kernel(self, size: tuple[int, ...]) -> Everywhere:
+        """Parameters for the scalar function below."""
+        return Everywhere(self.acceleration)
+
+
+class Everywhere(NamedTuple):
+    """The same acceleration at every place."""
+
+    vector: tuple[float, ...]
+
+
+@acceleration.register(Everywhere)
+def _(field, r):
+    return field.vector

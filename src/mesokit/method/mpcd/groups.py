@@ -1,0 +1,50 @@
+"""The particles of a case: those of the fluid, then the beads of what is dissolved in it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.trajectory import Group, Kind
+from mesokit.geometry.solids.solids import free_volume
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+
+def groups(case: Case) -> tuple[Group, ...]:
+    """The fluid, species by species, and its solutes, polymer by polymer.
+
+    The fluid has its density times the volume that walls leave, of each species. Of molecules
+    there is a whole number, and of a random solvent none.
+    """
+    solutes = case.solutes
+    if solutes is None:
+        return Group("fluid", _fluid(case)), Group("solutes", ())
+    kinds = tuple(Kind(solutes.mass, kind.number * kind.length) for kind in solutes.polymers)
+    bead = (solutes.pair.diameter,) if solutes.pair is not None else ()
+    return Group("fluid", _fluid(case)), Group("solutes", kinds, *bead)
+
+
+def _fluid(case: Case) -> tuple[Kind, ...]:
+    fluid = case.fluid
+    if case.solutes is not None and case.solutes.solvent == "random":
+        return (Kind(fluid.mass, 0),)
+    volume = free_volume(case)
+    if fluid.molecule is not None:
+        length = fluid.molecule.length
+        return (Kind(fluid.mass, length * round(fluid.density * volume / length)),)
+    return tuple(Kind(kind.mass, round(kind.density * volume)) for kind in fluid.kinds)
+
+
+def bonds(case: Case) -> NDArray[np.int64]:
+    """Numbers of particles (bonds, 2) that are linked, in molecules of the fluid and solutes."""
+    if case.solutes is not None:
+        return case.particles + case.solutes.bonds()
+    if case.fluid.molecule is None:
+        return np.zeros((0, 2), np.int64)
+    links = np.array(case.fluid.molecule.bonds, np.int64)
+    starts = np.arange(0, case.particles, case.fluid.molecule.length)
+    return (starts[:, None, None] + links).reshape(-1, 2)

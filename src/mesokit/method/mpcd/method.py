@@ -1,0 +1,101 @@
+"""Multi-particle collision dynamics, as the rest of the package knows it.
+
+The only file of this folder that knows engines, observables and files; nothing imports it by name.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mesokit.case.component import show
+from mesokit.geometry.samples.from_file import FromFile
+from mesokit.geometry.solids.solids import solids_of
+from mesokit.method.mpcd.checks import combinations
+from mesokit.method.mpcd.expected.displacement import Displacement
+from mesokit.method.mpcd.expected.setting import closed_axes
+from mesokit.method.mpcd.groups import bonds, groups
+from mesokit.method.mpcd.sections import KEYS, Sections
+from mesokit.method.mpcd.start.fluid import start
+from mesokit.method.mpcd.summary import summary
+from mesokit.method.protocol import Method
+from mesokit.observe import Observable
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.engine import Engine
+    from mesokit.geometry.solids.solids import Solids
+    from mesokit.method.mpcd.si import SI
+    from mesokit.method.mpcd.start.first_state import FirstState
+
+
+def _first_state(case: Case, arrays: Mapping[str, Any]) -> FirstState:
+    from mesokit.method.mpcd.start.first_state import first_state
+
+    return first_state(case, **arrays)
+
+
+def _engine(case: Case, threads: int, measures: Sequence[str]) -> Engine:
+    from mesokit.execute.cpu.engine import CPU
+
+    return CPU(case, threads, measures)
+
+
+def _start(engine: Any, state: FirstState) -> None:
+    start(engine, *state)
+
+
+def _solids(case: Case) -> Solids | None:
+    return solids_of(case) if case.walls else None
+
+
+def _missing_files(case: Case) -> list[str]:
+    starts = {"fluid.start": case.fluid.start}
+    if case.solutes is not None:
+        starts["solutes.start"] = case.solutes.start
+    return [
+        f"{where}.{key} = {show(name, 500)}: no such {'folder' if key == 'run' else 'file'}"
+        for where, start in starts.items()
+        for key, name in dataclasses.asdict(start).items()
+        if name is not None and not Path(name).exists()
+    ]
+
+
+def _keep_files(case: Case, folder: Path) -> Case:
+    from mesokit.io.solid_files import kept
+
+    if not any(isinstance(wall, FromFile) for wall in case.walls):
+        return case
+    return dataclasses.replace(case, walls=kept(case.walls, solids_of(case), folder))
+
+
+def _si(case: Case) -> SI:
+    from mesokit.method.mpcd.si import convert
+
+    return convert(case)
+
+
+METHOD = Method(
+    name="mpcd",
+    sections=Sections,
+    keys=KEYS,
+    observables=(Observable,),
+    check=combinations.check,
+    groups=groups,
+    bonds=bonds,
+    closed_axes=closed_axes,
+    solids=_solids,
+    timestep=lambda case: float(case.fluid.timestep),
+    kT=lambda case: float(case.fluid.kT),
+    summary=summary,
+    missing_files=_missing_files,
+    arrays=("positions", "velocities", "beads", "bead_velocities"),
+    first_state=_first_state,
+    engine=_engine,
+    start=_start,
+    keep_files=_keep_files,
+    expected={"mean-square-displacement": Displacement},
+    si=_si,
+)

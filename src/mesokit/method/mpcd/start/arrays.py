@@ -1,0 +1,139 @@
+"""Arrays to start from: given, or read from the files that a case names, and checked."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import CaseError, MesokitError
+from mesokit.geometry.solids.solids import solids_of
+from mesokit.method.mpcd.start.section import Start
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+Floats = NDArray[np.float64]
+State = Callable[["Case", str], tuple[Any, Any]]
+MOST_IMAGES = 2**30  # boxes away from the primary one: image counts are 32-bit
+
+
+def read_arrays(
+    case: Case, owner: str, positions: Any, velocities: Any, **states: State
+) -> tuple[Any, Any]:
+    """The arrays to start from: those given, or those that the case names; None where none.
+
+    `owner` is "fluid" or "solutes". `states` gives for each key that names a whole state (`run`,
+    `file`) what reads positions and velocities that suit the case. Raises CaseError if an array is
+    given twice, holds no real numbers, has the wrong shape, is not finite, or has particles outside
+    the walls or too far away.
+    """
+    given: Start = getattr(case, owner).start
+    where = f"{owner}.start"
+    _once(where, given, positions=positions, velocities=velocities)
+    keys = f"{where}.positions", f"{where}.velocities"
+    for name, read in states.items():
+        if getattr(given, name) is None:
+            continue
+        key = f"{where}.{name} = {getattr(given, name)!r}"
+        try:
+            positions, velocities = read(case, getattr(given, name))
+        except MesokitError as error:
+            raise CaseError(f"{key}: {error}") from None
+        keys = f"{key}: positions", f"{key}: velocities"
+        break
+    else:
+        if positions is None and given.positions is not None:
+            positions = _load(where, "positions", given.positions)
+        if velocities is None and given.velocities is not None:
+            velocities = _load(where, "velocities", given.velocities)
+    if positions is not None:
+        _no_conformation(case)
+        positions = _checked(case, owner, keys[0], positions)
+        _inside(case, keys[0], positions)
+        _near(case, keys[0], positions)
+    if velocities is not None:
+        velocities = _checked(case, owner, keys[1], velocities)
+    return positions, velocities
+
+
+def _once(where: str, given: Start, **arrays: Any) -> None:
+    """No array beside a file or run that says the same."""
+    for name, array in arrays.items():
+        for key in ("run", "file", name):
+            said = getattr(given, key)
+            if array is not None and said is not None:
+                raise CaseError(f"{where}.{key} = {said!r}: not with an array of {name} beside")
+
+
+def _no_conformation(case: Case) -> None:
+    """Nothing about how molecules are drawn where they are not."""
+    molecule = case.fluid.molecule
+    if molecule is not None and molecule.conformation != "thermal":
+        raise CaseError(
+            f"fluid.molecule.conformation = {molecule.conformation!r}: no effect beside positions "
+            "to start from; leave it out"
+        )
+
+
+def _load(where: str, name: str, path: str) -> Any:
+    """An array from a .npy file, or the only one (or the one of that name) from a .npz file."""
+    key = f"{where}.{name} = {path!r}"
+    try:
+        found = np.load(path, allow_pickle=False)
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+        reason = f": {error.strerror}" if isinstance(error, OSError) and error.strerror else ""
+        raise CaseError(f"{key}: expected a .npy or .npz file of numbers{reason}") from None
+    if isinstance(found, np.ndarray):
+        return found
+    if name not in found.files and len(found.files) != 1:
+        raise CaseError(f"{key}: expected one array, or one named {name!r}")
+    return found[name if name in found.files else found.files[0]]
+
+
+def _checked(case: Case, owner: str, key: str, values: Any) -> Floats:
+    """Numbers for each particle."""
+    if np.ma.isMaskedArray(values):
+        raise CaseError(f"{key}: expected an array of numbers without a mask")
+    try:
+        array = np.asarray(values)
+    except (TypeError, ValueError):
+        raise CaseError(f"{key}: expected an array of numbers") from None
+    if array.dtype.kind not in "iuf":
+        raise CaseError(f"{key}: expected an array of numbers, not of {array.dtype.name}")
+    array = array.astype(float)
+    beads = case.solutes.beads if owner == "solutes" and case.solutes else case.particles
+    shape = beads, case.box.dimension
+    if array.shape != shape:
+        raise CaseError(
+            f"{key}: shape {array.shape}: expected {shape}, one row for each of the "
+            + ("solutes' beads" if owner == "solutes" else "fluid's particles")
+        )
+    if not np.isfinite(array).all():
+        row = int(np.argwhere(~np.isfinite(array))[0][0])
+        raise CaseError(f"{key}: row {row} is not finite")
+    return array
+
+
+def _inside(case: Case, key: str, positions: Floats) -> None:
+    """Nobody in a wall."""
+    if not case.walls:
+        return
+    outside = solids_of(case).distance(positions) < 0
+    if outside.any():
+        row = int(np.argmax(outside))
+        raise CaseError(f"{key}: row {row} = {positions[row].tolist()} lies in a wall")
+
+
+def _near(case: Case, key: str, positions: Floats) -> None:
+    """Nobody so far away that the boxes between cannot be counted."""
+    far = np.abs(positions / case.box.size) >= MOST_IMAGES
+    if far.any():
+        row = int(np.argmax(far.any(axis=1)))
+        raise CaseError(
+            f"{key}: row {row} = {positions[row].tolist()} is 2^30 boxes away or more; expected "
+            "positions nearer to the box"
+        )

@@ -1,0 +1,155 @@
+"""How molecules lie at the start: bonds of the right temperature, everywhere in the fluid.
+
+`thermal` bonds have lengths and angles of the temperature. `octant` bonds have each component
+uniform in [0, s), with s such that their mean square length is that of the temperature: of right
+size in the mean, but all in one octant, so that molecules are far from equilibrium for some
+relaxation times. They are those of D. Toneian, diploma thesis, TU Wien (2015), section 4.2.2, to
+compare with.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import RunError
+from mesokit.potential.protocol import angular, central
+from mesokit.potential.thermal import lengths, mean_square
+
+if TYPE_CHECKING:
+    from mesokit.method.mpcd.molecule import Molecule
+
+Floats = NDArray[np.float64]
+TRIES = 500  # to place the molecules that do not fit where they were drawn
+POINTS = 2001  # of the grid of angles
+HOT = 20.0  # kT: beads of more energy are drawn again
+
+
+def drawn(
+    molecule: Molecule,
+    particles: int,
+    kT: float,
+    box: Floats,
+    random: np.random.Generator,
+    in_fluid: Callable[[Floats], NDArray[np.bool_]],
+) -> Floats:
+    """Places (particles, d) of the beads, molecule after molecule, whole: bonds may leave the box.
+
+    The first bead is anywhere in the box, the others follow bond by bond, with lengths and angles
+    of the temperature (for harmonic bonds these are Gaussian), or as `octant` has them. Molecules
+    that reach into a solid or have beads that repel one another strongly are drawn again. Raises
+    RunError if that is in vain.
+    """
+    d, beads = len(box), molecule.length
+    places = np.empty((particles // beads, beads, d))
+    left = np.arange(len(places))
+    for _ in range(TRIES):
+        places[left] = _one_draw(molecule, len(left), kT, box, random)
+        good = in_fluid(places[left]).all(axis=1) & _relaxed(molecule, places[left], kT)
+        left = left[~good]
+        if len(left) == 0:
+            return places.reshape(-1, d)
+    raise RunError(
+        f"fluid.molecule: no place for {len(left)} of {len(places)} molecules; they are too large "
+        "for the room between the solids, or their beads too large for one another"
+    )
+
+
+def _one_draw(
+    molecule: Molecule, number: int, kT: float, box: Floats, random: np.random.Generator
+) -> Floats:
+    d = len(box)
+    places = np.empty((number, molecule.length, d))
+    places[:, 0] = random.random((number, d)) * box
+    ring = molecule.topology == "ring"
+    links = molecule.bonds[:-1] if ring else molecule.bonds
+    bonds = np.stack([bonds_of(molecule, number, kT, d, random) for _ in molecule.bonds])
+    if ring:
+        bonds -= bonds.mean(axis=0)  # the last one leads back; Gaussian bonds stay Gaussian
+    came: dict[int, int] = {}  # bond by which each bead was reached
+    for n, (a, b) in enumerate(links):
+        if molecule.bending is not None and a in came and not ring:
+            bonds[n] = turned(molecule, bonds[came[a]], bonds[n], kT, random)
+        places[:, b] = places[:, a] + bonds[n]
+        came[b] = n
+    return places
+
+
+def bonds_of(
+    molecule: Molecule, number: int, kT: float, d: int, random: np.random.Generator
+) -> Floats:
+    """Bond vectors (number, d) as the conformation has them, thermal but for angles."""
+    if molecule.conformation == "octant":
+        square = mean_square(molecule.bond_potentials, d, kT, molecule.bond.longest)
+        return np.sqrt(3.0 * square / d) * random.random((number, d))
+    spring = molecule.bond.spring()
+    if spring is not None and molecule.pair is None:
+        return np.sqrt(0.5 * kT / spring.K) * random.standard_normal((number, d))
+    radii, _, density = lengths(molecule.bond_potentials, d, kT, molecule.bond.longest)
+    whole = np.cumsum(density)
+    length = np.interp(random.random(number), whole / whole[-1], radii)
+    return length[:, None] * _directions(number, d, random)
+
+
+def _directions(number: int, d: int, random: np.random.Generator) -> Floats:
+    vectors = random.standard_normal((number, d))
+    return vectors / np.linalg.norm(vectors, axis=1)[:, None]
+
+
+def turned(
+    molecule: Molecule, before: Floats, bond: Floats, kT: float, random: np.random.Generator
+) -> Floats:
+    """The bond, as long as it is, at an angle of the temperature to the one before."""
+    assert molecule.bending is not None
+    d, kernel = bond.shape[1], molecule.bending.kernel()
+    theta = np.linspace(0.0, np.pi, POINTS)
+    energy = np.array([angular.plain(kernel, c)[0] for c in np.cos(theta).tolist()])
+    weight = np.sin(theta) ** (d - 2) * np.exp(-(energy - energy.min()) / kT)
+    whole = np.cumsum(weight)
+    angle = np.interp(random.random(len(bond)), whole / whole[-1], theta)
+    along = before / np.linalg.norm(before, axis=1)[:, None]
+    across = _directions(len(bond), d, random)
+    across -= (across * along).sum(axis=1)[:, None] * along
+    across /= np.linalg.norm(across, axis=1)[:, None]
+    way = np.cos(angle)[:, None] * along + np.sin(angle)[:, None] * across
+    return np.linalg.norm(bond, axis=1)[:, None] * way
+
+
+def _relaxed(molecule: Molecule, places: Floats, kT: float) -> NDArray[np.bool_]:
+    """Molecules none of whose beads have too much energy, by bonds not drawn by their energy (those
+    that close a ring, and those of an octant) or by repulsion."""
+    good = np.ones(len(places), bool)
+    pair = molecule.pair.kernel() if molecule.pair is not None else None
+    if pair is not None:
+        limit = nearest_of(pair, kT)
+        for i in range(molecule.length):
+            for j in range(i + 1, molecule.length):
+                good &= np.linalg.norm(places[:, j] - places[:, i], axis=1) > limit
+    if molecule.topology == "ring" or molecule.conformation == "octant":
+        for a, b in molecule.bonds:
+            length = np.linalg.norm(places[:, b] - places[:, a], axis=1)
+            good &= length < 0.9 * molecule.bond.longest
+    return good
+
+
+def nearest_of(pair: object, kT: float) -> float:
+    """Distance at which two beads have the energy HOT."""
+    radii = np.geomspace(1e-3, 1e3, POINTS)
+    energy = np.array([central.plain(pair, r * r)[0] for r in radii.tolist()])
+    hot = np.flatnonzero(energy > HOT * kT)
+    return float(radii[hot[-1]]) if len(hot) else 0.0
+
+
+def connected(places: Floats, molecule: Molecule, periods: Floats) -> Floats:
+    """The same places, each bead in the image that is nearest to the one it hangs on."""
+    whole = places.reshape(-1, molecule.length, places.shape[1]).copy()
+    links = molecule.bonds[:-1] if molecule.topology == "ring" else molecule.bonds
+    for a, b in links:
+        apart = whole[:, b] - whole[:, a]
+        with np.errstate(invalid="ignore"):
+            boxes = np.where(np.isinf(periods), 0.0, np.rint(apart / periods))
+        whole[:, b] -= boxes * np.where(np.isinf(periods), 0.0, periods)
+    return whole.reshape(places.shape)

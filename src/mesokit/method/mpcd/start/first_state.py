@@ -1,0 +1,116 @@
+"""The state that a case starts from; `check` and `run` refuse the same here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from mesokit.case.component import show
+from mesokit.errors import CaseError
+from mesokit.io import checkpoint
+from mesokit.io.run_directory import RunDirectory
+from mesokit.io.snapshot_file import read_snapshot
+from mesokit.method.mpcd.start.arrays import read_arrays
+from mesokit.method.mpcd.start.snapshot import fitted, fitted_beads
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+
+class FirstState(NamedTuple):
+    """Positions and velocities (n, d) of the fluid and of the beads of solutes; None: drawn."""
+
+    positions: Any
+    velocities: Any
+    beads: Any
+    bead_velocities: Any
+
+
+def first_state(
+    case: Case,
+    positions: Any = None,
+    velocities: Any = None,
+    beads: Any = None,
+    bead_velocities: Any = None,
+) -> FirstState:
+    """What to start from: given, or what the case names; None stands for what is to be drawn.
+
+    Raises CaseError for arrays that do not fit the case, and for files and runs that cannot be
+    read.
+    """
+    fluid = read_arrays(case, "fluid", positions, velocities, run=_last_state, file=_from_file)
+    if case.solutes is None:
+        for name, array in (("beads", beads), ("bead_velocities", bead_velocities)):
+            if array is not None:
+                raise CaseError(f"{name}: there are no solutes in this case")
+        return FirstState(*fluid, None, None)
+    solutes = read_arrays(
+        case, "solutes", beads, bead_velocities, run=_last_beads, file=_beads_from_file
+    )
+    return FirstState(*fluid, *solutes)
+
+
+def _beads_from_file(case: Case, path: str) -> tuple[Any, Any]:
+    """Places and velocities of beads, from a file that another program has written."""
+    return fitted_beads(case, read_snapshot(path))
+
+
+def _last_beads(case: Case, path: str) -> tuple[Any, Any]:
+    """Places and velocities of beads at the last checkpoint of an earlier run.
+
+    Raises CaseError unless that run has the box and the polymers of the case.
+    """
+    fluid = _last_fluid(case, path, lambda case: ("solutes.polymers", _polymers(case)))
+    return fluid.solutes.places.copy(), fluid.solutes.velocities.copy()
+
+
+def _polymers(case: Case) -> list[tuple[Any, ...]]:
+    """Number, length, topology and arms of each kind of solutes."""
+    kinds = case.solutes.polymers if case.solutes is not None else ()
+    return [(kind.number, kind.length, kind.topology, kind.arms) for kind in kinds]
+
+
+def _from_file(case: Case, path: str) -> tuple[Any, Any]:
+    """Positions and velocities, by particle id, of a file that another program has written."""
+    return fitted(case, read_snapshot(path))
+
+
+def _last_state(case: Case, path: str) -> tuple[Any, Any]:
+    """Positions and velocities, by particle id, of the last checkpoint of an earlier run.
+
+    Raises CaseError unless that run has the box and the species of the case.
+    """
+    fluid = _last_fluid(case, path, lambda case: ("particles of (mass, number)", _kinds(case)))
+    return fluid.whole_positions(), fluid.velocities()
+
+
+def _last_fluid(case: Case, path: str, told: Callable[[Case], tuple[str, Any]]) -> Any:
+    """An earlier run at its last checkpoint, if its box and what is told of it are the same."""
+    from mesokit.case.case import Case
+    from mesokit.execute.cpu.engine import CPU
+
+    directory = RunDirectory.existing(path)
+    earlier = Case.from_toml(directory.case_file)
+    if earlier.run.method != case.run.method:
+        raise CaseError(f"that is a run of method {show(earlier.run.method)}")
+    (what, there), (_, here) = told(earlier), told(case)
+    for name, one, other in (
+        ("a box of", list(earlier.box.size), list(case.box.size)),
+        (what, there, here),
+    ):
+        if one != other:
+            raise CaseError(f"that run has {name} {show(one)}, this case {show(other)}")
+    arrays, _ = checkpoint.read(directory.checkpoint_file)
+    fluid = CPU(earlier)
+    fluid.restore(_part(arrays, "engine/"))
+    return fluid
+
+
+def _kinds(case: Case) -> list[tuple[float, int]]:
+    """Mass and number of each kind of particles."""
+    return [(kind.mass, kind.number) for kind in case.groups[0].kinds]
+
+
+def _part(arrays: dict[str, Any], start: str) -> dict[str, Any]:
+    """The arrays whose names start so, without it."""
+    return {key[len(start) :]: v for key, v in arrays.items() if key.startswith(start)}

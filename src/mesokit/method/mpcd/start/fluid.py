@@ -1,0 +1,89 @@
+"""How a fluid starts: the first positions and velocities of its particles."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.geometry.solids.contact import MARGIN
+from mesokit.method.mpcd.start.conformation import connected, drawn
+from mesokit.method.mpcd.start.room import periods, stays_out
+from mesokit.method.mpcd.start.solutes import first_beads
+from mesokit.scalar.random import INITIAL_POSITION, INITIAL_VELOCITY
+
+if TYPE_CHECKING:
+    from mesokit.execute.cpu.numbers import Numbers
+
+Floats = NDArray[np.float64]
+
+
+def start(
+    engine: Any,
+    positions: Any = None,
+    velocities: Any = None,
+    beads: Any = None,
+    bead_velocities: Any = None,
+) -> None:
+    """Give the particles their first positions and velocities.
+
+    Parameters
+    ----------
+    engine : Engine
+        A fluid in memory; its case says how to draw what is not given.
+    positions, velocities : array (n, d), optional
+        In cells, and in cells per unit of time, by particle number, as `read_arrays` has checked
+        them.
+    beads, bead_velocities : array (n, d), optional
+        The same of the beads of solutes.
+    """
+    numbers: Numbers = engine.numbers
+    case, mass, at_rest = numbers.case, numbers.masses(), velocities is None
+    positions = first_positions(numbers, positions)
+    if at_rest:
+        velocities = thermal_velocities(numbers, mass)
+    if case.solutes is not None:
+        given = beads, bead_velocities
+        beads, bead_velocities, drift = first_beads(numbers, case.solutes, *given, at_rest)
+        engine.solutes.begin(beads, bead_velocities)
+        velocities = velocities - drift if at_rest else velocities
+    if at_rest and case.box.shear_rate != 0.0:
+        velocities[:, 0] += case.box.shear_rate * (positions[:, 1] - 0.5 * numbers.box[1])
+    engine.begin(positions, velocities)
+
+
+def first_positions(numbers: Numbers, given: Any) -> Floats:
+    """Positions (n, d): the given ones, or drawn where there is no solid."""
+    case, molecule = numbers.case, numbers.case.fluid.molecule
+    random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_POSITION))))
+    if molecule is None:
+        return _uniform(numbers, random) if given is None else given
+    if given is not None:
+        return connected(given, molecule, periods(numbers))
+    return drawn(molecule, numbers.n, case.fluid.kT, numbers.box, random, stays_out(numbers))
+
+
+def thermal_velocities(numbers: Numbers, mass: Floats) -> Floats:
+    """Maxwellian velocities (n, d) without momentum."""
+    case = numbers.case
+    random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_VELOCITY))))
+    found = np.empty((numbers.n, numbers.dimension))
+    for k in range(numbers.dimension):
+        v = random.standard_normal(numbers.n)
+        v *= np.sqrt(case.fluid.kT / mass)
+        v -= np.sum(mass * v) / max(mass.sum(), 1e-300)  # np.dot would depend on BLAS's threads
+        found[:, k] = v
+    return found
+
+
+def _uniform(numbers: Numbers, random: np.random.Generator) -> Floats:
+    """Places (n, d) uniform in the fluid: those that lie in a solid are drawn again."""
+    places = np.stack([random.random(numbers.n) * length for length in numbers.box], axis=1)
+    if numbers.solids is None or numbers.slit is not None:
+        return places
+    left = np.arange(numbers.n)
+    while len(left):
+        left = left[numbers.solids.distance(places[left]) < MARGIN]
+        places[left] = random.random((len(left), numbers.dimension)) * numbers.box
+    return places

@@ -1,0 +1,190 @@
+"""How solutes lie at the start: grown bead by bead where there is room, so that none overlap.
+
+Every bond is drawn with the length and the angle of the temperature, a number at a time, and the
+first whose end has room is taken; a molecule that comes to a dead end begins anew (self-avoiding
+growth after Rosenbluth and Rosenbluth 1955). Rings start as regular polygons.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections import defaultdict
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import RunError
+from mesokit.method.mpcd.start.conformation import bonds_of, nearest_of, turned
+
+if TYPE_CHECKING:
+    from mesokit.method.mpcd.molecule import Molecule
+    from mesokit.method.mpcd.solutes import Solutes
+
+Floats = NDArray[np.float64]
+InFluid = Callable[[Floats], NDArray[np.bool_]]
+TRIES = 1000  # to place one molecule
+AT_ONCE = 32  # candidates for the place of a bead
+POOL = 4096  # bonds drawn at once, from which candidates are taken
+
+
+def grown(
+    solutes: Solutes, kT: float, box: Floats, periods: Floats, random: np.random.Generator,
+    in_fluid: InFluid,
+) -> Floats:  # fmt: skip
+    """Places (beads, d) of all solutes, molecules whole: bonds may leave the box.
+
+    Parameters
+    ----------
+    box, periods : arrays (d,)
+        Lengths of the box, and those after which it repeats, infinite where walls close it.
+    in_fluid : function
+        Which of places (n, d) are in the fluid.
+
+    Raises RunError where there is no room.
+    """
+    limit = nearest_of(solutes.pair.kernel(), kT) if solutes.pair is not None else 0.0
+    there = Placed(solutes.beads, box, periods, limit)
+    for kind, polymer in enumerate(solutes.polymers):
+        molecule = solutes.molecule(kind)
+        pool = _pool(molecule, kT, len(box), random) if molecule else np.zeros((1, len(box)))
+        for number in range(polymer.number):
+            if not _place(there, molecule, pool, random, in_fluid):
+                raise RunError(
+                    f"solutes.polymers[#{kind + 1}].number = {polymer.number}: no place for "
+                    f"molecule {number + 1} in {TRIES} tries; expected fewer or smaller molecules, "
+                    "or a larger box"
+                )
+    return there.places
+
+
+def _pool(molecule: Molecule, kT: float, d: int, random: np.random.Generator) -> Floats:
+    """Bonds: in any direction or, of stiff molecules, that follow a bond along x."""
+    bonds = bonds_of(molecule, POOL, kT, d, random)
+    if molecule.bending is None:
+        return bonds
+    return turned(molecule, np.tile(np.eye(d)[0], (POOL, 1)), bonds, kT, random)
+
+
+def _place(
+    there: Placed, molecule: Molecule | None, pool: Floats, random: np.random.Generator,
+    in_fluid: InFluid,
+) -> bool:  # fmt: skip
+    """Add a molecule; whether that worked."""
+    for _ in range(TRIES):
+        done = there.number
+        first = random.random(len(there.box)) * there.box
+        if molecule and molecule.topology == "ring":
+            done_well = _grow_ring(there, molecule, pool, first, random, in_fluid)
+        else:
+            done_well = _grow(there, molecule, pool, first, random, in_fluid)
+        if done_well:
+            return True
+        there.remove_from(done)
+    return False
+
+
+def _grow(
+    there: Placed, molecule: Molecule | None, pool: Floats, first: Floats,
+    random: np.random.Generator, in_fluid: InFluid,
+) -> bool:  # fmt: skip
+    """Bead by bead along the bonds of a chain or star."""
+    if not (in_fluid(first[None])[0] and there.free(first)):
+        return False
+    start = there.number
+    there.add(first)
+    came: dict[int, Floats] = {}  # the bond by which each bead was reached
+    for a, b in molecule.bonds if molecule else ():
+        bonds = pool[random.integers(len(pool), size=AT_ONCE)]
+        if molecule and molecule.bending is not None:
+            if a in came:
+                bonds = _reflected(bonds, came[a])
+            else:
+                bonds = bonds @ _any_turn(len(first), random)
+        ends = there.places[start + a] + bonds
+        good = next((n for n in np.flatnonzero(in_fluid(ends)) if there.free(ends[n])), None)
+        if good is None:
+            return False
+        came[b] = bonds[good]
+        there.add(ends[good])
+    return True
+
+
+def _grow_ring(
+    there: Placed, molecule: Molecule, pool: Floats, first: Floats, random: np.random.Generator,
+    in_fluid: InFluid,
+) -> bool:  # fmt: skip
+    """A regular polygon in any direction, its bonds as long as they are on average."""
+    d, beads = len(first), molecule.length
+    side = math.sqrt(float((pool**2).sum(axis=1).mean()))
+    angle = 2.0 * math.pi * np.arange(beads) / beads
+    flat = np.stack([np.cos(angle), np.sin(angle)], axis=1) * side / (2 * math.sin(math.pi / beads))
+    ring = first + np.pad(flat, ((0, 0), (0, d - 2))) @ _any_turn(d, random)
+    if not (in_fluid(ring).all() and all(there.free(bead) for bead in ring)):
+        return False
+    for bead in ring:
+        there.add(bead)
+    return True
+
+
+def _reflected(vectors: Floats, along: Floats) -> Floats:
+    """The vectors in the mirror that takes the x axis to a direction."""
+    mirror = np.eye(len(along))[0] - along / np.linalg.norm(along)
+    square = float(mirror @ mirror)
+    if square < 1e-20:
+        return vectors
+    return vectors - np.outer(vectors @ mirror, 2.0 / square * mirror)
+
+
+def _any_turn(d: int, random: np.random.Generator) -> Floats:
+    """A random orthogonal matrix."""
+    q, r = np.linalg.qr(random.standard_normal((d, d)))
+    return q * np.sign(np.diag(r))
+
+
+class Placed:
+    """The beads that have a place already, in cells, to see who is near."""
+
+    def __init__(self, most: int, box: Floats, periods: Floats, limit: float) -> None:
+        self.places, self.number = np.empty((most, len(box))), 0
+        self.box, self.limit = box, limit
+        self.inverse = 1.0 / periods
+        self.cells = np.maximum((box / max(limit, 1e-300)).clip(max=1000).astype(int), 1)
+        self.inside: dict[tuple[int, ...], list[int]] = defaultdict(list)
+
+    def add(self, place: Floats) -> None:
+        """One more bead."""
+        self.places[self.number] = place
+        if self.limit > 0.0:
+            self.inside[self._cell(place)].append(self.number)
+        self.number += 1
+
+    def remove_from(self, number: int) -> None:
+        """Take the last beads away again, from this number on."""
+        for i in range(self.number - 1, number - 1, -1):
+            if self.limit > 0.0:
+                self.inside[self._cell(self.places[i])].pop()
+        self.number = number
+
+    def free(self, place: Floats) -> bool:
+        """Whether all beads are farther away than the limit."""
+        if self.limit <= 0.0:
+            return True
+        near = [i for cell in self._around(place) for i in self.inside.get(cell, ())]
+        if not near:
+            return True
+        way = self.places[near] - place
+        way -= np.rint(way * self.inverse) * self.box
+        return bool(((way**2).sum(axis=1) > self.limit**2).all())
+
+    def _cell(self, place: Floats) -> tuple[int, ...]:
+        return tuple((np.floor(place / self.box * self.cells).astype(int) % self.cells).tolist())
+
+    def _around(self, place: Floats) -> set[tuple[int, ...]]:
+        axes = [
+            ((m - 1) % n, m, (m + 1) % n)
+            for m, n in zip(self._cell(place), self.cells.tolist(), strict=True)
+        ]
+        return set(itertools.product(*axes))

@@ -1,0 +1,22 @@
+"""The table `start` of a case: where positions and velocities come from."""
+
+from __future__ import annotations
+
+from mesokit.case.component import FileName, component, param
+
+
+@component
+class Start:
+    """Where positions and velocities come from; without files they are drawn from the seed.
+
+    Drawn positions are uniform; drawn velocities are Maxwellian with zero total momentum.
+    """
+
+    positions: FileName | None = param(None, doc="file .npy or .npz with an (n, d) array", unit="a")
+    velocities: FileName | None = param(
+        None, doc="file .npy or .npz with an (n, d) array", unit="a/time"
+    )
+    run: FileName | None = param(None, doc="folder of an earlier run: go on from its last state")
+    file: FileName | None = param(
+        None, doc="GSD file (its last frame) or LAMMPS data file, with the bonds of the molecules"
+    )

@@ -1,0 +1,176 @@
+"""Particles as another program has written them, and whether they are those of a case."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.box import AXES
+from mesokit.case.component import show
+from mesokit.case.snapshot import Snapshot
+from mesokit.errors import CaseError
+from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.geometry.solids.solids import free_volume
+from mesokit.method.mpcd.start.bead_order import bead_order
+from mesokit.method.mpcd.start.conformation import connected
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+Floats = NDArray[np.float64]
+ROUNDING = 1e-5  # relative, of numbers in single precision and in texts
+
+
+def fitted(case: Case, there: Snapshot) -> tuple[Floats, Floats | None]:
+    """Positions and velocities (n, d) by the particle ids of the case, from the corner of its box.
+
+    Raises CaseError unless box, number, masses and bonds are those of the case.
+    """
+    d, n = case.box.dimension, len(there.positions)
+    _require_box(case, there)
+    if n != case.particles:
+        raise CaseError(_other_number(case, n))
+    order = _by_mass(case, there)
+    if case.fluid.molecule is not None:
+        if not len(there.bonds):
+            raise CaseError("it has no bonds; expected those of fluid.molecule")
+        order = bead_order(there.bonds, n, case.fluid.molecule)
+        places = _whole(case, there)
+    else:
+        if len(there.bonds):
+            raise CaseError(f"it has {len(there.bonds)} bonds, this case no fluid.molecule")
+        places = (there.positions - there.low)[:, :d]
+    velocities = None if there.velocities is None else there.velocities[order, :d]
+    return places[order], velocities
+
+
+def fitted_beads(case: Case, there: Snapshot) -> tuple[Floats, Floats | None]:
+    """The same for the beads of solutes. Several kinds of molecules must be in the case's order."""
+    assert case.solutes is not None
+    solutes, d, n = case.solutes, case.box.dimension, len(there.positions)
+    _require_box(case, there)
+    if n != solutes.beads:
+        raise CaseError(f"it has {n} particles, this case {solutes.beads} beads of solutes")
+    if there.masses is not None:
+        off = ~np.isclose(there.masses, solutes.mass, rtol=ROUNDING, atol=0)
+        if off.any():
+            one = int(np.argmax(off))
+            raise CaseError(
+                f"particle {there.numbers[one]} has mass {there.masses[one]:.6g}; expected "
+                f"{solutes.mass:.6g} (solutes.mass)"
+            )
+    molecule = solutes.molecule(0)
+    if len(solutes.polymers) == 1 and molecule is not None:
+        if not len(there.bonds):
+            raise CaseError("it has no bonds; expected those of solutes.polymers")
+        order = bead_order(there.bonds, n, molecule)
+    else:
+        order, wanted = np.arange(n), np.sort(solutes.bonds(), axis=1)
+        found = np.unique(np.sort(there.bonds.reshape(-1, 2), axis=1), axis=0)
+        if not np.array_equal(found, np.unique(wanted, axis=0).reshape(-1, 2)):
+            raise CaseError(
+                "its bonds are not those of solutes.polymers, kind after kind, bead after bead"
+            )
+    places = _whole(case, there)[order]
+    if there.images is None:
+        places = _connected(case, places)
+    velocities = None if there.velocities is None else there.velocities[order, :d]
+    return places, velocities
+
+
+def _connected(case: Case, places: Floats) -> Floats:
+    """Each bead in the image that is nearest to the one that it hangs on."""
+    assert case.solutes is not None
+    closed = closed_axes(case.walls)
+    axes = AXES[: case.box.dimension]
+    periods = np.where([axis in closed for axis in axes], np.inf, np.array(case.box.size, float))
+    whole = places.copy()
+    for kind, polymer in enumerate(case.solutes.polymers):
+        molecule, first = case.solutes.molecule(kind), case.solutes.first_bead(kind)
+        part = slice(first, first + polymer.number * polymer.length)
+        if molecule is not None:
+            whole[part] = connected(places[part], molecule, periods)
+    return whole
+
+
+def _require_box(case: Case, there: Snapshot) -> None:
+    """The same lengths and right angles; in 2D all particles in one plane."""
+    d, size = case.box.dimension, np.array(case.box.size, float)
+    if np.abs(there.tilts).max() > ROUNDING:
+        raise CaseError(
+            f"its box leans by {show(there.tilts.tolist())}; expected right angles, as images have "
+            "not slid at the start"
+        )
+    if not np.allclose(there.lengths[:d], size, rtol=ROUNDING, atol=0):
+        raise CaseError(
+            f"it has a box of {show(there.lengths[:d].tolist())}, this case {show(case.box.size)} "
+            "(box.size)"
+        )
+    if d == 2 and np.ptp(there.positions[:, 2]) > ROUNDING:
+        raise CaseError("its particles differ in z; expected a 2D box as in this case")
+
+
+def _other_number(case: Case, n: int) -> str:
+    """How many there are, and what would make the case fit."""
+    density = f"fluid.density = {show(case.fluid.density)}"
+    whole = case.fluid.molecule is None or n % case.fluid.molecule.length == 0
+    hint = ""
+    if whole and case.particles and not case.fluid.species:
+        hint = f"; fluid.density = {show(case.fluid.density * n / case.particles)} makes so many"
+    return f"it has {n} particles, this case {case.particles} ({density}){hint}"
+
+
+def _by_mass(case: Case, there: Snapshot) -> NDArray[np.int64]:
+    """The particle (n,) of the file for each particle id, so that kinds have their masses."""
+    volume = free_volume(case)
+    kinds = [(kind.mass, round(kind.density * volume)) for kind in case.fluid.species]
+    masses, counts = zip(*kinds or [(case.fluid.mass, case.particles)], strict=True)
+    wanted, order = np.repeat(masses, counts), np.arange(case.particles)
+    if there.masses is None:
+        if len(set(masses)) > 1:
+            raise CaseError("it has no masses; expected those of fluid.species")
+        return order
+    order[np.argsort(wanted, kind="stable")] = np.argsort(there.masses, kind="stable")
+    off = ~np.isclose(there.masses[order], wanted, rtol=ROUNDING, atol=0)
+    if off.any():
+        one = int(np.argmax(off))
+        raise CaseError(
+            f"particle {there.numbers[order[one]]} has mass {there.masses[order[one]]:.6g}; "
+            f"expected {wanted[one]:.6g} as in this case"
+        )
+    return order
+
+
+def _whole(case: Case, there: Snapshot) -> Floats:
+    """Places (n, d), as if the box had no bounds where the file says in which image they are.
+
+    Raises CaseError for a bond so long that nobody could tell which images it links.
+    """
+    d = case.box.dimension
+    closed = closed_axes(case.walls)
+    open_axes = np.array([axis not in closed for axis in AXES[:d]])
+    size, places = there.lengths[:d], (there.positions - there.low)[:, :d]
+    told = there.images is not None and bool(there.images[:, :d][:, open_axes].any())
+    if told:
+        assert there.images is not None
+        places = places + np.where(open_axes, there.images[:, :d] * size, 0.0)
+    way = places[there.bonds[:, 1]] - places[there.bonds[:, 0]]
+    if told:
+        far = (np.abs(way) > 0.5 * size)[:, open_axes].any(axis=1)
+    else:
+        way -= np.where(open_axes, np.rint(way / size) * size, 0.0)
+        far = np.linalg.norm(way, axis=1) > 0.5 * size.min()
+    if far.any():
+        one = int(np.argmax(far))
+        raise CaseError(_too_long(there, one, way[one], size))
+    return np.asarray(places)
+
+
+def _too_long(there: Snapshot, bond: int, way: Floats, size: Floats) -> str:
+    first, second = there.numbers[there.bonds[bond]]
+    return (
+        f"the bond of particles {first} and {second} is {np.linalg.norm(way):.4g} long, more than "
+        f"half of the box {show(size.tolist())}; expected shorter bonds or a larger box"
+    )

@@ -1,0 +1,43 @@
+"""The first places and velocities of the beads of solutes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mesokit.geometry.solids.contact import MARGIN
+from mesokit.method.mpcd.start.conformation import nearest_of
+from mesokit.method.mpcd.start.growth import grown
+from mesokit.method.mpcd.start.room import periods, stays_out
+from mesokit.scalar.random import INITIAL_SOLUTES
+
+if TYPE_CHECKING:
+    from mesokit.execute.cpu.numbers import Numbers
+    from mesokit.method.mpcd.solutes import Solutes
+
+
+def first_beads(
+    numbers: Numbers, solutes: Solutes, places: Any, velocities: Any, fluid_is_drawn: bool
+) -> tuple[Any, Any, Any]:
+    """Places and velocities (beads, d), drawn where there are none, and the drift (d,) to take off.
+
+    Beads are grown where there is room, with thermal velocities. The fluid, if its velocities are
+    drawn too, takes part of their momentum, so that the whole is at rest.
+    """
+    case, drift = numbers.case, np.zeros(numbers.dimension)
+    random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_SOLUTES))))
+    kT = case.fluid.kT
+    if places is None:
+        clear = nearest_of(solutes.wall.kernel(), kT) if solutes.wall else MARGIN
+        room = stays_out(numbers, clear)
+        places = grown(solutes, kT, numbers.box, periods(numbers), random, room)
+    if velocities is None:
+        shape = solutes.beads, numbers.dimension
+        velocities = np.sqrt(kT / solutes.mass) * random.standard_normal(shape)
+        if fluid_is_drawn:
+            momentum = solutes.mass * velocities.sum(axis=0)
+            drift = momentum / (solutes.mass * len(velocities) + numbers.masses().sum())
+            velocities -= drift
+            velocities[:, 0] += case.box.shear_rate * (places[:, 1] - 0.5 * numbers.box[1])
+    return places, velocities, drift

@@ -1,0 +1,51 @@
+"""No thermostat."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal, NamedTuple
+
+from mesokit.case.component import component, tag
+from mesokit.method.mpcd.thermostat.protocol import Thermostat, draw, guess, stretch, target
+from mesokit.theory.transport import Thermostat as Named
+
+
+@component
+class NoThermostat(Thermostat):
+    """Leave the energy to the collision rule."""
+
+    rule: Literal["none"] = tag("none")
+
+    acts: ClassVar[bool] = False
+    needs_energy: ClassVar[bool] = False
+    canonical: ClassVar[bool] = True
+    in_theory: ClassVar[Named | None] = "none"
+
+    def kernel(self, kT: float, floor: float) -> Free:
+        """Parameters for the scalar functions below; an energy below the floor is noise."""
+        return Free(kT)
+
+
+class Free(NamedTuple):
+    """No thermostat; kT only sets the temperature of the start."""
+
+    kT: float
+
+
+@draw.register(Free)
+def _(thermostat, counter, cell, freedom, attempt):
+    return 0.0, True
+
+
+@guess.register(Free)
+def _(thermostat, chance, freedom):
+    return 0.0, True
+
+
+@target.register(Free)
+def _(thermostat, variate, freedom, energy):
+    return energy
+
+
+@stretch.register(Free)
+def _(thermostat, variate, freedom, energy):
+    return ()

@@ -1,0 +1,64 @@
+"""What a thermostat answers: the kinetic energy that the particles of a cell should have.
+
+Energies are those of the motion that a collision rule leaves free: relative to the cell's centre of
+mass, and for the rules +a to its rotation too. The first argument is the thermostat's NamedTuple of
+parameters; its class picks the implementation.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from typing import Any, ClassVar
+
+from mesokit.case.component import component
+from mesokit.case.registry import family
+from mesokit.scalar.jit import generic, scalar
+from mesokit.theory.transport import Thermostat as Named
+
+
+@family("thermostat", "rule", "mesokit.thermostat")
+@component
+class Thermostat(ABC):
+    """What holds the temperature of the cells."""
+
+    acts: ClassVar[bool] = True  # whether it holds the temperature
+    needs_energy: ClassVar[bool] = True  # whether `stretch` asks for the kinetic energy
+    canonical: ClassVar[bool] = False  # whether it leaves the canonical distribution alone
+    one_temperature: ClassVar[bool] = True  # of all kinds of particles in a mixture
+    in_theory: ClassVar[Named | None] = None  # the name by which `mesokit.theory` knows it
+
+    @abstractmethod
+    def kernel(self, kT: float, floor: float) -> Any:
+        """Parameters for the scalar functions below; an energy below the floor is noise."""
+
+
+@generic
+def guess(thermostat, chance, freedom):
+    """A random number for `target` from two random words, and whether it may surely be used."""
+
+
+@generic
+def draw(thermostat, counter, cell, freedom, attempt):
+    """The same with a test that decides, where `guess` was not sure; if refused, try the next."""
+
+
+@generic
+def target(thermostat, variate, freedom, energy):
+    """Kinetic energy to reach, from the present one."""
+
+
+@generic
+def stretch(thermostat, variate, freedom, energy):
+    """Factor for the velocities that takes their energy to the target: (factor,) or ()."""
+
+
+@scalar
+def root_of_ratio(wanted, present, freedom, floor):
+    """sqrt(wanted / present), and 1 where there is nothing to scale.
+
+    The present energy is a sum of rounded numbers: below the floor it is noise, which must not be
+    stretched to the target.
+    """
+    ratio = wanted / max(present, floor)
+    return math.sqrt(ratio) if freedom > 0.5 and wanted > 0.0 else 1.0

@@ -1,0 +1,61 @@
+"""Thermostat that sets every cell to the same temperature."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal, NamedTuple
+
+from mesokit.case.component import component, tag
+from mesokit.method.mpcd.thermostat.protocol import (
+    Thermostat,
+    draw,
+    guess,
+    root_of_ratio,
+    stretch,
+    target,
+)
+from mesokit.theory.transport import Thermostat as Named
+
+
+@component
+class Rescale(Thermostat):
+    """Scale the relative velocities of a cell to exactly the mean thermal energy.
+
+    Keeps the temperature but not its fluctuations; the mean velocity of the cell is left alone.
+    """
+
+    rule: Literal["rescale"] = tag("rescale")
+
+    one_temperature: ClassVar[bool] = False
+    in_theory: ClassVar[Named | None] = "rescale"
+
+    def kernel(self, kT: float, floor: float) -> Isokinetic:
+        """Parameters for the scalar functions below; an energy below the floor is noise."""
+        return Isokinetic(kT, floor)
+
+
+class Isokinetic(NamedTuple):
+    """Thermal energy to set."""
+
+    kT: float
+    floor: float
+
+
+@draw.register(Isokinetic)
+def _(thermostat, counter, cell, freedom, attempt):
+    return 0.0, True
+
+
+@guess.register(Isokinetic)
+def _(thermostat, chance, freedom):
+    return 0.0, True
+
+
+@target.register(Isokinetic)
+def _(thermostat, variate, freedom, energy):
+    return 0.5 * freedom * thermostat.kT
+
+
+@stretch.register(Isokinetic)
+def _(thermostat, variate, freedom, energy):
+    wanted = target(thermostat, variate, freedom, energy)
+    return (root_of_ratio(wanted, energy, freedom, thermostat.floor),)

@@ -1,0 +1,189 @@
+"""What `check` and `run` warn of: cases that can run, and may not give what was meant."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from mesokit.case.box import AXES
+from mesokit.case.component import name_of
+from mesokit.case.warnings import run_warnings
+from mesokit.geometry.samples.from_file import FromFile
+from mesokit.geometry.solids.solids import solids_of
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.molecule import COARSE
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.method.mpcd.numbers import Derived
+
+
+def cautions(case: Case, numbers: Derived, across: int) -> Iterator[str]:
+    """What one should know before a run; `across` is the number of the axis across the flow."""
+    yield from _method_warnings(case, numbers)
+    yield from _solid_warnings(case)
+    yield from _flow_warnings(case, numbers, across)
+    yield from _observable_warnings(case)
+    yield from run_warnings(case, numbers.memory, numbers.trajectory)
+
+
+def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
+    fluid, transport = case.fluid, numbers.transport
+    path = fluid.timestep * math.sqrt(fluid.kT / fluid.mass)
+    angle = getattr(fluid.collision, "angle", 90.0)
+    if angle < 7:
+        yield (
+            f"fluid.collision.angle = {angle:g}: the angle is in degrees; "
+            f"{angle:g} rad is {math.degrees(angle):.2f}"
+        )
+    if fluid.grid_shift < 1 and path < 0.5:
+        yield (
+            f"fluid.grid_shift = {fluid.grid_shift:g}: with a mean free path of {path:.3g} cells "
+            "(below 0.5) only the full shift makes the fluid Galilean invariant"
+        )
+    if _above(path, 1, 3):
+        yield (
+            f"fluid.timestep = {fluid.timestep:g}: the mean free path is {path:.3g} cells; above 1 "
+            "the fluid is a dilute gas, with slip at walls"
+        )
+    if fluid.molecule is not None and fluid.molecule.propagation == "verlet":
+        phase = fluid.molecule.phase(case.box.dimension, fluid.timestep, fluid.kT, fluid.mass)
+        if fluid.molecule.substeps is not None and phase > COARSE:
+            yield (
+                f"fluid.molecule.substeps = {fluid.molecule.substeps}: the stiffest spring turns "
+                f"by {phase:.2g} rad in each (above {COARSE:g}): its swings read up to "
+                f"{25 * phase**2:.2g} % too large"
+            )
+    if case.solutes is not None and case.solutes.substeps is not None:
+        given = case.solutes
+        frequency = given.frequency(case.box.dimension, fluid.kT)
+        phase = frequency * fluid.timestep / case.solutes.substeps
+        if phase > COARSE:
+            yield (
+                f"solutes.substeps = {given.substeps}: the stiffest potential turns by {phase:.2g} "
+                f"rad in each (above {COARSE:g}): its swings read up to {25 * phase**2:.2g} % too "
+                "large"
+            )
+    if fluid.density < 3:
+        yield (
+            f"fluid.density = {fluid.density:g}: below 3 many cells hold no pair that could "
+            "collide, and the formulas for the viscosity fail"
+        )
+    note = setting.temperature_note(case)
+    if note:
+        yield (
+            f"fluid.thermostat.rule = {name_of(fluid.thermostat)!r}, fluid.collision.rule = "
+            f"{name_of(fluid.collision)!r}: {note.removeprefix('approximate: ')} at this density"
+        )
+    if transport is None:
+        reason = setting.caveat(case) or "no formula for this fluid"
+        yield f"transport coefficients: {reason}; plots will lack theory"
+    elif case.box.dimension == 2 and _above(7, transport.dynamic_viscosity, 3):
+        yield (
+            f"in 2D fluctuations raise a dynamic viscosity of {transport.dynamic_viscosity:.3g} "
+            "(below 7) by several percent over theory, more in a larger box"
+        )
+
+
+def _solid_warnings(case: Case) -> Iterator[str]:
+    if not setting.obstructed(case):
+        return
+    solids = solids_of(case)
+    for i, wall in enumerate(case.walls):
+        if isinstance(wall, FromFile):
+            for note in wall.notes(solids.room, solids.samples(i)):
+                yield f"wall[#{i + 1}].{note}"
+    thin, narrow = solids.tight_places()
+    if thin is not None:
+        place, size = thin
+        yield (
+            f"wall: the solid at {_place(place)} is about {size:.2g} cells thick; below 1.5 fluid "
+            "on its two sides collides"
+        )
+    if narrow is not None:
+        place, size = narrow
+        yield (
+            f"wall: the gap at {_place(place)} is about {size:.2g} cells wide; below 3 the flow in "
+            "it is not resolved"
+        )
+
+
+def _place(coordinates: Sequence[float]) -> str:
+    return "(" + ", ".join(f"{x:.1f}" for x in coordinates) + ")"
+
+
+def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
+    fluid, force = case.fluid, case.fluid.force
+    sheared = case.box.shear_rate != 0
+    if numbers.mach is not None and _above(numbers.mach, 0.2) and not sheared:
+        yield (
+            f"Mach number {numbers.mach:.2g}: above 0.2 the fluid is compressible; "
+            "lower the force or the velocity of the surfaces"
+        )
+    elif numbers.mach is None and numbers.transport:
+        mach = setting.surface_speed(case) / numbers.transport.sound_speed
+        if _above(mach, 0.2):
+            yield (
+                f"wall: surfaces move at Mach number {mach:.2g}: above 0.2 the fluid is "
+                "compressible; lower their velocity or rotation"
+            )
+    if sheared and numbers.transport:
+        cell = abs(case.box.shear_rate) / numbers.transport.sound_speed
+        if _above(cell, 0.2):
+            yield (
+                f"box.shear_rate = {case.box.shear_rate:g}: velocities differ by {cell:.2g} of the "
+                "speed of sound across a cell; keep it below 0.2"
+            )
+    random = case.solutes is not None and case.solutes.solvent == "random"
+    for axis, push in zip(AXES, setting.acceleration(case).tolist(), strict=False):
+        if push and not case.walls and not random:
+            yield (
+                f"fluid.force.acceleration: nothing holds the fluid along {axis}: without "
+                "walls it speeds up for ever (without a thermostat it also heats)"
+                if not setting.isothermal(case)
+                else f"fluid.force.acceleration: nothing holds the fluid along {axis}: without "
+                "walls it speeds up for ever"
+            )
+        elif push and AXES.index(axis) in setting.closed_axes(case):
+            drop = fluid.mass * abs(push) * case.box.size[across] / fluid.kT
+            if drop > 0.1:
+                yield (
+                    f"fluid.force.acceleration along {axis} presses the fluid on a plate: its "
+                    f"density falls by a factor {math.exp(min(drop, 99)):.3g} across the slit"
+                )
+    if numbers.flow == "plug" and numbers.flow_speed is None:
+        yield "fluid.force.acceleration: slip plates hold nothing: the fluid speeds up for ever"
+    if numbers.heating is not None and numbers.heating > 0.01:
+        yield (
+            f"no thermostat: friction raises the temperature by {100 * numbers.heating:.2g} % "
+            "over the run"
+        )
+    if numbers.reynolds is not None:
+        # as it is shown: 1.4 is not above 1.4
+        shown = float(f"{numbers.reynolds:.2g}")
+        if unstable := force.instability(shown, case.box.size, across):
+            yield unstable
+    if numbers.steady_time is not None and numbers.flow_speed:
+        wait = math.ceil(3 * numbers.steady_time / fluid.timestep)
+        if case.run.warmup < wait and case.run.steps and fluid.start.run is None:
+            yield (
+                f"run.warmup = {case.run.warmup}: the flow needs about {wait} steps from rest to "
+                "its steady state; observables will average over the start"
+            )
+
+
+def _observable_warnings(case: Case) -> Iterator[str]:
+    flowing = setting.flowing_axes(case)
+    for i, observable in enumerate(case.observe):
+        seen = getattr(observable, "component", None)
+        if seen is not None and flowing and seen not in flowing:
+            yield (
+                f"observe[#{i + 1}].component = {seen!r}: nothing flows along {seen}; "
+                f"the flow is along {' and '.join(flowing)}"
+            )
+
+
+def _above(value: float, limit: float, digits: int = 2) -> bool:
+    """Whether a value is above a limit even as it is shown, to so many digits."""
+    return float(f"{value:.{digits}g}") > float(f"{limit:.{digits}g}")

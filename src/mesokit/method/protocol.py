@@ -1,0 +1,108 @@
+"""What a method of simulation is: all that the rest of the package asks of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import method as methods
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.case.trajectory import Group
+    from mesokit.engine import Engine
+
+Row = tuple[str, str, str]  # what, its value, and a word on it
+
+
+class Summary(NamedTuple):
+    """What follows from a case before it runs: a table for `mesokit check`, warnings, and about
+    how many seconds the run takes."""
+
+    rows: tuple[Row, ...]
+    warnings: tuple[str, ...]
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Method:
+    """A method of simulation.
+
+    Parameters
+    ----------
+    name : str
+        What `run.method` says.
+    sections : class
+        Its annotated fields, made by `param`, are the sections of its cases.
+    observables : sequence of type
+        The observables that it offers, or bases of them. Others may say in `methods` that they
+        are for it.
+    check : function of a case
+        Raises CaseError for values that are fine alone and have no physics together.
+    groups : function of a case
+        The groups of its particles, in the order of particle numbers.
+    timestep : function of a case
+        The time that a step takes.
+    summary : function of a case and a number of threads (None: all cores)
+        Derived numbers, estimated cost and warnings.
+    first_state : function of a case and arrays by name
+        What to start from, checked; raises CaseError. Whatever it returns goes to `start`.
+    engine : function of a case, a number of threads and what observables need measured
+        The engine, with nothing in it yet.
+    start : function of an engine and a first state
+        Fills the engine.
+    keys : mapping, optional
+        Names of sections as they are in a file where these differ from those in Python: of a list
+        of tables, `[[wall]]` for `walls`.
+    arrays : sequence of str, optional
+        Names of the arrays that a `Simulation` may be started from.
+    expected : mapping, optional
+        By the name of an observable that several methods share, what theory expects of it:
+        a function of a case and the observable, whose answer that observable's file describes.
+    bonds : function of a case, optional
+        Pairs (bonds, 2) of the numbers of particles that are bonded.
+    closed_axes : function of a case, optional
+        Numbers of the axes that are not periodic.
+    solids : function of a case, optional
+        The solids that pictures show (`mesokit.geometry.solids.solids.Solids`), or None.
+    kT : function of a case, optional
+        Thermal energy, where particles have velocities.
+    missing_files : function of a case, optional
+        A line for each file that a case needs and that is not there.
+    keep_files : function of a case and the folder of its run, optional
+        The case, with copies in that folder of the files that it was made from.
+    si : function of a case, optional
+        What its units are in SI; without it, a case must not have the section `[units]`.
+    """
+
+    name: str
+    sections: type
+    observables: tuple[type, ...]
+    check: Callable[[Case], None]
+    groups: Callable[[Case], tuple[Group, ...]]
+    timestep: Callable[[Case], float]
+    summary: Callable[[Case, int | None], Summary]
+    first_state: Callable[[Case, Mapping[str, Any]], Any]
+    engine: Callable[[Case, int, Sequence[str]], Engine]
+    start: Callable[[Any, Any], None]
+    keys: Mapping[str, str] = field(default_factory=dict)
+    arrays: tuple[str, ...] = ()
+    expected: Mapping[str, Callable[[Case, Any], Any]] = field(default_factory=dict)
+    bonds: Callable[[Case], NDArray[np.int64]] = lambda case: np.zeros((0, 2), np.int64)
+    closed_axes: Callable[[Case], set[int]] = lambda case: set()
+    solids: Callable[[Case], Any] = lambda case: None
+    kT: Callable[[Case], float] | None = None
+    missing_files: Callable[[Case], list[str]] = lambda case: []
+    keep_files: Callable[[Case, Path], Case] = lambda case, folder: case
+    si: Callable[[Case], Any] | None = None
+
+
+def method_of(case: Case) -> Method:
+    """The method of a case."""
+    found: Method = methods.load(case.run.method)
+    return found

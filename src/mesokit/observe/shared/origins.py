@@ -1,0 +1,101 @@
+"""Two-time averages over particles with many origins, in memory that the longest lag bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.observe.shared.estimate import Estimate
+from mesokit.observe.shared.protocol import State
+
+Array = NDArray[np.floating[Any]]
+POINTS = 16  # kept per level; lags are at most 1/8 apart
+GROUPS = 32  # of particles, for the error bars
+
+
+class Origins:
+    """Averages over particles and origins of a function of a quantity at two times.
+
+    Level l remembers every 2^l-th sample, POINTS of them: lags 0 to 15, 16, 18 ... 30, 32, 36 ...
+    Nothing is averaged in time, every value is exact. Particles fall into groups whose averages
+    over the whole run are independent but for what they do to each other's surroundings: they
+    give the error bars.
+
+    Parameters
+    ----------
+    particles: how many.
+    dimension: numbers per particle.
+    max_lag: longest lag in samples.
+    groups: how many, particle i in group i modulo them.
+    """
+
+    def __init__(self, particles: int, dimension: int, max_lag: int, groups: int = GROUPS) -> None:
+        self.groups = min(groups, particles)
+        self.particles = particles // self.groups * self.groups
+        self.max_lag, self.count, levels = max_lag, 0, 1
+        while POINTS // 2 << levels <= max_lag:
+            levels += 1
+        self.memory = np.zeros((levels, POINTS, self.particles, dimension))
+        self.lags = np.array(
+            [0]
+            + [
+                j << level
+                for level in range(levels)
+                for j in range(POINTS // 2 if level else 1, POINTS)
+                if j << level <= max_lag
+            ]
+        )
+        self.sums = np.zeros((len(self.lags), self.groups))
+        self.counts = np.zeros(len(self.lags), np.int64)
+
+    def add(self, sample: Array, product: Any) -> None:
+        """Add a sample (particles, dimension); `product(old, new)` gives (particles,)."""
+        sample = sample[: self.particles]
+        self._average(0, product(sample, sample))
+        index = 1
+        for level in range(len(self.memory)):
+            first = POINTS // 2 if level else 1
+            number, rest = divmod(self.count, 1 << level)
+            for j in range(first, POINTS):
+                if j << level > self.max_lag:
+                    break
+                if rest == 0 and number >= j:
+                    old = self.memory[level, (number - j) % POINTS]
+                    self._average(index, product(old, sample))
+                index += 1
+            if rest == 0:
+                self.memory[level, number % POINTS] = sample
+        self.count += 1
+
+    def _average(self, index: int, values: Array) -> None:
+        self.sums[index] += values.reshape(-1, self.groups).mean(axis=0)
+        self.counts[index] += 1
+
+    def sampled(self) -> NDArray[np.int64]:
+        """The lags that have been reached."""
+        return self.lags[self.counts > 0]
+
+    def estimate(self) -> Estimate:
+        """Value at each lag that has been reached, with the groups in place of blocks of time."""
+        reached = self.counts > 0
+        means = (self.sums[reached] / self.counts[reached, None]).T
+        value = means.mean(axis=0)
+        return Estimate(value, (means - value) / self.groups, np.ones(self.groups))
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return {
+            "memory": self.memory,
+            "sums": self.sums.copy(),
+            "counts": self.counts.copy(),
+            "count": np.array(self.count),
+        }
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.memory[:] = state["memory"]
+        self.sums[:], self.counts[:] = state["sums"], state["counts"]
+        self.count = int(state["count"])

@@ -1,0 +1,75 @@
+"""What all profiles along an axis share: bins finer than a cell, and sums in blocks of time."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.box import Axis
+from mesokit.case.component import component, param
+from mesokit.engine import RunningFluid
+from mesokit.method.mpcd.expected import setting
+from mesokit.observe.shared.estimate import Estimate, mode_chi_square
+from mesokit.observe.shared.protocol import BlockAccumulator, Observable
+from mesokit.observe.shared.result import Comparison
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+Array = NDArray[np.floating[Any]]
+
+
+@component
+class Profile(Observable):
+    """A quantity in slices across an axis."""
+
+    axis: Axis = param("y", doc="axis across which the slices lie")
+    bins_per_cell: int = param(4, doc="slices per cell", ge=1)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for an axis that the box has not."""
+        case.box.index(self.axis)
+
+
+class ProfileAccumulator(BlockAccumulator):
+    """Block sums of `width` numbers for each slice."""
+
+    def __init__(self, observable: Profile, case: Case, width: int) -> None:
+        observable.check(case)
+        self.observable, self.case, self.name = observable, case, observable.label
+        self.axis = case.box.index(observable.axis)
+        self.bins = int(case.box.size[self.axis]) * observable.bins_per_cell
+        self.axes: tuple[int, ...] = (self.axis,)  # along which sums are in bins
+        self.counts: tuple[int, ...] = (self.bins,)
+        self.edges = np.linspace(0.0, case.box.size[self.axis], self.bins + 1)
+        self.centres = (self.edges[1:] + self.edges[:-1]) / 2
+        self.periodic = self.axis not in setting.closed_axes(case)
+        self.blocks = Blocks((width, self.bins))
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        self.blocks.add(self.sample(*fluid.moments(self.axes, self.counts)))
+
+    @abstractmethod
+    def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
+        """The (width, *counts) numbers to add up."""
+
+    def chi_square(self, estimate: Estimate, expected: Array, note: str) -> list[Comparison]:
+        """Chi-square of the whole profile per degree of freedom, as a comparison with 1."""
+        found = mode_chi_square(estimate, expected, self.periodic)
+        if found is None:
+            return []
+        return [
+            Comparison(
+                "chi-square per degree of freedom",
+                found.chi2 / found.dof,
+                (2 / found.dof) ** 0.5,
+                1.0,
+                "",
+                f"{note}; p = {found.p:.2g}, {found.dof} degrees of freedom",
+            )
+        ]

@@ -1,0 +1,51 @@
+"""Any result: its values over the first coordinate, a curve for each choice of the others."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import numpy as np
+
+from mesokit.observe.shared.result import Result
+from mesokit.report.style import COLOURS, LINES, MARKERS, labelled
+
+SHOWN = 6  # curves
+
+
+def draw(result: Result, figure: Any, ax: Any) -> None:
+    """Data with error bars, and theory where there is one."""
+    ax = figure.subplots() if ax is None else ax
+    if not result.x:
+        ax.errorbar([0], result.value, result.error, fmt="o", mfc="white", color=COLOURS[0])
+        ax.set_xticks([0], [result.name])
+        ax.set_ylabel(labelled(result.label, result.units.get("value", "")))
+        return
+    axis, *others = result.x
+    x = np.asarray(result.x[axis])
+    places = np.arange(len(x)) if x.dtype.kind in "US" else x
+    choices = itertools.product(*(range(len(result.x[name])) for name in others))
+    for i, chosen in enumerate(itertools.islice(choices, SHOWN)):
+        at: Any = (slice(None), *chosen)
+        label = ", ".join(
+            f"{name} {result.x[name][k]}" for name, k in zip(others, chosen, strict=True)
+        )
+        ax.errorbar(
+            places,
+            result.value[at],
+            result.error[at],
+            fmt=MARKERS[i],
+            mfc="white",
+            lw=0.8,
+            color=COLOURS[i],
+            label=label or r"measured, $\pm$ one standard error",
+            zorder=2,
+        )
+        if result.expected is not None and np.isfinite(result.expected[at]).any():
+            theory = f"theory: {result.theory}" if i == 0 else None
+            ax.plot(places, result.expected[at], ls=LINES[i], color="black", lw=1, label=theory)
+    if x.dtype.kind in "US":
+        ax.set_xticks(places, [str(name) for name in x])
+    ax.set_xlabel(labelled(axis, result.units.get(axis, "")))
+    ax.set_ylabel(labelled(result.label, result.units.get("value", "")))
+    ax.legend(loc="best")

@@ -1,0 +1,125 @@
+"""Where compiled kernels are kept: a folder of their own for each version of the sources.
+
+Numba notices a change in a kernel's own file, not in the functions that it calls; the name of the
+folder is a hash of all sources that hold compiled code, so that nothing stale is ever run. Kernels
+for parts from outside mesokit, such as a user's collision rule, lie in a folder within, named after
+the sources of those parts: elsewhere nobody could read them where the parts are not installed.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+from numba import config, njit
+from numba.core.caching import FunctionCache
+
+from mesokit.scalar.part import part
+
+COMPILED = ("scalar", "case", "geometry", "potential", "method", "execute")
+
+
+@functools.cache
+def folder() -> str:
+    """NUMBA_CACHE_DIR, or a folder in the user's cache named after the sources."""
+    if config.CACHE_DIR:
+        return str(config.CACHE_DIR)
+    root = Path(__file__).parent.parent
+    code = hashlib.sha256()
+    for path in sorted(path for name in COMPILED for path in (root / name).rglob("*.py")):
+        source = path.read_bytes()
+        if b"mesokit.scalar" in source or b"numba" in source:
+            code.update(path.name.encode() + source)
+    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return str(Path(base) / "mesokit" / code.hexdigest()[:16])
+
+
+def kernel(function: Callable) -> Any:
+    """Compile a loop over particles or cells, and keep the result on disk.
+
+    It takes (thread, threads, ...) and is run by all threads of a team at once.
+    """
+    made = njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True)(function)
+    made._cache = KernelFiles(function)
+    return made
+
+
+def inner(function: Callable) -> Any:
+    """A part of a kernel, compiled with it."""
+    return part(function, nogil=True)
+
+
+class KernelFiles:
+    """What numba asks of a cache, for one kernel: files in a folder by whose parts are in it."""
+
+    def __init__(self, function: Callable) -> None:
+        self.function = function
+        self.caches: dict[str, FunctionCache] = {}
+
+    @property
+    def cache_path(self) -> str:
+        """The folder of kernels without parts from outside."""
+        return folder()
+
+    def load_overload(self, signature: Any, target: Any) -> Any:
+        """The compiled kernel for these types, None if there is none."""
+        cache = self._cache(signature)
+        return None if cache is None else cache.load_overload(signature, target)
+
+    def save_overload(self, signature: Any, compiled: Any) -> None:
+        """Keep a compiled kernel."""
+        cache = self._cache(signature)
+        if cache is not None:
+            cache.save_overload(signature, compiled)
+
+    def flush(self) -> None:
+        """Forget what is on disk."""
+        for cache in self.caches.values():
+            cache.flush()
+
+    def _cache(self, signature: Any) -> FunctionCache | None:
+        outside = {c for c in classes(signature) if c.__module__.split(".")[0] != "mesokit"}
+        if any(c.__module__ == "__main__" or "<locals>" in c.__qualname__ for c in outside):
+            return None  # no other process could tell that these are the same classes
+        place = folder()
+        if outside:
+            place = str(Path(place) / sources({c.__module__ for c in outside}))
+        if place not in self.caches:
+            before, config.CACHE_DIR = config.CACHE_DIR, place
+            try:
+                self.caches[place] = FunctionCache(self.function)
+            finally:
+                config.CACHE_DIR = before
+        return self.caches[place]
+
+
+def classes(types: Iterable[Any]) -> Iterator[type]:
+    """The classes of all NamedTuples among the types of arguments."""
+    for kind in types:
+        if hasattr(kind, "instance_class"):
+            yield kind.instance_class
+        if hasattr(kind, "types"):
+            yield from classes(kind.types)
+        elif hasattr(kind, "dtype") and hasattr(kind, "count"):  # a tuple of equal types
+            yield from classes((kind.dtype,))
+
+
+def sources(modules: set[str]) -> str:
+    """A hash of the files of modules, and of all loaded ones beside or below them.
+
+    Packages have a folder of their own; a module that lies beside all others stands for itself.
+    """
+    files = {getattr(sys.modules[name], "__file__", None) or "" for name in modules}
+    near = {os.path.dirname(os.path.abspath(file)) for file in files}
+    near = {path for path in near if not path.endswith("site-packages")}
+    loaded = [getattr(module, "__file__", None) or "" for module in list(sys.modules.values())]
+    inside = {path for path in loaded if any(path.startswith(f"{f}{os.sep}") for f in near)}
+    code = hashlib.sha256()
+    for path in sorted(files | {path for path in inside if path.endswith(".py")}):
+        code.update(path.encode() + (Path(path).read_bytes() if path else b""))
+    return code.hexdigest()[:16]

@@ -1,1 +1,0 @@
-"""Cases that `mesokit new` writes."""

@@ -1,0 +1,74 @@
+"""Shells, terminals and settings of libraries that are not as one would have them."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+SOURCE = str(Path(__file__).parents[2] / "src")
+SMALL = """
+run = { steps = 20 }
+box = { size = [8, 8] }
+[[observe]]
+quantity = "conservation"
+every = 2
+"""
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "case.toml").write_text(SMALL)
+    return tmp_path
+
+
+def process(folder: Path, command: str, **environment: str) -> subprocess.CompletedProcess:
+    """A shell's command, with `mesokit` for that of this source."""
+    command = command.replace("mesokit", f"{sys.executable} -m mesokit", 1)
+    return subprocess.run(
+        command, shell=True, cwd=folder, env=os.environ | {"PYTHONPATH": SOURCE} | environment,
+        capture_output=True, check=False,
+    )  # fmt: skip
+
+
+def test_a_run_minds_no_setting(folder: Path) -> None:
+    (folder / "matplotlibrc").write_text("text.usetex: True\n")
+    given = {"MPLBACKEND": "nonsense", "NUMBA_DISABLE_JIT": "1", "NUMBA_NUM_THREADS": "0"}
+    ended = process(folder, "mesokit run case.toml", PYTHONIOENCODING="ascii", PATH="", **given)
+    assert ended.returncode == 0, ended.stderr.decode()
+    assert (folder / "case" / "conservation.png").exists()
+
+
+@pytest.mark.parametrize("command", ["theory", "check templates/bulk.toml"])
+def test_a_terminal_with_few_letters(folder: Path, command: str) -> None:
+    command = command.replace("templates", f"{SOURCE}/mesokit/method/mpcd/templates")
+    ended = process(folder, f"mesokit {command}", PYTHONIOENCODING="latin-1")
+    assert ended.returncode == 0, ended.stderr.decode()
+
+
+@pytest.mark.parametrize("streams", ["2>/dev/full", ">&- 2>&-"])
+def test_nobody_listens(folder: Path, streams: str) -> None:
+    """The run goes on, and the folder knows why one failed."""
+    assert process(folder, f"mesokit run case.toml {streams}").returncode == 0
+    hot = "--set fluid.force='{rule=\"uniform\",acceleration=[1e5,0]}' --set run.steps=500"
+    ended = process(folder, f"mesokit run case.toml --output hot {hot} {streams}")
+    assert ended.returncode == 1
+    assert "heats up" in json.loads((folder / "hot" / "provenance.json").read_text())["failed"]
+
+
+def test_names_that_are_not_text(folder: Path) -> None:
+    place = os.fsdecode(os.fsencode(folder) + b"/\xff")
+    os.mkdir(place)
+    picture = Image.new("L", (32, 32), 255)
+    picture.paste(0, (10, 10, 22, 22))
+    with open(f"{place}/solid.png", "wb") as file:
+        picture.save(file, format="png")
+    wall = '[[wall]]\nshape = "picture"\nfile = "solid.png"\nsize = [8, 8]\norigin = [0, 0]\n'
+    (Path(place) / "case.toml").write_text(SMALL + wall)
+    ended = process(Path(place), "mesokit check case.toml")
+    assert ended.returncode == 0, ended.stderr.decode()

@@ -1,0 +1,66 @@
+"""Kernels with parts from outside mesokit are kept apart, and never run when these have changed."""
+
+from __future__ import annotations
+
+import sys
+from collections import namedtuple
+from pathlib import Path
+from typing import NamedTuple
+
+import numba
+import pytest
+
+from mesokit.method.mpcd.collision.srd import SRD
+from mesokit.scalar.cache import KernelFiles, classes, folder
+
+PART = "from typing import NamedTuple\nclass Mine(NamedTuple):\n    x: float\n"
+
+
+class Inner(NamedTuple):
+    x: float
+    y: float
+
+
+def loop(thread, threads, physics):
+    return 0
+
+
+def place(*arguments: object) -> str | None:
+    """The folder of a kernel for these arguments."""
+    cache = KernelFiles(loop)._cache(tuple(map(numba.typeof, arguments)))
+    return None if cache is None else cache.cache_path
+
+
+def test_all_classes_are_seen() -> None:
+    group = namedtuple("group", "a b")(Inner(1.0, 2.0), (3, Inner(4.0, 5.0)))
+    assert {c.__name__ for c in classes((numba.typeof(group),))} == {"group", "Inner"}
+
+
+def test_parts_of_mesokit_share_a_folder() -> None:
+    found = place(0, 1, SRD().kernel(2, 1.0))
+    assert found is not None and Path(found).parent == Path(folder())
+
+
+def test_a_part_from_outside_has_a_folder_for_each_state_of_its_sources(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(tmp_path))
+    file = tmp_path / "outside_part_of_a_test.py"
+    file.write_text(PART)
+    import outside_part_of_a_test as module
+
+    try:
+        first = place(0, 1, (SRD().kernel(2, 1.0), module.Mine(1.0)))
+        assert first is not None and Path(first).parent.parent == Path(folder())
+        assert place(0, 1, (SRD().kernel(2, 1.0), module.Mine(2.0))) == first
+        file.write_text(PART + "FACTOR = 2.0\n")
+        assert place(0, 1, (SRD().kernel(2, 1.0), module.Mine(1.0))) != first
+    finally:
+        del sys.modules["outside_part_of_a_test"]
+
+
+def test_what_no_other_process_can_name_is_not_kept() -> None:
+    class Local(NamedTuple):
+        x: float
+
+    assert place(0, 1, Local(1.0)) is None

@@ -1,0 +1,225 @@
+"""What is compiled for a GPU: parameters of all that is registered, and what it is asked about."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from mesokit import SRD, MaxwellBoltzmann, NoForce, Plates, Sinusoidal, Uniform
+from mesokit.case import box as boxes
+from mesokit.case.box import Box
+from mesokit.execute.beads import interactions
+from mesokit.execute.beads.neighbours import nearest_image
+from mesokit.execute.cpu.bounce import bounce
+from mesokit.execute.cpu.grid import Grid, cell_index, in_cell
+from mesokit.execute.cpu.physics import Physics
+from mesokit.execute.cpu.strips import cell_energy
+from mesokit.execute.cpu.strips.terms import read_sums, terms_of
+from mesokit.geometry import protocol as solids
+from mesokit.geometry.solids import contact  # noqa: F401  what solids in tables answer
+from mesokit.geometry.solids.bodies import Bodies
+from mesokit.geometry.solids.cut_cube import share_and_depth, share_beyond
+from mesokit.geometry.solids.none import Nothing
+from mesokit.method.mpcd import collision, thermostat
+from mesokit.method.mpcd.collision import protocol as rules
+from mesokit.method.mpcd.field import protocol as fields
+from mesokit.method.mpcd.streaming import fall, halfway, vector
+from mesokit.method.mpcd.thermostat import protocol as thermostats
+from mesokit.potential import ANGLES, BONDS, PAIRS
+from mesokit.potential import protocol as potentials
+from mesokit.potential.angle import bend
+from mesokit.potential.bending import Bending
+from mesokit.potential.harmonic import Harmonic, Spring
+from mesokit.potential.wca import WCA
+from mesokit.scalar import elementary, gamma, poisson, random
+from mesokit.scalar.jit import scalar
+
+Calls = list[tuple[Callable, tuple[Any, ...]]]
+DIMENSIONS = (2, 3)
+WHOLE, WORD = np.int64(1), np.uint64(1)
+COUNTER = random.Counter(WORD, WORD)
+HIT = solids.Chance(WORD, WORD, WHOLE, WHOLE, 1.0)
+MOST_SUMS, MOST_COEFFICIENTS = 18, 12
+ENERGIES = (cell_energy.NotAsked(), cell_energy.Column(), cell_energy.WithCount(1.0))
+
+
+NEEDED = {Harmonic: {"K": 1.0}, Spring: {"k": 1.0}, Bending: {"kappa": 1.0}}
+
+
+def vec(d: int) -> tuple[float, ...]:
+    return (1.0,) * d
+
+
+def hit(solid: Any) -> Any:
+    """What is hit, of that kind of solid."""
+    return (WHOLE, WHOLE) if isinstance(solid, Bodies) else WHOLE
+
+
+def bodies(d: int) -> Bodies:
+    return Bodies(vec(d), vec(d), 1, 1, 1.0, 1, 1, 1.0, 1.0, vec(d), vec(d))
+
+
+SPRING, STIFF, REPELS = Harmonic(K=1.0).kernel(), Bending(1.0).kernel(), WCA().kernel()
+
+
+def slit(d: int) -> Any:
+    return Plates("x").kernel((8,) * d)
+
+
+def total(asked: Any, d: int) -> tuple[float, ...]:
+    """What a traversal adds up."""
+    return {interactions.Force: vec(d), interactions.Energy: (0.0,)}.get(type(asked), ())
+
+
+# Of each generic function: the arguments after the first, which is p, in d dimensions.
+ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
+    boxes.at_time: lambda p, d: (1.0,),
+    boxes.fold: lambda p, d: (vec(d), vec(d), vec(d)),
+    boxes.unfold: lambda p, d: (vec(d), vec(d), vec(d)),
+    boxes.slide: lambda p, d: (vec(d), vec(d), vec(d)),
+    boxes.peculiar: lambda p, d: (vec(d), vec(d)),
+    cell_energy.energy_term: lambda p, d: (1.0, vec(d)),
+    cell_energy.tally: lambda p, d: (1.0, vec(d)),
+    cell_energy.untangled: lambda p, d: (WHOLE,),
+    cell_energy.asks: lambda p, d: (),
+    cell_energy.many_energy_term: lambda p, d: (1.0,),
+    cell_energy.many_tally: lambda p, d: (WHOLE, 1.0),
+    rules.contribute: lambda p, d: (COUNTER, (WHOLE, WHOLE), 1.0, vec(d), vec(d)),
+    rules.freedom: lambda p, d: (1.0,),
+    rules.coefficients: lambda p, d: (
+        MaxwellBoltzmann().kernel(1.0, 0.0),
+        1.0,
+        (WORD, WORD),
+        rules.Cell(1.0, 1.0, vec(d), 1.0, vec(MOST_SUMS)),
+    ),
+    rules.collide: lambda p, d: (vec(MOST_COEFFICIENTS), vec(d), vec(d)),
+    thermostats.guess: lambda p, d: ((WORD, WORD), 1.0),
+    thermostats.draw: lambda p, d: (COUNTER, WHOLE, 1.0, WHOLE),
+    thermostats.target: lambda p, d: (1.0, 1.0, 1.0),
+    thermostats.stretch: lambda p, d: (1.0, 1.0, 1.0),
+    fields.acceleration: lambda p, d: (vec(d),),
+    potentials.central: lambda p, d: (1.0,),
+    potentials.torn: lambda p, d: (1.0,),
+    potentials.angular: lambda p, d: (1.0,),
+    solids.across: lambda p, d: (),
+    solids.exposed: lambda p, d: (),
+    solids.touches: lambda p, d: ((), vec(d), vec(d), vec(d), 1.0),
+    solids.leaps: lambda p, d: (vec(d),),
+    solids.free: lambda p, d: (vec(d), vec(d), vec(d), 1.0),
+    solids.homed: lambda p, d: (vec(d),),
+    solids.unmet: lambda p, d: (),
+    solids.first_hit: lambda p, d: (vec(d), vec(d), vec(d), 1.0, hit(p)),
+    solids.happens: lambda p, d: (hit(p),),
+    solids.surface_of: lambda p, d: (hit(p),),
+    solids.lever: lambda p, d: (hit(p), vec(d)),
+    solids.rebound: lambda p, d: (hit(p), vec(d), vec(d), HIT),
+    solids.settled: lambda p, d: (vec(d),),
+    solids.facing: lambda p, d: (1.0, vec(d)),
+    solids.closes: lambda p, d: (vec(d), vec(d), vec(d), vec(d)),
+    solids.side: lambda p, d: (vec(d),),
+    interactions.of_two: lambda p, d: (total(p, d), SPRING, vec(d), WHOLE, WHOLE),
+    interactions.of_three: lambda p, d: (total(p, d), STIFF, vec(d), vec(d), WHOLE),
+    interactions.of_wall: lambda p, d: (total(p, d), REPELS, (slit(d), 1.0), vec(d)),
+}
+
+
+def parts(d: int) -> Iterator[Any]:
+    """Parameters of all that is registered, as a case of that dimension has them."""
+    size, shut = (8,) * d, (False,) * d
+    yield from (rule().kernel(d, 1.0) for rule in collision.RULES)
+    yield SRD(angle_distribution="uniform").kernel(d, 1.0)
+    yield from (rule().kernel(1.0, 0.0) for rule in thermostat.RULES)
+    yield NoForce().kernel(size)
+    yield Uniform(vec(d)).kernel(size)
+    yield Sinusoidal(amplitude=1.0).kernel(size)
+    yield from (kind(**NEEDED.get(kind, {})).kernel() for kind in (*BONDS, *PAIRS, *ANGLES))
+    yield Box(size).kernel(shut)
+    yield Box(size, shear_rate=0.1).kernel(shut)
+    yield Box(size, shear_rate=0.1, shear_frequency=0.1).kernel(shut)
+    yield from (Plates(axis).kernel(size) for axis in Box(size).axes)
+    yield Nothing()
+    yield bodies(d)
+    yield from ENERGIES
+    faults, tensor = np.zeros(8, np.int64), np.zeros(d * d)
+    yield interactions.Force(1.0, np.zeros(8, np.int64), 1.0, 1, faults)
+    yield interactions.Energy()
+    yield interactions.Virial(1.0, tensor)
+
+
+def physics(d: int, **parts: Any) -> Physics:
+    """What the particles obey, plain SRD unless said."""
+    plain = {
+        "rule": SRD().kernel(d, 1.0),
+        "thermostat": MaxwellBoltzmann().kernel(1.0, 0.0),
+        "field": NoForce().kernel((8,) * d),
+        "solid": Nothing(),
+        "masses": (1.0,),
+        "energy": cell_energy.NotAsked(),
+        "timestep": 0.1,
+        "kT": 1.0,
+        "molecule": (),
+        "zero": vec(d),
+        "coefficients": (),
+        "terms": (),
+        "scales": vec(d),
+    }
+    return Physics(**(plain | parts))
+
+
+def registered(d: int) -> dict[str, Calls]:
+    """Every implementation of every generic function, asked about what is registered."""
+    return {
+        f"{kind.__name__} in {d}D": [
+            (function, (part, *arguments(part, d)))
+            for function, arguments in ASKED.items()
+            if kind in function.implementations
+        ]
+        for kind, part in {type(part): part for part in parts(d)}.items()
+    }
+
+
+@scalar
+def flight(physics, r, v):  # type: ignore[no-untyped-def]
+    """A timestep's flight, and what is asked to see whether it touches a solid."""
+    a = halfway(physics.field, r, v, physics.timestep)
+    return fall(r, v, a, physics.timestep), vector(a, r)
+
+
+def others(d: int) -> dict[str, Calls]:
+    """What a step does besides, with such parts and others."""
+    r, grid, force = vec(d), Grid(vec(d), vec(d), vec(d), vec(d)), Uniform(vec(d))
+    found = {
+        "cells": [(in_cell, (r, grid)), (cell_index, (r, grid))],
+        "flight": [
+            (flight, (physics(d, field=some.kernel((8,) * d)), r, r)) for some in (force, NoForce())
+        ],
+        "angle": [(bend, (Bending(1.0).kernel(), r, r))],
+        "random numbers": [
+            (random.grid_shift, (COUNTER, r, 1.0)),
+            (random.normals, (r, WORD, WORD, WORD, WORD)),
+            (gamma.gamma_number, (1.0, COUNTER, WORD, WHOLE)),
+            (poisson.poisson_number, (1.0, COUNTER, WORD, WHOLE)),
+        ],
+        "elementary functions": [(elementary.sincos_turn, (1.0,)), (elementary.rint, (1.0,))],
+        "nearest image": [(nearest_image, (Box((8,) * d).kernel((False,) * d), r, r))],
+        "cut cubes": [(share_beyond, (1.0, r)), (share_and_depth, (1.0, r))],
+    }
+    for energy in ENERGIES:
+        found[f"sums, {type(energy).__name__}"] = calls = []
+        for masses in ((1.0,), ()):
+            terms = d + (masses == ()) + isinstance(energy, cell_energy.Column)
+            p = physics(d, energy=energy, masses=masses, scales=vec(terms))
+            calls.append((terms_of, (p, 1.0, r, ())))
+            calls.append((read_sums, (p, (WHOLE,) * (1 + terms))))
+    impulse = np.zeros(1, np.int64)
+    for solid in (Plates("x").kernel((8,) * d), bodies(d)):
+        given = (physics(d, solid=solid), COUNTER, WHOLE, 1.0, r, r, r, impulse)
+        found[f"bounce at {type(solid).__name__}"] = [(bounce, given)]
+    return {f"{name} in {d}D": calls for name, calls in found.items()}
+
+
+CALLS = {
+    name: calls for d in DIMENSIONS for name, calls in (registered(d) | others(d)).items() if calls
+}

@@ -1,0 +1,88 @@
+"""What a run does while its kernels are compiled for the first time."""
+
+import dataclasses
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import mesokit
+from mesokit import AT, Box, Case, Conservation, Fluid, Plates, Run
+from mesokit.case import kind
+
+SOURCE = str(Path(mesokit.__file__).parent.parent)
+CASE = """
+run = { steps = 20 }
+box = { size = [6, 6] }
+"""
+
+
+def command(folder, *arguments, **environment):
+    """A process with an empty cache of kernels."""
+    places = {"PYTHONPATH": SOURCE, "XDG_CACHE_HOME": str(folder / "cache")}
+    return subprocess.Popen(
+        [sys.executable, "-m", "mesokit", *map(str, arguments)],
+        env=os.environ | places | environment, cwd=folder,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+
+
+@pytest.fixture
+def case_file(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(CASE)
+    return path
+
+
+def test_interrupted_while_compiling(case_file, tmp_path):
+    """The process ends at once, and its folder holds a run that can be gone on with."""
+    process = command(tmp_path, "run", case_file, "--threads", "2")
+    said = ""
+    while "compiling" not in said:
+        said += process.stderr.readline()
+    process.send_signal(signal.SIGINT)
+    began = time.perf_counter()
+    _, errors = process.communicate()
+    assert process.returncode == 130
+    assert time.perf_counter() - began < 5
+    assert "stopped at step 0, while compiling, by SIGINT" in errors
+    assert "mesokit resume case" in errors and "Traceback" not in errors
+    assert sorted(p.name for p in (tmp_path / "case").iterdir()) == ["case.toml", "provenance.json"]
+
+
+def test_a_case_without_solids_is_checked_without_compiling(tmp_path):
+    for template in ("couette", "poiseuille", "shear", "kolmogorov", "bulk"):
+        command(tmp_path, "new", template).communicate()
+        process = command(tmp_path, "check", f"{template}.toml")
+        _, errors = process.communicate()
+        assert process.returncode == 0, errors
+        assert not list((tmp_path / "cache").rglob("*.nbi")), template
+
+
+def test_kinds_of_cases(monkeypatch, tmp_path):
+    """Those that differ in numbers alone, or in what is measured, run the same kernels."""
+    monkeypatch.setattr(kind, "folder", lambda: str(tmp_path))
+    case = Case(run=Run(steps=5), box=Box([6, 6]), fluid=Fluid())
+    assert not kind.has_run(case)
+    kind.note_run(case)
+    same = Case(
+        run=Run(steps=9, seed=4), box=Box([12, 8]), fluid=Fluid(density=4.5, timestep=0.2),
+        observe=[Conservation(every=3)], title="other",
+    )  # fmt: skip
+    assert kind.has_run(case) and kind.has_run(same)
+    for other in (
+        dataclasses.replace(case, box=Box([6, 6, 6])),
+        dataclasses.replace(case, box=Box([6, 6], shear_rate=0.1)),
+        dataclasses.replace(case, fluid=Fluid(collision=AT())),
+        dataclasses.replace(case, walls=(Plates(axis="y"),)),
+    ):
+        assert not kind.has_run(other)
+
+
+def test_check_says_that_compiling_is_ahead(case_file, tmp_path):
+    told, _ = command(tmp_path, "check", case_file).communicate()
+    assert "first start" in told and "once for each kind of case" in told
