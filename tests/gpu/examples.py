@@ -174,10 +174,18 @@ def registered(d: int) -> dict[str, Calls]:
         f"{kind.__name__} in {d}D": [
             (function, (part, *arguments(part, d)))
             for function, arguments in ASKED.items()
-            if kind in function.implementations
+            if serves(function, kind)
         ]
         for kind, part in {type(part): part for part in parts(d)}.items()
     }
+
+
+def serves(function: Callable, kind: type) -> bool:
+    """Whether it has code for these parameters: registered, or what it does otherwise."""
+    family = [function]
+    if function.others:  # type: ignore[attr-defined]
+        family = [member for member in ASKED if member.__module__ == function.__module__]
+    return any(kind in member.implementations for member in family)  # type: ignore[attr-defined]
 
 
 @scalar

@@ -62,20 +62,34 @@ def assert_same_end(folder, other):
     assert mesokit.open(folder).results == mesokit.open(other).results
 
 
+def written(path):
+    """Tells whether a file has been written anew."""
+    return (path.stat().st_ino, path.stat().st_mtime_ns) if path.exists() else None
+
+
+def steps_of(folder):
+    with np.load(folder / "checkpoint.npz") as checkpoint:
+        return int(checkpoint["engine/step"])
+
+
 def test_killed_at_random_moments(whole, case_file, tmp_path):
-    """From start-up, through the run, to the writing of results."""
+    """While it starts, and after it has written a checkpoint of its own, to the end of the run."""
     reference, started = whole
     folder = tmp_path / "killed"
-    random = np.random.default_rng(20)
+    checkpoint = folder / "checkpoint.npz"
     steps = []
-    for delay in random.uniform(0.0, 1.3, KILLS) * started:
+    for kill, moment in enumerate(np.random.default_rng(20).uniform(0.0, 1.0, KILLS)):
+        before = written(checkpoint)
         process = start_or_resume(case_file, folder)
-        time.sleep(delay)
+        if kill % 2 == 0:
+            time.sleep(moment * started)
+        else:
+            while process.poll() is None and written(checkpoint) == before:
+                time.sleep(0.001)
+            time.sleep(0.2 * moment * started)
         process.send_signal(signal.SIGKILL)
         process.communicate()
-        if (folder / "checkpoint.npz").exists():
-            with np.load(folder / "checkpoint.npz") as checkpoint:
-                steps.append(int(checkpoint["engine/step"]))
+        steps += [steps_of(folder)] if checkpoint.exists() else []
     assert steps == sorted(steps) and steps[-1] > 0
     process = start_or_resume(case_file, folder)
     _, errors = process.communicate()

@@ -42,7 +42,7 @@ def folder() -> str:
 def kernel(function: Callable) -> Any:
     """Compile a loop over particles or cells, and keep the result on disk.
 
-    It takes (thread, threads, ...) and is run by all threads of a team at once.
+    Those that take a `Team` first are run by all its threads at once.
     """
     made = njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True)(function)
     made._cache = KernelFiles(function)

@@ -50,13 +50,8 @@ def by_type(choose: Callable) -> Any:
     return _overloaded(choose, choose)
 
 
-def by_type_with_views(choose: Callable) -> Any:
-    """As `by_type`, for code that makes views of arrays, which numba then counts the users of."""
-    return _overloaded(choose, choose, counting=True)
-
-
-def _overloaded(name: Callable, choose: Callable, counting: bool = False) -> Any:
-    options = OPTIONS | {"forceinline": True} | ({} if counting else {"_nrt": False})
+def _overloaded(name: Callable, choose: Callable) -> Any:
+    options = OPTIONS | {"forceinline": True, "_nrt": False}
     overload(name, strict=False, jit_options=options)(choose)
     return name
 
@@ -68,7 +63,7 @@ def generic(stub: Callable) -> Any:
     calling kernel is compiled, so that a kernel for one rule holds no trace of the others. Called
     from plain Python it is compiled for its arguments; a class that is not registered is a
     TypeError, unless `otherwise` has said what serves all others. `plain` is the same, not
-    compiled; `implementations` are those registered, by class.
+    compiled; `implementations` are those registered, by class; `others` is [what otherwise serves].
     The stub has a docstring and no body.
 
     Examples
@@ -105,19 +100,27 @@ def generic(stub: Callable) -> Any:
             raise TypeError(f"{stub.__name__}: nothing is registered for {kind.__name__}")
         return _compiled(implementation)(*arguments)
 
+    def checked(implementation: Callable) -> Callable:
+        if inspect.signature(implementation).parameters.keys() != names:
+            raise TypeError(f"{stub.__name__} takes ({', '.join(names)})")
+        return implementation
+
     def register(*parameters: type) -> Callable:
         def decorate(implementation: Callable) -> Callable:
-            if inspect.signature(implementation).parameters.keys() != names:
-                raise TypeError(f"{stub.__name__} takes ({', '.join(names)})")
-            table.update(dict.fromkeys(parameters, implementation))
+            table.update(dict.fromkeys(parameters, checked(implementation)))
             return implementation
 
         return decorate
 
+    def otherwise(implementation: Callable) -> Callable:
+        others.append(checked(implementation))
+        return implementation
+
     names = inspect.signature(stub).parameters.keys()
     dispatch.implementations = table  # type: ignore[attr-defined]
+    dispatch.others = others  # type: ignore[attr-defined]
     dispatch.register = register  # type: ignore[attr-defined]
-    dispatch.otherwise = others.append  # type: ignore[attr-defined]
+    dispatch.otherwise = otherwise  # type: ignore[attr-defined]
     dispatch.plain = lambda *given: table[type(given[0])](*given)  # type: ignore[attr-defined]
     return _overloaded(dispatch, choose)
 

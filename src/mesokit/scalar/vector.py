@@ -1,6 +1,6 @@
 """Vectors as tuples of numbers."""
 
-from mesokit.scalar.intrinsics import mul_add
+from mesokit.scalar.intrinsics import mul_add, with_item
 from mesokit.scalar.jit import by_type, elementwise, scalar
 
 
@@ -32,6 +32,14 @@ def chosen(condition, a, b):
 def added_scaled(a, factor, b):
     """a + factor * b for vectors a and b."""
     return "mul_add(factor, b[{k}], a[{k}])"
+
+
+@scalar
+def row(vectors, i, like):
+    """Row i of an array as a vector, a tuple as long as `like`."""
+    for k in range(len(like)):
+        like = with_item(like, k, vectors[i, k])
+    return like
 
 
 @scalar

@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 LATTICE = "lattice Boltzmann simulation made for mesokit"
 TUREK = "M. Schafer and S. Turek, Notes Numer. Fluid Mech. 52, 547 (1996)"
-BREUER = "M. Breuer et al., Int. J. Heat Fluid Flow 21, 186 (2000)"
 SAHIN = "M. Sahin and R. G. Owens, Phys. Fluids 16, 1305 (2004)"
 PUBLISHED = "published range"
 RECALLED = "quoted from memory: check before relying on it"

@@ -17,8 +17,7 @@ from mesokit.scalar.cache import kernel
 from mesokit.scalar.elementary import sincos_turn
 from mesokit.scalar.fixed_point import ROUNDER_BITS, fixed, integers, rounded
 from mesokit.scalar.intrinsics import floor, with_item
-from mesokit.scalar.jit import scalar
-from mesokit.scalar.vector import dot, scaled
+from mesokit.scalar.vector import dot, row, scaled
 
 
 @kernel
@@ -90,7 +89,7 @@ def modes(team, physics, box, particles, waves, scale, out):
         strip = data[strip_at(b, rows)]
         lanes = lanes_in(filling, b)
         for w in range(len(waves)):
-            wave = load_row(waves, w, zero)
+            wave = row(waves, w, zero)
             sums = integers((0.0, 0.0) + zero + zero)
             for i in range(LANES):
                 r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
@@ -105,14 +104,6 @@ def modes(team, physics, box, particles, waves, scale, out):
                     sums = with_item(sums, k, sums[k] + fixed(values[k], scale))
             for k in range(len(sums)):
                 out[team.thread, w, k] += sums[k] - np.int64(LANES * ROUNDER_BITS)
-
-
-@scalar
-def load_row(vectors, i, zero):
-    """One row of an array of vectors as a tuple."""
-    for k in range(len(zero)):
-        zero = with_item(zero, k, vectors[i, k])
-    return zero
 
 
 class Looked(NamedTuple):
@@ -158,4 +149,4 @@ def central_energies(potential, squares):
 def angle_energies(potential, before, after, zero, out):
     """Energies of bonds (n, d) that follow one another."""
     for i in range(len(out)):
-        out[i] = bend(potential, load_row(before, i, zero), load_row(after, i, zero))[0]
+        out[i] = bend(potential, row(before, i, zero), row(after, i, zero))[0]

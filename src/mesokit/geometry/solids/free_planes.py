@@ -16,12 +16,11 @@ from mesokit.geometry.solids.bodies import (
     term_clearance,
 )
 from mesokit.geometry.solids.flight import curves_away
-from mesokit.geometry.solids.survey import point
 from mesokit.scalar.cache import kernel
 from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.pointer import whole, word
-from mesokit.scalar.vector import added_scaled, dot, outer, scaled
+from mesokit.scalar.vector import added_scaled, dot, outer, row, scaled
 
 
 @kernel
@@ -29,7 +28,7 @@ def planes_above(solid, like, away, columns, points, planes):
     """Normal and height n r of a plane above which no solid is within `away` of each point."""
     d = len(like)
     for i in range(len(points)):
-        r = point(points, i, like)
+        r = row(points, i, like)
         c, part, term = nearest(solid.tables, r)
         n = with_item(scaled(0.0, like), 0, 1.0)
         top = away

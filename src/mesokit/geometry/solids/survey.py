@@ -18,17 +18,9 @@ from mesokit.geometry.solids.cut_cube import share_beyond
 from mesokit.scalar.cache import kernel
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import scalar, seldom
-from mesokit.scalar.vector import dot, scaled
+from mesokit.scalar.vector import dot, row, scaled
 
 SLACK = 1e-9  # cells: sums of lengths are rounded
-
-
-@scalar
-def point(points, i, like):
-    """Row i as a tuple."""
-    for k in range(len(like)):
-        like = with_item(like, k, points[i, k])
-    return like
 
 
 class Blocks(NamedTuple):
@@ -109,7 +101,7 @@ def term_clearances(solid, r, out):
 def clearances(solid, least, like, points, out):
     """A lower bound of the distance of each point from the solid, exact within REACH."""
     for i in range(len(points)):
-        out[i] = bound(solid, least, in_box(solid, point(points, i, like)), like)
+        out[i] = bound(solid, least, in_box(solid, row(points, i, like)), like)
 
 
 @seldom
@@ -132,7 +124,7 @@ def bound(solid, least, r, like):
 def who_is_near(solid, like, points, terms, clearance, normals):
     """Nearest term (-1: none within reach), clearance and normal at each point."""
     for i in range(len(points)):
-        r = in_box(solid, point(points, i, like))
+        r = in_box(solid, row(points, i, like))
         c, part, term = nearest(solid.tables, r)
         terms[i], clearance[i] = term, c
         n = part_normal(solid.tables, part, r) if term >= 0 else scaled(0.0, like)
@@ -145,7 +137,7 @@ def depths(solid, like, away, points, terms, clearance, normals):
     """Nearest term (-1: none so near), clearance and normal at each point, exact up to `away` if
     the lists of the solid are."""
     for i in range(len(points)):
-        r = in_box(solid, point(points, i, like))
+        r = in_box(solid, row(points, i, like))
         c, part, term = nearest_within(solid.tables, away, r)
         terms[i], clearance[i] = term, c
         n = part_normal(solid.tables, part, r) if term >= 0 else scaled(0.0, like)
@@ -161,14 +153,14 @@ def cut(solid, like, points, half, pieces, out):
     small = half / pieces
     corner = small * math.sqrt(float(d))
     for i in range(len(points)):
-        c, _, _ = nearest(solid.tables, in_box(solid, point(points, i, like)))
+        c, _, _ = nearest(solid.tables, in_box(solid, row(points, i, like)))
         whole = half * math.sqrt(float(d))
         if abs(c) > whole:
             out[i] = 0
             continue
         fluid, inside = False, False
         for number in range(pieces**d):
-            r, rest = point(points, i, like), number
+            r, rest = row(points, i, like), number
             for k in range(d):
                 step = 2.0 * (rest % pieces) + 1.0 - pieces
                 r = with_item(r, k, r[k] + small * step)
@@ -183,7 +175,7 @@ def cut(solid, like, points, half, pieces, out):
 def open_volume(solid, like, points, side, out):
     """Part of cubes about the points that is fluid: cubes cut by a plane, the nearest surface."""
     for i in range(len(points)):
-        r = in_box(solid, point(points, i, like))
+        r = in_box(solid, row(points, i, like))
         c, part, term = nearest(solid.tables, r)
         if term < 0:
             out[i] = 1.0
@@ -209,7 +201,7 @@ def planes(solid, like, away, shifts, points, open_share, found):
     the shifts. Terms are -1 where no surface is within `away`.
     """
     for i in range(len(points)):
-        r = in_box(solid, point(points, i, like))
+        r = in_box(solid, row(points, i, like))
         c, part, term = nearest_within(solid.tables, away, r)
         found.terms[i] = term
         if term < 0:
@@ -219,7 +211,7 @@ def planes(solid, like, away, shifts, points, open_share, found):
         for _ in range(40):
             middle, share = 0.5 * (low + high), 0.0
             for j in range(len(shifts)):
-                share += share_beyond(middle - dot(n, point(shifts, j, like)), n)
+                share += share_beyond(middle - dot(n, row(shifts, j, like)), n)
             if share < open_share[i] * len(shifts):
                 low = middle
             else:

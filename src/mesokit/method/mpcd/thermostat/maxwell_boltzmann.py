@@ -5,14 +5,7 @@ from __future__ import annotations
 from typing import ClassVar, Literal, NamedTuple
 
 from mesokit.case.component import component, tag
-from mesokit.method.mpcd.thermostat.protocol import (
-    Thermostat,
-    draw,
-    guess,
-    root_of_ratio,
-    stretch,
-    target,
-)
+from mesokit.method.mpcd.thermostat.protocol import Thermostat, draw, guess, target
 from mesokit.scalar.gamma import decided, likely
 from mesokit.scalar.random import CELL, CELL_DOUBT, words
 from mesokit.theory.transport import Thermostat as Named
@@ -59,9 +52,3 @@ def _(thermostat, counter, cell, freedom, attempt):
 @target.register(Canonical)
 def _(thermostat, variate, freedom, energy):
     return thermostat.kT * variate
-
-
-@stretch.register(Canonical)
-def _(thermostat, variate, freedom, energy):
-    wanted = target(thermostat, variate, freedom, energy)
-    return (root_of_ratio(wanted, energy, freedom, thermostat.floor),)

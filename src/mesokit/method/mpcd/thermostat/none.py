@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import ClassVar, Literal, NamedTuple
 
 from mesokit.case.component import component, tag
-from mesokit.method.mpcd.thermostat.protocol import Thermostat, draw, guess, stretch, target
+from mesokit.method.mpcd.thermostat.protocol import Thermostat, stretch, target
 from mesokit.theory.transport import Thermostat as Named
 
 
@@ -29,16 +29,6 @@ class Free(NamedTuple):
     """No thermostat; kT only sets the temperature of the start."""
 
     kT: float
-
-
-@draw.register(Free)
-def _(thermostat, counter, cell, freedom, attempt):
-    return 0.0, True
-
-
-@guess.register(Free)
-def _(thermostat, chance, freedom):
-    return 0.0, True
 
 
 @target.register(Free)

@@ -35,7 +35,10 @@ class Thermostat(ABC):
 
 @generic
 def guess(thermostat, chance, freedom):
-    """A random number for `target` from two random words, and whether it may surely be used."""
+    """A random number for `target` from two random words, and whether it may surely be used.
+
+    Thermostats that say nothing use none.
+    """
 
 
 @generic
@@ -43,14 +46,13 @@ def draw(thermostat, counter, cell, freedom, attempt):
     """The same with a test that decides, where `guess` was not sure; if refused, try the next."""
 
 
+guess.otherwise(lambda thermostat, chance, freedom: (0.0, True))
+draw.otherwise(lambda thermostat, counter, cell, freedom, attempt: (0.0, True))
+
+
 @generic
 def target(thermostat, variate, freedom, energy):
     """Kinetic energy to reach, from the present one."""
-
-
-@generic
-def stretch(thermostat, variate, freedom, energy):
-    """Factor for the velocities that takes their energy to the target: (factor,) or ()."""
 
 
 @scalar
@@ -62,3 +64,14 @@ def root_of_ratio(wanted, present, freedom, floor):
     """
     ratio = wanted / max(present, floor)
     return math.sqrt(ratio) if freedom > 0.5 and wanted > 0.0 else 1.0
+
+
+@generic
+def stretch(thermostat, variate, freedom, energy):
+    """Factor for the velocities that takes their energy to the target: (factor,) or ()."""
+
+
+@stretch.otherwise
+def _(thermostat, variate, freedom, energy):
+    wanted = target(thermostat, variate, freedom, energy)
+    return (root_of_ratio(wanted, energy, freedom, thermostat.floor),)

@@ -5,14 +5,7 @@ from __future__ import annotations
 from typing import ClassVar, Literal, NamedTuple
 
 from mesokit.case.component import component, tag
-from mesokit.method.mpcd.thermostat.protocol import (
-    Thermostat,
-    draw,
-    guess,
-    root_of_ratio,
-    stretch,
-    target,
-)
+from mesokit.method.mpcd.thermostat.protocol import Thermostat, target
 from mesokit.theory.transport import Thermostat as Named
 
 
@@ -40,22 +33,6 @@ class Isokinetic(NamedTuple):
     floor: float
 
 
-@draw.register(Isokinetic)
-def _(thermostat, counter, cell, freedom, attempt):
-    return 0.0, True
-
-
-@guess.register(Isokinetic)
-def _(thermostat, chance, freedom):
-    return 0.0, True
-
-
 @target.register(Isokinetic)
 def _(thermostat, variate, freedom, energy):
     return 0.5 * freedom * thermostat.kT
-
-
-@stretch.register(Isokinetic)
-def _(thermostat, variate, freedom, energy):
-    wanted = target(thermostat, variate, freedom, energy)
-    return (root_of_ratio(wanted, energy, freedom, thermostat.floor),)
