@@ -130,7 +130,7 @@ class CPU:
         """Bring particles back into the box and those of one cell together in memory."""
         start, memory = perf_counter(), self.memory
         where = memory.box, memory.grid, memory.fluid.particles
-        self.threads.run(sort, memory.physics, *where, memory.order)
+        self.threads.run(sort, memory.physics.zero, *where, memory.order)
         memory.fluid.room[:] = 0.0  # other particles are in the strips now
         self.sort_seconds += perf_counter() - start
         self._check_sums(self._largest_crowd())

@@ -37,26 +37,26 @@ class Order(NamedTuple):
 
 
 @kernel
-def sort(team, physics, box, grid, particles, memory):
+def sort(team, zero, box, grid, particles, memory):
     """Bring everybody back into the box, and those of one cell together."""
-    wrap(team, physics, box, grid, particles)
+    wrap(team, zero, box, grid, particles)
     meet(team)
     order_by_cell(team, particles, memory)
     for bead in range(beads_of(particles.filling)):
         for row in range(particles.rows):
             reorder_row(team, particles, memory, row, bead)
         reorder(team, particles.ident, particles.filling, memory, bead)
-        for k in range(len(physics.zero)):
+        for k in range(len(zero)):
             reorder(team, particles.image[k], particles.filling, memory, bead)
 
 
 @inner
-def wrap(team, physics, box, grid, particles):
+def wrap(team, zero, box, grid, particles):
     """Move every molecule to its image in the primary box, count the boxes crossed, find cells.
 
     Spare lanes go back to zero: nothing else keeps them from running away.
     """
-    zero, filling, rows = physics.zero, particles.filling, particles.rows
+    filling, rows = particles.filling, particles.rows
     d, beads = len(zero), beads_of(filling)
     first, last = share(groups_in(filling), team.thread, team.threads)
     for g in range(first, last):

@@ -39,6 +39,11 @@ class Readings:
         self.stress: dict[str, Floats] = {}
         self.solutes = SoluteReadings(memory) if memory.solutes else None
 
+    @property
+    def _vectors(self) -> tuple[tuple, tuple]:
+        """The zero vector, and the mass of all or (): loops are compiled for these."""
+        return self.memory.physics.zero, self.memory.physics.masses
+
     def forget(self) -> None:
         """The particles have moved on."""
         self._seen.clear()
@@ -59,7 +64,7 @@ class Readings:
     def per_strip(self) -> Floats:
         """Momentum, sum of m v^2 and largest component of velocity in each strip."""
         out = np.zeros((self.memory.strips, self.dimension + 2))
-        self.threads.run(measure.totals, self.memory.physics, self.memory.fluid.particles, out)
+        self.threads.run(measure.totals, *self._vectors, self.memory.fluid.particles, out)
         return out
 
     def moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
@@ -79,10 +84,8 @@ class Readings:
         place = np.zeros((threads, LANES), np.int32)
         terms = np.zeros((threads, (d + 2) * SCRATCH_ROW), np.int64)
         chosen = measure.Bins(*two, scales, place, terms)
-        particles = self.memory.fluid.particles
-        self.threads.run(
-            measure.bin_sums, self.memory.physics, self.memory.box, particles, chosen, part
-        )
+        where = self.memory.box, self.memory.fluid.particles
+        self.threads.run(measure.bin_sums, *self._vectors, *where, chosen, part)
         total = part.sum(axis=0).reshape(size, length)[:, : d + 3]
         number, sums = total[:, 0], total[:, 1:] - total[:, :1] * ROUNDER_BITS
         values = (sums / np.array(scales)).T.reshape(-1, *bins)
@@ -93,10 +96,8 @@ class Readings:
         waves = np.ascontiguousarray(wavevectors, float) / (2.0 * math.pi)
         d, scale = self.dimension, self.numbers.units["momentum"]
         part = np.zeros((self.threads.size, len(waves), 2 + 2 * d), np.int64)
-        particles = self.memory.fluid.particles
-        self.threads.run(
-            measure.modes, self.memory.physics, self.memory.box, particles, waves, scale, part
-        )
+        where = self.memory.box, self.memory.fluid.particles
+        self.threads.run(measure.modes, *self._vectors, *where, waves, scale, part)
         total = part.sum(axis=0) / scale
         return total[:, 0] + 1j * total[:, 1], total[:, 2 : 2 + d] + 1j * total[:, 2 + d :]
 
@@ -218,10 +219,9 @@ class Readings:
         shape = self.n if ids is None else len(ids), self.dimension
         out = np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32)
         looked = measure.Looked(slots, *out)
-        particles = self.memory.fluid.particles
-        self.threads.run(
-            measure.gather_by_id, self.memory.physics, self.memory.box, particles, unwrapped, looked
-        )
+        zero, _ = self._vectors
+        where = self.memory.box, self.memory.fluid.particles
+        self.threads.run(measure.gather_by_id, zero, *where, unwrapped, looked)
         return out
 
     def _slots(self, ids: NDArray) -> NDArray[np.int32]:

@@ -21,16 +21,16 @@ from mesokit.scalar.vector import dot, row, scaled
 
 
 @kernel
-def totals(team, physics, particles, out):
+def totals(team, zero, masses, particles, out):
     """Momentum, sum of m v^2 and largest component of |v| in each strip: out (strips, d + 2)."""
-    zero, data, rows = physics.zero, particles.data, particles.rows
+    data, rows = particles.data, particles.rows
     filling, d = particles.filling, len(zero)
     first, last = share(strips_in(filling), team.thread, team.threads)
     for b in range(first, last):
         strip = data[strip_at(b, rows)]
         for i in range(lanes_in(filling, b)):
             v = load_particle(strip, i, d, zero)
-            m = mass_of(physics.masses, strip, i, 2 * d)
+            m = mass_of(masses, strip, i, 2 * d)
             for k in range(d):
                 out[b, k] += m * v[k]
                 out[b, d + 1] = max(out[b, d + 1], abs(v[k]))
@@ -48,12 +48,12 @@ class Bins(NamedTuple):
 
 
 @kernel
-def bin_sums(team, physics, box, particles, bins, sums):
+def bin_sums(team, zero, masses, box, particles, bins, sums):
     """Number, momentum, mass and m v^2 in bins, as fixed-point sums.
 
     `sums` is (threads, bins * (d + 3)), to be zero.
     """
-    zero, data, rows = physics.zero, particles.data, particles.rows
+    data, rows = particles.data, particles.rows
     filling, scales, d = particles.filling, bins.scales, len(zero)
     place, quanta, out = bins.place[team.thread], bins.terms[team.thread], sums[team.thread]
     terms = integers(scales)
@@ -63,7 +63,7 @@ def bin_sums(team, physics, box, particles, bins, sums):
         for i in range(LANES):
             r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
             r, v, _ = fold(box, r, v, scaled(0.0, zero))
-            m = mass_of(physics.masses, strip, i, 2 * d)
+            m = mass_of(masses, strip, i, 2 * d)
             index = 0.0
             for k in range(2):
                 axis, number = bins.axes[k], bins.number[k]
@@ -75,14 +75,14 @@ def bin_sums(team, physics, box, particles, bins, sums):
 
 
 @kernel
-def modes(team, physics, box, particles, waves, scale, out):
+def modes(team, zero, masses, box, particles, waves, scale, out):
     """Fourier sums of mass and momentum as fixed-point sums: out (threads, waves, 2 (1 + d)).
 
     `waves` are wave vectors over 2 pi, in turns per length. Each row holds mass times cosine and
     minus sine, then the same of each component of the momentum; each sum has a multiple of LANES
     terms, zero in spare lanes.
     """
-    zero, data, rows = physics.zero, particles.data, particles.rows
+    data, rows = particles.data, particles.rows
     filling, d = particles.filling, len(zero)
     first, last = share(strips_in(filling), team.thread, team.threads)
     for b in range(first, last):
@@ -94,7 +94,7 @@ def modes(team, physics, box, particles, waves, scale, out):
             for i in range(LANES):
                 r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
                 r, v, _ = fold(box, r, v, scaled(0.0, zero))
-                m = mass_of(physics.masses, strip, i, 2 * d)
+                m = mass_of(masses, strip, i, 2 * d)
                 m = m if i < lanes else 0.0
                 phase = dot(wave, r)
                 s, c = sincos_turn(phase - floor(phase))
@@ -116,9 +116,9 @@ class Looked(NamedTuple):
 
 
 @kernel
-def gather_by_id(team, physics, box, particles, unwrapped, looked):
+def gather_by_id(team, zero, box, particles, unwrapped, looked):
     """Positions, velocities and images of those that have a slot."""
-    zero, data, rows = physics.zero, particles.data, particles.rows
+    data, rows = particles.data, particles.rows
     filling, image, d = particles.filling, particles.image, len(zero)
     first, last = share(strips_in(filling), team.thread, team.threads)
     for b in range(first, last):
