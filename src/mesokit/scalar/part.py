@@ -2,7 +2,7 @@
 
 Numba makes machine code, and a wrapper that Python can call, of each function that it compiles.
 Here most functions are small and are inlined into the loop that calls them, so that both would be
-thrown away. A part is translated and optimised as any other function, and kept for linking alone.
+thrown away. A part is translated as any other function, and kept for linking alone.
 """
 
 from __future__ import annotations
@@ -33,7 +33,10 @@ SKIPPED = {
 
 
 class _ForLinking(JITCodeLibrary):
-    """Optimised code that is never made into machine code by itself."""
+    """Code that is optimised, and made into machine code, with the kernel that it is linked into."""
+
+    def _optimize_final_module(self) -> None:
+        pass
 
     def _finalize_final_module(self) -> None:
         self._finalize_dynamic_globals()
