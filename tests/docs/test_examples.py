@@ -7,23 +7,26 @@ from pathlib import Path
 
 import pytest
 
+from mesokit.cli import main
+
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.toml"))
 SHORT = ["--set", "run.steps=100", "--set", "run.warmup=20"]
 
 
-def mesokit(*words: str | Path) -> str:
-    """What a command prints."""
-    done = subprocess.run(
-        [sys.executable, "-m", "mesokit", *map(str, words)], capture_output=True, text=True
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout + done.stderr
-
-
 @pytest.mark.parametrize("case", EXAMPLES, ids=lambda case: case.stem)
-def test_the_example_runs_and_compares(case: Path, tmp_path: Path) -> None:
+def test_the_example_runs_and_compares(
+    case: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """As its first lines say, but shorter: check, run, and the picture of the flow."""
+
+    def mesokit(*words: str | Path) -> str:
+        with pytest.raises(SystemExit) as end:
+            main([str(word) for word in words])
+        said = "".join(capsys.readouterr())
+        assert end.value.code == 0, said
+        return said
+
     mesokit("check", case)
     run = tmp_path / case.stem
     said = mesokit("run", case, "--output", run, *SHORT)

@@ -33,7 +33,7 @@ SKIPPED = {
 
 
 class _ForLinking(JITCodeLibrary):
-    """Code that is optimised, and made into machine code, with the kernel that it is linked into."""
+    """Code that is optimised and made into machine code with the kernel that calls it."""
 
     def _optimize_final_module(self) -> None:
         pass
