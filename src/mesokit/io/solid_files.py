@@ -28,7 +28,7 @@ def kept(walls: Sequence[Any], solids: Solids, folder: Path) -> tuple[Any, ...]:
         if not isinstance(wall, FromFile):
             continue
         file = RunDirectory(folder).wall_file(i + 1)
-        grid = wall.grid(solids.room)
+        grid = wall.distances(solids.room)
         with replacing(file) as temporary, temporary.open("wb") as stream:
             np.save(stream, grid.values)
         found[i] = Sampled(

@@ -56,9 +56,13 @@ class FromFile(Shape):
     def grid(self, room: Room) -> Grid:
         """Its signed distance, positive outside."""
 
+    def distances(self, room: Room) -> Grid:
+        """The same, found once for what the file held."""
+        return _found(self, self.digest, room)
+
     def body(self, room: Room) -> Region:
         """What lies within the surface."""
-        grid = self.grid(room)
+        grid = self.distances(room)
         if grid.values.ndim != room.dimension:
             raise self.wrong(f"{grid.values.ndim}D, in a {room.dimension}D box")
         size = slope(grid)
@@ -89,3 +93,11 @@ class FromFile(Shape):
     def kept(self) -> dict[str, Any]:
         """What it shares with the `Sampled` that a run keeps of it."""
         return {"fluid": self.fluid, "surface": self.surface, "virtual": self.virtual}
+
+
+@functools.lru_cache(maxsize=8)
+def _found(shape: FromFile, digest: str, room: Room) -> Grid:
+    """Shapes are equal where they name one file, whatever it holds: so the digest tells too."""
+    grid = shape.grid(room)
+    grid.values.flags.writeable = False
+    return grid

@@ -26,6 +26,7 @@ REACH = 4.0  # cells from the outline in which distances are kept
 BLUR = 1.0  # pixels by which edges are smoothed
 MARGIN = 2.0  # cells of fluid around a picture that does not span the box
 FINE = 8  # points of the outline per pixel
+LEAF = 200  # points of the outline that are compared one by one: they lie close together
 LARGEST = 2**26  # pixels
 ENOUGH = 8  # pixels a cell
 PLAIN, FEW = 0.1, 0.02  # off black or white that no one sees, share of pixels that are not
@@ -183,7 +184,8 @@ def outline_distance(white: Floats, repeats: list[bool], reach: float) -> Floats
         return None
     sides = [float(n) if again else 0.0 for n, again in zip(white.shape, repeats, strict=True)]
     pixels = np.indices(white.shape).reshape(2, -1).T
-    distance, _ = KDTree(points, boxsize=sides).query(pixels, distance_upper_bound=reach)
+    tree = KDTree(points, boxsize=sides, leafsize=LEAF)
+    distance, _ = tree.query(pixels, distance_upper_bound=reach)
     return np.where(level < 0.0, -1.0, 1.0) * np.minimum(distance, reach).reshape(white.shape)
 
 

@@ -83,7 +83,7 @@ class Sampled(FromFile):
 
     def notes(self, room: Room, samples: Floats) -> Iterator[str]:
         """What users should know: a solid that reaches over the box."""
-        values = self.grid(room).values
+        values = self.distances(room).values
         origin = self.origin or (0.0,) * values.ndim
         for axis, (n, length) in enumerate(zip(values.shape, room.size, strict=True)):
             beyond = (n - 1) * self.spacing - length
@@ -99,7 +99,7 @@ class Sampled(FromFile):
         """The place about which it turns and torques are taken."""
         if self.centre is not None:
             return self.centre
-        grid = self.grid(room)
+        grid = self.distances(room)
         return tuple(
             x + 0.5 * (n - 1) * grid.spacing
             for x, n in zip(grid.origin, grid.values.shape, strict=True)
