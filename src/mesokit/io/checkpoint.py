@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from mesokit.errors import CheckpointError
 from mesokit.io.atomic import replacing
 
-FORMAT = 3  # raise it when the contents change their meaning
+FORMAT = 4  # raise it when the contents change their meaning
 _META = "meta"
 
 Arrays = dict[str, NDArray[Any]]

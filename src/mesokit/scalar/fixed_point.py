@@ -4,8 +4,12 @@ Adding 1.5 * 2^52 leaves the rounded number in the low bits of the mantissa; the
 bits, once for each term, are taken off when the sum is read.
 """
 
-import numpy as np
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.scalar.elementary import rint
 from mesokit.scalar.intrinsics import mul_add
 from mesokit.scalar.jit import elementwise, scalar
 
@@ -17,6 +21,12 @@ ROUNDER_BITS = int(np.float64(ROUNDER).view(np.int64))
 def fixed(x, scale):
     """x * scale rounded to a whole number, plus ROUNDER_BITS, as int64."""
     return np.float64(mul_add(x, scale, ROUNDER)).view(np.int64)
+
+
+@scalar
+def quanta(x, scale):
+    """x * scale rounded to a whole number, as int64: for any number below 2^63, and slower."""
+    return np.int64(rint(x * scale))
 
 
 @scalar
@@ -35,3 +45,10 @@ def rounded(terms, scales):
 def integers(values):
     """A tuple of int64 zeros as long as `values`."""
     return "np.int64(0)"
+
+
+def total(rows: NDArray[np.int64], scale: Any) -> NDArray[np.float64]:
+    """Sums over the rows (n, ...) of whole numbers, exact whatever their size, over the scale."""
+    high, low = (rows >> 32).sum(axis=0), (rows & 0xFFFFFFFF).sum(axis=0)
+    exact = high.astype(object) * 2**32 + low
+    return np.asarray(exact / scale, float)

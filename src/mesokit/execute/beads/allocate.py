@@ -45,7 +45,7 @@ def beads_of(given: Solutes, memory: Any) -> Beads:
         answers=np.zeros(beads * numbers.coefficient_count),
         leads=np.zeros(beads, np.bool_),
         solvent=(fluid.density, fluid.mass) if given.solvent == "random" else (),
-        tensor=np.zeros((3, -(-beads // GROUP), 2 * d * d)),
+        tensor=np.zeros((3, -(-beads // GROUP), 2 * d * d), np.int64),
     )
 
 

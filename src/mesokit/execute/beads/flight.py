@@ -78,13 +78,13 @@ def _move(team, now, physics, fluid, beads):
             collide_bead(beads, i, physics, box, now.old, fluid.cells.coefficients)
         if measured and not now.flags & STREAM:
             for i in range(first, last):
-                add_bead_flux(beads, i, now.box, now.old.shift, beads.tensor[1, i // GROUP])
+                add_bead_flux(beads, i, physics, now.box, now.old.shift, 1)
     if now.flags & STREAM:  # r, v: t -> t + dt; cells at t + dt
         moving = Moving(some, beads, first, last, fluid.taken.impulse[team.thread], measured)
         verlet(moving, now, physics, beads.potentials.substeps)
         if measured:
             for i in range(first, last):
-                add_bead_flux(beads, i, now.box, now.grid.shift, beads.tensor[0, i // GROUP])
+                add_bead_flux(beads, i, physics, now.box, now.grid.shift, 0)
         for i in range(first, last):
             bin_bead(beads, i, physics, now)
 
@@ -145,7 +145,7 @@ def _(moving, step, box, physics):
     refresh(team, beads.neighbours, box, beads.r, (moving.first, moving.last), zero)
     if moving.measured:
         for i in range(moving.first, moving.last):
-            virial = Virial(physics.timestep, beads.tensor[2, i // GROUP])
+            virial = Virial(physics.timestep, beads.tensor[2, i // GROUP], physics.stress_scale)
             each_on_bead(virial, (), beads, i, load_place(beads, i, zero), box)
     scale, faults = momentum_scale(physics), beads.faults[team.thread]
     force = Force(physics.timestep, moving.impulse, scale, step, faults)
@@ -171,8 +171,12 @@ def pushed(field, time, r, v):
 
 
 @scalar
-def add_bead_flux(beads, i, box, shift, tensor):
-    """What a bead carries of the stress; its velocity in its cell is that of the image there."""
+def add_bead_flux(beads, i, physics, box, shift, when):
+    """What a bead carries of the stress; its velocity in its cell is that of the image there.
+
+    `when` is 0 before a collision, 1 after it.
+    """
+    tensor = beads.tensor[when, i // GROUP]
     r, v, _ = load_folded(beads, i, box, scaled(0.0, shift))
     place, u, _ = fold(box, r, v, shift)
-    add_flux(tensor, beads.mass, peculiar(box, r, v), u, added(place, shift))
+    add_flux(tensor, physics.stress_scale, beads.mass, peculiar(box, r, v), u, added(place, shift))

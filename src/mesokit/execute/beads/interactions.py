@@ -43,6 +43,7 @@ class Virial(NamedTuple):
 
     time: float
     tensor: Any
+    scale: float  # whole numbers per unit
 
 
 @generic
@@ -113,7 +114,7 @@ def _(asked, total, potential, near_wall, r):
 def _(asked, total, potential, separation, i, j):
     if j > i:
         _, push = central(potential, dot(separation, separation))
-        add_product(asked.tensor, asked.time * push, separation, separation)
+        add_product(asked.tensor, asked.scale, asked.time * push, separation, separation)
     return total
 
 
@@ -121,8 +122,8 @@ def _(asked, total, potential, separation, i, j):
 def _(asked, total, potential, before, after, role):
     if role == 1:
         _, first, last = bend(potential, before, after)
-        add_product(asked.tensor, -asked.time, before, first)
-        add_product(asked.tensor, asked.time, after, last)
+        add_product(asked.tensor, asked.scale, -asked.time, before, first)
+        add_product(asked.tensor, asked.scale, asked.time, after, last)
     return total
 
 

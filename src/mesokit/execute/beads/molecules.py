@@ -80,7 +80,7 @@ def _(moving, step, box, physics):
     molecule, zero, batch, fluid = physics.molecule, physics.zero, moving.batch, moving.fluid
     work = fluid.scratch.beads[moving.team.thread]
     if moving.flags & MEASURE_STRESS:
-        virial = Virial(physics.timestep, fluid.taken.tensor[2, batch.group])
+        virial = Virial(physics.timestep, fluid.taken.tensor[2, batch.group], physics.stress_scale)
         each_link(virial, molecule, work, batch.lanes, zero)
     change = Kick(physics.timestep * molecule.inverse_mass)
     if each_link(change, molecule, work, WIDTH, zero):
@@ -110,7 +110,7 @@ def _fly_dimers(team, now, physics, fluid, batch):
     d, exact, time = len(zero), physics.molecule, physics.timestep
     a, b = work[bead_at(0, zero)], work[bead_at(1, zero)]
     if now.flags & MEASURE_STRESS:
-        _exact_virial(exact, a, b, batch.lanes, fluid.taken.tensor[2, batch.group], zero)
+        _exact_virial(physics, a, b, batch.lanes, fluid.taken.tensor[2, batch.group])
     for i in range(WIDTH):
         r, v = load_bead(a, i, 0, zero), load_bead(a, i, d, zero)
         r2, v2 = load_bead(b, i, 0, zero), load_bead(b, i, d, zero)
@@ -125,17 +125,18 @@ def _fly_dimers(team, now, physics, fluid, batch):
 
 
 @scalar
-def _exact_virial(exact, a, b, lanes, tensor, zero):
+def _exact_virial(physics, a, b, lanes, tensor):
     """Add the momentum that harmonic bonds hand over in a timestep: -2K times the time integral of
     the outer product of the vector between the beads with itself."""
+    exact, zero, scale = physics.molecule, physics.zero, physics.stress_scale
     d = len(zero)
     for i in range(lanes):
         separation = added_scaled(load_bead(b, i, 0, zero), -1.0, load_bead(a, i, 0, zero))
         rate = added_scaled(load_bead(b, i, d, zero), -1.0, load_bead(a, i, d, zero))
-        add_product(tensor, exact.ways, separation, separation)
-        add_product(tensor, exact.mixed, separation, rate)
-        add_product(tensor, exact.mixed, rate, separation)
-        add_product(tensor, exact.rates, rate, rate)
+        add_product(tensor, scale, exact.ways, separation, separation)
+        add_product(tensor, scale, exact.mixed, separation, rate)
+        add_product(tensor, scale, exact.mixed, rate, separation)
+        add_product(tensor, scale, exact.rates, rate, rate)
 
 
 @by_type

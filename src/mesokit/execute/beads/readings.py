@@ -17,6 +17,7 @@ from mesokit.execute.beads.traverse import each_on_bead
 from mesokit.execute.cpu.strips.rows import load_values, store_values
 from mesokit.execute.cpu.threads import Team
 from mesokit.scalar.cache import kernel
+from mesokit.scalar.fixed_point import total
 from mesokit.scalar.vector import scaled
 
 if TYPE_CHECKING:
@@ -83,10 +84,12 @@ class SoluteReadings:
         """From the first to the second bead of each bond (bonds, d)."""
         return self.places[self.bonds[:, 1]] - self.places[self.bonds[:, 0]]
 
-    def totals(self) -> tuple[int, Floats, float]:
-        """Number of beads, their momentum (d,) and kinetic energy."""
+    def motion(self) -> Floats:
+        """Momentum and sum of m v^2 of the beads (d + 1,)."""
         (_, v, _), m = self.folded(), self.given.mass
-        return len(v), m * v.sum(axis=0), 0.5 * m * float((v**2).sum())
+        scales = np.array(self.memory.numbers.scales_of_motion)
+        terms = np.column_stack([m * v, m * (v**2).sum(axis=1)]) * scales
+        return total(np.rint(terms).astype(np.int64), scales)
 
     def potential_energy(self) -> float:
         """Of bonds, angles, pairs and walls."""

@@ -26,7 +26,7 @@ class Beads(NamedTuple):
     answers: what the cells of beads need to collide; leads (beads,): whose cell has one.
     solvent: (mean number, mass of a particle) for random solvent, or ().
     tensor (3, groups, 2 d d): what groups of beads add to the stress: before
-    and after the collision, and by forces.
+    and after the collision, and by forces; whole numbers.
     """
 
     mass: float

@@ -1,7 +1,5 @@
 """The flight of a particle that may hit a surface, from hit to hit."""
 
-import numpy as np
-
 from mesokit.execute.cpu.physics import momentum_scale
 from mesokit.geometry.primitive.numbers import length
 from mesokit.geometry.protocol import (
@@ -16,7 +14,7 @@ from mesokit.geometry.protocol import (
     unmet,
 )
 from mesokit.method.mpcd.streaming import fall
-from mesokit.scalar.elementary import rint
+from mesokit.scalar.fixed_point import quanta
 from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.vector import added, added_scaled, outer, scaled
 
@@ -35,7 +33,7 @@ def take_sum(impulse, surface, given, scale):
     """Add momentum and angular momentum to what a surface took, as whole numbers."""
     start = surface * len(given)
     for k in range(len(given)):
-        impulse[start + k] += np.int64(rint(given[k] * scale))
+        impulse[start + k] += quanta(given[k], scale)
 
 
 @seldom

@@ -77,6 +77,7 @@ class Memory:
             coefficients=(0.0,) * numbers.coefficient_count,
             terms=(0,) * len(numbers.scales),
             scales=numbers.scales,
+            stress_scale=numbers.units["stress"],
         )
 
     def _solid(self) -> tuple:
@@ -157,7 +158,7 @@ class Memory:
         strips = self.strips if "stress" in self.measures else 1
         return Taken(
             impulse=zeros((threads, surfaces * (d + (1 if d == 2 else 3))), np.int64),
-            tensor=zeros((2 + (numbers.beads > 1), strips, 2 * d * d)),
+            tensor=zeros((2 + (numbers.beads > 1), strips, 2 * d * d), np.int64),
             faults=zeros((threads, 8), np.int64),
         )
 

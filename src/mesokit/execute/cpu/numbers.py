@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 # Whole numbers of this many per thermal unit: 2^-42 of a thermal momentum, 2^-39 of kT.
 MOMENTUM_BITS, MASS_BITS, ENERGY_BITS = 42, 44, 39
+STRESS_BITS = 24  # forces between beads that overlap are large
 FLOOR = 100.0  # of the rounding of a cell's energy: what a thermostat takes for no energy
 SORT_DISTANCE_SQUARED = 0.5  # particles are sorted again after straying less than a cell
 
@@ -36,7 +37,7 @@ class Numbers:
     counts: particles of each kind; n of all; beads: of each molecule (1 for single particles).
     virtual: the rule of virtual particles, "none" where no surface asks for them; n_virtual: how
     many a slit has. cells: along each axis; coefficient_count: of each cell.
-    units: whole numbers per unit of momentum, mass and energy; fastest: the largest speed.
+    units: whole numbers per unit of momentum, mass, energy and stress; fastest: the largest speed.
     """
 
     def __init__(self, case: Case) -> None:
@@ -93,6 +94,11 @@ class Numbers:
         return NotAsked()
 
     @property
+    def scales_of_motion(self) -> tuple[float, ...]:
+        """Whole numbers per unit of momentum (d) and of m v^2, in sums over all particles."""
+        return (self.units["momentum"],) * self.dimension + (self.units["energy"],)
+
+    @property
     def least_energy(self) -> float:
         """What a thermostat takes for no energy of a cell."""
         unit = 1.0 / self.units["energy"]
@@ -110,7 +116,7 @@ class Numbers:
 
 
 def units_of(case: Case) -> dict[str, float]:
-    """How many units of fixed-point sums make one of momentum, mass and energy."""
+    """How many units of fixed-point sums make one of momentum, mass, energy, stress."""
     fluid, box = case.fluid, case.box
     masses = [kind.mass for kind in fluid.kinds]
     heaviest = max(masses)
@@ -123,6 +129,7 @@ def units_of(case: Case) -> dict[str, float]:
         "momentum": 2.0 ** (MOMENTUM_BITS - math.ceil(math.log2(heaviest * speed))),
         "mass": 2.0 ** (MASS_BITS - math.ceil(math.log2(heaviest))),
         "energy": 2.0 ** (ENERGY_BITS - math.ceil(math.log2(heaviest * speed * speed))),
+        "stress": 2.0 ** (STRESS_BITS - math.ceil(math.log2(heaviest * speed * speed))),
     }
 
 

@@ -21,6 +21,7 @@ class Physics(NamedTuple):
     coefficients: tuple  # as long as what a particle needs of its cell in order to collide
     terms: tuple  # as long as what it adds to the sums of its cell
     scales: tuple  # whole numbers per unit of each of these terms; momentum comes first
+    stress_scale: float  # whole numbers per unit of m v^2 in the stress
 
 
 @scalar
@@ -46,6 +47,7 @@ def for_time(physics, time):
         physics.coefficients,
         physics.terms,
         physics.scales,
+        physics.stress_scale,
     )
 
 

@@ -145,4 +145,4 @@ def add_strip_flux(physics, box, grid, strip, count, tensor):
     for i in range(count):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         m = mass_of(physics.masses, strip, i, 2 * d)
-        add_flux(tensor, m, peculiar(box, r, v), v, added(r, grid.shift))
+        add_flux(tensor, physics.stress_scale, m, peculiar(box, r, v), v, added(r, grid.shift))

@@ -15,7 +15,7 @@ from mesokit.execute.cpu.strips.layout import LANES, SCRATCH_ROW, sums_length, z
 from mesokit.execute.cpu.threads import Threads
 from mesokit.execute.measure import sums as measure
 from mesokit.method.mpcd import topology
-from mesokit.scalar.fixed_point import ROUNDER_BITS
+from mesokit.scalar.fixed_point import ROUNDER_BITS, total
 
 if TYPE_CHECKING:
     from mesokit.potential import Bond, Pair
@@ -50,22 +50,20 @@ class Readings:
 
     def totals(self) -> tuple[int, Floats, float]:
         """Number of particles, momentum (d,) and kinetic energy, beads of solutes included."""
-        total = self.per_strip().sum(axis=0)
-        number, momentum, energy = (
-            self.n,
-            total[: self.dimension],
-            0.5 * float(total[self.dimension]),
-        )
+        number, (sums, _) = self.n, self.motion()
         if self.solutes is not None:
-            beads, theirs, more = self.solutes.totals()
-            number, momentum, energy = number + beads, momentum + theirs, energy + more
-        return number, momentum, energy
+            number, sums = number + self.solutes.shape[0], sums + self.solutes.motion()
+        return number, sums[:-1], 0.5 * float(sums[-1])
 
-    def per_strip(self) -> Floats:
-        """Momentum, sum of m v^2 and largest component of velocity in each strip."""
-        out = np.zeros((self.memory.strips, self.dimension + 2))
-        self.threads.run(measure.totals, *self._vectors, self.memory.fluid.particles, out)
-        return out
+    def motion(self) -> tuple[Floats, float]:
+        """Momentum and sum of m v^2 of the fluid (d + 1,), and the largest component of |v|."""
+        scales = self.numbers.scales_of_motion
+        sums = np.zeros((self.memory.strips, len(scales)), np.int64)
+        fastest = np.zeros(self.memory.strips)
+        _, masses = self._vectors
+        particles = self.memory.fluid.particles
+        self.threads.run(measure.totals, masses, particles, scales, sums, fastest)
+        return total(sums, np.array(scales)), float(fastest.max(initial=0.0))
 
     def moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
         """Number, mass, momentum (d, ...) and sum of m v^2 in bins along one or two axes."""
@@ -240,9 +238,10 @@ class Readings:
         Bond: momentum handed over within molecules, the mean over the flight.
         """
         d = self.dimension
-        parts = self.memory.fluid.taken.tensor.sum(axis=1)
+        unit = self.numbers.units["stress"]
+        parts = total(self.memory.fluid.taken.tensor.swapaxes(0, 1), unit)
         if self.solutes is not None:
-            theirs = self.solutes.state_of.tensor.sum(axis=1)
+            theirs = total(self.solutes.state_of.tensor.swapaxes(0, 1), unit)
             parts = np.concatenate([parts[:2] + theirs[:2], theirs[2:]])
         before, after, *bond = parts.reshape(-1, 2, d, d)
         volume = math.prod(self.numbers.case.box.size)

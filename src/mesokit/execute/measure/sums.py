@@ -1,8 +1,9 @@
 """Sums over all particles that observables ask for; the same bits for any number of threads.
 
-Each strip writes its own partial sum, to be added in order; or the sums are of whole numbers.
+The sums are of whole numbers: their order does not matter.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,16 +16,19 @@ from mesokit.potential.angle import bend
 from mesokit.potential.protocol import central
 from mesokit.scalar.cache import kernel
 from mesokit.scalar.elementary import sincos_turn
-from mesokit.scalar.fixed_point import ROUNDER_BITS, fixed, integers, rounded
+from mesokit.scalar.fixed_point import ROUNDER_BITS, fixed, integers, quanta, rounded
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.vector import dot, row, scaled
 
 
 @kernel
-def totals(team, zero, masses, particles, out):
-    """Momentum, sum of m v^2 and largest component of |v| in each strip: out (strips, d + 2)."""
+def totals(team, masses, particles, scales, out, fastest):
+    """Momentum and sum of m v^2 of each strip, as whole numbers: out (strips, d + 1).
+
+    `scales` (d + 1) of them are one unit; `fastest` (strips,) is the largest component of |v|.
+    """
     data, rows = particles.data, particles.rows
-    filling, d = particles.filling, len(zero)
+    filling, d, zero = particles.filling, len(scales) - 1, scales[1:]
     first, last = share(strips_in(filling), team.thread, team.threads)
     for b in range(first, last):
         strip = data[strip_at(b, rows)]
@@ -32,9 +36,9 @@ def totals(team, zero, masses, particles, out):
             v = load_particle(strip, i, d, zero)
             m = mass_of(masses, strip, i, 2 * d)
             for k in range(d):
-                out[b, k] += m * v[k]
-                out[b, d + 1] = max(out[b, d + 1], abs(v[k]))
-            out[b, d] += m * dot(v, v)
+                out[b, k] += quanta(m * v[k], scales[k])
+                fastest[b] = max(fastest[b], abs(v[k]) if v[k] == v[k] else math.inf)
+            out[b, d] += quanta(m * dot(v, v), scales[d])
 
 
 class Bins(NamedTuple):
