@@ -100,17 +100,3 @@ def settled(solid, r):
 def facing(solid, away, r):
     """Distance of r from the nearest surface, the normal out of it, its number, and r from its
     pivot; the first is at least `away` where nothing is nearer."""
-
-
-@generic
-def closes(solid, place, shift, lower_rate, upper_rate):
-    """Position and mean velocity of a virtual particle, from uniform numbers and the grid shift.
-
-    The rates are those at which the fluid's velocity rises with the distance from surfaces 0 and 1;
-    within the solid it goes on falling.
-    """
-
-
-@generic
-def side(solid, r):
-    """The surface behind which a virtual particle at r lies: 0 or 1, or 2 where it must not act."""

@@ -20,16 +20,16 @@ GRID_SHIFT = np.uint64(1)
 CELL = np.uint64(2)  # two words for the collision rule, two for the thermostat
 CELL_DOUBT = np.uint64(3)
 PARTICLE_VELOCITY = np.uint64(4)
-VIRTUAL_POSITION = np.uint64(5)
-VIRTUAL_VELOCITY = np.uint64(6)
 CELL_VIRTUAL = np.uint64(7)
 INITIAL_POSITION = np.uint64(8)
 INITIAL_VELOCITY = np.uint64(9)
-BODY_POSITION = np.uint64(10)  # of virtual particles in solids of any shape, and their number
-BODY_VELOCITY = np.uint64(11)
+VIRTUAL_POSITION = np.uint64(10)  # of virtual particles
+VIRTUAL_VELOCITY = np.uint64(11)
 DIFFUSE_WALL = np.uint64(12)
-BODY_NUMBER = np.uint64(13)
+VIRTUAL_NUMBER = np.uint64(13)
 INITIAL_SOLUTES = np.uint64(14)
+# Where the numbers of what is no particle of the fluid begin.
+FIRST_VIRTUAL, FIRST_BEAD = 2**61, 2**62
 METHOD = np.uint64(128)  # and above: for methods other than MPCD, whose runs never meet
 
 _LOW = np.uint64(0xFFFFFFFF)

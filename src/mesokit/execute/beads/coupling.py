@@ -9,7 +9,6 @@ import math
 
 import numpy as np
 
-from mesokit.execute.beads.state import FIRST_NUMBER
 from mesokit.execute.cpu.collide import draw_with_care
 from mesokit.execute.cpu.strips.cell_energy import asks
 from mesokit.execute.cpu.strips.layout import LANES, record_length, share
@@ -22,7 +21,7 @@ from mesokit.scalar.cache import inner
 from mesokit.scalar.gamma import gamma_number
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.poisson import poisson_number
-from mesokit.scalar.random import BODY_NUMBER, CELL, CELL_VIRTUAL, normals, words
+from mesokit.scalar.random import CELL, CELL_VIRTUAL, FIRST_BEAD, VIRTUAL_NUMBER, normals, words
 from mesokit.scalar.vector import added, dot, scaled
 
 NOBODY = -1
@@ -111,16 +110,16 @@ def _with_random_solvent(solvent, beads, physics, counter, cell, total):
     mean, mass_of_one = solvent
     n, mass, momentum, energy, own = total
     zero = physics.zero
-    d, number = len(zero), poisson_number(mean, counter, BODY_NUMBER, cell)
+    d, number = len(zero), poisson_number(mean, counter, VIRTUAL_NUMBER, cell)
     if number > 0:
         m = number * mass_of_one
         a, b, e, f = words(counter, CELL_VIRTUAL, cell, 0)
         v = scaled(math.sqrt(physics.kT / m), normals(zero, a, b, e, f))
         n, mass, momentum = n + number, mass + m, added(momentum, scaled(m, v))
         if asks(physics.energy):
-            inner = gamma_number(float(d * (number - 1)), counter, BODY_NUMBER, cell)
+            inner = gamma_number(float(d * (number - 1)), counter, VIRTUAL_NUMBER, cell)
             energy += m * dot(v, v) + 2.0 * physics.kT * inner
-        who = (FIRST_NUMBER + len(beads.cell) + np.int64(cell), 0)
+        who = (FIRST_BEAD + len(beads.cell) + np.int64(cell), 0)
         _, drawn = contribute(physics.rule, counter, who, m, v, scaled(0.0, zero))
         own = added(own, drawn)
     return n, mass, momentum, energy, own

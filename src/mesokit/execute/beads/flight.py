@@ -13,7 +13,6 @@ from mesokit.case.box import at_time, fold, peculiar, unfold
 from mesokit.execute.beads.interactions import Force, Virial
 from mesokit.execute.beads.neighbours import refresh
 from mesokit.execute.beads.state import (
-    FIRST_NUMBER,
     GROUP,
     Beads,
     load_folded,
@@ -37,6 +36,7 @@ from mesokit.method.mpcd.field.none import Zero
 from mesokit.method.mpcd.field.protocol import acceleration
 from mesokit.scalar.cache import inner
 from mesokit.scalar.jit import by_type, scalar
+from mesokit.scalar.random import FIRST_BEAD
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
 LEAST = 4  # groups for a thread: fewer do not pay for the gate
@@ -105,7 +105,7 @@ def bin_bead(beads, i, physics, now):
     """The cell of a bead, and what it adds to the sums of that cell."""
     r, v, boxes = load_folded(beads, i, now.box, now.grid.shift)
     beads.cell[i] = cell_index(r, now.grid)
-    who, m = (FIRST_NUMBER + i, 0), beads.mass
+    who, m = (FIRST_BEAD + i, 0), beads.mass
     kept, own = contribute(physics.rule, now.counter, who, m, v, in_cell(r, now.grid))
     _, kept = unfold(now.box, r, kept, boxes)
     store_velocity(beads, i, kept)
@@ -133,7 +133,7 @@ def _drift(beads, i, counter, physics, impulse):
 
 def _drift_among_solids(beads, i, counter, physics, impulse):
     r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
-    r, v = flown(physics, counter, FIRST_NUMBER + i, beads.mass, r, v, impulse)
+    r, v = flown(physics, counter, FIRST_BEAD + i, beads.mass, r, v, impulse)
     store_place(beads, i, r)
     store_velocity(beads, i, v)
 

@@ -9,7 +9,6 @@ from mesokit.execute.cpu.strips.rows import load_values, store_values
 from mesokit.scalar.jit import scalar
 
 GROUP = 64  # beads whose part in the stress is added up by itself
-FIRST_NUMBER = 2**31  # of a bead in random streams, beyond those of all particles
 
 
 class Beads(NamedTuple):

@@ -84,5 +84,4 @@ class Walls(NamedTuple):
 
     top_up: tuple  # (density,) where cells are filled up to the mean density
     gradient: tuple  # (1.0,) where they move as the fluid's profile would go on
-    slit: Any  # SlitParticles
-    solids: Any  # SolidParticles, of solids of any shape
+    virtual: Any  # VirtualParticles

@@ -20,7 +20,6 @@ from mesokit.execute.cpu.strips.layout import (
     LANES,
     ROW,
     SCRATCH_ROW,
-    STRIPS,
     blocks_for,
     places_of_beads,
     record_length,
@@ -28,8 +27,7 @@ from mesokit.execute.cpu.strips.layout import (
     sums_length,
     zeros,
 )
-from mesokit.execute.virtual.allocate import solid_particles, with_clearance
-from mesokit.execute.virtual.slit import SlitParticles
+from mesokit.execute.virtual.allocate import virtual_particles, with_clearance
 from mesokit.geometry.solids.none import Nothing
 
 if TYPE_CHECKING:
@@ -106,14 +104,13 @@ class Memory:
         numbers, d = self.numbers, self.numbers.dimension
         beads, molecules = numbers.beads, numbers.filling.molecules
         self.rows = 2 * d + (not numbers.uniform)
-        self.strips, virtual = strips_for(molecules, beads), strips_for(numbers.n_virtual)
-        self.real_blocks = blocks_for(self.strips * LANES)
+        self.strips = strips_for(molecules, beads)
         # where particles lie; among molecules some places are empty
         self.places = np.arange(numbers.n)
         if beads > 1:
             self.places = places_of_beads(molecules, beads).ravel()
-        lanes = (self.real_blocks + blocks_for(numbers.n_virtual)) * BLOCK
-        ident = np.arange(lanes, dtype=np.int32)  # beyond n: virtual particles
+        lanes = blocks_for(self.strips * LANES) * BLOCK
+        ident = np.arange(lanes)
         ident[self.places] = np.arange(numbers.n)
         data, image = zeros(lanes // BLOCK * self.rows * ROW), zeros((d, lanes), np.int32)
         cell = zeros(lanes, np.int32)
@@ -126,8 +123,10 @@ class Memory:
         )
         spare = zeros(numbers.n)
         ends = zeros((self.threads, numbers.number_of_cells), np.int32)
-        self.order = Order(zeros(numbers.n, np.int32), ends, spare, spare.view(np.int32))
-        self.walls = self._walls(virtual)
+        self.order = Order(
+            zeros(numbers.n, np.int32), ends, spare, spare.view(np.int32), spare.view(np.int64)
+        )
+        self.walls = self._walls()
 
     def _cells(self) -> Cells:
         every = (
@@ -162,27 +161,20 @@ class Memory:
             faults=zeros((threads, 8), np.int64),
         )
 
-    def _walls(self, strips: int) -> Walls:
-        numbers, density = self.numbers, self.numbers.case.fluid.density
-        slit: Any = ()
-        solids: Any = ()
-        if numbers.slit is not None and numbers.virtual in ("fill", "extrapolate"):
-            first = self.real_blocks * STRIPS
-            slit = SlitParticles(numbers.n_virtual, strips, first, zeros((2, numbers.dimension)))
-        elif numbers.slit is None and numbers.solids is not None and numbers.virtual != "none":
-            about = numbers.case, numbers.solids, numbers.cells
-            solids = solid_particles(*about, self.threads, self.rows, numbers.masses())
+    def _walls(self) -> Walls:
+        numbers, virtual = self.numbers, self.numbers.virtual
+        if virtual == "none":
+            return Walls((), (), ())
         return Walls(
-            top_up=(density,) if numbers.virtual == "top-up" else (),
-            gradient=(1.0,) if numbers.virtual == "extrapolate" else (),
-            slit=slit,
-            solids=solids,
+            top_up=(1.0,) if virtual == "top-up" else (),
+            gradient=(1.0,) if virtual == "extrapolate" else (),
+            virtual=virtual_particles(numbers, self.threads, self.rows),
         )
 
     @property
     def wall_rates(self) -> Floats:
         """How the fluid's velocity rises with the distance from surfaces; a view."""
-        virtual = self.walls.slit or self.walls.solids
+        virtual = self.walls.virtual
         return virtual.rates if virtual else np.zeros((2, self.numbers.dimension))
 
     def fill(self, positions: Floats, velocities: Floats, images: Any = 0) -> None:
@@ -195,12 +187,6 @@ class Memory:
         particles.image[:, self.places] = np.broadcast_to(images, positions.shape)[who].T
         if self.rows > 2 * d:
             data[self.at(2 * d)] = masses[who]
-            if self.walls.slit:  # virtual particles get masses in proportion
-                lanes = np.arange(self.real_blocks * BLOCK, len(particles.cell))
-                number = self.walls.slit.number
-                data[self.at(2 * d, lanes)] = masses[0]
-                sample = masses[(np.arange(number) * 7919) % len(masses)]
-                data[self.at(2 * d, lanes[:number])] = sample
         self.fluid.room[:] = 0.0
 
     def read(self) -> tuple[Floats, Floats, NDArray[np.int32]]:

@@ -35,8 +35,8 @@ class Numbers:
     """Numbers of a case: of its particles and cells, and of fixed-point sums.
 
     counts: particles of each kind; n of all; beads: of each molecule (1 for single particles).
-    virtual: the rule of virtual particles, "none" where no surface asks for them; n_virtual: how
-    many a slit has. cells: along each axis; coefficient_count: of each cell.
+    virtual: the rule of virtual particles, "none" where no surface asks for them. cells: along each
+    axis; coefficient_count: of each cell.
     units: whole numbers per unit of momentum, mass, energy and stress; fastest: the largest speed.
     """
 
@@ -62,9 +62,6 @@ class Numbers:
             raise RunError(f"fluid.density = {fluid.density:g}: no particle in the box")
         molecules = self.n // self.beads
         self.filling = Molecules(molecules, self.beads) if fluid.molecule else Singles(molecules)
-        layer = math.prod(s for s, shut in zip(box.size, self.closed, strict=True) if not shut)
-        layered = self.slit is not None and self.virtual in ("fill", "extrapolate")
-        self.n_virtual = round(fluid.density * layer) if layered else 0
         self.cells = tuple(size + shut for size, shut in zip(box.size, self.closed, strict=True))
         self.number_of_cells = math.prod(self.cells)
 

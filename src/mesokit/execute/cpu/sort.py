@@ -34,6 +34,7 @@ class Order(NamedTuple):
     ends: Any  # (threads, cells) where the molecules of each cell end
     spare: Any  # (particles,) floats
     whole: Any  # the same memory as whole numbers of 32 bits
+    long: Any  # and of 64
 
 
 @kernel
@@ -45,9 +46,9 @@ def sort(team, zero, box, grid, particles, memory):
     for bead in range(beads_of(particles.filling)):
         for row in range(particles.rows):
             reorder_row(team, particles, memory, row, bead)
-        reorder(team, particles.ident, particles.filling, memory, bead)
+        reorder(team, particles.ident, memory.long, particles.filling, memory.order, bead)
         for k in range(len(zero)):
-            reorder(team, particles.image[k], particles.filling, memory, bead)
+            reorder(team, particles.image[k], memory.whole, particles.filling, memory.order, bead)
 
 
 @inner
@@ -142,12 +143,11 @@ def reorder_row(team, particles, memory, row, bead):
 
 
 @inner
-def reorder(team, values, filling, memory, bead):
+def reorder(team, values, spare, filling, order, bead):
     """Put a plain array in the new order, through a spare one, for one bead of each molecule."""
-    spare = memory.whole
     first, last = share(filling.molecules, team.thread, team.threads)
     for j in range(first, last):
-        spare[j] = values[place_of_bead(filling, memory.order[j], bead)]
+        spare[j] = values[place_of_bead(filling, order[j], bead)]
     meet(team)
     for j in range(first, last):
         values[place_of_bead(filling, j, bead)] = spare[j]

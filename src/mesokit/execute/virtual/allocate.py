@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesokit.execute.cpu.strips.layout import BLOCK, ROW, SCRATCH_ROW, blocks_for, zeros
+from mesokit.execute.cpu.strips.layout import BLOCK, LANES, ROW, SCRATCH_ROW, blocks_for, zeros
+from mesokit.execute.virtual import plates
 from mesokit.execute.virtual.gradient import columns
-from mesokit.execute.virtual.one_by_one import KINDS, SolidParticles
-from mesokit.execute.virtual.per_cell import ROWS, CellParticles
+from mesokit.execute.virtual.particles import KINDS, CellParticles, VirtualParticles
+from mesokit.execute.virtual.per_cell import ROWS
 from mesokit.geometry.solids.bodies import Bodies
 from mesokit.geometry.solids.clearance import (
     clear_squares,
@@ -24,10 +25,12 @@ from mesokit.scalar.pointer import address
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.execute.cpu.numbers import Numbers
     from mesokit.geometry.solids.solids import Solids
 
 
 MANY_SIGMA = 4.5  # of the Maxwell distribution: one particle in 20,000 is faster
+MANY_DEVIATIONS = 12.0  # of a Poisson number: no more will ever come
 
 
 def with_clearance(case: Case, solids: Solids) -> tuple[Bodies, Any]:
@@ -52,51 +55,61 @@ def with_clearance(case: Case, solids: Solids) -> tuple[Bodies, Any]:
     return kernel, (clear, plane_of, planes)
 
 
-def solid_particles(
-    case: Case, solids: Solids, cells: tuple[int, ...], threads: int, rows: int, masses: Any
-) -> SolidParticles:
-    """Virtual particles of the bodies; `masses` are those of the fluid's particles."""
-    density, d = case.fluid.density, case.box.dimension
-    uniform = len(np.unique(masses)) == 1
-    starts, numbers, corners = cut_cells(solids, cells)
-    pieces, outward, probes, terms = surface_pieces(solids)
-    most = int(np.diff(starts).max(initial=0)) * (int(density) + 2)
-    at_once = uniform and "angular momentum" not in case.fluid.collision.conserves
-    at_once = at_once and case.walls[0].virtual != "top-up"
+def virtual_particles(numbers: Numbers, threads: int, rows: int) -> VirtualParticles:
+    """Virtual particles of the walls of a case."""
+    case, solids, d = numbers.case, numbers.solids, numbers.dimension
+    assert solids is not None
+    slit, size, masses = numbers.slit, case.box.size, numbers.masses()
+    density, rule = case.fluid.density, case.fluid.collision
+    if slit is not None:
+        starts, cells, corners = plates.cut_cells(slit, size, numbers.cells)
+        pieces, outward, probes, terms = plates.surface_pieces(slit, size)
+    else:
+        starts, cells, corners = cut_cells(solids, numbers.cells)
+        pieces, outward, probes, terms = surface_pieces(solids)
+    entries = int(np.diff(starts).max(initial=0)) // threads + 1  # at most, of a thread
     per_cell: CellParticles | tuple[()] = ()
-    if at_once:
-        most = 0
-        normals, heights, places, cut_terms, where = cut_planes(solids, corners, starts)
-        entries = int(np.diff(starts).max(initial=0)) // threads + 1
-        per_cell = CellParticles(
-            normals=np.ascontiguousarray(normals.T).ravel(),
-            heights=heights,
-            places=np.ascontiguousarray(places.T).ravel(),
-            terms=cut_terms,
-            pieces=pieces[where].astype(np.int64),
-            work=zeros((threads, ROWS * SCRATCH_ROW)),
-            state=np.zeros((threads, entries, 3 * d + 1)),
-            entry=np.zeros((threads, entries), np.int64),
-            filled=np.zeros(threads, np.int64),
-        )
-    blocks = blocks_for(most // threads + 1)
-    kinds = masses[(np.arange(KINDS) * 7919) % len(masses)]
-    return SolidParticles(
+    room = 0
+    if "angular momentum" in rule.conserves or not numbers.uniform or numbers.virtual == "top-up":
+        mean = density * entries
+        room = int(mean + MANY_DEVIATIONS * math.sqrt(mean)) + LANES
+    else:
+        if slit is not None:
+            planes = plates.cut_planes(slit, size, corners)
+        else:
+            planes = cut_planes(solids, corners, starts)
+        per_cell = _per_cell(planes, pieces, threads, entries, d)
+    blocks = blocks_for(room)
+    return VirtualParticles(
         density=density,
-        first_number=len(masses),
         starts=starts,
-        cells=numbers,
+        cells=np.pad(cells, (0, LANES)),
         corners=corners,
         pieces=pieces,
         outward=outward,
         probes=probes,
         terms=terms,
         rates=np.zeros((len(terms), columns(d))),
-        masses=kinds,
+        masses=masses[(np.arange(KINDS) * 7919) % len(masses)],
         data=zeros((threads, blocks * rows * ROW)),
         cell=zeros((threads, blocks * BLOCK), np.int32),
-        number=zeros((threads, blocks * BLOCK), np.int32),
+        number=zeros((threads, blocks * BLOCK), np.int64),
         term=zeros((threads, blocks * BLOCK), np.int32),
         filled=np.zeros(threads, np.int64),
         per_cell=per_cell,
+    )
+
+
+def _per_cell(planes: Any, pieces: Any, threads: int, entries: int, d: int) -> CellParticles:
+    normals, heights, places, terms, where = planes
+    return CellParticles(
+        normals=np.ascontiguousarray(normals.T).ravel(),
+        heights=heights,
+        places=np.ascontiguousarray(places.T).ravel(),
+        terms=terms,
+        pieces=pieces[where].astype(np.int64),
+        work=zeros((threads, ROWS * SCRATCH_ROW)),
+        state=np.zeros((threads, entries, 3 * d + 1)),
+        entry=np.zeros((threads, entries), np.int64),
+        filled=np.zeros(threads, np.int64),
     )

@@ -3,9 +3,8 @@
 import math
 
 from mesokit.execute.cpu.bounce import take
-from mesokit.geometry.solids.bodies import BODY, from_pivot
+from mesokit.geometry.cut import grip
 from mesokit.scalar.jit import scalar
-from mesokit.scalar.pointer import whole, word
 from mesokit.scalar.random import normals, words
 from mesokit.scalar.vector import scaled
 
@@ -19,6 +18,6 @@ def thermal(physics, m, counter, purpose, number, draw):
 
 @scalar
 def body_takes(impulse, solid, term, r, p, scale):
-    """Add the momentum p, taken at r, to what the body of a term took."""
-    lever = from_pivot(solid.tables, term, r)
-    take(impulse, whole(word(solid.tables, BODY), term), lever, p, scale)
+    """Add the momentum p, taken at r, to what the surface of a term took."""
+    surface, lever = grip(solid, term, r)
+    take(impulse, surface, lever, p, scale)

@@ -1,11 +1,13 @@
 """How fast the fluid's velocity rises with the distance from each piece of surface.
 
+Virtual particles at rest with a wall drag the fluid as if the wall lay deeper: in the part of a
+cell that is solid the fluid's profile would go on, to velocities beyond the wall's. With the rate
+of the profile known they can move like that; the wall is then where it should be.
+
 Next to a surface the velocity relative to it is s h + q h^2 at the height h. Two cells of fluid in
 front of each piece, free of solid, tell u / h = s + q h at two heights; where the second is not
 free, q is taken for 0.
 """
-
-import math
 
 import numpy as np
 
@@ -13,13 +15,7 @@ from mesokit.execute.cpu.grid import cell_index
 from mesokit.execute.cpu.strips.layout import share
 from mesokit.execute.cpu.strips.terms import read_sums, sums_of_cell
 from mesokit.execute.cpu.threads import meet
-from mesokit.geometry.solids.bodies import (
-    in_box,
-    nearest,
-    sure_clearance,
-    surface_velocity,
-    term_clearance,
-)
+from mesokit.geometry.cut import height, roomy, surface_flow
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.vector import added_scaled, dot, scaled
@@ -39,18 +35,18 @@ def columns(d):
 
 
 @scalar
-def flow_at(rates, piece, height, zero):
-    """Velocity relative to the surface at a height, which is negative in the solid."""
+def flow_at(rates, piece, above, zero):
+    """Velocity relative to the surface at a height above it, which is negative in the solid."""
     d = len(zero)
     for k in range(d):
-        rise = rates[piece, k] + height * rates[piece, d + k]
-        zero = with_item(zero, k, height * rise)
+        rise = rates[piece, k] + above * rates[piece, d + k]
+        zero = with_item(zero, k, above * rise)
     return zero
 
 
 def follow_pieces(team, now, physics, fluid, walls):
     """Update what is known at every EVERYth piece of surface, from this step's cells."""
-    _follow(team, now, physics, fluid.cells.sums, walls.solids)
+    _follow(team, now, physics, fluid.cells.sums, walls.virtual)
     meet(team)
 
 
@@ -76,23 +72,20 @@ def look(virtual, e, p, physics, grid, sums):
     for k in range(d):
         corner = floor(probe[k] + grid.origin[k]) - grid.origin[k]
         middle = with_item(middle, k, corner + 0.5)
-    room = 0.5 * math.sqrt(float(d))
-    if sure_clearance(solid, middle) < room:
-        least, _, _ = nearest(solid.tables, in_box(solid, middle))
-        if least < room:
-            return
+    if not roomy(solid, middle):
+        return
     found = sums_of_cell(sums, cell_index(probe, grid), physics.terms)
     number, mass, momentum, _, _ = read_sums(physics, found)
     if number < 1.0:
         return
-    height, _ = term_clearance(solid.tables, virtual.terms[e], middle)
-    u = surface_velocity(solid.tables, virtual.terms[e], middle)
-    rise = scaled(1.0 / height, added_scaled(scaled(1.0 / mass, momentum), -1.0, u))
+    above = height(solid, virtual.terms[e], middle)
+    u = surface_flow(solid, virtual.terms[e], middle)
+    rise = scaled(1.0 / above, added_scaled(scaled(1.0 / mass, momentum), -1.0, u))
     rise = added_scaled(rise, -dot(rise, n), n)
     place = 2 * d + p * (d + 1)
     for k in range(d):
         virtual.rates[e, place + k] += MEMORY * (rise[k] - virtual.rates[e, place + k])
-    virtual.rates[e, place + d] += MEMORY * (height - virtual.rates[e, place + d])
+    virtual.rates[e, place + d] += MEMORY * (above - virtual.rates[e, place + d])
 
 
 @scalar

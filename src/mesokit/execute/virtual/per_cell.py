@@ -1,4 +1,4 @@
-"""Virtual particles of solids, all of a cell at once.
+"""Virtual particles of walls, all of a cell at once.
 
 A rule that asks only for the number, momentum and energy of a cell's particles cannot tell whether
 these were drawn one by one. The solid part of a cut cell holds a Poisson number N of them; their
@@ -9,7 +9,7 @@ which moves with the shift.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,7 +21,8 @@ from mesokit.execute.cpu.strips.layout import LANES, SCRATCH_ROW, record_length,
 from mesokit.execute.cpu.strips.rows import load_scratch, load_values, store_scratch
 from mesokit.execute.virtual.gas import body_takes
 from mesokit.execute.virtual.gradient import flow_at
-from mesokit.geometry.solids.bodies import surface_velocity
+from mesokit.execute.virtual.particles import MOST
+from mesokit.geometry.cut import surface_flow
 from mesokit.geometry.solids.clearance import offset_of, offsets_along
 from mesokit.geometry.solids.cut_cube import share_and_depth
 from mesokit.method.mpcd.collision.protocol import collide, contribute
@@ -30,7 +31,13 @@ from mesokit.scalar.gamma import gamma_number, likely
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.poisson import MOST_MEAN, MOST_NUMBER, none_found, one_more
-from mesokit.scalar.random import BODY_NUMBER, BODY_VELOCITY, normals, words
+from mesokit.scalar.random import (
+    FIRST_VIRTUAL,
+    VIRTUAL_NUMBER,
+    VIRTUAL_VELOCITY,
+    normals,
+    words,
+)
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
 ROWS = 14  # of the scratch memory of a batch of cells
@@ -38,45 +45,24 @@ ROWS = 14  # of the scratch memory of a batch of cells
 PLACE, THERMAL, MEAN, DEPTH, NUMBER, CHANCE, LEFT, INNER, HEIGHT = 0, 3, 6, 7, 8, 9, 10, 11, 12
 
 
-class CellParticles(NamedTuple):
-    """Planes of the cut cells, and the virtual particles of this step; a row for each cell.
-
-    normals (d * entries,), heights (entries,): of the middle of the cell over the surface, at the
-    middle of the interval of offsets; places (d * entries,): that middle, in the box.
-    terms, pieces (entries,): the body, and the piece of surface.
-    work (threads, ROWS * SCRATCH_ROW): the numbers of a batch, in rows.
-    state (threads, entries, 3 d + 1): velocity, velocity kept for the collision, place, mass.
-    entry (threads, entries), filled (threads,).
-    """
-
-    normals: Any
-    heights: Any
-    places: Any
-    terms: Any
-    pieces: Any
-    work: Any
-    state: Any
-    entry: Any
-    filled: Any
-
-
 @scalar
-def moved_by(grid, zero):
+def moved_by(solid, grid, zero):
     """How far the grid is from the middle of its interval of offsets."""
     for k in range(len(zero)):
-        many = offsets_along(zero)
+        many = offsets_along(solid, zero)
         within = grid.origin[k] * many
         zero = with_item(zero, k, (within - floor(within) - 0.5) / many)
     return zero
 
 
 @scalar
-def cut_batch(cells, start, count, density, grid, work, zero):
+def cut_batch(virtual, start, count, solid, grid, work, zero):
     """Mean number of particles in the solid of each cell, their mean depth, and their mean place.
 
     The place is in the image of the cell next to the term, which may lie beyond an end of the box.
     """
-    d, entries, moved = len(zero), len(cells.heights), moved_by(grid, zero)
+    cells, d, moved = virtual.per_cell, len(zero), moved_by(solid, grid, zero)
+    entries = len(cells.heights)
     for k in range(d):
         for i in range(count):
             work[(PLACE + k) * SCRATCH_ROW + i] = cells.places[k * entries + start + i]
@@ -93,12 +79,12 @@ def cut_batch(cells, start, count, density, grid, work, zero):
         cut = (part > 0.0) & (part < 1.0)
         middle = added_scaled(middle, -1.0, moved)
         store_scratch(work, PLACE * SCRATCH_ROW + i, added_scaled(middle, -(height + depth), n))
-        work[MEAN * SCRATCH_ROW + i] = density * part if cut else 0.0
+        work[MEAN * SCRATCH_ROW + i] = virtual.density * part if cut else 0.0
         work[DEPTH * SCRATCH_ROW + i] = depth
 
 
 @scalar
-def count_batch(start, counter, work):
+def count_batch(numbers, counter, work):
     """Numbers of particles: Poisson, for all cells of a batch at once."""
     most = 0.0
     for i in range(LANES):
@@ -107,7 +93,7 @@ def count_batch(start, counter, work):
     draw = 0
     while most > 0.0:
         for i in range(LANES):
-            a, _, _, _ = words(counter, BODY_NUMBER, start + i, draw)
+            a, _, _, _ = words(counter, VIRTUAL_NUMBER, numbers[i], draw)
             mean = min(work[MEAN * SCRATCH_ROW + i], MOST_MEAN)
             chance, left = none_found(a, mean)
             work[CHANCE * SCRATCH_ROW + i] = chance
@@ -130,16 +116,16 @@ def count_batch(start, counter, work):
 
 
 @scalar
-def draw_batch(physics, start, counter, work):
+def draw_batch(physics, numbers, counter, work):
     """Thermal velocity of one particle, and energy of all about their mean; -1 where in doubt."""
     zero = physics.zero
     (m,), asked = physics.masses, asks(physics.energy)
     spread = math.sqrt(physics.kT / m)
     for i in range(LANES):
-        a, b, c, e = words(counter, BODY_VELOCITY, start + i, 0)
+        a, b, c, e = words(counter, VIRTUAL_VELOCITY, numbers[i], 0)
         store_scratch(work, THERMAL * SCRATCH_ROW + i, scaled(spread, normals(zero, a, b, c, e)))
     for i in range(LANES if asked else 0):
-        _, _, a, b = words(counter, BODY_NUMBER, start + i, 0)
+        _, _, a, b = words(counter, VIRTUAL_NUMBER, numbers[i], 0)
         freedom = max(len(zero) * (work[NUMBER * SCRATCH_ROW + i] - 1.0), 0.0)
         value, sure = likely(a, b, freedom)
         work[INNER * SCRATCH_ROW + i] = value if sure else -1.0
@@ -147,7 +133,7 @@ def draw_batch(physics, start, counter, work):
 
 def fill_cells(team, now, physics, fluid, walls):
     """Virtual particles in every cut cell, from batches of cells."""
-    _fill(team, now, physics, fluid.cells.sums[team.thread], walls.solids)
+    _fill(team, now, physics, fluid.cells.sums[team.thread], walls.virtual)
 
 
 @seldom
@@ -159,26 +145,27 @@ def _fill(team, now, physics, sums, virtual):
     filled = 0
     for start in range(begin, end, LANES):
         count = min(LANES, end - start)
-        cut_batch(cells, first + start, count, virtual.density, now.grid, work, zero)
+        cut_batch(virtual, first + start, count, physics.solid, now.grid, work, zero)
         for i in range(count, LANES):
             work[MEAN * SCRATCH_ROW + i] = 0.0
-        count_batch(start, now.counter, work)
-        draw_batch(physics, start, now.counter, work)
+        numbers = virtual.cells[first + start : first + start + LANES]
+        count_batch(numbers, now.counter, work)
+        draw_batch(physics, numbers, now.counter, work)
         for i in range(count):
             if work[NUMBER * SCRATCH_ROW + i] > 0.5:
-                at = Place(team.thread, filled, first + start + i, start + i, i)
+                at = Place(team.thread, filled, first + start + i, numbers[i], i)
                 place_particles(virtual, at, physics, now, sums)
                 filled += 1
     cells.filled[team.thread] = filled
 
 
 class Place(NamedTuple):
-    """Of one cell: whose it is, its number with this thread, its entry, key and lane."""
+    """Of one cell: whose it is, its number with this thread, its entry, number and lane."""
 
     thread: int
     number: int
     entry: int
-    key: int  # of its random numbers
+    cell: int
     lane: int
 
 
@@ -190,7 +177,7 @@ def place_particles(virtual, at, physics, now, sums):
     number = np.int64(work[NUMBER * SCRATCH_ROW + i])
     r = load_scratch(work, PLACE * SCRATCH_ROW + i, zero)
     term, piece = cells.terms[entry], cells.pieces[entry]
-    u = surface_velocity(solid.tables, term, r)
+    u = surface_flow(solid, term, r)
     if piece >= 0:
         u = added(u, flow_at(virtual.rates, piece, -work[DEPTH * SCRATCH_ROW + i], zero))
     (m,), thermal = physics.masses, load_scratch(work, THERMAL * SCRATCH_ROW + i, zero)
@@ -200,9 +187,9 @@ def place_particles(virtual, at, physics, now, sums):
     if asks(physics.energy):
         inner = work[INNER * SCRATCH_ROW + i]
         if inner < 0.0:
-            inner = gamma_number(float(d * (number - 1)), now.counter, BODY_NUMBER, at.key)
+            inner = gamma_number(float(d * (number - 1)), now.counter, VIRTUAL_NUMBER, at.cell)
         inner *= 2.0 * physics.kT
-    who = (virtual.first_number + at.key, 0)
+    who = (FIRST_VIRTUAL + at.cell * MOST, 0)
     kept, own = contribute(physics.rule, now.counter, who, mass, v, in_cell(r, now.grid))
     width = sums_length(len(physics.terms))
     m_v_squared = inner
@@ -210,7 +197,7 @@ def place_particles(virtual, at, physics, now, sums):
         m_v_squared += mass * v[k] * v[k]
     terms = scaled(mass, v) + many_energy_term(physics.energy, m_v_squared) + own
     tallied = many_tally(physics.energy, number, m_v_squared)
-    start = np.uint64(virtual.cells[entry] * width)
+    start = np.uint64(at.cell * width)
     add_many(sums, start, number, tallied, rounded(terms, physics.scales))
     for k in range(d):
         cells.state[at.thread, at.number, k] = v[k]
@@ -229,10 +216,10 @@ def add_many(sums, start, number, tallied, terms):
         sums[place] += terms[k] + np.int64(number - 1) * np.int64(ROUNDER_BITS)
 
 
-def cells_recoil(team, now, physics, fluid, walls):
-    """What bodies take by the collision of the cells in them."""
+def recoil_per_cell(team, now, physics, fluid, walls):
+    """What walls take by the collision of the cells that they cut."""
     if now.flags & MEASURE_WALLS:
-        _recoil(team, now, physics, fluid, walls.solids)
+        _recoil(team, now, physics, fluid, walls.virtual)
 
 
 @seldom

@@ -1,16 +1,17 @@
-"""Virtual particles of walls as stages of the step: which of their kinds a case has.
+"""Virtual particles of walls as stages of the step.
 
 They fill the solid part of the cells that walls cut, so that these collide as the cells of the
-fluid do. A slit holds one layer of them between its two plates (`slit`); in the cells that solids
-of any shape cut they come one by one, or as one for each cell where the collision rule cannot tell
-(`one_by_one`, `per_cell`). By the top-up rule cells are filled to the mean density instead.
+fluid do: all of a cell at once where the collision rule cannot tell (`per_cell`), else one by one
+(`one_by_one`). By the top-up rule cells are filled to the mean density instead.
 """
 
 from typing import Any
 
+import mesokit.geometry.solids.filled  # noqa: F401  what virtual particles ask of solids
 from mesokit.execute.cpu.physics import field_of
-from mesokit.execute.virtual import one_by_one, per_cell, slit, slit_gradient, slit_top_up
+from mesokit.execute.virtual import one_by_one, per_cell
 from mesokit.execute.virtual.gradient import follow_pieces
+from mesokit.execute.virtual.particles import drawn_per_cell
 from mesokit.scalar.jit import by_type
 
 
@@ -21,37 +22,29 @@ def _nothing(team, now, physics, fluid, walls):
 @by_type
 def fill_walls(team, now, physics, fluid, walls):
     """Virtual particles at t + dt, their cells, and what they add to the sums of these."""
-    if _has(walls, "slit"):
-        return slit.fill_slit
-    if not _has(walls, "solids") or _has(walls, "top_up"):
+    if not _has(walls, "virtual") or _has(walls, "top_up"):
         return _nothing
-    return per_cell.fill_cells if one_by_one.drawn_per_cell(walls) else one_by_one.fill_solids
+    return per_cell.fill_cells if drawn_per_cell(walls) else one_by_one.fill_one_by_one
 
 
 @by_type
 def follow_flow(team, now, physics, fluid, walls):
     """How the fluid's velocity rises with the distance from surfaces, where that is asked."""
-    if not _has(walls, "gradient"):
-        return _nothing
-    return follow_pieces if _has(walls, "solids") else slit_gradient.follow_plates
+    return follow_pieces if _has(walls, "gradient") else _nothing
 
 
 @by_type
 def top_up_walls(team, now, physics, fluid, walls):
     """Virtual particles for the cells that hold fewer particles than the fluid's mean, if asked."""
-    if not _has(walls, "top_up"):
-        return _nothing
-    return one_by_one.top_up_solids if _has(walls, "solids") else slit_top_up.top_up_slit
+    return one_by_one.top_up if _has(walls, "top_up") else _nothing
 
 
 @by_type
 def recoil(team, now, physics, fluid, walls):
-    """What solids take by the collision of the virtual particles in them."""
-    if _has(walls, "slit"):
-        return slit.slit_recoil
-    if not _has(walls, "solids"):
+    """What walls take by the collision of the virtual particles in them."""
+    if not _has(walls, "virtual"):
         return _nothing
-    return per_cell.cells_recoil if one_by_one.drawn_per_cell(walls) else one_by_one.solids_recoil
+    return per_cell.recoil_per_cell if drawn_per_cell(walls) else one_by_one.recoil_one_by_one
 
 
 def _has(walls: Any, name: str) -> bool:

@@ -6,9 +6,9 @@ from typing import Literal, NamedTuple
 
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
+from mesokit.geometry.cut import behind, grip, height, home, roomy, surface_flow
 from mesokit.geometry.protocol import (
     across,
-    closes,
     exposed,
     facing,
     first_hit,
@@ -19,7 +19,6 @@ from mesokit.geometry.protocol import (
     lever,
     rebound,
     settled,
-    side,
     surface_of,
     touches,
     unmet,
@@ -222,26 +221,44 @@ def _(solid, away, r):
     return distance, with_item(none, k, 1.0 if low else -1.0), 0 if low else 1, none
 
 
-@closes.register(SlitX, SlitY, SlitZ)
-def _(solid, place, shift, lower_rate, upper_rate):
-    # Cells end at heights k - shift: the part of shift after the point is the depth of the lower
-    # layer of cut cells in its plate, and the rest of one cell that of the upper.
-    axis = across(solid)
-    below = shift[axis] - floor(shift[axis])
-    depth = place[axis]
-    low = depth < below
-    behind = depth if low else depth - below
-    for k in range(len(place)):
-        u = solid.lower_velocity[k] if low else solid.upper_velocity[k]
-        rate = lower_rate[k] if low else upper_rate[k]
-        shift = with_item(shift, k, u - behind * rate)
-        place = with_item(place, k, place[k] * solid.size[k])
-    return with_item(place, axis, -behind if low else solid.width + behind), shift
-
-
-@side.register(SlitX, SlitY, SlitZ)
+@behind.register(SlitX, SlitY, SlitZ)
 def _(solid, r):
-    low = r[across(solid)] < 0.5 * solid.width
+    k = across(solid)
+    low = r[k] < 0.5 * solid.width
+    clear = r[k] if low else solid.width - r[k]
     slips = solid.lower_slips if low else solid.upper_slips
-    surface = 0 if low else 1
-    return 2 if slips > 0.5 else surface
+    foot = with_item(r, k, 0.0 if low else solid.width)
+    return abs(clear) if slips > 0.5 else clear, 0 if low else 1, foot
+
+
+@surface_flow.register(SlitX, SlitY, SlitZ)
+def _(solid, term, r):
+    return solid.lower_velocity if term == 0 else solid.upper_velocity
+
+
+@height.register(SlitX, SlitY, SlitZ)
+def _(solid, term, r):
+    h = r[across(solid)]
+    return h if term == 0 else solid.width - h
+
+
+@roomy.register(SlitX, SlitY, SlitZ)
+def _(solid, r):
+    h = r[across(solid)]
+    return min(h, solid.width - h) >= 0.5
+
+
+@home.register(SlitX, SlitY, SlitZ)
+def _(solid, r):
+    cell, stride = 0, 1
+    for k in range(len(r)):
+        length = solid.size[k]
+        x = r[k] if k == across(solid) else r[k] - length * floor(r[k] / length)
+        cell += min(max(int(x), 0), int(length) - 1) * stride
+        stride *= int(length)
+    return cell
+
+
+@grip.register(SlitX, SlitY, SlitZ)
+def _(solid, term, r):
+    return term, scaled(0.0, r)

@@ -19,7 +19,7 @@ from mesokit.geometry.solids.contact import MARGIN
 from mesokit.geometry.solids.free_planes import planes_above
 from mesokit.geometry.solids.solids import Solids
 from mesokit.scalar.intrinsics import floor
-from mesokit.scalar.jit import by_type
+from mesokit.scalar.jit import by_type, scalar
 
 OFFSETS = {2: 4, 3: 2}  # along each axis, by dimension
 PARTS = {2: 4, 3: 2}  # of a cell along each axis, for which a bound of the clearance is kept
@@ -32,24 +32,18 @@ ROUNDING = 1e-9  # of a share
 
 
 @by_type
-def offsets_along(r):
-    """Number of intervals along each axis, for a box of as many axes as r."""
-    number = OFFSETS[len(r)]
-    return lambda r: number
+def offsets_along(solid, r):
+    """Number of intervals along each axis, for a box of as many axes as r: one between plates."""
+    number = OFFSETS[len(r)] if solid.instance_class is Bodies else 1
+    return lambda solid, r: number
 
 
-@by_type
+@scalar
 def offset_of(solid, grid):
-    """Number of the interval that holds the origin of the grid, for solids in tables."""
-    if solid.instance_class is Bodies:
-        return _offset
-    return lambda solid, grid: 0
-
-
-def _offset(solid, grid):
+    """Number of the interval that holds the origin of the grid."""
     number = 0
     for k in range(len(grid.origin)):
-        many = offsets_along(grid.origin)
+        many = offsets_along(solid, grid.origin)
         number = number * many + int(floor(grid.origin[k] * many)) % many
     return number
 

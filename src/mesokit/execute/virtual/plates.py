@@ -1,0 +1,78 @@
+"""The cells that two plates cut, and their pieces of surface: they need no search."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mesokit.case.box import AXES
+
+if TYPE_CHECKING:
+    from mesokit.geometry.shape.plates import Plates
+
+PROBE = 1.0  # from a plate to where fluid is first looked for: the cell there is never cut
+
+
+def ends(plates: Plates, size: tuple[int, ...]) -> list[tuple[int, float, float]]:
+    """Of the plates that hold virtual particles: number, height along the axis, normal."""
+    length = float(size[AXES.index(plates.axis)])
+    both = ((0, 0.0, 1.0, plates.lower), (1, length, -1.0, plates.upper))
+    return [(term, at, up) for term, at, up, surface in both if surface.rule != "slip"]
+
+
+def cut_cells(plates: Plates, size: tuple[int, ...], cells: tuple[int, ...]) -> tuple[Any, ...]:
+    """As `clearance.cut_cells`, for the one interval of offsets: starts, numbers and corners."""
+    where = _numbered(cells)
+    layer = where[:, AXES.index(plates.axis)]
+    chosen = np.flatnonzero(np.isin(layer, [at for _, at, _ in ends(plates, size)]))
+    return np.array([0, len(chosen)], np.int64), chosen, where[chosen]
+
+
+def cut_planes(plates: Plates, size: tuple[int, ...], corners: Any) -> tuple[Any, ...]:
+    """As `clearance.cut_planes`: normals, heights, middles, terms, and cells of the surface.
+
+    In the middle of the interval of offsets the middle of a cut cell is on the plate.
+    """
+    axis = AXES.index(plates.axis)
+    normals, terms = np.zeros(corners.shape), np.zeros(len(corners), np.int64)
+    for term, at, up in ends(plates, size):
+        here = corners[:, axis] == at
+        normals[here, axis], terms[here] = up, term
+    inside = np.minimum(corners, np.array(size) - 1).astype(np.int64)
+    return normals, np.zeros(len(corners)), corners.copy(), terms, _number(inside, size)
+
+
+def surface_pieces(plates: Plates, size: tuple[int, ...]) -> tuple[Any, ...]:
+    """As `clearance.surface_pieces`: number of the piece in each cell or -1, then for each piece
+    its normal, the first place to look for fluid, and its term."""
+    axis, where = AXES.index(plates.axis), _numbered(size)
+    pieces = np.full(len(where), -1, np.int32)
+    outward: list[Any] = []
+    probes: list[Any] = []
+    terms: list[Any] = []
+    for term, at, up in ends(plates, size) if plates.virtual == "extrapolate" else []:
+        here = np.flatnonzero(where[:, axis] == min(at, size[axis] - 1))
+        pieces[here] = len(terms) * len(here) + np.arange(len(here))
+        normal = np.zeros((len(here), len(size)))
+        normal[:, axis] = up
+        place = where[here] + 0.5
+        place[:, axis] = at + up * PROBE
+        outward.append(normal)
+        probes.append(place)
+        terms.append(np.full(len(here), term, np.int64))
+    if not terms:
+        return pieces, np.zeros((0, len(size))), np.zeros((0, len(size))), np.zeros(0, np.int64)
+    return pieces, np.concatenate(outward), np.concatenate(probes), np.concatenate(terms)
+
+
+def _numbered(cells: tuple[int, ...]) -> Any:
+    """The places of all cells of a grid (cells, d), x varying fastest, as whole numbers."""
+    grids = np.meshgrid(*(np.arange(float(n)) for n in reversed(cells)), indexing="ij")
+    return np.stack([axis.ravel() for axis in reversed(grids)], axis=-1)
+
+
+def _number(where: Any, size: tuple[int, ...]) -> Any:
+    """Numbers of cells of the box from their places."""
+    strides = np.cumprod([1, *size[:-1]])
+    return where @ strides
