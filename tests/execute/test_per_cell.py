@@ -12,7 +12,7 @@ from mesokit.execute.virtual.per_cell import MEAN, NUMBER, ROWS, count_batch
 from mesokit.scalar.elementary import short_exp
 from mesokit.scalar.gamma import gamma_number
 from mesokit.scalar.poisson import poisson_number
-from mesokit.scalar.random import BODY_NUMBER, Counter
+from mesokit.scalar.random import VIRTUAL_NUMBER, Counter
 
 UNLIKELY = 1e-4
 
@@ -23,7 +23,7 @@ def numbers(mean, count):
     out = np.empty(count, np.int64)
     for cell in range(count):
         counter = Counter(np.uint64(5), np.uint64(9))
-        out[cell] = poisson_number(mean, counter, BODY_NUMBER, cell)
+        out[cell] = poisson_number(mean, counter, VIRTUAL_NUMBER, cell)
     return out
 
 
@@ -33,7 +33,7 @@ def batch(means, start):
     work = np.zeros(ROWS * SCRATCH_ROW)
     for i in range(LANES):
         work[MEAN * SCRATCH_ROW + i] = means[i]
-    count_batch(start, Counter(np.uint64(5), np.uint64(9)), work)
+    count_batch(np.arange(start, start + LANES), Counter(np.uint64(5), np.uint64(9)), work)
     return work[NUMBER * SCRATCH_ROW : NUMBER * SCRATCH_ROW + LANES]
 
 
@@ -42,7 +42,7 @@ def energies(freedom, count):
     out = np.empty(count)
     for cell in range(count):
         counter = Counter(np.uint64(5), np.uint64(9))
-        out[cell] = gamma_number(freedom, counter, BODY_NUMBER, cell)
+        out[cell] = gamma_number(freedom, counter, VIRTUAL_NUMBER, cell)
     return out
 
 

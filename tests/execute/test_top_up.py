@@ -22,14 +22,14 @@ fill = njit(lambda *arguments: top_up_walls(*arguments))
 def topped_up():
     """Sums (number and terms) of the lower cut cells of an empty slit, by the rule AT."""
     case = make_case(
-        (LENGTH, 3), collision=AT(), density=1.0, walls=[Plates(axis="y", virtual="top-up")]
+        (LENGTH, 3), collision=AT(), density=DENSITY, walls=[Plates(axis="y", virtual="top-up")]
     )
     cpu = CPU(case)
     memory, number = cpu.memory, cpu.numbers.number_of_cells
     grid = memory.grid._replace(shift=(0.0, 0.5), origin=(0.0, 0.5))
     now = Now(Counter(np.uint64(1), np.uint64(1)), memory.box, memory.grid, grid, 0)
     alone = Team(0, 1, np.zeros(1, np.int64), np.zeros(1, np.int64))
-    fill(alone, now, memory.physics, memory.fluid, memory.walls._replace(top_up=(DENSITY,)))
+    fill(alone, now, memory.physics, memory.fluid, memory.walls)
     sums = memory.fluid.cells.sums[0].reshape(number + 1, -1)[:LENGTH]
     number, own = sums[:, 0], sums[:, 3:5]
     return number, (own - number[:, None] * ROUNDER_BITS) / memory.physics.scales[2]

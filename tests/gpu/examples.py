@@ -17,8 +17,9 @@ from mesokit.execute.cpu.grid import Grid, cell_index, in_cell
 from mesokit.execute.cpu.physics import Physics
 from mesokit.execute.cpu.strips import cell_energy
 from mesokit.execute.cpu.strips.terms import read_sums, terms_of
+from mesokit.geometry import cut
 from mesokit.geometry import protocol as solids
-from mesokit.geometry.solids import contact  # noqa: F401  what solids in tables answer
+from mesokit.geometry.solids import contact, filled  # noqa: F401  what solids in tables answer
 from mesokit.geometry.solids.bodies import Bodies
 from mesokit.geometry.solids.cut_cube import share_and_depth, share_beyond
 from mesokit.geometry.solids.none import Nothing
@@ -117,8 +118,12 @@ ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     solids.rebound: lambda p, d: (hit(p), vec(d), vec(d), HIT),
     solids.settled: lambda p, d: (vec(d),),
     solids.facing: lambda p, d: (1.0, vec(d)),
-    solids.closes: lambda p, d: (vec(d), vec(d), vec(d), vec(d)),
-    solids.side: lambda p, d: (vec(d),),
+    cut.behind: lambda p, d: (vec(d),),
+    cut.surface_flow: lambda p, d: (WHOLE, vec(d)),
+    cut.height: lambda p, d: (WHOLE, vec(d)),
+    cut.roomy: lambda p, d: (vec(d),),
+    cut.home: lambda p, d: (vec(d),),
+    cut.grip: lambda p, d: (WHOLE, vec(d)),
     interactions.of_two: lambda p, d: (total(p, d), SPRING, vec(d), WHOLE, WHOLE),
     interactions.of_three: lambda p, d: (total(p, d), STIFF, vec(d), vec(d), WHOLE),
     interactions.of_wall: lambda p, d: (total(p, d), REPELS, (slit(d), 1.0), vec(d)),
@@ -145,7 +150,7 @@ def parts(d: int) -> Iterator[Any]:
     faults, tensor = np.zeros(8, np.int64), np.zeros(d * d)
     yield interactions.Force(1.0, np.zeros(8, np.int64), 1.0, 1, faults)
     yield interactions.Energy()
-    yield interactions.Virial(1.0, tensor)
+    yield interactions.Virial(1.0, tensor, 1.0)
 
 
 def physics(d: int, **parts: Any) -> Physics:
@@ -164,6 +169,7 @@ def physics(d: int, **parts: Any) -> Physics:
         "coefficients": (),
         "terms": (),
         "scales": vec(d),
+        "stress_scale": 1.0,
     }
     return Physics(**(plain | parts))
 

@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from mesokit.geometry.solids.contact import MARGIN
 from mesokit.method.mpcd.start.conformation import connected, drawn
+from mesokit.method.mpcd.start.draws import draw_places, draw_velocities
 from mesokit.method.mpcd.start.room import periods, stays_out
 from mesokit.method.mpcd.start.solutes import first_beads
-from mesokit.scalar.random import INITIAL_POSITION, INITIAL_VELOCITY
+from mesokit.scalar.fixed_point import total
+from mesokit.scalar.random import INITIAL_POSITION
 
 if TYPE_CHECKING:
     from mesokit.execute.cpu.numbers import Numbers
@@ -56,34 +58,35 @@ def start(
 def first_positions(numbers: Numbers, given: Any) -> Floats:
     """Positions (n, d): the given ones, or drawn where there is no solid."""
     case, molecule = numbers.case, numbers.case.fluid.molecule
-    random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_POSITION))))
     if molecule is None:
-        return _uniform(numbers, random) if given is None else given
+        return _uniform(numbers) if given is None else given
     if given is not None:
         return connected(given, molecule, periods(numbers))
+    random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_POSITION))))
     return drawn(molecule, numbers.n, case.fluid.kT, numbers.box, random, stays_out(numbers))
 
 
 def thermal_velocities(numbers: Numbers, mass: Floats) -> Floats:
     """Maxwellian velocities (n, d) without momentum."""
-    case = numbers.case
-    random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_VELOCITY))))
-    found = np.empty((numbers.n, numbers.dimension))
+    case, found = numbers.case, np.empty((numbers.n, numbers.dimension))
+    draw_velocities(case.run.seed, case.fluid.kT, mass, (0.0,) * numbers.dimension, found)
+    scale = numbers.units["momentum"]
     for k in range(numbers.dimension):
-        v = random.standard_normal(numbers.n)
-        v *= np.sqrt(case.fluid.kT / mass)
-        v -= np.sum(mass * v) / max(mass.sum(), 1e-300)  # np.dot would depend on BLAS's threads
-        found[:, k] = v
+        momentum = total(np.rint(mass * found[:, k] * scale).astype(np.int64), scale)
+        found[:, k] -= momentum / max(mass.sum(), 1e-300)
     return found
 
 
-def _uniform(numbers: Numbers, random: np.random.Generator) -> Floats:
+def _uniform(numbers: Numbers) -> Floats:
     """Places (n, d) uniform in the fluid: those that lie in a solid are drawn again."""
-    places = np.stack([random.random(numbers.n) * length for length in numbers.box], axis=1)
-    if numbers.solids is None or numbers.slit is not None:
-        return places
-    left = np.arange(numbers.n)
+    seed, places = numbers.case.run.seed, np.empty((numbers.n, numbers.dimension))
+    left, attempt = np.arange(numbers.n), 0
     while len(left):
-        left = left[numbers.solids.distance(places[left]) < MARGIN]
-        places[left] = random.random((len(left), numbers.dimension)) * numbers.box
+        some = np.empty((len(left), numbers.dimension))
+        draw_places(seed, left, attempt, numbers.box, some)
+        places[left] = some
+        if numbers.solids is None or numbers.slit is not None:
+            break
+        left = left[numbers.solids.distance(some) < MARGIN]
+        attempt += 1
     return places
