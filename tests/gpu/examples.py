@@ -147,7 +147,7 @@ def parts(d: int) -> Iterator[Any]:
     yield Nothing()
     yield bodies(d)
     yield from ENERGIES
-    faults, tensor = np.zeros(8, np.int64), np.zeros(d * d)
+    faults, tensor = np.zeros(8, np.int64), np.zeros(d * d, np.int64)
     yield interactions.Force(1.0, np.zeros(8, np.int64), 1.0, 1, faults)
     yield interactions.Energy()
     yield interactions.Virial(1.0, tensor, 1.0)
