@@ -24,9 +24,14 @@ from mesokit.errors import CaseError, RunError
 @click.option("--overwrite", is_flag=True, help="Replace an earlier run in that folder.")
 @click.option("--quiet", is_flag=True, help="No progress, no summary; errors only.")
 def run(
-    case: Path, settings: dict[str, str], threads: int | None, seed: int | None,
-    output: Path | None, overwrite: bool, quiet: bool,
-) -> None:  # fmt: skip
+    case: Path,
+    settings: dict[str, str],
+    threads: int | None,
+    seed: int | None,
+    output: Path | None,
+    overwrite: bool,
+    quiet: bool,
+) -> None:
     """Run CASE. Ctrl-C stops it at a checkpoint; mesokit resume goes on."""
     from mesokit.method.protocol import method_of
     from mesokit.report.progress import Reporter

@@ -243,14 +243,14 @@ class Readings:
         if self.solutes is not None:
             theirs = total(self.solutes.state_of.tensor.swapaxes(0, 1), unit)
             parts = np.concatenate([parts[:2] + theirs[:2], theirs[2:]])
-        before, after, *bond = parts.reshape(-1, 2, d, d)
+        (flux, moment), (flux_after, moment_after), *rest = parts.reshape(-1, 2, d, d)
         volume = math.prod(self.numbers.case.box.size)
         self.stress = {
-            "kinetic": -0.5 * (before[0] + after[0]) / volume,
-            "collisional": -(after[1] - before[1]) / (volume * self.numbers.timestep),
+            "kinetic": -0.5 * (flux + flux_after) / volume,
+            "collisional": -(moment_after - moment) / (volume * self.numbers.timestep),
         }
-        if bond:
-            self.stress["bond"] = -bond[0][0] / (volume * self.numbers.timestep)
+        for virial, _ in rest:
+            self.stress["bond"] = -virial / (volume * self.numbers.timestep)
 
     @property
     def wall_impulse(self) -> Floats:

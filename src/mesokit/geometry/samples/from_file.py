@@ -72,7 +72,8 @@ class FromFile(Shape):
             found = fitted(grid, room)
         except ValueError as error:
             raise self.wrong(str(error)) from None
-        samples = found[0][0].samples
+        ((first, *_), *_) = found
+        samples = first.samples
         if samples is None or not samples.min() < 0.0:  # what smoothing has left
             raise self.unfit(room, math.nan)
         return found

@@ -20,9 +20,12 @@ ASIDE = 1e-7  # spacings that lines pass the grid's points by, so that they miss
 
 
 def signed_distance(
-    simplices: Floats, origin: tuple[float, ...], counts: tuple[int, ...], spacing: float,
+    simplices: Floats,
+    origin: tuple[float, ...],
+    counts: tuple[int, ...],
+    spacing: float,
     reach: float,
-) -> Floats:  # fmt: skip
+) -> Floats:
     """Signed distance, at most `reach`, at the points of a grid, positive outside.
 
     simplices (n, d, d): the corners of each.

@@ -25,6 +25,7 @@ Floats = NDArray[np.float64]
 REACH = 4.0  # cells from the outline in which distances are kept
 BLUR = 1.0  # pixels by which edges are smoothed
 MARGIN = 2.0  # cells of fluid around a picture that does not span the box
+NEAR = 0.8  # pixels from the outline: those that it passes through
 FINE = 8  # points of the outline per pixel
 LEAF = 200  # points of the outline that are compared one by one: they lie close together
 LARGEST = 2**26  # pixels
@@ -165,7 +166,7 @@ def outline_distance(white: Floats, repeats: list[bool], reach: float) -> Floats
     ]
     fields = [_surrounded(field, repeats) for field in (level, *slopes)]
     steep = np.hypot(*slopes)
-    near = np.argwhere((np.abs(level) < 2.0 * steep) & (steep > 1e-3))
+    near = np.argwhere((np.abs(level) < NEAR * steep) & (steep > 1e-3))
     steps = (np.arange(FINE) + 0.5) / FINE - 0.5
     around = np.stack(np.meshgrid(steps, steps, indexing="ij"), -1).reshape(-1, 2)
     points = (near[:, None] + around).reshape(-1, 2)

@@ -134,9 +134,13 @@ def animate(
 
 
 def _pictures(
-    drawn: Canvas, source: Source, frames: NDArray[np.int64], progress: Reporter, width: float,
+    drawn: Canvas,
+    source: Source,
+    frames: NDArray[np.int64],
+    progress: Reporter,
+    width: float,
     solutes: BeadFrames | None,
-) -> Iterator[Pixels]:  # fmt: skip
+) -> Iterator[Pixels]:
     """The pictures of a film, one by one."""
     canvas: Any = drawn.figure.canvas
     for done, frame in enumerate(frames, start=1):

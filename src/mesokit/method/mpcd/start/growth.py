@@ -31,9 +31,13 @@ POOL = 4096  # bonds drawn at once, from which candidates are taken
 
 
 def grown(
-    solutes: Solutes, kT: float, box: Floats, periods: Floats, random: np.random.Generator,
+    solutes: Solutes,
+    kT: float,
+    box: Floats,
+    periods: Floats,
+    random: np.random.Generator,
     in_fluid: InFluid,
-) -> Floats:  # fmt: skip
+) -> Floats:
     """Places (beads, d) of all solutes, molecules whole: bonds may leave the box.
 
     Parameters
@@ -69,9 +73,12 @@ def _pool(molecule: Molecule, kT: float, d: int, random: np.random.Generator) ->
 
 
 def _place(
-    there: Placed, molecule: Molecule | None, pool: Floats, random: np.random.Generator,
+    there: Placed,
+    molecule: Molecule | None,
+    pool: Floats,
+    random: np.random.Generator,
     in_fluid: InFluid,
-) -> bool:  # fmt: skip
+) -> bool:
     """Add a molecule; whether that worked."""
     for _ in range(TRIES):
         done = there.number
@@ -87,9 +94,13 @@ def _place(
 
 
 def _grow(
-    there: Placed, molecule: Molecule | None, pool: Floats, first: Floats,
-    random: np.random.Generator, in_fluid: InFluid,
-) -> bool:  # fmt: skip
+    there: Placed,
+    molecule: Molecule | None,
+    pool: Floats,
+    first: Floats,
+    random: np.random.Generator,
+    in_fluid: InFluid,
+) -> bool:
     """Bead by bead along the bonds of a chain or star."""
     if not (in_fluid(first[None])[0] and there.free(first)):
         return False
@@ -113,9 +124,13 @@ def _grow(
 
 
 def _grow_ring(
-    there: Placed, molecule: Molecule, pool: Floats, first: Floats, random: np.random.Generator,
+    there: Placed,
+    molecule: Molecule,
+    pool: Floats,
+    first: Floats,
+    random: np.random.Generator,
     in_fluid: InFluid,
-) -> bool:  # fmt: skip
+) -> bool:
     """A regular polygon in any direction, its bonds as long as they are on average."""
     d, beads = len(first), molecule.length
     side = math.sqrt(float((pool**2).sum(axis=1).mean()))
