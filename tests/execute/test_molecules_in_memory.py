@@ -6,7 +6,7 @@ from laboratory import assert_same, fingerprint, make_case, make_fluid
 
 from mesokit import Disk, Harmonic, MaxwellBoltzmann, Plates, Surface, Uniform
 from mesokit.execute.cpu.engine import CPU
-from mesokit.execute.cpu.strips.layout import LANES, places_of_beads
+from mesokit.execute.cpu.strips.layout import LANES, STRIPS, places_of_beads
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.start.fluid import start
 
@@ -104,7 +104,7 @@ def test_rubbish_in_spare_lanes_changes_nothing(case, reference, rubbish):
 def test_molecules_reach_over_blocks():
     """Groups of seven strips do not fit into blocks of sixteen."""
     fluid = make_fluid(**SHEARED | {"size": (12, 12, 12), "density": 10.5}, threads=2)
-    assert fluid.memory.real_blocks > 3
+    assert fluid.memory.strips > 3 * STRIPS
     r = fluid.positions(unwrapped=True)[:, 1:]  # along x images slide
     fluid.advance(1)
     assert np.abs(fluid.positions(unwrapped=True)[:, 1:] - r).max() < 1.0

@@ -84,7 +84,10 @@ def test_another_case_and_another_format(path):
         checkpoint.read(path, case="yours")
     header = {"format": checkpoint.FORMAT + 1, "case": "mine", "arrays": [], "meta": {}}
     np.savez(path, meta=np.array(json.dumps(header)))
-    with pytest.raises(CheckpointError, match="format 4; this version of mesokit reads format 3"):
+    said = (
+        f"format {checkpoint.FORMAT + 1}; this version of mesokit reads format {checkpoint.FORMAT}"
+    )
+    with pytest.raises(CheckpointError, match=said):
         checkpoint.read(path)
 
 

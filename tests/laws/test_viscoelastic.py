@@ -71,7 +71,8 @@ def test_velocity_modes_swing():
     waves = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
     simulation = dimers([TransverseModes(waves=waves, every=2, max_lag=400)], 12_000)
     result = simulation["transverse-modes"]
-    assert result.value[:, 0].min() < -0.15  # a simple fluid's would never fall below 0
+    lowest = result.value[:, 0].argmin()  # a simple fluid's would never fall below 0
+    assert result.value[lowest, 0] < -4 * result.error[lowest, 0]
     worst = of(result, "finite k")
     assert abs(worst.measured) < 0.04 + 4 * worst.error, worst
 
