@@ -35,7 +35,7 @@ from mesokit.execute.cpu.strips.layout import (
 )
 from mesokit.execute.cpu.strips.rows import load_particle, mass_of
 from mesokit.scalar.cache import inner
-from mesokit.scalar.jit import by_type, scalar
+from mesokit.scalar.jit import by_type, seldom
 from mesokit.scalar.vector import added
 
 
@@ -137,7 +137,7 @@ def _stream_molecules(team, now, physics, fluid):
             add_strip(cell, terms, sums, lanes, physics.terms, tally(physics.energy, 0.0, zero))
 
 
-@scalar
+@seldom
 def add_strip_flux(physics, box, grid, strip, count, tensor):
     """What the particles of a strip carry of the stress."""
     zero = physics.zero
