@@ -68,7 +68,8 @@ class FlowRateAccumulator:
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        velocity = fluid.totals()[1][self.axis] / self.mass
+        _, momentum, _ = fluid.totals()
+        velocity = momentum[self.axis] / self.mass
         self.blocks.add(velocity)
         self.series.add(fluid.time, [velocity])
 

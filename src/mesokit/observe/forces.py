@@ -101,7 +101,8 @@ class ForcesAccumulator:
         steps = fluid.wall_steps  # before the impulse, whose reading starts the count anew
         if steps:
             taken = fluid.wall_impulse.ravel() / (steps * self.case.fluid.timestep)
-            self.blocks.add(np.concatenate([taken, fluid.totals()[1]]))
+            _, momentum, _ = fluid.totals()
+            self.blocks.add(np.concatenate([taken, momentum]))
             self.series.add(fluid.time - 0.5 * steps * self.case.fluid.timestep, taken)
 
     def state(self) -> State:

@@ -171,7 +171,8 @@ class WakeAccumulator:
         m = fluid.masses()[inside]
         v = body.sign * fluid.velocities()[inside, body.axis]
         self.blocks.add(np.stack([np.bincount(place, w, bins) for w in (m * v, m)]))
-        self.whole.add(body.sign * fluid.totals()[1][body.axis])
+        _, momentum, _ = fluid.totals()
+        self.whole.add(body.sign * momentum[body.axis])
 
     def state(self) -> State:
         """All it has to remember."""

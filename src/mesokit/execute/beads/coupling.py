@@ -1,8 +1,8 @@
 """Cells that hold beads: what their particles and beads need together in order to collide.
 
 Cells add up the fluid alone, which then pays nothing for beads. For the few cells with beads the
-sums are completed here, each by the thread whose share of `solve` it is in, and what follows from
-them takes the place of the answer that `solve` finds for the fluid alone.
+sums are completed here, each by the thread whose share of `collide` it is in, and what follows from
+them takes the place of the answer that `collide` finds for the fluid alone.
 """
 
 import math
@@ -126,14 +126,15 @@ def _with_random_solvent(solvent, beads, physics, counter, cell, total):
 
 
 @by_type
-def answer_beads(team, physics, cells, beads):
+def answer_beads(team, now, physics, fluid, beads):
     """Put these answers in the place of those that `collide` found without beads."""
     if len(beads) == 0:
-        return lambda team, physics, cells, beads: None
+        return lambda team, now, physics, fluid, beads: None
     return _put_answers
 
 
-def _put_answers(team, physics, cells, beads):
+def _put_answers(team, now, physics, fluid, beads):
+    cells = fluid.cells
     first, last = cells_of_thread(team, cells.number)
     needed = physics.coefficients
     for i in range(len(beads.cell)):

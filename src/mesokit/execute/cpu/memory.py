@@ -208,7 +208,7 @@ class Memory:
     @property
     def bytes_held(self) -> int:
         """Memory of all arrays."""
-        fluid = self.fluid
-        arrays = [*fluid.particles[:4], *fluid.cells[1:], fluid.room, *fluid.scratch, *fluid.taken]
-        arrays += [self.order.order, self.order.ends, self.order.spare]
-        return sum(array.nbytes for array in arrays)
+        fluid, order = self.fluid, self.order
+        groups = (*fluid.particles, *fluid.cells, fluid.room, *fluid.scratch, *fluid.taken)
+        arrays = (*groups, order.order, order.ends, order.spare)
+        return sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))

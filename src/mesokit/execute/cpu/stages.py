@@ -58,11 +58,11 @@ def fly(physics, strip, i, r, v, around, hits):
     The latter is marked in `hits`, and 1 is the answer. `around` is what `touches` asks for.
     """
     a = halfway(physics.field, r, v, physics.timestep)
-    there = fall(r, v, a, physics.timestep)
+    end, after = fall(r, v, a, physics.timestep)
     hit = np.int64(touches(physics.solid, around, r, v, vector(a, r), physics.timestep))
     if exposed(physics.solid):
         hits[i] = hit
-    store_particle(strip, i, 0, chosen(hit != 0, r + v, there[0] + there[1]))
+    store_particle(strip, i, 0, chosen(hit != 0, r + v, end + after))
     return hit
 
 

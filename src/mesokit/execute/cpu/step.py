@@ -27,7 +27,7 @@ def step(team, now, physics, fluid, beads, walls):
     lap(team, SWEEP)
     join_beads(team, now, physics, fluid, beads)  # cells with solutes: sums of both
     collide(team, now, physics, fluid)  # thermostat and rule at t + dt: coefficients of each cell
-    answer_beads(team, physics, fluid.cells, beads)
+    answer_beads(team, now, physics, fluid, beads)
     meet(team)
     lap(team, CELLS)
     recoil(team, now, physics, fluid, walls)  # what the collision takes from virtual particles

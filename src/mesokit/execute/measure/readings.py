@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,14 @@ if TYPE_CHECKING:
 Moments = tuple[Floats, Floats, Floats, Floats]
 
 
+class Seen(NamedTuple):
+    """Particles that were looked at, a row for each."""
+
+    positions: Floats
+    velocities: Floats
+    images: NDArray[np.int32]
+
+
 class Readings:
     """What can be read of a fluid in memory, by threads that look together."""
 
@@ -34,7 +42,8 @@ class Readings:
             memory.numbers.dimension,
         )
         self.wall_steps = 0
-        self._asked: tuple[NDArray, NDArray[np.int32]] | None = None  # ids, and their slots
+        self._asked: NDArray | None = None  # ids, for the next time
+        self._slots_of_asked = np.zeros(0, np.int32)
         self._seen: dict[tuple, Moments] = {}  # moments at this step, for several observables
         self.stress: dict[str, Floats] = {}
         self.solutes = SoluteReadings(memory) if memory.solutes else None
@@ -101,15 +110,15 @@ class Readings:
 
     def positions(self, ids: NDArray | None = None, unwrapped: bool = False) -> Floats:
         """Positions (n, d) by particle id, in the box or as if it had no bounds."""
-        return self._gather(ids, unwrapped)[0]
+        return self._gather(ids, unwrapped).positions
 
     def velocities(self, ids: NDArray | None = None) -> Floats:
         """Velocities (n, d) by particle id."""
-        return self._gather(ids, False)[1]
+        return self._gather(ids, False).velocities
 
     def images(self, ids: NDArray | None = None) -> NDArray[np.int32]:
         """How many times each particle left the box along each axis (n, d), by particle id."""
-        return self._gather(ids, False)[2]
+        return self._gather(ids, False).images
 
     def masses(self, ids: NDArray | None = None) -> Floats:
         """Masses (n,) by particle id: kinds are numbered one after the other, then come solutes."""
@@ -198,7 +207,7 @@ class Readings:
             way[:, 0] += boxes[:, 1] * box.offset
         return way
 
-    def _gather(self, ids: NDArray | None, unwrapped: bool) -> tuple[Floats, Floats, NDArray]:
+    def _gather(self, ids: NDArray | None, unwrapped: bool) -> Seen:
         """Places, velocities, images by particle id; those of beads of solutes follow the fluid."""
         if self.solutes is None or ids is None or (ids < self.n).all():
             return self._gather_fluid(ids, unwrapped)
@@ -210,12 +219,12 @@ class Readings:
         r, v, image = r[beads], v[beads], image[beads]
         if own.any():
             r[own], v[own], image[own] = self._gather_fluid(ids[own], unwrapped)
-        return r, v, image
+        return Seen(r, v, image)
 
-    def _gather_fluid(self, ids: NDArray | None, unwrapped: bool) -> tuple[Floats, Floats, NDArray]:
+    def _gather_fluid(self, ids: NDArray | None, unwrapped: bool) -> Seen:
         slots = np.arange(self.n, dtype=np.int32) if ids is None else self._slots(ids)
         shape = self.n if ids is None else len(ids), self.dimension
-        out = np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32)
+        out = Seen(np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32))
         looked = measure.Looked(slots, *out)
         zero, _ = self._vectors
         where = self.memory.box, self.memory.fluid.particles
@@ -224,11 +233,11 @@ class Readings:
 
     def _slots(self, ids: NDArray) -> NDArray[np.int32]:
         """Place of each particle in `ids`, by particle id, -1 if none; kept for the next time."""
-        if self._asked is None or not np.array_equal(self._asked[0], ids):
-            slots = np.full(self.n, -1, np.int32)
-            slots[ids] = np.arange(len(ids))
-            self._asked = ids.copy(), slots
-        return self._asked[1]
+        if self._asked is None or not np.array_equal(self._asked, ids):
+            self._slots_of_asked = np.full(self.n, -1, np.int32)
+            self._slots_of_asked[ids] = np.arange(len(ids))
+            self._asked = ids.copy()
+        return self._slots_of_asked
 
     def find_stress(self) -> None:
         """Stress of the step that ends now, positive where the fluid above drags the one below.

@@ -38,7 +38,7 @@ class Gas(NamedTuple):
 class CollisionRule(ABC):
     """How the particles of a cell exchange momentum."""
 
-    conserves: ClassVar[tuple[str, ...]]  # of "mass", "momentum", "energy", "angular momentum"
+    conserves: ClassVar[tuple[str, ...]] = ()  # "mass", "momentum", "energy", "angular momentum"
     needs_energy: ClassVar[bool] = False  # whether `coefficients` asks for the sum of m v^2
     isothermal: ClassVar[bool] = False  # whether it holds the temperature itself
     one_temperature: ClassVar[bool] = True  # of all kinds of particles in a mixture
