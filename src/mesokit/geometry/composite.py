@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mesokit.geometry.shape_protocol import Shape
 from mesokit.geometry.surface import Surface
@@ -31,3 +31,12 @@ def middle(parts: Sequence[Shape], room: Room) -> tuple[float, ...]:
     """The mean of their pivots."""
     places = [part.pivot(room) for part in parts]
     return tuple(sum(xs) / len(xs) for xs in zip(*places, strict=True))
+
+
+def vectors_of(parts: Sequence[Shape]) -> dict[str, Any]:
+    """Their parameters that have one number for each axis, by key."""
+    return {
+        f"parts[#{i + 1}].{key}": value
+        for i, part in enumerate(parts)
+        for key, value in part.vectors().items()
+    }

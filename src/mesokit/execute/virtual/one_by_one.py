@@ -123,7 +123,7 @@ def draw_velocities(virtual, count, team, now, physics, fluid):
 
 @scalar
 def take_momentum(virtual, team, physics, s, strip, impulse, sign):
-    """Add the momentum of virtual particles, as part of the body in which they lie."""
+    """Add the momentum of virtual particles, as part of the wall in which they lie."""
     solid, zero, thread = physics.solid, physics.zero, team.thread
     d, scale = len(zero), momentum_scale(physics)
     for i in range(min(LANES, virtual.filled[thread] - s * LANES)):
@@ -134,7 +134,7 @@ def take_momentum(virtual, team, physics, s, strip, impulse, sign):
 
 
 def recoil_one_by_one(team, now, physics, fluid, walls):
-    """What bodies take by the collision of the virtual particles in them."""
+    """What walls take by the collision of the virtual particles in them."""
     virtual, thread = walls.virtual, team.thread
     gathered, impulse = fluid.scratch.coefficients[thread], fluid.taken.impulse[thread]
     if now.flags & MEASURE_WALLS:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from mesokit.case.component import component, param, tag
 from mesokit.geometry import region
-from mesokit.geometry.composite import middle, require_plain
+from mesokit.geometry.composite import middle, require_plain, vectors_of
 from mesokit.geometry.shape_protocol import Joinable, Repeatable
 
 if TYPE_CHECKING:
@@ -35,8 +35,4 @@ class Union(Repeatable):
 
     def vectors(self) -> dict[str, Any]:
         """Its parameters that have one number for each axis, by key."""
-        return {
-            f"parts[#{i + 1}].{key}": value
-            for i, part in enumerate(self.parts)
-            for key, value in part.vectors().items()
-        }
+        return vectors_of(self.parts)
