@@ -46,14 +46,26 @@ def profile(fluid, warmup, blocks, steps=500):
 
 @pytest.fixture(scope="module")
 def poiseuille():
-    """Acceleration, velocity and density of a driven slit, from its expected state."""
+    return driven("fill")
+
+
+def driven(virtual):
+    """Acceleration, top speed, velocity and density of a driven slit, from its expected state."""
     top = 0.4
     g = 8 * NU * top / HEIGHT**2
-    fluid = slit(g)
+    fluid = slit(g, virtual=virtual)
     r, v = fluid.positions(), fluid.velocities()
     v[:, 0] += theory.poiseuille_velocity(r[:, 1], HEIGHT, g, NU)
     start(fluid, r, v)
     return g, top, *profile(fluid, 2000, 40)
+
+
+def test_virtual_particles_that_go_on_with_the_flow_leave_no_slip():
+    """At rest with the plate they leave a slip length of a fifth of a cell."""
+    g, top, velocity, _ = driven("extrapolate")
+    slip = mean([theory.poiseuille_fit(Y[INSIDE], v[INSIDE], HEIGHT, g).slip for v in velocity])
+    assert slip.error * HEIGHT / (4 * top) < 0.03
+    assert slip.agrees(0.0), slip
 
 
 def test_poiseuille_flow_is_the_parabola_of_the_viscosity(poiseuille):
