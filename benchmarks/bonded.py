@@ -16,6 +16,8 @@ import numpy as np
 from benchmarks import lammps_peer, once
 from mesokit import Harmonic, Molecule
 from mesokit.method.mpcd.start.conformation import drawn
+from mesokit.method.mpcd.start.draws import Draws
+from mesokit.scalar.random import INITIAL_POSITION
 
 LENGTH, DENSITY = 30, 10
 BEADS = {"dimers": 2, "decamers": 10}
@@ -69,8 +71,8 @@ def write_chains(path: Path, beads: int) -> None:
     """Chains at thermal equilibrium as a LAMMPS data file."""
     n = DENSITY * LENGTH**3
     shape: Any = Molecule(length=beads, bond=Harmonic(K=1.0))
-    random, box = np.random.default_rng(1), np.full(3, float(LENGTH))
-    r = drawn(shape, n, 1.0, box, random, lambda places: np.ones(places.shape[:-1], bool))
+    random, box = Draws(1, INITIAL_POSITION, np.arange(n // beads)), np.full(3, float(LENGTH))
+    r = drawn(shape, 1.0, box, random, lambda places: np.ones(places.shape[:-1], bool))
     starts = np.arange(0, n, beads)
     bonds = (starts[:, None, None] + np.array(shape.bonds)).reshape(-1, 2)
     write_data(path, LENGTH, r, bonds, beads, "1 1.0 0.0")

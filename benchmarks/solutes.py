@@ -72,6 +72,5 @@ def write_chains(path: Path, beads: int) -> None:
     """Chains without overlaps as a LAMMPS data file."""
     side = box(beads)
     size, shape = np.full(3, float(side)), solutes(beads, 20)
-    random = np.random.default_rng(1)
-    r = grown(shape, 1.0, size, size, random, lambda places: np.ones(places.shape[:-1], bool))
+    r = grown(shape, 1.0, size, size, 1, lambda places: np.ones(places.shape[:-1], bool))
     bonded.write_data(path, side, r, shape.bonds(), LENGTH, "1 30.0 1.5 1.0 1.0")

@@ -81,14 +81,14 @@ def _neighbours(given: Solutes, box: NDArray[Any], closed: tuple[bool, ...], thr
             skin=given.skin,
             cells=cells,
             inverse=tuple(n / float(length) for n, length in zip(cells, box, strict=True)),
+            cell=np.zeros(beads, np.int32),
             head=np.zeros(math.prod(cells), np.int32),
             following=np.zeros(beads, np.int32),
             count=np.zeros(beads, np.int32),
             near=np.zeros((beads, most), np.int32),
             made_at=np.zeros(beads * d),
             boxes=np.zeros(beads),
-            offset=np.zeros(2),
-            moved=np.zeros((threads, GAP)),
+            noted=np.zeros((threads, GAP)),
         ),
     )
 

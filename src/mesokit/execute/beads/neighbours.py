@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mesokit.case.box import SLIDING, fold
+from mesokit.execute.cpu.strips.layout import share
 from mesokit.execute.cpu.strips.rows import load_values, store_values
 from mesokit.execute.cpu.threads import meet
 from mesokit.scalar.elementary import short_rint
@@ -19,7 +20,7 @@ from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
 CROWDED, NOWHERE = -1, -1  # the length of a list that did not fit; no cell, beyond a wall
-AT, MADE = 0, 1  # places in `Neighbours.offset`
+MOVED, OFFSET, MADE = 0, 1, 2  # places in `Neighbours.noted`
 GAP = 8  # numbers between those of two threads: each has a cache line of its own
 
 
@@ -28,25 +29,26 @@ class Neighbours(NamedTuple):
 
     reach: how far the potential and the skin go; skin: how far the list goes beyond the potential.
     cells (d,), inverse (d,): their number along each axis, and per length of the box.
-    head (cells,), following (beads,): the beads of each cell, one leading to the next, -1 last.
+    cell (beads,): of each bead; head (cells,), following (beads,): the beads of each cell, one
+    leading to the next, -1 last.
     count (beads,), near (beads, most): the lists.
     made_at (beads, d), boxes (beads,): where beads were then, and in which image along y.
-    offset (2,): of the images then, and whether there is a list at all.
-    moved (threads, GAP): square of the farthest that a bead of each thread has gone.
+    noted (threads, GAP): what each thread knows: square of the farthest that one of its beads has
+    gone, the offset of the images when the lists were made, and whether there are any.
     """
 
     reach: float
     skin: float
     cells: tuple[int, ...]
     inverse: tuple[float, ...]
+    cell: Any
     head: Any
     following: Any
     count: Any
     near: Any
     made_at: Any
     boxes: Any
-    offset: Any
-    moved: Any
+    noted: Any
 
 
 @by_type
@@ -87,16 +89,16 @@ def cell_along(lists, k, x):
 
 
 @scalar
-def slipped(lists, box):
+def slipped(lists, box, thread):
     """How far the images have slid since the lists were made."""
-    moved = offset_of_images(box) - lists.offset[AT]
+    moved = offset_of_images(box) - lists.noted[thread, OFFSET]
     return moved - short_rint(moved * box.inverse[0]) * box.size[0]
 
 
 @scalar
 def note_moves(lists, box, thread, places, share_of, zero):
     """Find how far the beads of this thread have gone against what is next to them."""
-    (first, last), slip, farthest = share_of, slipped(lists, box), 0.0
+    (first, last), slip, farthest = share_of, slipped(lists, box, thread), 0.0
     for i in range(first, last):
         at = np.uint64(i * len(zero))
         moved = added_scaled(
@@ -105,17 +107,17 @@ def note_moves(lists, box, thread, places, share_of, zero):
         moved = with_item(moved, 0, moved[0] - lists.boxes[i] * slip)
         square = dot(moved, moved)
         farthest = max(farthest, square if square >= 0.0 else np.inf)  # lost beads too
-    lists.moved[thread, 0] = farthest
+    lists.noted[thread, MOVED] = farthest
 
 
 @scalar
-def stale(lists, box, threads):
+def stale(lists, box, team):
     """Whether the lists must be made anew; the answer is the same in all threads."""
     farthest = 0.0
-    for t in range(threads):
-        farthest = max(farthest, lists.moved[t, 0])
-    gone = 2.0 * math.sqrt(farthest) + abs(slipped(lists, box))
-    return lists.offset[MADE] == 0.0 or gone > lists.skin
+    for t in range(team.threads):
+        farthest = max(farthest, lists.noted[t, MOVED])
+    gone = 2.0 * math.sqrt(farthest) + abs(slipped(lists, box, team.thread))
+    return lists.noted[team.thread, MADE] == 0.0 or gone > lists.skin
 
 
 @by_type
@@ -128,30 +130,40 @@ def _refresh(team, lists, box, places, share_of, zero):
     (lists,), (first, last) = lists, share_of
     note_moves(lists, box, team.thread, places, share_of, zero)
     meet(team)
-    if stale(lists, box, team.threads):
-        meet(team)  # all have seen that
-        if team.thread == 0:
-            sort_into_cells(lists, box, places, zero)
+    if stale(lists, box, team):
+        find_cells(lists, box, places, share_of, zero)
+        lists.noted[team.thread, OFFSET] = offset_of_images(box)
+        lists.noted[team.thread, MADE] = 1.0
+        meet(team)
+        link(lists, share(len(lists.head), team.thread, team.threads))
         meet(team)
         for i in range(first, last):
             make_list(lists, box, places, i, zero)
 
 
 @seldom
-def sort_into_cells(lists, box, places, zero):
-    """The beads of each cell, and where all of them are."""
-    lists.head[:] = -1
+def find_cells(lists, box, places, share_of, zero):
+    """Where these beads are, and in which cells."""
     still = scaled(0.0, zero)
-    for i in range(len(lists.following)):
+    for i in range(share_of[0], share_of[1]):
         at = np.uint64(i * len(zero))
         r = load_values(places, at, zero)
         store_values(lists.made_at, at, r)
         lists.boxes[i] = floor(r[1] * box.inverse[1])
         r, _, _ = fold(box, r, still, still)
-        cell = cell_of(lists, r)
-        lists.following[i] = lists.head[cell]
-        lists.head[cell] = i
-    lists.offset[AT], lists.offset[MADE] = offset_of_images(box), 1.0
+        lists.cell[i] = cell_of(lists, r)
+
+
+@seldom
+def link(lists, cells):
+    """The beads of these cells, each thread's own, the last first."""
+    first, last = cells
+    lists.head[first:last] = -1
+    for i in range(len(lists.following)):
+        cell = lists.cell[i]
+        if first <= cell < last:
+            lists.following[i] = lists.head[cell]
+            lists.head[cell] = i
 
 
 @scalar

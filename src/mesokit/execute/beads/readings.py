@@ -114,7 +114,7 @@ class SoluteReadings:
     def forget_lists(self) -> None:
         """Neighbours are found anew at the next step."""
         for lists in self.state_of.neighbours:
-            lists.offset[MADE] = 0.0
+            lists.noted[:, MADE] = 0.0
 
     def check(self) -> None:
         """That no bond was torn, and no bead lost, in the last steps. Raises RunError."""

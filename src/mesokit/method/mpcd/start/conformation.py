@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
+from mesokit.method.mpcd.start.draws import Draws
 from mesokit.potential.protocol import angular, central
 from mesokit.potential.thermal import lengths, mean_square
 
@@ -30,26 +31,25 @@ HOT = 20.0  # kT: beads of more energy are drawn again
 
 def drawn(
     molecule: Molecule,
-    particles: int,
     kT: float,
     box: Floats,
-    random: np.random.Generator,
+    random: Draws,
     in_fluid: Callable[[Floats], NDArray[np.bool_]],
 ) -> Floats:
     """Places (particles, d) of the beads, molecule after molecule, whole: bonds may leave the box.
 
-    The first bead is anywhere in the box, the others follow bond by bond, with lengths and angles
-    of the temperature (for harmonic bonds these are Gaussian), or as `octant` has them. Molecules
-    that reach into a solid or have beads that repel one another strongly are drawn again. Raises
-    RunError if that is in vain.
+    `random` draws for each molecule. The first bead is anywhere in the box, the others follow bond
+    by bond, with lengths and angles of the temperature (for harmonic bonds these are Gaussian), or
+    as `octant` has them. Molecules that reach into a solid or have beads that repel one another
+    strongly are drawn again. Raises RunError if that is in vain.
     """
-    d, beads = len(box), molecule.length
-    places = np.empty((particles // beads, beads, d))
-    left = np.arange(len(places))
+    d, number = len(box), len(random.who)
+    places = np.empty((number, molecule.length, d))
+    left = np.arange(number)
     for _ in range(TRIES):
-        places[left] = _one_draw(molecule, len(left), kT, box, random)
+        places[left] = _one_draw(molecule, kT, box, random)
         good = in_fluid(places[left]).all(axis=1) & _relaxed(molecule, places[left], kT)
-        left = left[~good]
+        left, random = left[~good], random.of(~good)
         if len(left) == 0:
             return places.reshape(-1, d)
     raise RunError(
@@ -58,15 +58,13 @@ def drawn(
     )
 
 
-def _one_draw(
-    molecule: Molecule, number: int, kT: float, box: Floats, random: np.random.Generator
-) -> Floats:
+def _one_draw(molecule: Molecule, kT: float, box: Floats, random: Draws) -> Floats:
     d = len(box)
-    places = np.empty((number, molecule.length, d))
-    places[:, 0] = random.random((number, d)) * box
+    places = np.empty((len(random.who), molecule.length, d))
+    places[:, 0] = random.units(d) * box
     ring = molecule.topology == "ring"
     links = molecule.bonds[:-1] if ring else molecule.bonds
-    bonds = np.stack([bonds_of(molecule, number, kT, d, random) for _ in molecule.bonds])
+    bonds = np.stack([bonds_of(molecule, kT, d, random) for _ in molecule.bonds])
     if ring:
         bonds -= bonds.mean(axis=0)  # the last one leads back; Gaussian bonds stay Gaussian
     came: dict[int, int] = {}  # bond by which each bead was reached
@@ -78,30 +76,26 @@ def _one_draw(
     return places
 
 
-def bonds_of(
-    molecule: Molecule, number: int, kT: float, d: int, random: np.random.Generator
-) -> Floats:
-    """Bond vectors (number, d) as the conformation has them, thermal but for angles."""
+def bonds_of(molecule: Molecule, kT: float, d: int, random: Draws) -> Floats:
+    """A bond vector (n, d) for each, as the conformation has them, thermal but for angles."""
     if molecule.conformation == "octant":
         square = mean_square(molecule.bond_potentials, d, kT, molecule.bond.longest)
-        return np.sqrt(3.0 * square / d) * random.random((number, d))
+        return np.sqrt(3.0 * square / d) * random.units(d)
     spring = molecule.bond.spring()
     if spring is not None and molecule.pair is None:
-        return np.sqrt(0.5 * kT / spring.K) * random.standard_normal((number, d))
+        return np.sqrt(0.5 * kT / spring.K) * random.normals(d)
     radii, _, density = lengths(molecule.bond_potentials, d, kT, molecule.bond.longest)
     whole = np.cumsum(density)
-    length = np.interp(random.random(number), whole / whole[-1], radii)
-    return length[:, None] * _directions(number, d, random)
+    length = np.interp(random.units(1)[:, 0], whole / whole[-1], radii)
+    return length[:, None] * _directions(d, random)
 
 
-def _directions(number: int, d: int, random: np.random.Generator) -> Floats:
-    vectors = random.standard_normal((number, d))
+def _directions(d: int, random: Draws) -> Floats:
+    vectors = random.normals(d)
     return vectors / np.linalg.norm(vectors, axis=1)[:, None]
 
 
-def turned(
-    molecule: Molecule, before: Floats, bond: Floats, kT: float, random: np.random.Generator
-) -> Floats:
+def turned(molecule: Molecule, before: Floats, bond: Floats, kT: float, random: Draws) -> Floats:
     """The bond, as long as it is, at an angle of the temperature to the one before."""
     assert molecule.bending is not None
     d, kernel = bond.shape[1], molecule.bending.kernel()
@@ -109,9 +103,9 @@ def turned(
     energy = np.array([angular.plain(kernel, c)[0] for c in np.cos(theta).tolist()])
     weight = np.sin(theta) ** (d - 2) * np.exp(-(energy - energy.min()) / kT)
     whole = np.cumsum(weight)
-    angle = np.interp(random.random(len(bond)), whole / whole[-1], theta)
+    angle = np.interp(random.units(1)[:, 0], whole / whole[-1], theta)
     along = before / np.linalg.norm(before, axis=1)[:, None]
-    across = _directions(len(bond), d, random)
+    across = _directions(d, random)
     across -= (across * along).sum(axis=1)[:, None] * along
     across /= np.linalg.norm(across, axis=1)[:, None]
     way = np.cos(angle)[:, None] * along + np.sin(angle)[:, None] * across

@@ -1,38 +1,68 @@
-"""Places and velocities drawn for each particle by its number: in any part, in any order."""
+"""What is drawn for each particle or molecule by its number: in any part, in any order."""
 
-import math
+from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit.scalar.cache import kernel
-from mesokit.scalar.random import (
-    INITIAL_POSITION,
-    INITIAL_VELOCITY,
-    Counter,
-    normals,
-    unit,
-    words,
-)
+from mesokit.scalar.random import Counter, normals, unit, words
+
+Floats = NDArray[np.float64]
 
 
 @kernel
-def draw_places(seed, who, attempt, size, places):
-    """Places (n, d), uniform in a box of this size (d,), of the particles with these numbers."""
+def draw_units(seed, purpose, who, draw, units):
+    """Numbers (n, m) uniform in [0, 1) for those with these numbers (n,), from this draw on."""
     counter = Counter(np.uint64(seed), np.uint64(0))
     for i in range(len(who)):
-        a, b, c, d = words(counter, INITIAL_POSITION, who[i], 2 * attempt)
-        e, f, _, _ = words(counter, INITIAL_POSITION, who[i], 2 * attempt + 1)
-        drawn = unit(a, b), unit(c, d), unit(e, f)
-        for k in range(len(size)):
-            places[i, k] = drawn[k] * size[k]
+        for k in range(0, units.shape[1], 2):
+            a, b, c, d = words(counter, purpose, who[i], draw + k // 2)
+            units[i, k] = unit(a, b)
+            if k + 1 < units.shape[1]:
+                units[i, k + 1] = unit(c, d)
 
 
 @kernel
-def draw_velocities(seed, kT, mass, zero, velocities):
-    """Velocities (n, d) of particles at rest on average, of these masses, numbered from 0."""
+def draw_normals(seed, purpose, who, draw, zero, vectors):
+    """Vectors (n, d) of standard normal numbers for those with these numbers (n,), at this draw."""
     counter = Counter(np.uint64(seed), np.uint64(0))
-    for i in range(len(mass)):
-        a, b, c, d = words(counter, INITIAL_VELOCITY, i, 0)
+    for i in range(len(who)):
+        a, b, c, d = words(counter, purpose, who[i], draw)
         v = normals(zero, a, b, c, d)
         for k in range(len(zero)):
-            velocities[i, k] = math.sqrt(kT / mass[i]) * v[k]
+            vectors[i, k] = v[k]
+
+
+class Draws:
+    """Random numbers of one purpose for those with some numbers, each from a sequence of its own.
+
+    >>> from mesokit.scalar.random import INITIAL_POSITION
+    >>> all_four = Draws(1, INITIAL_POSITION, range(4)).units(3)
+    >>> bool((Draws(1, INITIAL_POSITION, [2]).units(3) == all_four[2]).all())
+    True
+    """
+
+    def __init__(self, seed: int, purpose: np.uint64, who: Any, draw: int = 0) -> None:
+        self.seed, self.purpose, self.draw = seed, purpose, draw
+        self.who = np.asarray(who, np.int64)
+
+    def of(self, rows: Any) -> Draws:
+        """What comes next, of some of them."""
+        return Draws(self.seed, self.purpose, self.who[rows], self.draw)
+
+    def units(self, columns: int) -> Floats:
+        """So many numbers (n, columns) uniform in [0, 1) for each."""
+        found = np.empty((len(self.who), columns))
+        draw_units(self.seed, self.purpose, self.who, self.draw, found)
+        self.draw += (columns + 1) // 2
+        return found
+
+    def normals(self, d: int) -> Floats:
+        """A vector (n, d) of standard normal numbers for each; d is 2 or 3."""
+        found = np.empty((len(self.who), d))
+        draw_normals(self.seed, self.purpose, self.who, self.draw, (0.0,) * d, found)
+        self.draw += 1
+        return found

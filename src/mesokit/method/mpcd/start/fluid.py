@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from mesokit.geometry.solids.contact import MARGIN
 from mesokit.method.mpcd.start.conformation import connected, drawn
-from mesokit.method.mpcd.start.draws import draw_places, draw_velocities
+from mesokit.method.mpcd.start.draws import Draws
 from mesokit.method.mpcd.start.room import periods, stays_out
 from mesokit.method.mpcd.start.solutes import first_beads
 from mesokit.scalar.fixed_point import total
-from mesokit.scalar.random import INITIAL_POSITION
+from mesokit.scalar.random import INITIAL_POSITION, INITIAL_VELOCITY
 
 if TYPE_CHECKING:
     from mesokit.execute.cpu.numbers import Numbers
@@ -58,18 +58,20 @@ def start(
 def first_positions(numbers: Numbers, given: Any) -> Floats:
     """Positions (n, d): the given ones, or drawn where there is no solid."""
     case, molecule = numbers.case, numbers.case.fluid.molecule
-    if molecule is None:
-        return _uniform(numbers) if given is None else given
     if given is not None:
-        return connected(given, molecule, periods(numbers))
-    random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_POSITION))))
-    return drawn(molecule, numbers.n, case.fluid.kT, numbers.box, random, stays_out(numbers))
+        return given if molecule is None else connected(given, molecule, periods(numbers))
+    number = numbers.n if molecule is None else numbers.n // molecule.length
+    random = Draws(case.run.seed, INITIAL_POSITION, np.arange(number))
+    if molecule is None:
+        return _uniform(numbers, random)
+    return drawn(molecule, case.fluid.kT, numbers.box, random, stays_out(numbers))
 
 
 def thermal_velocities(numbers: Numbers, mass: Floats) -> Floats:
     """Maxwellian velocities (n, d) without momentum."""
-    case, found = numbers.case, np.empty((numbers.n, numbers.dimension))
-    draw_velocities(case.run.seed, case.fluid.kT, mass, (0.0,) * numbers.dimension, found)
+    case, who = numbers.case, np.arange(numbers.n)
+    found = Draws(case.run.seed, INITIAL_VELOCITY, who).normals(numbers.dimension)
+    found *= np.sqrt(case.fluid.kT / mass)[:, None]
     scale = numbers.units["momentum"]
     for k in range(numbers.dimension):
         momentum = total(np.rint(mass * found[:, k] * scale).astype(np.int64), scale)
@@ -77,16 +79,13 @@ def thermal_velocities(numbers: Numbers, mass: Floats) -> Floats:
     return found
 
 
-def _uniform(numbers: Numbers) -> Floats:
+def _uniform(numbers: Numbers, random: Draws) -> Floats:
     """Places (n, d) uniform in the fluid: those that lie in a solid are drawn again."""
-    seed, places = numbers.case.run.seed, np.empty((numbers.n, numbers.dimension))
-    left, attempt = np.arange(numbers.n), 0
-    while len(left):
-        some = np.empty((len(left), numbers.dimension))
-        draw_places(seed, left, attempt, numbers.box, some)
-        places[left] = some
-        if numbers.solids is None or numbers.slit is not None:
-            break
-        left = left[numbers.solids.distance(some) < MARGIN]
-        attempt += 1
+    places = random.units(numbers.dimension) * numbers.box
+    if numbers.solids is None or numbers.slit is not None:
+        return places
+    left = np.arange(numbers.n)
+    while len(left := left[numbers.solids.distance(places[left]) < MARGIN]):
+        random = random.of(np.searchsorted(random.who, left))
+        places[left] = random.units(numbers.dimension) * numbers.box
     return places

@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 
 from mesokit.errors import RunError
 from mesokit.method.mpcd.start.conformation import bonds_of, nearest_of, turned
+from mesokit.method.mpcd.start.draws import Draws
+from mesokit.scalar.random import INITIAL_SOLUTES
 
 if TYPE_CHECKING:
     from mesokit.method.mpcd.molecule import Molecule
@@ -28,6 +30,7 @@ InFluid = Callable[[Floats], NDArray[np.bool_]]
 TRIES = 1000  # to place one molecule
 AT_ONCE = 32  # candidates for the place of a bead
 POOL = 4096  # bonds drawn at once, from which candidates are taken
+FIRST_OF_POOLS = 2**60  # the number of the first of these bonds; molecules are numbered from 0
 
 
 def grown(
@@ -35,7 +38,7 @@ def grown(
     kT: float,
     box: Floats,
     periods: Floats,
-    random: np.random.Generator,
+    seed: int,
     in_fluid: InFluid,
 ) -> Floats:
     """Places (beads, d) of all solutes, molecules whole: bonds may leave the box.
@@ -50,23 +53,29 @@ def grown(
     Raises RunError where there is no room.
     """
     limit = nearest_of(solutes.pair.kernel(), kT) if solutes.pair is not None else 0.0
-    there = Placed(solutes.beads, box, periods, limit)
+    there, before = Placed(solutes.beads, box, periods, limit), 0
     for kind, polymer in enumerate(solutes.polymers):
         molecule = solutes.molecule(kind)
-        pool = _pool(molecule, kT, len(box), random) if molecule else np.zeros((1, len(box)))
+        pool = np.zeros((1, len(box)))
+        if molecule:
+            first = FIRST_OF_POOLS + POOL * kind
+            draws = Draws(seed, INITIAL_SOLUTES, np.arange(first, first + POOL))
+            pool = _pool(molecule, kT, len(box), draws)
         for number in range(polymer.number):
+            random = Draws(seed, INITIAL_SOLUTES, [before + number])
             if not _place(there, molecule, pool, random, in_fluid):
                 raise RunError(
                     f"solutes.polymers[#{kind + 1}].number = {polymer.number}: no place for "
                     f"molecule {number + 1} in {TRIES} tries; expected fewer or smaller molecules, "
                     "or a larger box"
                 )
+        before += polymer.number
     return there.places
 
 
-def _pool(molecule: Molecule, kT: float, d: int, random: np.random.Generator) -> Floats:
+def _pool(molecule: Molecule, kT: float, d: int, random: Draws) -> Floats:
     """Bonds: in any direction or, of stiff molecules, that follow a bond along x."""
-    bonds = bonds_of(molecule, POOL, kT, d, random)
+    bonds = bonds_of(molecule, kT, d, random)
     if molecule.bending is None:
         return bonds
     return turned(molecule, np.tile(np.eye(d)[0], (POOL, 1)), bonds, kT, random)
@@ -76,13 +85,13 @@ def _place(
     there: Placed,
     molecule: Molecule | None,
     pool: Floats,
-    random: np.random.Generator,
+    random: Draws,
     in_fluid: InFluid,
 ) -> bool:
     """Add a molecule; whether that worked."""
     for _ in range(TRIES):
         done = there.number
-        first = random.random(len(there.box)) * there.box
+        first = random.units(len(there.box))[0] * there.box
         if molecule and molecule.topology == "ring":
             done_well = _grow_ring(there, molecule, pool, first, random, in_fluid)
         else:
@@ -98,7 +107,7 @@ def _grow(
     molecule: Molecule | None,
     pool: Floats,
     first: Floats,
-    random: np.random.Generator,
+    random: Draws,
     in_fluid: InFluid,
 ) -> bool:
     """Bead by bead along the bonds of a chain or star."""
@@ -108,7 +117,7 @@ def _grow(
     there.add(first)
     came: dict[int, Floats] = {}  # the bond by which each bead was reached
     for a, b in molecule.bonds if molecule else ():
-        bonds = pool[random.integers(len(pool), size=AT_ONCE)]
+        bonds = pool[(random.units(AT_ONCE)[0] * len(pool)).astype(int)]
         if molecule and molecule.bending is not None:
             if a in came:
                 bonds = _reflected(bonds, came[a])
@@ -128,7 +137,7 @@ def _grow_ring(
     molecule: Molecule,
     pool: Floats,
     first: Floats,
-    random: np.random.Generator,
+    random: Draws,
     in_fluid: InFluid,
 ) -> bool:
     """A regular polygon in any direction, its bonds as long as they are on average."""
@@ -153,9 +162,9 @@ def _reflected(vectors: Floats, along: Floats) -> Floats:
     return vectors - np.outer(vectors @ mirror, 2.0 / square * mirror)
 
 
-def _any_turn(d: int, random: np.random.Generator) -> Floats:
+def _any_turn(d: int, random: Draws) -> Floats:
     """A random orthogonal matrix."""
-    q, r = np.linalg.qr(random.standard_normal((d, d)))
+    q, r = np.linalg.qr(np.concatenate([random.normals(d) for _ in range(d)]))
     return q * np.sign(np.diag(r))
 
 

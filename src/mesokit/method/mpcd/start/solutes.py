@@ -8,9 +8,10 @@ import numpy as np
 
 from mesokit.geometry.solids.contact import MARGIN
 from mesokit.method.mpcd.start.conformation import nearest_of
+from mesokit.method.mpcd.start.draws import Draws
 from mesokit.method.mpcd.start.growth import grown
 from mesokit.method.mpcd.start.room import periods, stays_out
-from mesokit.scalar.random import INITIAL_SOLUTES
+from mesokit.scalar.random import FIRST_BEAD, INITIAL_VELOCITY
 
 if TYPE_CHECKING:
     from mesokit.execute.cpu.numbers import Numbers
@@ -26,15 +27,15 @@ def first_beads(
     drawn too, takes part of their momentum, so that the whole is at rest.
     """
     case, drift = numbers.case, np.zeros(numbers.dimension)
-    random = np.random.Generator(np.random.Philox(key=(case.run.seed, int(INITIAL_SOLUTES))))
     kT = case.fluid.kT
     if places is None:
         clear = nearest_of(solutes.wall.kernel(), kT) if solutes.wall else MARGIN
         room = stays_out(numbers, clear)
-        places = grown(solutes, kT, numbers.box, periods(numbers), random, room)
+        places = grown(solutes, kT, numbers.box, periods(numbers), case.run.seed, room)
     if velocities is None:
-        shape = solutes.beads, numbers.dimension
-        velocities = np.sqrt(kT / solutes.mass) * random.standard_normal(shape)
+        who = np.arange(FIRST_BEAD, FIRST_BEAD + solutes.beads)
+        random = Draws(case.run.seed, INITIAL_VELOCITY, who)
+        velocities = np.sqrt(kT / solutes.mass) * random.normals(numbers.dimension)
         if fluid_is_drawn:
             momentum = solutes.mass * velocities.sum(axis=0)
             drift = momentum / (solutes.mass * len(velocities) + numbers.masses().sum())
