@@ -306,7 +306,12 @@ class Simulation:
         assert self.directory is not None
         path = self.directory.checkpoint_file
         case = checkpoint.digest(self.case.to_toml(self.directory.path))
-        arrays, _ = checkpoint.read(path, case)
+        key, advice = method_of(self.case).start_from_run, ""
+        if key:
+            advice = (
+                f"; to start another case from this state, give it {key} = {str(path.parent)!r}"
+            )
+        arrays, _ = checkpoint.read(path, case, advice)
         try:
             self.engine.restore(_part(arrays, "engine/"))
             for name, accumulator in self.accumulators.items():

@@ -165,8 +165,8 @@ def case_class(name: str) -> type[Case]:
 
 def method_named(run: Any) -> str:
     """The method that a section `run` names, or its table; a wrong name is left to its check."""
-    name = run.get("method", "mpcd") if isinstance(run, dict) else getattr(run, "method", None)
-    return name if isinstance(name, str) and name in methods.modules() else "mpcd"
+    given = run.get("method") if isinstance(run, dict) else getattr(run, "method", None)
+    return given if isinstance(given, str) and given in methods.modules() else methods.DEFAULT
 
 
 def _again(fields: dict[str, Any]) -> Case:

@@ -15,7 +15,7 @@ class Run:
     steps: int = param(doc="steps to run after the warm-up", ge=0)
     warmup: int = param(0, doc="steps before them that no observable sees", ge=0)
     seed: int = param(1, doc="the same seed gives the same bits", ge=0, lt=2**56)
-    method: str = param("mpcd", doc="how the particles move")
+    method: str = param(methods.DEFAULT, doc="how the particles move")
     checkpoint_minutes: float = param(
         10.0, doc="write a checkpoint this often", unit="minutes", gt=0
     )

@@ -59,11 +59,14 @@ def write(
         np.savez(file, **{_META: np.array(header)}, **arrays)  # type: ignore[arg-type]
 
 
-def read(path: str | Path, case: str | None = None) -> tuple[Arrays, dict[str, Any]]:
+def read(
+    path: str | Path, case: str | None = None, advice: str = ""
+) -> tuple[Arrays, dict[str, Any]]:
     """Arrays and meta of the checkpoint at `path`; every byte is checked.
 
-    With `case`, the digest of the case to go on with. Raises CheckpointError for a file that is
-    missing, truncated, corrupted, of another format or of another case.
+    With `case`, the digest of the case to go on with, and what to do if it is another. Raises
+    CheckpointError for a file that is missing, truncated, corrupted, of another format or of
+    another case.
     """
     path = Path(path)
     arrays, header = _load(path)
@@ -71,8 +74,7 @@ def read(path: str | Path, case: str | None = None) -> tuple[Arrays, dict[str, A
         raise CheckpointError(f"{path}: damaged: arrays are missing")
     if case is not None and header["case"] != case:
         raise CheckpointError(
-            f"{path}: belongs to another case, or the case was changed since; to start another "
-            f"case from this state, give it fluid.start.run = {str(path.parent)!r}"
+            f"{path}: belongs to another case, or the case was changed since{advice}"
         )
     return arrays, header["meta"]
 

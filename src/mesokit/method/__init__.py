@@ -15,6 +15,7 @@ METHODS = {  # what `run.method` says: the module that holds the METHOD
     "mpcd": "mesokit.method.mpcd.method",
     "brownian": "mesokit.method.brownian.method",
 }
+DEFAULT = next(iter(METHODS))
 
 
 def modules() -> dict[str, str]:

@@ -72,6 +72,8 @@ class Method:
         The solids that pictures show (`mesokit.geometry.solids.solids.Solids`), or None.
     kT : function of a case, optional
         Thermal energy, where particles have velocities.
+    start_from_run : str, optional
+        The key by which a case starts from where another run ended.
     missing_files : function of a case, optional
         A line for each file that a case needs and that is not there.
     keep_files : function of a case and the folder of its run, optional
@@ -97,6 +99,7 @@ class Method:
     closed_axes: Callable[[Case], set[int]] = lambda case: set()
     solids: Callable[[Case], Any] = lambda case: None
     kT: Callable[[Case], float] | None = None
+    start_from_run: str = ""
     missing_files: Callable[[Case], list[str]] = lambda case: []
     keep_files: Callable[[Case, Path], Case] = lambda case, folder: case
     si: Callable[[Case], Any] | None = None

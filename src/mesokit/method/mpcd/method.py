@@ -79,6 +79,7 @@ def _si(case: Case) -> SI:
 
 METHOD = Method(
     name="mpcd",
+    start_from_run="fluid.start.run",
     sections=Sections,
     keys=KEYS,
     observables=(Observable,),
