@@ -1,10 +1,18 @@
 """What the tests of several folders share: laboratory, fake fluid and examples of shapes."""
 
+import os
 import sys
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
+
+worker = os.environ.get("PYTEST_XDIST_WORKER")  # "gw0", "gw1", ...
+if worker and hasattr(os, "sched_setaffinity"):
+    # A core each: runs take all cores that they are given, and threads of several runs that wait
+    # for one another on the same cores make all of them slow.
+    cores = sorted(os.sched_getaffinity(0))
+    os.sched_setaffinity(0, {cores[int(worker[2:]) % len(cores)]})
 
 settings.register_profile("same every time", derandomize=True)
 settings.load_profile("same every time")
