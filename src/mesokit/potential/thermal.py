@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import functools
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,8 +25,16 @@ class Lengths(NamedTuple):
     density: Floats
 
 
-def lengths(kernels: Sequence[Any], dimension: int, kT: float, longest: float) -> Lengths:
+def lengths(kernels: tuple[Any, ...], dimension: int, kT: float, longest: float) -> Lengths:
     """Boltzmann's distribution of the length of a bond whose potentials add up."""
+    # kept, as it is asked for bond by bond; tuples of the same numbers are the same key
+    return _lengths(tuple(map(type, kernels)), kernels, dimension, kT, longest)
+
+
+@functools.lru_cache(64)
+def _lengths(
+    kinds: tuple[type, ...], kernels: tuple[Any, ...], dimension: int, kT: float, longest: float
+) -> Lengths:
     top = min(longest * (1.0 - 1e-9), LARGEST)
     radii = np.geomspace(SMALLEST, top, POINTS)
     for _ in range(2):  # where they can be at all, and then there in detail
@@ -39,18 +47,18 @@ def lengths(kernels: Sequence[Any], dimension: int, kT: float, longest: float) -
     return Lengths(radii, energy, weight / np.trapezoid(weight, radii))
 
 
-def energies(kernels: Sequence[Any], radii: Floats) -> Floats:
+def energies(kernels: tuple[Any, ...], radii: Floats) -> Floats:
     """Sum of the potentials at these distances."""
     return np.array([sum(central.plain(k, r * r)[0] for k in kernels) for r in radii.tolist()])
 
 
-def mean_square(kernels: Sequence[Any], dimension: int, kT: float, longest: float) -> float:
+def mean_square(kernels: tuple[Any, ...], dimension: int, kT: float, longest: float) -> float:
     """Mean square length of a bond that nothing else pulls at."""
     radii, _, density = lengths(kernels, dimension, kT, longest)
     return float(np.trapezoid(radii**2 * density, radii))
 
 
-def stiffness(kernels: Sequence[Any], kT: float, longest: float) -> float:
+def stiffness(kernels: tuple[Any, ...], kT: float, longest: float) -> float:
     """The largest second derivative of the energy that thermal motion meets."""
     radii, energy, _ = lengths(kernels, 1, kT, longest)
     met = radii[energy - energy.min() <= SOMETIMES * kT]

@@ -9,6 +9,7 @@ compare with.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -98,11 +99,8 @@ def _directions(d: int, random: Draws) -> Floats:
 def turned(molecule: Molecule, before: Floats, bond: Floats, kT: float, random: Draws) -> Floats:
     """The bond, as long as it is, at an angle of the temperature to the one before."""
     assert molecule.bending is not None
-    d, kernel = bond.shape[1], molecule.bending.kernel()
-    theta = np.linspace(0.0, np.pi, POINTS)
-    energy = np.array([angular.plain(kernel, c)[0] for c in np.cos(theta).tolist()])
-    weight = np.sin(theta) ** (d - 2) * np.exp(-(energy - energy.min()) / kT)
-    whole = np.cumsum(weight)
+    d = bond.shape[1]
+    theta, whole = _angles(molecule.bending.kernel(), d, kT)
     angle = np.interp(random.units(1)[:, 0], whole / whole[-1], theta)
     along = before / np.linalg.norm(before, axis=1)[:, None]
     across = _directions(d, random)
@@ -110,6 +108,15 @@ def turned(molecule: Molecule, before: Floats, bond: Floats, kT: float, random: 
     across /= np.linalg.norm(across, axis=1)[:, None]
     way = np.cos(angle)[:, None] * along + np.sin(angle)[:, None] * across
     return np.linalg.norm(bond, axis=1)[:, None] * way
+
+
+@functools.lru_cache(64, typed=True)  # potentials of other kinds may have the same numbers
+def _angles(bending: object, d: int, kT: float) -> tuple[Floats, Floats]:
+    """Angles, and how likely those below each are, but for a factor."""
+    theta = np.linspace(0.0, np.pi, POINTS)
+    energy = np.array([angular.plain(bending, c)[0] for c in np.cos(theta).tolist()])
+    weight = np.sin(theta) ** (d - 2) * np.exp(-(energy - energy.min()) / kT)
+    return theta, np.cumsum(weight)
 
 
 def _relaxed(molecule: Molecule, places: Floats, kT: float) -> NDArray[np.bool_]:
@@ -129,6 +136,7 @@ def _relaxed(molecule: Molecule, places: Floats, kT: float) -> NDArray[np.bool_]
     return good
 
 
+@functools.lru_cache(64, typed=True)  # potentials of other kinds may have the same numbers
 def nearest_of(pair: object, kT: float) -> float:
     """Distance at which two beads have the energy HOT."""
     radii = np.geomspace(1e-3, 1e3, POINTS)
