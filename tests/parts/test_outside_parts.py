@@ -88,8 +88,9 @@ def refused(folder: Path, *arguments: str, path: Path | None = None) -> str:
     """The one line with which a command is refused."""
     done = python(folder, "-m", "mesokit", *arguments, path=path)
     assert done.returncode
-    (line,) = done.stderr.strip().splitlines()
-    return line
+    lines = done.stderr.strip().splitlines()
+    assert len(lines) == 1, done.stderr
+    return lines[0]
 
 
 @pytest.fixture(scope="module")
