@@ -9,6 +9,7 @@ the sources of those parts: elsewhere nobody could read them where the parts are
 from __future__ import annotations
 
 import functools
+import gc
 import hashlib
 import os
 import sys
@@ -18,6 +19,7 @@ from typing import Any
 
 from numba import config, njit
 from numba.core.caching import FunctionCache
+from numba.core.registry import CPUDispatcher
 
 from mesokit.scalar.part import part
 
@@ -45,8 +47,22 @@ def kernel(function: Callable) -> Any:
     Those that take a `Team` first are run by all its threads at once.
     """
     made = njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True)(function)
+    made.__class__ = _Kernel
     made._cache = KernelFiles(function)
     return made
+
+
+class _Kernel(CPUDispatcher):
+    """A kernel. While it is compiled, Python looks for garbage less often: numba makes little of it
+    and much that stays, which would be looked through again and again."""
+
+    def compile(self, sig: Any) -> Any:
+        usual = gc.get_threshold()
+        gc.set_threshold(20_000, 10, 1000)
+        try:
+            return super().compile(sig)
+        finally:
+            gc.set_threshold(*usual)
 
 
 def inner(function: Callable) -> Any:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from llvmlite.binding import Linkage
 from numba import njit
 from numba._dynfunc import make_function
 from numba.core import typed_passes, untyped_passes
@@ -33,15 +34,48 @@ SKIPPED = {
 
 
 class _ForLinking(JITCodeLibrary):
-    """Code that is optimised and made into machine code with the kernel that calls it."""
+    """The code of one part, which is put together with that of others in the kernel, once."""
 
-    def _optimize_final_module(self) -> None:
-        pass
+    _together: Any = None  # with all that it calls
 
-    def _finalize_final_module(self) -> None:
+    def finalize(self) -> None:
+        self._raise_if_finalized()
+        for function in self._final_module.functions:
+            if not function.is_declaration and function.linkage == Linkage.external:
+                function.linkage = "linkonce_odr"  # several kernels have it
+        for library in self._linking_libraries:
+            self._reload_init.update(library._reload_init)
         self._finalize_dynamic_globals()
-        self._verify_declare_only_symbols()
         self._finalized = True
+
+    def _get_module_for_linking(self) -> Any:
+        if self._together is None:
+            self._together = self._final_module.clone()
+            for library in _called_by(self):
+                self._together.link_in(_own_module(library), preserve=True)
+        return self._together
+
+
+def _called_by(library: Any) -> list[Any]:
+    """What a part calls, what that calls, and so on: each once, and after all that call it, as LLVM
+    leaves out what nobody has asked for yet."""
+    order: dict[Any, None] = {}
+
+    def visit(library: Any) -> None:
+        for called in library._linking_libraries if isinstance(library, _ForLinking) else ():
+            if called not in order:
+                visit(called)
+        order[library] = None
+
+    visit(library)
+    return list(order)[-2::-1]
+
+
+def _own_module(library: Any) -> Any:
+    """The code of a part alone, or whatever numba links of what is its own."""
+    if isinstance(library, _ForLinking):
+        return library._final_module
+    return library._get_module_for_linking()
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
