@@ -17,6 +17,7 @@ from mesokit import method as methods
 from mesokit.case.case import Case, method_named
 from mesokit.case.component import nearest, require_known, show
 from mesokit.case.kind import note_run
+from mesokit.case.outside import blaming
 from mesokit.case.trajectory import written
 from mesokit.errors import CaseError, CheckpointError, RunError
 from mesokit.io import checkpoint, h5md
@@ -79,8 +80,9 @@ class Simulation:
         self.threads = _threads(threads)
         method = method_of(self.case)
         state = method.first_state(self.case, arrays)
-        self._build()
-        method.start(self.engine, state)
+        with blaming(self.case):
+            self._build()
+            method.start(self.engine, state)
         self.directory: RunDirectory | None = None
         if output is not None:
             self.write_to(output)
@@ -187,11 +189,13 @@ class Simulation:
         particles = sum(group.number for group in self.case.groups)
         progress.start(self.last_step, particles, "running", self.step)
         try:
-            with self._catching_signals():
+            with blaming(self.case), self._catching_signals():
                 self._compile(progress)
                 self._loop(progress)
-                if self._stopped_by is None:
+                if self.step == self.last_step:
+                    self._stopped_by = None
                     self._end()
+                    self._stopped_by = None  # a signal that came too late to stop anything
         except Exception as error:
             self._note_failure(str(error) or repr(error))
             raise
@@ -234,7 +238,7 @@ class Simulation:
                 self.checkpoint()
                 saved = perf_counter()
             progress.update(self.step)
-        if self._stopped_by is not None and self.directory is not None:
+        if self.step < self.last_step and self.directory is not None:
             self.checkpoint()
 
     def _next_stop(self) -> int:

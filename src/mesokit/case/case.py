@@ -119,6 +119,7 @@ class Case:
             data = toml.parse(toml.read(path))
             for key, value in (overrides or {}).items():
                 toml.override(data, key, value)
+            _require_method(data.get("run"))
             made = case_class(method_named(data.get("run")))
             keys = made._method.keys
             return build(made, _by_field(made, data), keys, path.parent)
@@ -167,6 +168,15 @@ def method_named(run: Any) -> str:
     """The method that a section `run` names, or its table; a wrong name is left to its check."""
     given = run.get("method") if isinstance(run, dict) else getattr(run, "method", None)
     return given if isinstance(given, str) and given in methods.modules() else methods.DEFAULT
+
+
+def _require_method(run: Any) -> None:
+    """That there is the method which a table `run` names; other keys have no meaning without."""
+    if isinstance(run, dict) and "method" in run:
+        try:
+            build(Run, {"steps": 0, "method": run["method"]})
+        except CaseError as error:
+            raise CaseError(f"run.{error}") from None
 
 
 def _again(fields: dict[str, Any]) -> Case:

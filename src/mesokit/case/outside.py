@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import importlib
+import re
 from collections.abc import Iterator
 from typing import Any
 
 from mesokit.case.component import is_component, name_of, tag_of
 from mesokit.case.registry import FAMILIES, address, family_of
-from mesokit.errors import RunError
+from mesokit.errors import MesokitError, RunError
 
 
 def outside_parts(case: Any) -> list[dict[str, str]]:
@@ -24,6 +26,28 @@ def outside_parts(case: Any) -> list[dict[str, str]]:
             record = {"family": address(family.base), "name": name, "class": address(type(part))}
             found.append(record | dict(family.brought_by(name)))
     return [record for i, record in enumerate(found) if record not in found[:i]]
+
+
+@contextlib.contextmanager
+def blaming(case: Any) -> Iterator[None]:
+    """What goes wrong inside is a RunError that names the parts from outside, if there are any."""
+    try:
+        yield
+    except (MesokitError, OSError, MemoryError):
+        raise
+    except Exception as error:
+        parts = outside_parts(case)
+        if not parts:
+            raise
+        names = ", ".join(f"{part['name']!r} ({part['class']})" for part in parts)
+        raise RunError(f"{names}, not of mesokit: {_gist(error)}") from error
+
+
+def _gist(error: Exception) -> str:
+    """One line of what may be the many of a compiler: the last that says what was wrong."""
+    lines = [f"{type(error).__name__}: {error}".splitlines()[0], *str(error).splitlines()]
+    found = [line for line in lines if re.search(r"\b(?!Typing)[A-Z][a-z]\w*Error: ", line)]
+    return " ".join((found or lines)[-1 if found else 0].split())
 
 
 def require_parts(record: Any) -> None:

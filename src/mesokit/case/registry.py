@@ -83,7 +83,13 @@ class Family:
             raise CaseError(
                 f"{self.title} {name!r} of {sources[0]} cannot be loaded: {reason}"
             ) from error
-        if name not in self.parts and self._may_have(entries[0]):
+        part = self.parts.get(name)
+        if part is not None and (missing := sorted(getattr(part, "__abstractmethods__", ()))):
+            del self.parts[name]
+            raise CaseError(
+                f"{self.title} {name!r} of {sources[0]}: {address(part)} lacks {', '.join(missing)}"
+            )
+        if part is None and self._may_have(entries[0]):
             raise CaseError(
                 f"entry point {name!r} of {sources[0]}: {entries[0].value} is no {self.title} with "
                 f"{self.tag} = {name!r}"

@@ -71,7 +71,7 @@ def read(
     path = Path(path)
     arrays, header = _load(path)
     if sorted(arrays) != header["arrays"]:
-        raise CheckpointError(f"{path}: damaged: arrays are missing")
+        raise CheckpointError(f"{path}: damaged: its arrays are not those that it names")
     if case is not None and header["case"] != case:
         raise CheckpointError(
             f"{path}: belongs to another case, or the case was changed since{advice}"

@@ -102,7 +102,10 @@ def generic(stub: Callable) -> Any:
 
     def checked(implementation: Callable) -> Callable:
         if inspect.signature(implementation).parameters.keys() != names:
-            raise TypeError(f"{stub.__name__} takes ({', '.join(names)})")
+            given = ", ".join(inspect.signature(implementation).parameters)
+            raise TypeError(
+                f"{stub.__name__} takes ({', '.join(names)}), by these names; not ({given})"
+            )
         return implementation
 
     def register(*parameters: type) -> Callable:

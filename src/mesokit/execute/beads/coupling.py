@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from mesokit.execute.cpu.collide import draw_with_care
+from mesokit.execute.cpu.collide import as_many, draw_with_care
 from mesokit.execute.cpu.strips.cell_energy import asks
 from mesokit.execute.cpu.strips.layout import LANES, record_length, share
 from mesokit.execute.cpu.strips.rows import load_values, store_values
@@ -83,9 +83,9 @@ def answer_for(beads, leader, physics, counter, sums, cell):
     x, sure = guess(physics.thermostat, chance[2:], freedom(physics.rule, n))
     if not sure:
         x = draw_with_care(physics, counter, cell, freedom(physics.rule, n))
-    return coefficients_of(
-        physics.rule, physics.thermostat, x, chance[:2], Cell(n, mass, momentum, energy, own)
-    )
+    found = Cell(n, mass, momentum, energy, own)
+    answer = coefficients_of(physics.rule, physics.thermostat, x, chance[:2], found)
+    return as_many(answer, physics.coefficients)
 
 
 @by_type

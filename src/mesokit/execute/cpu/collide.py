@@ -10,7 +10,7 @@ from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_
 from mesokit.method.mpcd.collision.protocol import freedom
 from mesokit.method.mpcd.thermostat.protocol import draw, guess
 from mesokit.scalar.cache import inner
-from mesokit.scalar.jit import scalar
+from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.random import CELL, words
 from mesokit.scalar.vector import added
 
@@ -68,6 +68,16 @@ def draw_with_care(physics, counter, cell, free):
     return x
 
 
+@by_type
+def as_many(answer, coefficients):
+    """The answer of a rule, for which there is room."""
+    if len(answer) != len(coefficients):
+        raise TypeError(
+            f"coefficients gives {len(answer)} numbers; coefficient_count says {len(coefficients)}"
+        )
+    return lambda answer, coefficients: answer
+
+
 @scalar
 def needs_of_cell(physics, counter, cell, found, certain):
     """What the particles of a cell need in order to collide, and whether that is sure.
@@ -79,7 +89,8 @@ def needs_of_cell(physics, counter, cell, found, certain):
     x, sure = guess(physics.thermostat, chance[2:], free)
     if certain:
         x = draw_with_care(physics, counter, cell, free)
-    return coefficients_of(physics.rule, physics.thermostat, x, chance[:2], sums), sure
+    answer = coefficients_of(physics.rule, physics.thermostat, x, chance[:2], sums)
+    return as_many(answer, physics.coefficients), sure
 
 
 @inner

@@ -11,6 +11,7 @@ from mesokit.case.units import MATCHES
 from mesokit.errors import CaseError
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.method.mpcd.checks.kernels import kernels
 from mesokit.method.mpcd.checks.solutes import solutes
 from mesokit.method.mpcd.checks.walls import moving_surfaces, room, surfaces, walls
 from mesokit.method.mpcd.expected import setting
@@ -225,6 +226,7 @@ RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
     solutes,
     start,
     units,
+    kernels,
 )
 
 

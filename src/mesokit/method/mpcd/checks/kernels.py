@@ -1,0 +1,44 @@
+"""What parts of a fluid register for compiled code: looked at before anything is compiled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from mesokit.case.registry import address
+from mesokit.method.mpcd.collision.protocol import coefficients, collide, contribute, freedom
+from mesokit.method.mpcd.field.protocol import acceleration
+from mesokit.method.mpcd.thermostat.protocol import target
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+
+def kernels(case: Case) -> Iterator[str]:
+    """Every function that a rule, thermostat or force has to bring."""
+    fluid, d = case.fluid, case.box.dimension
+    yield from _lacking(
+        "fluid.collision", fluid.collision, lambda rule: rule.kernel(d, fluid.kT),
+        (contribute, freedom, coefficients, collide),
+    )  # fmt: skip
+    yield from _lacking(
+        "fluid.thermostat", fluid.thermostat, lambda bath: bath.kernel(fluid.kT, 0.0), (target,)
+    )
+    yield from _lacking(
+        "fluid.force", fluid.force, lambda force: force.kernel(case.box.size), (acceleration,)
+    )
+
+
+def _lacking(
+    key: str, part: Any, kernel: Callable[[Any], Any], functions: tuple[Any, ...]
+) -> Iterator[str]:
+    place = address(type(part))
+    try:
+        kind = type(kernel(part))
+    except Exception as error:
+        reason = " ".join(f"{type(error).__name__}: {error}".split())
+        yield f"{key}: {place} has no parameters for its kernel: {reason}"
+        return
+    for function in functions:
+        if kind not in function.implementations and not function.others:
+            yield f"{key}: {place} registers no {function.__name__} for {kind.__name__}"
