@@ -94,6 +94,9 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "unknown surface": ({'"no-slip"': '"noslip"'}, ("wall[#1].lower.rule", "'no-slip'")),
     "unknown shape": ({'"plates"': '"plate"'}, ("wall[#1].shape = 'plate'", "'plates'")),
     "unknown method": ({"steps = 10": 'steps = 10\nmethod = "lbm"'}, ("run.method", "'mpcd'")),
+    "misspelt method": ({"steps = 10": 'steps = 10\nmethod = "brownien"', "[fluid]": "[brownian]"},
+                        ("run.method = 'brownien'", "'brownian'")),
+    "method of another type": ({"steps = 10": "steps = 10\nmethod = 3"}, ("run.method = 3",)),
     # types
     "text for a number": ({"density = 5": 'density = "five"'}, ("fluid.density = 'five'",)),
     "boolean for a number": ({"density = 5": "density = true"}, ("fluid.density = true",)),

@@ -89,6 +89,18 @@ def test_a_signal_writes_a_checkpoint(case, ends_alike, tmp_path, number):
     ends_alike(again)
 
 
+def test_a_signal_after_the_last_step_stops_nothing(case, ends_alike, tmp_path):
+    simulation = Simulation(case, output=tmp_path / "run", threads=1)
+
+    class Press(Reporter):
+        def update(self, step):
+            if step == simulation.last_step:
+                signal.raise_signal(signal.SIGINT)
+
+    simulation.run(progress=Press(quiet=True))
+    ends_alike(simulation)
+
+
 def test_a_signal_stops_a_run_without_a_folder(case):
     """As in a notebook; `run` then goes on to the same bits."""
     simulation, whole = Simulation(case, threads=1), Simulation(case, threads=1)

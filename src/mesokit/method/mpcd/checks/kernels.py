@@ -16,25 +16,20 @@ if TYPE_CHECKING:
 
 def kernels(case: Case) -> Iterator[str]:
     """Every function that a rule, thermostat or force has to bring."""
-    fluid, d = case.fluid, case.box.dimension
-    yield from _lacking(
-        "fluid.collision", fluid.collision, lambda rule: rule.kernel(d, fluid.kT),
-        (contribute, freedom, coefficients, collide),
-    )  # fmt: skip
-    yield from _lacking(
-        "fluid.thermostat", fluid.thermostat, lambda bath: bath.kernel(fluid.kT, 0.0), (target,)
-    )
-    yield from _lacking(
-        "fluid.force", fluid.force, lambda force: force.kernel(case.box.size), (acceleration,)
-    )
+    fluid, d, size = case.fluid, case.box.dimension, case.box.size
+    rule, bath, force = fluid.collision, fluid.thermostat, fluid.force
+    for_rule = contribute, freedom, coefficients, collide
+    yield from _lacking("fluid.collision", rule, lambda: rule.kernel(d, fluid.kT), for_rule)
+    yield from _lacking("fluid.thermostat", bath, lambda: bath.kernel(fluid.kT, 0.0), (target,))
+    yield from _lacking("fluid.force", force, lambda: force.kernel(size), (acceleration,))
 
 
 def _lacking(
-    key: str, part: Any, kernel: Callable[[Any], Any], functions: tuple[Any, ...]
+    key: str, part: Any, kernel: Callable[[], Any], functions: tuple[Any, ...]
 ) -> Iterator[str]:
     place = address(type(part))
     try:
-        kind = type(kernel(part))
+        kind = type(kernel())
     except Exception as error:
         reason = " ".join(f"{type(error).__name__}: {error}".split())
         yield f"{key}: {place} has no parameters for its kernel: {reason}"
