@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,10 +26,10 @@ class Lengths(NamedTuple):
     density: Floats
 
 
-def lengths(kernels: tuple[Any, ...], dimension: int, kT: float, longest: float) -> Lengths:
+def lengths(kernels: Sequence[Any], dimension: int, kT: float, longest: float) -> Lengths:
     """Boltzmann's distribution of the length of a bond whose potentials add up."""
     # kept, as it is asked for bond by bond; tuples of the same numbers are the same key
-    return _lengths(tuple(map(type, kernels)), kernels, dimension, kT, longest)
+    return _lengths(tuple(map(type, kernels)), tuple(kernels), dimension, kT, longest)
 
 
 @functools.lru_cache(64)
@@ -47,18 +48,18 @@ def _lengths(
     return Lengths(radii, energy, weight / np.trapezoid(weight, radii))
 
 
-def energies(kernels: tuple[Any, ...], radii: Floats) -> Floats:
+def energies(kernels: Sequence[Any], radii: Floats) -> Floats:
     """Sum of the potentials at these distances."""
     return np.array([sum(central.plain(k, r * r)[0] for k in kernels) for r in radii.tolist()])
 
 
-def mean_square(kernels: tuple[Any, ...], dimension: int, kT: float, longest: float) -> float:
+def mean_square(kernels: Sequence[Any], dimension: int, kT: float, longest: float) -> float:
     """Mean square length of a bond that nothing else pulls at."""
     radii, _, density = lengths(kernels, dimension, kT, longest)
     return float(np.trapezoid(radii**2 * density, radii))
 
 
-def stiffness(kernels: tuple[Any, ...], kT: float, longest: float) -> float:
+def stiffness(kernels: Sequence[Any], kT: float, longest: float) -> float:
     """The largest second derivative of the energy that thermal motion meets."""
     radii, energy, _ = lengths(kernels, 1, kT, longest)
     met = radii[energy - energy.min() <= SOMETIMES * kT]
