@@ -193,15 +193,13 @@ class Simulation:
                 self._compile(progress)
                 self._loop(progress)
                 if self.step == self.last_step:
-                    self._stopped_by = None
                     self._end()
-                    self._stopped_by = None  # a signal that came too late to stop anything
         except Exception as error:
             self._note_failure(str(error) or repr(error))
             raise
         finally:
             progress.finish()
-        if self._stopped_by is not None:
+        if self.step < self.last_step:
             raise KeyboardInterrupt(self._stopped)
 
     @property
@@ -310,16 +308,11 @@ class Simulation:
         assert self.directory is not None
         path = self.directory.checkpoint_file
         case = checkpoint.digest(self.case.to_toml(self.directory.path))
-        key, advice = method_of(self.case).start_from_run, ""
-        if key:
-            advice = (
-                f"; to start another case from this state, give it {key} = {str(path.parent)!r}"
-            )
-        arrays, _ = checkpoint.read(path, case, advice)
+        arrays, _ = checkpoint.read(path, case, method_of(self.case).start_from_run)
         try:
-            self.engine.restore(_part(arrays, "engine/"))
+            self.engine.restore(checkpoint.part(arrays, "engine/"))
             for name, accumulator in self.accumulators.items():
-                accumulator.restore(_part(arrays, f"observe/{name}/"))
+                accumulator.restore(checkpoint.part(arrays, f"observe/{name}/"))
         except (KeyError, ValueError, IndexError) as error:
             raise CheckpointError(f"{path}: does not fit this case: {error}") from None
 
@@ -387,11 +380,6 @@ def _case_and_arrays(given: Any, parts: dict[str, Any]) -> tuple[Case, dict[str,
         raise CaseError(f"Simulation: expected a case, or its parts by name{hint}")
     arrays = {name: array for name, array in arrays.items() if array is not None}
     return given or Case(**parts), arrays
-
-
-def _part(arrays: dict[str, Any], start: str) -> dict[str, Any]:
-    """The arrays whose names start so, without it."""
-    return {key[len(start) :]: v for key, v in arrays.items() if key.startswith(start)}
 
 
 def _threads(given: Any) -> int:

@@ -21,11 +21,16 @@ def outside_parts(case: Any) -> list[dict[str, str]]:
     """
     found = []
     for part in _components(case):
-        if type(part).__module__.split(".")[0] != "mesokit" and tag_of(type(part)):
+        if is_outside(part) and tag_of(type(part)):
             family, name = family_of(part), name_of(part)
             record = {"family": address(family.base), "name": name, "class": address(type(part))}
             found.append(record | dict(family.brought_by(name)))
     return [record for i, record in enumerate(found) if record not in found[:i]]
+
+
+def is_outside(part: Any) -> bool:
+    """Whether mesokit does not bring the class of a part."""
+    return type(part).__module__.split(".")[0] != "mesokit"
 
 
 @contextlib.contextmanager

@@ -60,23 +60,30 @@ def write(
 
 
 def read(
-    path: str | Path, case: str | None = None, advice: str = ""
+    path: str | Path, case: str | None = None, start_key: str = ""
 ) -> tuple[Arrays, dict[str, Any]]:
     """Arrays and meta of the checkpoint at `path`; every byte is checked.
 
-    With `case`, the digest of the case to go on with, and what to do if it is another. Raises
-    CheckpointError for a file that is missing, truncated, corrupted, of another format or of
-    another case.
+    With `case`, the digest of the case to go on with, and the key by which another case may start
+    from this state, if there is one. Raises CheckpointError for a file that is missing, truncated,
+    corrupted, of another format or of another case.
     """
     path = Path(path)
     arrays, header = _load(path)
     if sorted(arrays) != header["arrays"]:
         raise CheckpointError(f"{path}: damaged: its arrays are not those that it names")
     if case is not None and header["case"] != case:
+        cure = f"; to start another case from this state, give it {start_key} = "
+        cure = cure + repr(str(path.parent)) if start_key else ""
         raise CheckpointError(
-            f"{path}: belongs to another case, or the case was changed since{advice}"
+            f"{path}: belongs to another case, or the case was changed since{cure}"
         )
     return arrays, header["meta"]
+
+
+def part(arrays: Mapping[str, Any], start: str) -> dict[str, Any]:
+    """The arrays whose names start so, without it."""
+    return {key[len(start) :]: v for key, v in arrays.items() if key.startswith(start)}
 
 
 def read_meta(path: str | Path) -> dict[str, Any]:

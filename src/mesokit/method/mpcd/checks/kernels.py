@@ -1,10 +1,11 @@
-"""What parts of a fluid register for compiled code: looked at before anything is compiled."""
+"""What a user's own parts register for compiled code: looked at before anything is compiled."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
+from mesokit.case.outside import is_outside
 from mesokit.case.registry import address
 from mesokit.method.mpcd.collision.protocol import coefficients, collide, contribute, freedom
 from mesokit.method.mpcd.field.protocol import acceleration
@@ -27,6 +28,8 @@ def kernels(case: Case) -> Iterator[str]:
 def _lacking(
     key: str, part: Any, kernel: Callable[[], Any], functions: tuple[Any, ...]
 ) -> Iterator[str]:
+    if not is_outside(part):
+        return
     place = address(type(part))
     try:
         kind = type(kernel())

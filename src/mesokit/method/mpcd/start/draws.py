@@ -39,6 +39,19 @@ def draw_normals(seed, purpose, who, draw, zero, vectors):
 class Draws:
     """Random numbers of one purpose for those with some numbers, each from a sequence of its own.
 
+    Parameters
+    ----------
+    seed : int
+        Of the run.
+    purpose : uint64
+        One of those in `mesokit.scalar.random`.
+    who : array (n,) of int
+        Numbers of the particles or molecules.
+    draw : int, optional
+        How many times these have drawn before.
+
+    Examples
+    --------
     >>> from mesokit.scalar.random import INITIAL_POSITION
     >>> all_four = Draws(1, INITIAL_POSITION, range(4)).units(3)
     >>> bool((Draws(1, INITIAL_POSITION, [2]).units(3) == all_four[2]).all())

@@ -102,15 +102,10 @@ def _last_fluid(case: Case, path: str, told: Callable[[Case], tuple[str, Any]]) 
             raise CaseError(f"that run has {name} {show(one)}, this case {show(other)}")
     arrays, _ = checkpoint.read(directory.checkpoint_file)
     fluid = CPU(earlier)
-    fluid.restore(_part(arrays, "engine/"))
+    fluid.restore(checkpoint.part(arrays, "engine/"))
     return fluid
 
 
 def _kinds(case: Case) -> list[tuple[float, int]]:
     """Mass and number of each kind of particles."""
     return [(kind.mass, kind.number) for kind in case.groups[0].kinds]
-
-
-def _part(arrays: dict[str, Any], start: str) -> dict[str, Any]:
-    """The arrays whose names start so, without it."""
-    return {key[len(start) :]: v for key, v in arrays.items() if key.startswith(start)}

@@ -47,6 +47,8 @@ def grown(
     ----------
     box, periods : arrays (d,)
         Lengths of the box, and those after which it repeats, infinite where walls close it.
+    seed : int
+        Of the run; each molecule draws by its number.
     in_fluid : function
         Which of places (n, d) are in the fluid.
 
