@@ -2,6 +2,7 @@
 
 import math
 from decimal import Decimal, localcontext
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from hypothesis import strategies as st
 from numba import njit
 
 from mesokit.scalar.elementary import log, short_log, short_sin, short_sincos, sincos_turn
-from mesokit.scalar.fixed_point import fixed, from_fixed
+from mesokit.scalar.fixed_point import fixed, from_fixed, quanta
 
 EPSILON = float(np.finfo(float).eps)
 
@@ -84,6 +85,17 @@ def test_a_loop_gives_the_bits_of_single_calls(count):
     in_a_loop(u, *got)
     single = np.array([(*sincos_turn(x), log(x + 1e-300)) for x in u]).T
     np.testing.assert_array_equal(got, single)
+
+
+HALVES = st.integers(-(2**51), 2**51).map(lambda n: n + 0.5)
+LARGE = st.floats(-(2.0**62), 2.0**62)
+
+
+@given(x=st.floats(-1e6, 1e6) | HALVES | LARGE, bits=st.integers(-10, 0))
+@settings(deadline=None, derandomize=True, max_examples=500)
+def test_quanta_are_the_nearest_whole_numbers(x, bits):
+    """Halves go to the even one."""
+    assert quanta(x, 2.0**bits) == round(Fraction(x) * Fraction(2) ** bits)
 
 
 def test_fixed_point_numbers_are_rounded_without_bias():

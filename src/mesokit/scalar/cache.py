@@ -126,16 +126,16 @@ def classes(types: Iterable[Any]) -> Iterator[type]:
 
 
 def sources(modules: set[str]) -> str:
-    """A hash of the files of modules, and of all loaded ones beside or below them.
+    """A hash of modules, and of all loaded ones beside or below them, wherever they lie.
 
     Packages have a folder of their own; a module that lies beside all others stands for itself.
     """
-    files = {getattr(sys.modules[name], "__file__", None) or "" for name in modules}
-    near = {os.path.dirname(os.path.abspath(file)) for file in files}
+    files = {name: getattr(module, "__file__", None) for name, module in list(sys.modules.items())}
+    near = {os.path.dirname(os.path.abspath(files[name] or "")) for name in modules}
     near = {path for path in near if not path.endswith("site-packages")}
-    loaded = [getattr(module, "__file__", None) or "" for module in list(sys.modules.values())]
-    inside = {path for path in loaded if any(path.startswith(f"{f}{os.sep}") for f in near)}
     code = hashlib.sha256()
-    for path in sorted(files | {path for path in inside if path.endswith(".py")}):
-        code.update(path.encode() + (Path(path).read_bytes() if path else b""))
+    for name, path in sorted(files.items()):
+        beside = any((path or "").startswith(f"{folder}{os.sep}") for folder in near)
+        if name in modules or (beside and str(path).endswith(".py")):
+            code.update(name.encode() + (Path(path).read_bytes() if path else b""))
     return code.hexdigest()[:16]

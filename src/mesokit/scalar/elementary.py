@@ -22,15 +22,7 @@ _ROUNDER = 1.5 * 2.0**52
 
 @scalar
 def rint(x):
-    """The whole number nearest to x, as a float; halves go to the even one."""
-    below = floor(x)
-    rest, odd = x - below, below - 2.0 * floor(0.5 * below)
-    return below + (1.0 if (rest > 0.5) | ((rest == 0.5) & (odd > 0.5)) else 0.0)
-
-
-@scalar
-def short_rint(x):
-    """The same for |x| < 2^51."""
+    """The whole number nearest to x, as a float, for |x| < 2^51; halves go to the even one."""
     return (x + _ROUNDER) - _ROUNDER
 
 

@@ -52,6 +52,14 @@ def dot(a, b):
 
 
 @by_type
+def products(a, b):
+    """All products of an element of one vector and one of another, row by row of their matrix."""
+    if len(a) == 2:
+        return lambda a, b: scaled(a[0], b) + scaled(a[1], b)
+    return lambda a, b: scaled(a[0], b) + scaled(a[1], b) + scaled(a[2], b)
+
+
+@by_type
 def outer(a, b):
     """Vector product: a tuple of one number for vectors of two, of three for vectors of three."""
     if len(a) == 2:

@@ -26,7 +26,7 @@ from mesokit.execute.beads.verlet import drift, flown, kick, verlet
 from mesokit.execute.cpu.grid import cell_index, in_cell
 from mesokit.execute.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
 from mesokit.execute.cpu.physics import kind_of_solid, momentum_scale
-from mesokit.execute.cpu.stress import add_flux
+from mesokit.execute.cpu.stress import flux
 from mesokit.execute.cpu.strips.layout import record_length, share
 from mesokit.execute.cpu.strips.rows import load_values, store_values
 from mesokit.execute.cpu.threads import Team, meet
@@ -35,6 +35,7 @@ from mesokit.method.mpcd.collision.protocol import collide, contribute
 from mesokit.method.mpcd.field.none import Zero
 from mesokit.method.mpcd.field.protocol import acceleration
 from mesokit.scalar.cache import inner
+from mesokit.scalar.fixed_point import add_quanta
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.random import FIRST_BEAD
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
@@ -179,4 +180,5 @@ def add_bead_flux(beads, i, physics, box, shift, when):
     tensor = beads.tensor[when, i // GROUP]
     r, v, _ = load_folded(beads, i, box, scaled(0.0, shift))
     place, u, _ = fold(box, r, v, shift)
-    add_flux(tensor, physics.stress_scale, beads.mass, peculiar(box, r, v), u, added(place, shift))
+    carried = flux(beads.mass, peculiar(box, r, v), u, added(place, shift))
+    add_quanta(tensor, physics.stress_scale, carried)

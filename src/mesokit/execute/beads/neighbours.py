@@ -14,7 +14,7 @@ from mesokit.case.box import SLIDING, fold
 from mesokit.execute.cpu.strips.layout import share
 from mesokit.execute.cpu.strips.rows import load_values, store_values
 from mesokit.execute.cpu.threads import meet
-from mesokit.scalar.elementary import short_rint
+from mesokit.scalar.elementary import rint
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.vector import added_scaled, dot, scaled
@@ -66,13 +66,13 @@ def nearest_image(box, r, other):
     """That of a box whose images stand still."""
     separation = added_scaled(other, -1.0, r)
     for k in range(len(r)):
-        boxes = short_rint(separation[k] * box.inverse[k])
+        boxes = rint(separation[k] * box.inverse[k])
         separation = with_item(separation, k, separation[k] - boxes * box.size[k])
     return separation
 
 
 def _apart_sliding(box, r, other):
-    up = short_rint((other[1] - r[1]) * box.inverse[1])
+    up = rint((other[1] - r[1]) * box.inverse[1])
     return nearest_image(box, r, with_item(other, 0, other[0] - up * box.offset))
 
 
@@ -92,7 +92,7 @@ def cell_along(lists, k, x):
 def slipped(lists, box, thread):
     """How far the images have slid since the lists were made."""
     moved = offset_of_images(box) - lists.noted[thread, OFFSET]
-    return moved - short_rint(moved * box.inverse[0]) * box.size[0]
+    return moved - rint(moved * box.inverse[0]) * box.size[0]
 
 
 @scalar

@@ -14,7 +14,7 @@ from mesokit.geometry.protocol import (
     unmet,
 )
 from mesokit.method.mpcd.streaming import fall
-from mesokit.scalar.fixed_point import quanta
+from mesokit.scalar.fixed_point import add_quanta
 from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.vector import added, added_scaled, outer, scaled
 
@@ -31,9 +31,7 @@ def take(impulse, surface, r, p, scale):
 @scalar
 def take_sum(impulse, surface, given, scale):
     """Add momentum and angular momentum to what a surface took, as whole numbers."""
-    start = surface * len(given)
-    for k in range(len(given)):
-        impulse[start + k] += quanta(given[k], scale)
+    add_quanta(impulse[surface * len(given) :], scale, given)
 
 
 @seldom

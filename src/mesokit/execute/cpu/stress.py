@@ -3,28 +3,34 @@
 Whole numbers, `scale` of which are one unit of m v^2: the sums do not depend on their order.
 """
 
-from mesokit.scalar.fixed_point import quanta
+from mesokit.scalar.fixed_point import add_quanta
 from mesokit.scalar.intrinsics import floor
-from mesokit.scalar.jit import scalar
+from mesokit.scalar.jit import elementwise, scalar
+from mesokit.scalar.vector import products, scaled
 
 
 @scalar
-def add_flux(tensor, scale, m, c, u, x):
-    """Add m c c (c relative to the imposed flow), and m u x (x relative to the corner of a cell).
+def flux(m, c, u, x):
+    """m c c (c relative to the imposed flow) and m u x (x relative to the corner of a cell).
 
     `x` is given in cells from anywhere on the grid.
     """
-    d = len(c)
-    for j in range(d):
-        for k in range(d):
-            tensor[j * d + k] += quanta(m * c[j] * c[k], scale)
-            tensor[d * d + j * d + k] += quanta(m * u[j] * (x[k] - floor(x[k])), scale)
+    return products(scaled(m, c), c) + products(scaled(m, u), within_cell(x))
 
 
 @scalar
 def add_product(tensor, scale, factor, a, b):
     """Add a factor times the outer product of two vectors."""
-    d = len(a)
-    for j in range(d):
-        for k in range(d):
-            tensor[j * d + k] += quanta(factor * a[j] * b[k], scale)
+    add_quanta(tensor, scale, products(scaled(factor, a), b))
+
+
+@elementwise
+def within_cell(x):
+    """A place relative to the corner of its cell, in cells."""
+    return "past_whole(x[{k}])"
+
+
+@scalar
+def past_whole(x):
+    """How much a number is above the next whole number below."""
+    return x - floor(x)

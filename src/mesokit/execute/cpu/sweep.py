@@ -22,7 +22,7 @@ from mesokit.execute.cpu.stages import (
     slide_strip,
     stream_strip,
 )
-from mesokit.execute.cpu.stress import add_flux
+from mesokit.execute.cpu.stress import flux
 from mesokit.execute.cpu.strips.cell_energy import tally
 from mesokit.execute.cpu.strips.layout import (
     LANES,
@@ -35,8 +35,9 @@ from mesokit.execute.cpu.strips.layout import (
 )
 from mesokit.execute.cpu.strips.rows import load_particle, mass_of
 from mesokit.scalar.cache import inner
+from mesokit.scalar.fixed_point import add_fixed, added_fixed, integers
 from mesokit.scalar.jit import by_type, seldom
-from mesokit.scalar.vector import added
+from mesokit.scalar.vector import added, products
 
 
 @by_type
@@ -141,8 +142,10 @@ def _stream_molecules(team, now, physics, fluid):
 def add_strip_flux(physics, box, grid, strip, count, tensor):
     """What the particles of a strip carry of the stress."""
     zero = physics.zero
-    d = len(zero)
+    d, sums = len(zero), integers(products(zero, zero) + products(zero, zero))
     for i in range(count):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         m = mass_of(physics.masses, strip, i, 2 * d)
-        add_flux(tensor, physics.stress_scale, m, peculiar(box, r, v), v, added(r, grid.shift))
+        carried = flux(m, peculiar(box, r, v), v, added(r, grid.shift))
+        sums = added_fixed(carried, physics.stress_scale, sums)
+    add_fixed(tensor, count, sums)

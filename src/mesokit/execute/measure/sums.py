@@ -16,8 +16,18 @@ from mesokit.potential.angle import bend
 from mesokit.potential.protocol import central
 from mesokit.scalar.cache import kernel
 from mesokit.scalar.elementary import sincos_turn
-from mesokit.scalar.fixed_point import ROUNDER_BITS, fixed, integers, quanta, rounded
-from mesokit.scalar.intrinsics import floor, with_item
+from mesokit.scalar.fixed_point import (
+    add_fixed,
+    add_integers,
+    added_fixed,
+    added_quanta,
+    bits,
+    from_bits,
+    integers,
+    quanta,
+    rounded,
+)
+from mesokit.scalar.intrinsics import floor
 from mesokit.scalar.vector import dot, row, scaled
 
 
@@ -31,14 +41,18 @@ def totals(team, masses, particles, scales, out, fastest):
     filling, d, zero = particles.filling, len(scales) - 1, scales[1:]
     first, last = share(strips_in(filling), team.thread, team.threads)
     for b in range(first, last):
-        strip = data[strip_at(b, rows)]
+        strip, momentum, energy = data[strip_at(b, rows)], integers(zero), np.int64(0)
+        top = np.int64(0)  # bits of numbers without a sign have their order, with nan above all
         for i in range(lanes_in(filling, b)):
             v = load_particle(strip, i, d, zero)
             m = mass_of(masses, strip, i, 2 * d)
+            momentum = added_quanta(scaled(m, v), scales[0], momentum)
+            energy += quanta(m * dot(v, v), scales[d])
             for k in range(d):
-                out[b, k] += quanta(m * v[k], scales[k])
-                fastest[b] = max(fastest[b], abs(v[k]) if v[k] == v[k] else math.inf)
-            out[b, d] += quanta(m * dot(v, v), scales[d])
+                top = max(top, bits(abs(v[k])))
+        add_integers(out[b], momentum + (energy,))
+        largest = from_bits(top)
+        fastest[b] = largest if largest == largest else math.inf
 
 
 class Bins(NamedTuple):
@@ -104,10 +118,8 @@ def modes(team, zero, masses, box, particles, waves, scale, out):
                 s, c = sincos_turn(phase - floor(phase))
                 c, s = m * c, -m * s
                 values = (c, s) + scaled(c, v) + scaled(s, v)
-                for k in range(len(sums)):
-                    sums = with_item(sums, k, sums[k] + fixed(values[k], scale))
-            for k in range(len(sums)):
-                out[team.thread, w, k] += sums[k] - np.int64(LANES * ROUNDER_BITS)
+                sums = added_fixed(values, scale, sums)
+            add_fixed(out[team.thread, w], LANES, sums)
 
 
 class Looked(NamedTuple):
