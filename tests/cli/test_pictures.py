@@ -18,6 +18,7 @@ steps = 60
 size = [12, 8]
 [fluid]
 density = 5
+thermostat = { rule = "maxwell-boltzmann" }
 force = { rule = "uniform", acceleration = [0.01, 0] }
 [[wall]]
 shape = "plates"

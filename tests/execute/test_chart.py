@@ -12,7 +12,6 @@ from mesokit.geometry.solids.clearance import (
     PARTS,
     clear_squares,
     cube_middles,
-    cut_cells,
     cut_planes,
     free_planes,
 )
@@ -30,8 +29,7 @@ def test_planes_cut_off_what_is_solid(case, tmp_path):
     here have radii below two cells."""
     name, d, side = case
     solids = solids_of(walls_of(example(name, d, side, tmp_path), d), d)
-    starts, _, corners = cut_cells(solids, cells_of(solids))
-    normals, heights, middles, terms, _ = cut_planes(solids, corners, starts)
+    normals, heights, middles, terms, _ = cut_planes(solids, cells_of(solids))
     live = np.flatnonzero(heights < EVERYWHERE)
     assert (terms[live] >= 0).all()
     assert np.allclose((normals[live] ** 2).sum(axis=1), 1.0)

@@ -90,7 +90,13 @@ def fluid_places(solids):
 
 
 def kinks(solids):
-    """The surface places where the normal turns most."""
+    """The surface places where the normal turns most, kept with the solids."""
+    if not hasattr(solids, "kinks"):
+        solids.kinks = sharpest(solids)
+    return solids.kinks
+
+
+def sharpest(solids):
     r, normal = surface(solids)
     step = r[:, None] - r
     size = np.array(SIZE[solids.dimension])

@@ -48,7 +48,7 @@ class Watched(Simulation):
 def run_of(folder, size=(6, 6, 6), steps=40, walls=(), fields=ALL, subset=None, **parts):
     """A run that has ended, in the folder."""
     box = {key: parts.pop(key) for key in ("shear_rate",) if key in parts}
-    parts.setdefault("molecule", TRIMERS)
+    parts = {"molecule": TRIMERS, "thermostat": MaxwellBoltzmann()} | parts
     case = Case(
         run=Run(steps=steps, seed=5),
         box=Box(size, **box),
@@ -160,7 +160,7 @@ def test_a_dump_says_box_images_and_velocities(whole, tmp_path):
 def test_plates_close_an_axis(tmp_path):
     run_of(
         tmp_path / "run", (6, 5), walls=[Plates(axis="y")], molecule=None, fields=("position",),
-        thermostat=MaxwellBoltzmann(), force=Uniform((0.01, 0.0)),
+        force=Uniform((0.01, 0.0)),
     )  # fmt: skip
     files = mesokit.open(tmp_path / "run")
     assert "ITEM: BOX BOUNDS pp ff pp" in files.export(tmp_path / "a.lammpstrj").read_text()
@@ -252,7 +252,7 @@ def test_the_fluid_or_the_solutes_alone(of, tmp_path):
     """Kinds, masses and bonds of either, while the run goes on and after it."""
     solutes = Solutes((Polymer(3), Polymer(2, length=3)), mass=5.0, bond=Harmonic(K=2.0))
     case = Case(
-        run=Run(steps=20), box=Box([6, 6]), fluid=Fluid(density=2), solutes=solutes,
+        run=Run(steps=20), box=Box([6, 6, 2]), fluid=Fluid(density=1), solutes=solutes,
         trajectory=Trajectory(every=10, of=of, fields=("position", "image")),
     )  # fmt: skip
     simulation = Simulation(case, output=tmp_path / "run", threads=1)

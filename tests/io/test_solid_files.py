@@ -11,7 +11,20 @@ import trimesh
 from PIL import Image
 
 import mesokit
-from mesokit import Box, Case, CaseError, Fluid, Mesh, Picture, Plates, Run, Sampled, Simulation
+from mesokit import (
+    Box,
+    Case,
+    CaseError,
+    Fluid,
+    MaxwellBoltzmann,
+    Mesh,
+    Picture,
+    Plates,
+    Run,
+    Sampled,
+    Simulation,
+    Uniform,
+)
 from mesokit.cli import main
 
 STEPS = 60
@@ -46,7 +59,8 @@ def case(request: pytest.FixtureRequest, tmp_path: Path) -> Case:
     (tmp_path / "files").mkdir()
     walls = MAKE[request.param](tmp_path / "files")
     return Case(
-        run=Run(steps=STEPS, seed=3), box=Box([10, 10]), fluid=Fluid(density=5), walls=walls,
+        run=Run(steps=STEPS, seed=3), box=Box([10, 10]), walls=walls,
+        fluid=Fluid(density=5, thermostat=MaxwellBoltzmann(), force=Uniform((0.01, 0.0))),
         observe=[mesokit.Conservation(every=10)],
     )  # fmt: skip
 

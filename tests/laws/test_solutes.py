@@ -38,6 +38,7 @@ WALLED = Solutes(
 SLIP = Surface("slip")
 DISK = {"size": (12, 12), "walls": [Disk(centre=(6, 6), radius=2, surface=SLIP)], "density": 4}
 SLIT = {"size": (10, 10), "walls": [Plates(axis="y", lower=SLIP, upper=SLIP)], "density": 4}
+SHEAR = {"shear_rate": 0.3, "thermostat": MaxwellBoltzmann()}
 CASES = {
     "polymers and monomers": {"solutes": STIFF, "size": (8, 8, 8), "density": 4},
     "between plates": SLIT | {"solutes": WALLED},
@@ -104,7 +105,7 @@ def test_nobody_is_inside(potential):
 class TestSkin:
     """However far lists reach, the same bits: they are made anew before they miss anybody."""
 
-    @pytest.mark.parametrize("shear", [{}, {"shear_rate": 0.3}], ids=["at rest", "sheared"])
+    @pytest.mark.parametrize("shear", [{}, SHEAR], ids=["at rest", "sheared"])
     def test_same_bits(self, shear):
         found = []
         for skin in (0.05, 0.4, 1.5):
@@ -249,7 +250,7 @@ class TestRandomSolvent:
 
 
 def test_a_torn_bond_stops_the_run():
-    solutes = Solutes((Polymer(2, length=3),), mass=1.0, bond=FENE(), substeps=10)
+    solutes = dataclasses.replace(STIFF, polymers=(Polymer(2, length=3),), mass=1.0)
     fluid = make_fluid((8, 8, 8), solutes=solutes, density=2)
     fluid.solutes.places[4] = fluid.solutes.places[3] + [1.6, 0.0, 0.0]
     with pytest.raises(RunError, match=r"step 1: the bond of beads 4 and 5 is longer than"):

@@ -77,7 +77,7 @@ def virtual_particles(numbers: Numbers, threads: int, rows: int) -> VirtualParti
         if slit is not None:
             planes = plates.cut_planes(slit, size, corners)
         else:
-            planes = cut_planes(solids, corners, starts)
+            planes = cut_planes(solids, numbers.cells)
         per_cell = _per_cell(planes, pieces, threads, entries, d)
     blocks = blocks_for(room)
     return VirtualParticles(

@@ -6,6 +6,7 @@ intervals of the shift along each axis, and hold for every shift of the interval
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 from collections.abc import Iterator, Sequence
@@ -29,6 +30,7 @@ SHIFTED_FINE = 4  # parts of a cell along each axis by which its volume is summe
 EVERYWHERE = 1e30
 FAR = 1e6
 ROUNDING = 1e-9  # of a share
+KEPT = 4  # tables of solids that runs one after the other share: they take a moment to make
 
 
 @by_type
@@ -115,6 +117,7 @@ def free_planes(solids: Solids, clear: Any, stride: float, bend: float) -> tuple
     return plane_of, planes, reach
 
 
+@functools.lru_cache(maxsize=KEPT)
 def cut_cells(solids: Solids, cells: tuple[int, ...]) -> tuple[Any, Any, Any]:
     """Cells that may hold both fluid and solid: where those of each offset start, and their lower
     corners in the grid (entries, d), as whole numbers."""
@@ -166,9 +169,11 @@ def shifts_within(d: int) -> Any:
     return np.array(list(itertools.product((-side, side), repeat=d)))
 
 
-def cut_planes(solids: Solids, corners: Any, starts: Any) -> tuple[Any, Any, Any, Any, Any]:
+@functools.lru_cache(maxsize=KEPT)
+def cut_planes(solids: Solids, cells: tuple[int, ...]) -> tuple[Any, Any, Any, Any, Any]:
     """For each cut cell the normal and height of the plane that cuts it, its middle in the box, its
     term, and the cell of the box in which the surface lies that is nearest to its middle."""
+    starts, _, corners = cut_cells(solids, cells)
     middles = np.empty(corners.shape)
     for number, origin in enumerate(origins(solids.room.closed)):
         some = slice(starts[number], starts[number + 1])
