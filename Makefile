@@ -3,12 +3,14 @@ PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/ready
 
-.PHONY: help demo test quick check bench validate clean
+.PHONY: help demo test test-all quick lint check bench validate clean
 help:
 	@echo "make demo      run a channel flow and draw it with the theory"
-	@echo "make test      run the tests"
+	@echo "make test      run the tests but the long ones: some minutes"
+	@echo "make test-all  run all tests"
 	@echo "make quick     run the tests that simulate nothing: cases, theory, statistics, documents"
-	@echo "make check     lint, types, import rules, and that the physics compiles for a GPU"
+	@echo "make lint      lint and types"
+	@echo "make check     the same, import rules, and that the physics compiles for a GPU"
 	@echo "make bench     measure the speed, side by side with LAMMPS"
 	@echo "make validate  write docs/validation: measured against theory, law by law"
 	@echo "make clean     remove what these made"
@@ -26,18 +28,23 @@ demo: $(READY)
 	@$(BIN)/mesokit run src/mesokit/method/mpcd/templates/poiseuille.toml --output demo
 	@echo "look at demo/velocity-profile.png"
 
+TEST := $(BIN)/python -m pytest -n 2 --dist worksteal
 test: $(READY)
-	@$(BIN)/python -m pytest -n 2 --dist worksteal
+	@$(TEST) -m "not long" --ignore tests/gpu
+test-all: $(READY)
+	@$(TEST)
 
 QUICK := tests/architecture tests/case tests/theory tests/statistics tests/docs/test_documents.py
 quick: $(READY)
-	@$(BIN)/python -m pytest -n 2 --dist worksteal $(QUICK)
+	@$(TEST) -m "not long" $(QUICK)
 
-check: $(READY)
+lint: $(READY)
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
-	@$(BIN)/python -m pytest tests/architecture tests/gpu
+
+check: lint
+	@$(TEST) tests/architecture tests/gpu
 
 bench: $(READY)
 	@$(BIN)/python -m benchmarks

@@ -40,6 +40,7 @@ def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("documents")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("page", PAGES)
 def test_commands_and_scripts_run_in_order(page: str, workplace: Path) -> None:
     if not (workplace / "poiseuille.toml").exists():

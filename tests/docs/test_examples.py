@@ -9,6 +9,8 @@ import pytest
 
 from mesokit.cli import main
 
+pytestmark = pytest.mark.long
+
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.toml"))
 SHORT = ["--set", "run.steps=100", "--set", "run.warmup=20"]

@@ -8,6 +8,8 @@ import pytest
 
 from mesokit import Case, Run, Simulation
 
+pytestmark = pytest.mark.long
+
 ROOT = Path(__file__).resolve().parents[2]
 CASES = sorted((ROOT / "examples" / "viscoelastic").glob("*.toml"))
 FIGURES = ["4_1", "4_2", *(f"5_{n}" for n in range(1, 13)), "6_1", "6_2"]

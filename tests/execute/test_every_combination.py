@@ -16,6 +16,8 @@ from mesokit.method.mpcd import collision, field, thermostat
 from mesokit.method.mpcd.species import Species
 from mesokit.method.mpcd.start.fluid import start
 
+pytestmark = pytest.mark.long
+
 BOUNDARIES = {
     "periodic": lambda d: {},
     "sheared": lambda d: {"shear_rate": 0.1},

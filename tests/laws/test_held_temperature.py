@@ -7,6 +7,8 @@ from laboratory import Measured, make_fluid
 from mesokit import AT, SRD, MaxwellBoltzmann, NoThermostat, Rescale, SRDPlusA, theory
 from mesokit.statistics import blocking_error
 
+pytestmark = pytest.mark.long
+
 
 def temperature(steps=2500, rate=0.0, **parts):
     """(T - kT)/kT about the linear profile, kT = m = 1."""

@@ -23,6 +23,8 @@ from mesokit.errors import CaseError, RunError
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.start.first_state import first_state
 
+pytestmark = pytest.mark.long
+
 CHAINS = {
     "dimers": Molecule(bond=Harmonic(K=1 / 6), substeps=4),
     "decamers": Molecule(length=10, bond=Harmonic(K=1.0), substeps=4),

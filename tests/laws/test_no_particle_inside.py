@@ -9,6 +9,8 @@ from shapes import EVERY, SIZE, example, walls_of, with_surface
 
 from mesokit import MaxwellBoltzmann, Surface, Uniform
 
+pytestmark = pytest.mark.long
+
 RULES = ("no-slip", "slip", "diffuse")
 STEPS = {2: 300, 3: 100}
 LOOK = 25  # steps between looks

@@ -15,6 +15,8 @@ from mesokit import (
     VelocityProfile,
 )
 
+pytestmark = pytest.mark.long
+
 
 def sheared(frequency, steps, threads=1, size=(8, 8, 8), rate=0.2):
     return Simulation(

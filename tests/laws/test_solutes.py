@@ -27,6 +27,8 @@ from mesokit.errors import RunError
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.method.mpcd.species import Species
 
+pytestmark = pytest.mark.long
+
 STIFF = Solutes(
     (Polymer(4, length=10), Polymer(1, length=7, topology="star", arms=3), Polymer(10)),
     mass=5.0, bond=FENE(), bending=Bending(kappa=2.0), pair=WCA(), substeps=50,

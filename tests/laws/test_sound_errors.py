@@ -8,6 +8,8 @@ from mesokit import SRD, LongitudinalModes, MaxwellBoltzmann, NoThermostat
 from mesokit.execute.cpu.engine import CPU
 from mesokit.method.mpcd.start.fluid import start
 
+pytestmark = pytest.mark.long
+
 
 @pytest.mark.parametrize("bath", [NoThermostat(), MaxwellBoltzmann()])
 def test_quoted_errors_are_those_of_repeated_runs(bath):

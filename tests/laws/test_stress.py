@@ -6,6 +6,8 @@ import pytest
 from mesokit import Box, Case, Fluid, MaxwellBoltzmann, NoThermostat, Run, Simulation, Stress
 from mesokit.method.mpcd.collision import RULES
 
+pytestmark = pytest.mark.long
+
 # Molecular chaos leaves out correlated collisions; in 2D also the loop of fluctuations, most for
 # rules of low viscosity. What this test is for are terms that are missing or counted twice.
 CHAOS = {2: 0.2, 3: 0.06}

@@ -23,6 +23,8 @@ from mesokit import (
     TransverseModes,
 )
 
+pytestmark = pytest.mark.long
+
 # Beads are taken to have the friction of free particles, which molecular chaos gives 10 to 18 % too
 # high where particles meet again before they have flown a cell; relaxation times have that error.
 CHAOS = 0.15

@@ -13,6 +13,8 @@ import pytest
 import mesokit
 from mesokit.simulation import Simulation
 
+pytestmark = pytest.mark.long
+
 KILLS = 20
 STEPS = 8000
 LONG = ["--set", f"run.steps={STEPS}", "--set", "run.checkpoint_every=100"]
