@@ -47,7 +47,7 @@ def test_interrupted_while_compiling(case_file, tmp_path):
     process.send_signal(signal.SIGINT)
     began = time.perf_counter()
     _, errors = process.communicate()
-    assert process.returncode == 130
+    assert process.returncode == 130, errors
     assert time.perf_counter() - began < 5
     assert "stopped at step 0, while compiling, by SIGINT" in errors
     assert "mesokit resume case" in errors and "Traceback" not in errors

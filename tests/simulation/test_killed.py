@@ -106,7 +106,7 @@ def test_interrupted(whole, case_file, tmp_path, number):
     wait_for(folder / "checkpoint.npz", process)
     process.send_signal(number)
     _, errors = process.communicate()
-    assert process.returncode == 130
+    assert process.returncode == 130, errors
     assert errors.count("\n") == 1 and f"mesokit resume {folder}" in errors
     assert "Traceback" not in errors
     simulation = Simulation.resume(folder, threads=1)
