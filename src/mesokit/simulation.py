@@ -190,8 +190,9 @@ class Simulation:
         progress.start(self.last_step, particles, "running", self.step)
         try:
             with blaming(self.case), self._catching_signals():
-                self._compile(progress)
-                self._loop(progress)
+                if self.step < self.last_step:
+                    self._compile(progress)
+                    self._loop(progress)
                 if self.step == self.last_step:
                     self._end()
         except Exception as error:
