@@ -47,6 +47,9 @@ class Engine(Particles, Protocol):
         RunError where the physics has broken down.
         """
 
+    def check(self) -> None:
+        """Raise RunError if the physics has broken down; what `advance` does not see at once."""
+
     def end_warmup(self) -> None:
         """Forget what was summed up during the warm-up: no observable may see it."""
 

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from mesokit.report.flow import Film
 
 CALL_SECONDS = 0.2  # of compiled code at a time, so that Ctrl-C and the progress bar are prompt
+MOST_THREADS = 1024
 COMPILE_SECONDS = 0.7  # a first call that takes longer is compiling, not loading
 
 
@@ -271,6 +272,7 @@ class Simulation:
             self.writer.record(self.engine)
 
     def _end(self) -> None:
+        self.engine.check()
         if self.directory is None:
             return
         self.checkpoint()
@@ -387,8 +389,10 @@ def _threads(given: Any) -> int:
     """So many as said, or one for each core."""
     if given is None:
         return len(os.sched_getaffinity(0))
-    if not isinstance(given, numbers.Integral) or isinstance(given, bool) or given < 1:
-        raise CaseError(f"threads = {show(given)}: expected a whole number of at least 1")
+    whole = isinstance(given, numbers.Integral) and not isinstance(given, bool)
+    if not whole or not 1 <= int(given) <= MOST_THREADS:
+        expected = f"expected a whole number from 1 to {MOST_THREADS}"
+        raise CaseError(f"threads = {show(given)}: {expected}")
     return int(given)
 
 

@@ -32,6 +32,7 @@ ANGLE = 'collision = { rule = "srd", angle = 90 }'
 FORCE = 'force = { rule = "uniform", acceleration = [0.001, 0] }'
 WALL = GOOD[GOOD.index("[[wall]]") : GOOD.index("[[observe]]")]
 BOND = 'bond = { rule = "harmonic", K = 1 }'
+MOLECULE = "[fluid]\nmolecule = {{ bond = {{ rule = {} }} }}"
 CUBE = {"[20, 10]": "[10, 10, 10]", "[0.001, 0]": "[0.001, 0, 0]", "[0, 0]": "[0, 0, 0]"}
 
 SOLUTES = (
@@ -54,6 +55,16 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "no size": ({"size = [20, 10]": ""}, ("box.size: missing",)),
     "number for a table": ({"[box]\nsize = [20, 10]\n": "", '"slit"': '"slit"\nbox = 3'},
                            ("box = 3", "table")),
+    "misspelt tag": ({'shape = "plates"': 'shpe = "plates"'},
+                     ("wall[#1].shape: missing", "is 'shpe' meant", "'plates'")),
+    # beyond what numbers can hold
+    "crowd": ({"density = 5": "density = 1e300"}, ("fluid.density = 1e+300", "at most 1e+12")),
+    "hasty shear": ({"size = [20, 10]": "size = [20, 10]\nshear_rate = 1e300"},
+                    ("box.shear_rate = 1e+300", "at most 1e+06")),
+    "short bond": ({"[fluid]": MOLECULE.format('"fene", R0 = 1e-300')},
+                   ("fluid.molecule.bond.R0 = 1e-300", "at least 0.001")),
+    "stiff bond": ({"[fluid]": MOLECULE.format('"harmonic", K = 1e300')},
+                   ("fluid.molecule.bond.K = 1e+300", "at most 1e+09")),
     # solutes
     "no bond": ({"[fluid]": SOLUTES.replace(BOND, "")}, ("solutes.bond: missing", "length = 4")),
     "no beads": ({"[fluid]": SOLUTES.replace("length = 4", "length = 0")},

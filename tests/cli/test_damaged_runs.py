@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from mesokit.cli import main
@@ -92,6 +93,16 @@ def test_damaged_checkpoint(damage, folder: Path, capsys: pytest.CaptureFixture[
     before = contents(folder)
     assert "checkpoint.npz" in refusal(capsys, "resume", "run")
     assert contents(folder) == before
+
+
+@pytest.mark.parametrize("name", ["positions", "velocities"])
+def test_checkpoint_without_numbers(name, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    checkpoint = folder / "run" / "checkpoint.npz"
+    with np.load(checkpoint) as file:
+        arrays = dict(file)
+    arrays[f"engine/{name}"][3] = np.nan
+    np.savez(checkpoint, **arrays)
+    assert f"{name} that are no numbers" in refusal(capsys, "resume", "run")
 
 
 def test_checkpoint_of_another_case(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -5,7 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from mesokit.errors import CaseError
+from mesokit import Box, Fluid, MaxwellBoltzmann, NoThermostat, Run, Uniform
+from mesokit.errors import CaseError, RunError
 from mesokit.method.mpcd.start.section import Start
 from mesokit.simulation import Simulation
 
@@ -142,6 +143,16 @@ def test_arrays_of_any_real_numbers_are_taken(case, arrays, kind):
     np.testing.assert_array_equal(simulation.engine.velocities(), velocities.astype(float))
 
 
+@pytest.mark.parametrize("thermostat", [NoThermostat(), MaxwellBoltzmann()])
+def test_a_fluid_that_is_too_fast_is_refused_at_the_end_as_well(thermostat):
+    """Before the first sort, and without a folder."""
+    fluid = Fluid(density=5, force=Uniform((1e7, 0.0)), thermostat=thermostat)
+    simulation = Simulation(run=Run(5), box=Box([8, 8]), fluid=fluid, threads=1)
+    with pytest.raises(RunError, match=r"step 5: a particle moves at .* lower the force") as error:
+        simulation.run()
+    assert ("add a thermostat" in str(error.value)) == (not thermostat.acts)
+
+
 def test_positions_too_far_away_for_counting_boxes_are_refused(case, arrays):
     r = arrays[0].copy()
     r[5, 0] = -12 * (2**30 - 1)
@@ -176,9 +187,9 @@ def test_a_case_may_be_the_path_of_its_file(case, case_file):
         Simulation("nowhere.toml")
 
 
-@pytest.mark.parametrize("threads", [0, -1, 1.5, True, "2"])
+@pytest.mark.parametrize("threads", [0, -1, 1.5, True, "2", 10**6])
 def test_threads_are_a_whole_number(case, uninterrupted, threads):
-    with pytest.raises(CaseError, match=r"^threads = .*: expected a whole number of at least 1$"):
+    with pytest.raises(CaseError, match=r"^threads = .*: expected a whole number from 1 to 1024$"):
         Simulation(case, threads=threads)
     with pytest.raises(CaseError, match=r"^threads = "):
         Simulation.resume(uninterrupted.directory.path, threads=threads)

@@ -24,10 +24,18 @@ class Box:
 
     size: tuple[int, ...] = param(doc="length along each axis: two numbers (2D) or three", unit="a")
     shear_rate: float = param(
-        0.0, doc="Lees-Edwards shear: flow along x, gradient along y", unit="1/time"
+        0.0,
+        doc="Lees-Edwards shear: flow along x, gradient along y",
+        unit="1/time",
+        ge=-1e6,
+        le=1e6,
     )
     shear_frequency: float = param(
-        0.0, doc="the shear rate is shear_rate * cos(shear_frequency * time)", unit="1/time", ge=0
+        0.0,
+        doc="the shear rate is shear_rate * cos(shear_frequency * time)",
+        unit="1/time",
+        ge=0,
+        le=1e6,
     )
 
     @field_validator("size")

@@ -206,7 +206,10 @@ def first_line(
         path += "." + str(context["discriminator"]).strip("'")
         known = names_of(here)
         if kind == "union_tag_not_found":
-            return f"{path}: missing; expected {one_of(known)}"
+            tag = path.rpartition(".")[2]
+            close = difflib.get_close_matches(tag, map(str, first["input"]), 1, 0.5)
+            hint = f"; is {close[0]!r} meant to be it?" if close else ""
+            return f"{path}: missing{hint}; expected {one_of(known)}"
         return f"{path} = {show(context['tag'])}: {_choice(context['tag'], known)}"
     words = _expected(first)
     if kind == "value_error" and _names_key_of(here if first["loc"] else cls, words):

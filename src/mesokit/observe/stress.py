@@ -11,7 +11,7 @@ from mesokit.case.component import component, param, tag
 from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import bond_viscosity, stress_in_shear
+from mesokit.method.mpcd.expected.molecules import bond_viscosity, rouse_note, stress_in_shear
 from mesokit.observe.shared.protocol import Observable
 from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.observe.shared.tensor import TensorAccumulator
@@ -113,7 +113,7 @@ class StressAccumulator(TensorAccumulator):
             ):
                 nu, bonded = self.viscosities()[part], self.bonded()
                 if part < 0 and bonded is not None:
-                    nu, note = bonded.viscosity / setting.mass_density(case), ROUSE
+                    nu, note = bonded.viscosity / setting.mass_density(case), rouse_note(case)
                 found.append(
                     Comparison(
                         f"{name} from the stress",
@@ -136,7 +136,9 @@ class StressAccumulator(TensorAccumulator):
         pressure, spread = self.summed(-1, -np.eye(d) / d)
         spread = setting.with_start(case, spread, ideal)
         ideal = ideal if known else np.nan
-        found.append(Comparison("pressure", pressure, spread, ideal, UNIT[d]))
+        stretched = rate and self.bonded_beads and self.case.fluid.molecule is not None
+        note = rouse_note(case) if stretched else ""
+        found.append(Comparison("pressure", pressure, spread, ideal, UNIT[d], note))
         return found
 
     def bond_part(self, scale: float) -> Comparison:
@@ -145,7 +147,9 @@ class StressAccumulator(TensorAccumulator):
         known, expected, note = bond_viscosity(self.case), np.nan, ""
         if known is not None:
             expected = known / setting.mass_density(self.case)
-            note = ROUSE if self.bonded() else f"approximate: at zero shear rate; {ROUSE}"
+            note = rouse_note(self.case)
+            if not self.bonded():
+                note = f"approximate: at zero shear rate; {ROUSE}"
         what = "bond part from the stress"
         return Comparison(what, float(value), float(abs(error)), expected, "a^2/tau", note)
 
@@ -167,7 +171,7 @@ class StressAccumulator(TensorAccumulator):
                     *self.summed(-1, weight),
                     known[which],
                     UNIT[d],
-                    ROUSE if bonded else "",
+                    rouse_note(self.case) if bonded else "",
                 )
             )
         return found

@@ -13,7 +13,7 @@ class Bending(Angle):
     """U = kappa (1 - cos theta), theta the angle between two bonds in a row: 0 where straight."""
 
     rule: Literal["bending"] = tag("bending")
-    kappa: float = param(doc="bending stiffness", unit="kT", ge=0)
+    kappa: float = param(doc="bending stiffness", unit="kT", ge=0, le=1e9)
 
     @property
     def stiffness(self) -> float:

@@ -14,8 +14,8 @@ class FENE(Bond):
     """U = -(k R0^2/2) ln(1 - r^2/R0^2): never longer than R0 (Warner 1972)."""
 
     rule: Literal["fene"] = tag("fene")
-    k: float = param(30.0, doc="spring constant of a short bond", unit="kT/a^2", gt=0)
-    R0: float = param(1.5, doc="length that the bond cannot reach", unit="a", gt=0)
+    k: float = param(30.0, doc="spring constant of a short bond", unit="kT/a^2", gt=0, le=1e9)
+    R0: float = param(1.5, doc="length that the bond cannot reach", unit="a", ge=1e-3, le=1e6)
 
     @property
     def longest(self) -> float:

@@ -18,7 +18,7 @@ class Harmonic(Bond):
     """
 
     rule: Literal["harmonic"] = tag("harmonic")
-    K: float = param(doc="U = K r^2", unit="kT/a^2", gt=0)
+    K: float = param(doc="U = K r^2", unit="kT/a^2", gt=0, le=1e9)
 
     @property
     def longest(self) -> float:
@@ -39,8 +39,8 @@ class Spring(Bond):
     """U = (k/2) (r - length)^2: a spring about a length of its own (0 unless said)."""
 
     rule: Literal["spring"] = tag("spring")
-    k: float = param(doc="U = (k/2) (r - length)^2", unit="kT/a^2", gt=0)
-    length: float = param(0.0, doc="length of the spring at rest", unit="a", ge=0)
+    k: float = param(doc="U = (k/2) (r - length)^2", unit="kT/a^2", gt=0, le=1e9)
+    length: float = param(0.0, doc="length of the spring at rest", unit="a", ge=0, le=1e6)
 
     @property
     def longest(self) -> float:

@@ -13,9 +13,9 @@ class LennardJones(Pair):
     """U = 4 epsilon ((sigma/r)^12 - (sigma/r)^6) up to the cut-off, shifted to 0 there."""
 
     rule: Literal["lennard-jones"] = tag("lennard-jones")
-    epsilon: float = param(1.0, doc="depth of the well", unit="kT", gt=0)
-    sigma: float = param(1.0, doc="distance of zero energy", unit="a", gt=0)
-    cutoff: float = param(2.5, doc="no force beyond, in units of sigma", unit="sigma", ge=1)
+    epsilon: float = param(1.0, doc="depth of the well", unit="kT", gt=0, le=1e6)
+    sigma: float = param(1.0, doc="distance of zero energy", unit="a", ge=1e-3, le=1e6)
+    cutoff: float = param(2.5, doc="no force beyond, in units of sigma", unit="sigma", ge=1, le=1e3)
     shift: bool = param(True, doc="whether the energy is shifted to 0 at the cut-off")
 
     @property

@@ -17,8 +17,8 @@ class WCA(Pair):
     """
 
     rule: Literal["wca"] = tag("wca")
-    epsilon: float = param(1.0, doc="energy at the distance sigma", unit="kT", gt=0)
-    sigma: float = param(1.0, doc="diameter of a bead", unit="a", gt=0)
+    epsilon: float = param(1.0, doc="energy at the distance sigma", unit="kT", gt=0, le=1e6)
+    sigma: float = param(1.0, doc="diameter of a bead", unit="a", ge=1e-3, le=1e6)
 
     @property
     def reach(self) -> float:

@@ -146,12 +146,11 @@ class CPU:
         """That a cell of so many particles of the fastest kind cannot make its sums overflow."""
         _, fastest = self.readings.motion()
         if fastest >= self.numbers.fastest:
-            reason = (
-                "fluid.start: give slower particles"
-                if self.step == 0
-                else "the fluid heats up: add a thermostat, or lower the force or the velocity of "
-                "the surfaces"
-            )
+            slower = "lower the force or the velocity of the surfaces"
+            held = self.case.fluid.thermostat.acts
+            reason = f"the fluid heats up: {'' if held else 'add a thermostat, or '}{slower}"
+            if self.step == 0:
+                reason = "fluid.start: give slower particles"
             raise RunError(
                 f"step {self.step}: a particle moves at {fastest:g}, beyond the "
                 f"{self.numbers.fastest:g} that cell sums can hold; {reason}"
@@ -167,6 +166,10 @@ class CPU:
                 "more than cell sums can hold"
             )
 
+    def check(self) -> None:
+        """Raise RunError if a particle is too fast for the sums of cells."""
+        self._check_sums(1)
+
     def end_warmup(self) -> None:
         """Forget what surfaces took so far."""
         self.readings.forget_walls()
@@ -178,7 +181,7 @@ class CPU:
 
         Raises RunError if sums have overflowed.
         """
-        self._check_sums(1)
+        self.check()
         memory = self.memory
         positions, velocities, images = memory.read()
         return {
@@ -195,6 +198,9 @@ class CPU:
     def restore(self, state: Mapping[str, NDArray]) -> None:
         """Go on from a state, with the same bits whatever the number of threads was."""
         memory, taken = self.memory, self.memory.fluid.taken
+        for name in ("positions", "velocities"):
+            if not np.isfinite(state[name].astype(float)).all():
+                raise ValueError(f"{name} that are no numbers")
         self.readings.forget()
         taken.faults[:] = 0
         memory.fluid.particles.ident[memory.places] = np.arange(self.n)

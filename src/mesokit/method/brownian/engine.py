@@ -55,6 +55,9 @@ class Brownians:
         for job in jobs:
             job.result()
 
+    def check(self) -> None:
+        """Nothing can break down."""
+
     def end_warmup(self) -> None:
         """Nothing is summed up."""
 

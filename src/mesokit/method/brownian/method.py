@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
 RATE = 14e6  # particle-steps per second of a thread, where the project measures (docs/benchmark.md)
 BYTES = {2: 24, 3: 36}  # for each particle
+MANY_SIGMA = 10.0  # of a normal number: none is ever as far
 MOST_PARTICLES = 2**31 - 1  # numbers of random words are 32-bit
 
 
@@ -67,6 +69,13 @@ def check(case: Case) -> None:
         raise CaseError(
             f"brownian.density = {show(case.brownian.density)}: {case.particles} particles in this "
             f"box; expected 1 to {MOST_PARTICLES}"
+        )
+    steps, given = case.run.warmup + case.run.steps, case.brownian
+    far = math.sqrt(2.0 * given.diffusion * given.timestep * steps)
+    if MANY_SIGMA * far > 2.0**31 * min(case.box.size):
+        raise CaseError(
+            f"brownian.diffusion = {show(given.diffusion)}: in {steps} steps particles go so far "
+            "that boxes cannot be counted; expected less"
         )
     if case.box.shear_rate or case.box.shear_frequency:
         raise CaseError("box: not with shear; the particles of method 'brownian' drift with no one")

@@ -31,6 +31,7 @@ class Fluid:
         doc="particles per cell (10 unless said)",
         unit="1/a^d",
         gt=0,
+        le=1e12,
         validate_default=False,
     )
     timestep: float = param(0.1, doc="time between two collisions", ge=1e-6, le=1e3)

@@ -55,7 +55,11 @@ class Solutes:
         le=MOST_SUBSTEPS,
     )
     skin: float = param(
-        0.4, doc="by how much neighbour lists reach beyond the pair potential", unit="a", gt=0
+        0.4,
+        doc="by how much neighbour lists reach beyond the pair potential",
+        unit="a",
+        gt=0,
+        le=1e6,
     )
     start: Start = param(Start(), doc="first places and velocities of the beads (drawn)")
     solvent: Literal["fluid", "random"] = param(
