@@ -3,11 +3,11 @@ PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/ready
 
-.PHONY: help demo test test-all quick lint check bench validate clean
+.PHONY: help demo test test-long test-all quick lint check bench validate clean
 help:
 	@echo "make demo      run a channel flow and draw it with the theory"
 	@echo "make test      run the tests but the long ones: some minutes"
-	@echo "make test-all  run all tests"
+	@echo "make test-long run the long ones; make test-all runs all"
 	@echo "make quick     run the tests that simulate nothing: cases, theory, statistics, documents"
 	@echo "make lint      lint and types"
 	@echo "make check     the same, import rules, and that the physics compiles for a GPU"
@@ -30,7 +30,9 @@ demo: $(READY)
 
 TEST := $(BIN)/python -m pytest -n 2 --dist worksteal
 test: $(READY)
-	@$(TEST) -m "not long" --ignore tests/gpu
+	@$(TEST) -m "not long"
+test-long: $(READY)
+	@$(TEST) -m long
 test-all: $(READY)
 	@$(TEST)
 

@@ -272,9 +272,8 @@ class Simulation:
             self.writer.record(self.engine)
 
     def _end(self) -> None:
-        self.engine.check()
-        if self.directory is None:
-            return
+        if self.directory is None:  # a checkpoint is checked when it is written
+            return self.engine.check()
         self.checkpoint()
         record = self.directory.read_provenance()
         record |= {"ended": now(), "timings": self.timings}
@@ -390,10 +389,9 @@ def _threads(given: Any) -> int:
     if given is None:
         return len(os.sched_getaffinity(0))
     whole = isinstance(given, numbers.Integral) and not isinstance(given, bool)
-    if not whole or not 1 <= int(given) <= MOST_THREADS:
-        expected = f"expected a whole number from 1 to {MOST_THREADS}"
-        raise CaseError(f"threads = {show(given)}: {expected}")
-    return int(given)
+    if whole and 1 <= int(given) <= MOST_THREADS:
+        return int(given)
+    raise CaseError(f"threads = {show(given)}: expected a whole number from 1 to {MOST_THREADS}")
 
 
 def _next_chunk(steps: int, seconds: float) -> int:

@@ -21,6 +21,8 @@ from mesokit.scalar import cache
 from mesokit.scalar.intrinsics import mul_add
 from mesokit.scalar.jit import scalar, seldom
 
+pytestmark = pytest.mark.long
+
 # What CUDA has in a library of its own, and rounds in its own way.
 LIBRARY = ("sin", "cos", "tan", "exp", "log", "pow", "powi", "cbrt", "hypot", "atan", "atan2")
 READ_ONLY = {"Finite": ["log"]}  # the energy of FENE bonds: no motion depends on it

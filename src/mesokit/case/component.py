@@ -203,11 +203,11 @@ def first_line(
     if kind in ("missing", "missing_argument"):
         return f"{path}: missing; it has no default"
     if kind in ("union_tag_not_found", "union_tag_invalid"):
-        path += "." + str(context["discriminator"]).strip("'")
+        tag = str(context["discriminator"]).strip("'")
+        path += f".{tag}"
         known = names_of(here)
         if kind == "union_tag_not_found":
-            tag = path.rpartition(".")[2]
-            close = difflib.get_close_matches(tag, map(str, first["input"]), 1, 0.5)
+            close = difflib.get_close_matches(tag, map(str, first["input"]), 1, 0.7)
             hint = f"; is {close[0]!r} meant to be it?" if close else ""
             return f"{path}: missing{hint}; expected {one_of(known)}"
         return f"{path} = {show(context['tag'])}: {_choice(context['tag'], known)}"

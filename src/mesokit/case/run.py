@@ -28,6 +28,6 @@ class Run:
     def _one_that_there_is(cls, name: str) -> str:
         if name not in methods.METHODS and name not in methods.modules():
             known = sorted(methods.modules())
-            known_or = f"{one_of(known)}, or what an installed package brings"
-            raise ValueError(f"expected {known_or}{nearest(name, known)}")
+            hint = nearest(name, known)
+            raise ValueError(f"expected {one_of(known)}, or what an installed package brings{hint}")
         return name

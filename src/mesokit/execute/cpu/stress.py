@@ -27,10 +27,10 @@ def add_product(tensor, scale, factor, a, b):
 @elementwise
 def within_cell(x):
     """A place relative to the corner of its cell, in cells."""
-    return "past_whole(x[{k}])"
+    return "fractional_part(x[{k}])"
 
 
 @scalar
-def past_whole(x):
-    """How much a number is above the next whole number below."""
+def fractional_part(x):
+    """What is left of a number above the whole number below it."""
     return x - floor(x)

@@ -72,7 +72,7 @@ def check(case: Case) -> None:
         )
     steps, given = case.run.warmup + case.run.steps, case.brownian
     far = math.sqrt(2.0 * given.diffusion * given.timestep * steps)
-    if MANY_SIGMA * far > 2.0**31 * min(case.box.size):
+    if MANY_SIGMA * far > 2.0**30 * min(case.box.size):
         raise CaseError(
             f"brownian.diffusion = {show(given.diffusion)}: in {steps} steps particles go so far "
             "that boxes cannot be counted; expected less"
