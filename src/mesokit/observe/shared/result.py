@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.observe.shared.named import find, key_of
+
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
@@ -44,6 +46,15 @@ class Comparison:
     expected: float = math.nan
     unit: str = ""
     note: str = ""
+
+    @property
+    def key(self) -> str:
+        """What was measured as one name for scripts and tables.
+
+        >>> Comparison("viscosity from curvature", 0.88, 0.01).key
+        'viscosity-from-curvature'
+        """
+        return key_of(self.what)
 
     @property
     def deviation(self) -> float:
@@ -162,6 +173,27 @@ class Result:
             return None
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(self.error > 0, (self.value - self.expected) / self.error, np.nan)
+
+    def __getitem__(self, name: str) -> Comparison:
+        """The comparison of that name, or the only one whose name begins with it.
+
+        Raises KeyError, which says what is near.
+
+        >>> r = Result("slope", "slope", {}, 1.0, 0.1, "slope", {},
+        ...            comparisons=(Comparison("viscosity from curvature", 0.88, 0.01),))
+        >>> r["viscosity"].measured, "slip" in r
+        (0.88, False)
+        """
+        return find(self.comparisons, name)
+
+    def __contains__(self, name: str) -> bool:
+        """Whether there is a comparison that `result[name]` finds."""
+        try:
+            return bool(self[name])
+        except KeyError:
+            return False
+
+    __iter__ = None  # the numbers are in `value`, the comparisons in `comparisons`
 
     def select(self, **coordinates: str | float) -> tuple[float, float]:
         """Value and error at given coordinates (the nearest, for numbers).
