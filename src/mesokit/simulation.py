@@ -22,10 +22,12 @@ from mesokit.case.trajectory import written
 from mesokit.errors import CaseError, CheckpointError, RunError
 from mesokit.io import checkpoint, h5md
 from mesokit.io.frames import require_frames
-from mesokit.io.run_directory import RunDirectory, now, provenance
+from mesokit.io.run_directory import RunDirectory, now, provenance, recorded_case
 from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.method.protocol import method_of
 from mesokit.report.progress import Reporter
+from mesokit.running.longer import longer, require_steps
+from mesokit.running.schedule import Schedule
 
 if TYPE_CHECKING:
     from mesokit.observe.shared.protocol import Accumulator, Observable
@@ -98,9 +100,15 @@ class Simulation:
         self._save_provenance(provenance(self.case, self.threads))
 
     @classmethod
-    def resume(cls, output: str | Path, threads: int | None = None) -> Simulation:
+    def resume(
+        cls, output: str | Path, threads: int | None = None, steps: int | None = None
+    ) -> Simulation:
         """Go on with the run in a folder, from its last checkpoint (or the start, if none).
 
+        With `steps` it lasts so many after its warm-up, and what has ended goes on, to the bits of
+        a run that was as long from the start; the case on record says so.
+
+        Raises CaseError if it has done more steps than that.
         Raises RunError, CheckpointError if there is none or it is damaged. A damaged record of
         where the run comes from is a warning, and begun anew.
         """
@@ -123,6 +131,10 @@ class Simulation:
         if self.writer is not None:
             require_frames(directory, self.case, self.step)
             self.writer.resume(self.step)
+        if steps is not None:
+            self.lengthen(steps)
+        if self.step < self.last_step:  # the case may have been made longer by hand
+            self._take_back()
         record = self._earlier_record(directory) or provenance(self.case, self.threads)
         resumed = [*record.get("resumed", []), now()]
         self._save_provenance(record | {"resumed": resumed, "failed": None})
@@ -135,7 +147,8 @@ class Simulation:
             observable.label: observable.accumulator(self.case) for observable in self.case.observe
         }
         self.writer: TrajectoryWriter | None = None
-        self.last_step = self.case.run.warmup + self.case.run.steps
+        self.schedule = Schedule(self.case)
+        self._looked = False  # whether the state that the run begins with has been sampled
         self._observe_seconds = dict.fromkeys(self.accumulators, 0.0)
         self._stopped_by: signal.Signals | None = None
         self._compiling = False
@@ -180,20 +193,28 @@ class Simulation:
 
     # --- running --------------------------------------------------------------------------------
 
-    def run(self, progress: Reporter | None = None) -> None:
-        """Run to the end, then write results and figures.
+    def run(self, steps: int | None = None, *, progress: Reporter | None = None) -> None:
+        """Run to the end of the case, or so many steps on; at the end write results and figures.
+
+        Where `steps` lead beyond the end of the case, the case becomes longer, also on record: the
+        bits are those of a case that was as long from the start.
 
         Ctrl-C or SIGTERM raises KeyboardInterrupt after the steps in hand, with a checkpoint where
         there is a folder; `resume`, or `run` again in the same process, goes on.
         """
+        last = self.last_step
+        if steps is not None:
+            last = self.step + require_steps(steps)
+            if last > self.last_step:
+                self.lengthen(last - self.case.run.warmup)
         progress = progress or Reporter(quiet=True)
         particles = sum(group.number for group in self.case.groups)
-        progress.start(self.last_step, particles, "running", self.step)
+        progress.start(last, particles, "running", self.step)
         try:
             with blaming(self.case), self._catching_signals():
-                if self.step < self.last_step:
+                if self.step < last or not self._looked:
                     self._compile(progress)
-                    self._loop(progress)
+                    self._loop(progress, last)
                 if self.step == self.last_step:
                     self._end()
         except Exception as error:
@@ -201,8 +222,38 @@ class Simulation:
             raise
         finally:
             progress.finish()
-        if self.step < self.last_step:
+        if self.step < last:
             raise KeyboardInterrupt(self._stopped)
+
+    def lengthen(self, steps: int) -> None:
+        """Let the run last so many steps after its warm-up, also on record.
+
+        Raises CaseError if it has done more.
+        """
+        if steps == self.case.run.steps:
+            return
+        self.case = longer(self.case, steps, self.step)
+        self.schedule = Schedule(self.case)
+        if self.directory is None:
+            return
+        self._take_back()
+        self.directory.write_case(self.case)
+        earlier = self._earlier_record(self.directory)
+        here = {"at": now(), "step": self.step, "steps": steps}
+        record = earlier | recorded_case(self.case) | {"ended": None}
+        self._save_provenance(record | {"lengthened": [*earlier.get("lengthened", []), here]})
+
+    def _take_back(self) -> None:
+        """A run that goes on has no results yet: its frames come back out of the data file."""
+        assert self.directory is not None
+        if self.writer is not None and self.directory.data_file.exists():
+            self.writer.take_back(h5md.frames(self.directory.data_file))
+        self.directory.data_file.unlink(missing_ok=True)
+
+    @property
+    def last_step(self) -> int:
+        """The step at which the run ends, the warm-up included."""
+        return self.schedule.last_step
 
     @property
     def _stopped(self) -> str:
@@ -224,16 +275,18 @@ class Simulation:
         with contextlib.suppress(OSError):  # kernels are then not kept either
             note_run(self.case)
 
-    def _loop(self, progress: Reporter) -> None:
+    def _loop(self, progress: Reporter, last: int) -> None:
         chunk, saved = 1, perf_counter()
-        while self.step < self.last_step and self._stopped_by is None:
-            began, target = perf_counter(), min(self._next_stop(), self.step + chunk)
-            steps = target - self.step
-            due = self._due(target)
+        if self.step == self.case.run.warmup and not self._looked:
+            self._observe()
+        while self.step < last and self._stopped_by is None:
+            began = perf_counter()
+            target = min(self.schedule.next_stop(self.step), self.step + chunk, last)
+            steps, due = target - self.step, self.schedule.due(target)
             stress = any("stress" in observable.measures for observable in due)
             self.engine.advance(steps, measure_stress=stress)
             chunk = _next_chunk(steps, perf_counter() - began)
-            self._observe(due)
+            self._observe()
             if self._checkpoint_due(perf_counter() - saved):
                 self.checkpoint()
                 saved = perf_counter()
@@ -241,35 +294,17 @@ class Simulation:
         if self.step < self.last_step and self.directory is not None:
             self.checkpoint()
 
-    def _next_stop(self) -> int:
-        """The next step at which something is due."""
-        warmup, run = self.case.run.warmup, self.case.run
-        if self.step < warmup:
-            stops = [warmup]
-        else:
-            passed = self.step - warmup
-            intervals = [observable.every for observable in self.case.observe]
-            if self.case.trajectory is not None:
-                intervals.append(self.case.trajectory.every)
-            stops = [self.step + every - passed % every for every in intervals]
-        if run.checkpoint_every is not None:
-            stops.append(self.step + run.checkpoint_every - self.step % run.checkpoint_every)
-        return min([self.last_step, *stops])
-
-    def _due(self, step: int) -> list[Observable]:
-        passed = step - self.case.run.warmup
-        return [o for o in self.case.observe if passed > 0 and passed % o.every == 0]
-
-    def _observe(self, due: list[Observable]) -> None:
+    def _observe(self) -> None:
+        """Take the samples and the frame that are due at this step."""
         if self.step == self.case.run.warmup:
             self.engine.end_warmup()
-        for observable in due:
+        for observable in self.schedule.due(self.step):
             began = perf_counter()
             self.accumulators[observable.label].observe(self.engine)
             self._observe_seconds[observable.label] += perf_counter() - began
-        passed, trajectory = self.step - self.case.run.warmup, self.case.trajectory
-        if self.writer and trajectory and passed > 0 and passed % trajectory.every == 0:
+        if self.writer and self.schedule.frame_due(self.step):
             self.writer.record(self.engine)
+        self._looked = self.step >= self.case.run.warmup
 
     def _end(self) -> None:
         if self.directory is None:  # a checkpoint is checked when it is written
@@ -303,20 +338,25 @@ class Simulation:
         arrays = {f"engine/{key}": value for key, value in self.engine.state().items()}
         for name, accumulator in self.accumulators.items():
             arrays |= {f"observe/{name}/{key}": v for key, v in accumulator.state().items()}
-        case = checkpoint.digest(self.case.to_toml(self.directory.path))
-        checkpoint.write(self.directory.checkpoint_file, arrays, {"step": self.step}, case)
+        meta = {"step": self.step, "looked": self._looked}
+        checkpoint.write(self.directory.checkpoint_file, arrays, meta, self._digest)
 
     def _restore(self) -> None:
         assert self.directory is not None
         path = self.directory.checkpoint_file
-        case = checkpoint.digest(self.case.to_toml(self.directory.path))
-        arrays, _ = checkpoint.read(path, case, method_of(self.case).start_from_run)
+        arrays, meta = checkpoint.read(path, self._digest, method_of(self.case).start_from_run)
         try:
             self.engine.restore(checkpoint.part(arrays, "engine/"))
             for name, accumulator in self.accumulators.items():
                 accumulator.restore(checkpoint.part(arrays, f"observe/{name}/"))
         except (KeyError, ValueError, IndexError) as error:
             raise CheckpointError(f"{path}: does not fit this case: {error}") from None
+        self._looked = bool(meta["looked"])
+
+    @property
+    def _digest(self) -> str:
+        assert self.directory is not None
+        return checkpoint.digest_of_motion(self.case.to_toml(self.directory.path))
 
     @staticmethod
     def _earlier_record(directory: RunDirectory) -> dict[str, Any]:
@@ -334,9 +374,7 @@ class Simulation:
     def _checkpoint_due(self, seconds: float) -> bool:
         if self.directory is None or self._stopped_by is not None:
             return False
-        every = self.case.run.checkpoint_every
-        by_steps = every is not None and self.step % every == 0
-        return by_steps or seconds > 60.0 * self.case.run.checkpoint_minutes
+        return self.schedule.checkpoint_due(self.step, seconds)
 
     def _save_provenance(self, record: dict[str, Any]) -> None:
         assert self.directory is not None

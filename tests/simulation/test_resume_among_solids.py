@@ -48,8 +48,8 @@ def test_stopped_among_solids_and_resumed(rule, tmp_path):
     stopped = simulate(2, checkpoint_every=17)
     observe = stopped._observe
 
-    def observe_and_stop(due):
-        observe(due)
+    def observe_and_stop():
+        observe()
         if stopped.step >= 31:
             stopped._stopped_by = signal.SIGTERM
 

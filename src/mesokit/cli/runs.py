@@ -142,7 +142,7 @@ def _files_of_run(output: Path) -> list[Path]:
     figures += [run.flow_file(kind, end) for kind in KINDS for end in (".png", ".mp4")]
     files = [run.data_file, run.checkpoint_file, run.log_file, run.provenance_file]
     solids = output.glob(run.wall_file("*").name)
-    files += [run.trajectory_folder, run.trajectory_remains, run.case_file]
+    files += [run.trajectory_folder, run.trajectory_remains, run.trajectory_coming, run.case_file]
     return [*figures, *output.glob(".*.tmp"), *solids, *files]
 
 

@@ -33,7 +33,7 @@ def require_frames(directory: RunDirectory, case: Case, step: int) -> None:
                 f"{place}: damaged, and only it held the frames of the trajectory; put a copy "
                 f"in its place, or run anew: {directory.again}"
             ) from None
-    wanted = range(case.run.warmup + every, step + 1, every)
+    wanted = range(case.run.warmup, step + 1, every)
     lost = sorted(set(wanted) - set(there.tolist()))
     if lost:
         raise RunError(

@@ -99,6 +99,19 @@ def frame_steps(path: str | Path) -> NDArray[np.int64]:
         return np.asarray(group["box/edges/step"][()], np.int64)
 
 
+def frames(path: str | Path) -> Iterator[dict[str, NDArray[Any]]]:
+    """The frames in a data file, one by one, as they were recorded. Raises RunError."""
+    with opened(path) as file:
+        group = particles_of(file)
+        if group is None:
+            return
+        clock, d = group["box/edges"], int(group.attrs["dimension"])
+        fields = [name for name in ("position", "velocity", "image") if name in group]
+        for index in range(len(clock["step"])):
+            frame = {name: group[name]["value"][index, :, :d] for name in fields}
+            yield {"step": clock["step"][index], "time": clock["time"][index], **frame}
+
+
 def particles_of(file: Any) -> Any:
     """The group of the particles in a data file, None without a trajectory."""
     return next(iter(file["particles"].values())) if "particles" in file else None

@@ -71,6 +71,11 @@ class RunDirectory:
         """The same while it is being removed."""
         return self.path / ".trajectory.done"
 
+    @property
+    def trajectory_coming(self) -> Path:
+        """The same while it is being taken out of the data file."""
+        return self.path / ".trajectory.coming"
+
     def figure_file(self, name: str) -> Path:
         """Figure of one result."""
         return self.path / f"{name}.png"
@@ -106,6 +111,10 @@ class RunDirectory:
                     run.path.rmdir()
             raise
         return run
+
+    def write_case(self, case: Case) -> None:
+        """Replace the case by one that differs in how long it runs. Raises RunError."""
+        write_text(self.case_file, case.to_toml(self.path))
 
     @property
     def again(self) -> str:
@@ -154,10 +163,8 @@ def provenance(case: Case, threads: int) -> dict[str, Any]:
     from outside mesokit, and from where.
     `ended` and `failed` (why) are None and `timings` empty until someone fills them in.
     """
-    text = case.to_toml()
     return {
-        "case": text,
-        "case_digest": checkpoint.digest(text),
+        **recorded_case(case),
         "units": _units(case),
         "seed": case.run.seed,
         "parts": outside_parts(case),
@@ -174,6 +181,12 @@ def provenance(case: Case, threads: int) -> dict[str, Any]:
         "failed": None,
         "timings": {},
     }
+
+
+def recorded_case(case: Case) -> dict[str, str]:
+    """What a record says of the case itself."""
+    text = case.to_toml()
+    return {"case": text, "case_digest": checkpoint.digest(text)}
 
 
 def _units(case: Case) -> dict[str, Any] | None:

@@ -9,7 +9,7 @@ twice. At the end all frames go to the data file of the run, one by one.
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -53,6 +53,26 @@ class TrajectoryWriter:
             frame["velocity"] = engine.velocities(self.ids).astype(real)
         if "image" in fields:
             frame["image"] = engine.images(self.ids).astype(np.int32)
+        self._add(frame)
+
+    def take_back(self, frames: Iterable[Frame]) -> None:
+        """Make segments again of frames that have gone to the data file, unless they are there."""
+        if len(self.steps()):
+            return
+        shutil.rmtree(self.coming, ignore_errors=True)  # we may have been killed here before
+        back = TrajectoryWriter(self.trajectory, self.coming, len(self.ids), int(self.ids[0]))
+        for frame in frames:
+            back._add({name: np.asarray(entry) for name, entry in frame.items()})
+        back.flush()
+        if self.coming.is_dir():
+            self.coming.rename(self.folder)  # all or none
+
+    @property
+    def coming(self) -> Path:
+        """Where segments are made that are to be there all at once."""
+        return self.folder.with_name(f".{self.folder.name}.coming")
+
+    def _add(self, frame: Frame) -> None:
         self._frames.append(frame)
         self._bytes += sum(array.nbytes for array in frame.values())
         if self._bytes >= LARGEST:
@@ -99,6 +119,7 @@ class TrajectoryWriter:
 
     def remove(self) -> None:
         """Delete all segments at once, after their frames have gone to the data file."""
+        shutil.rmtree(self.coming, ignore_errors=True)
         done = self.folder.with_name(f".{self.folder.name}.done")
         shutil.rmtree(done, ignore_errors=True)  # we may have been killed here before
         if self.folder.is_dir():

@@ -162,7 +162,7 @@ class FlowFramesAccumulator:
         """All frames, that of the unfinished window last."""
         frames, times = self.frames, self.times
         samples = [self.per_frame] * len(frames)
-        if self.samples:
+        if self.samples > 1 or (self.samples and not frames):  # one alone only begins a window
             frames, times = [*frames, self._frame()], [*times, self.time / self.samples]
             samples.append(self.samples)
         value = np.moveaxis(_stack(frames, (len(self.parts), *self.bins)), 1, -1)
@@ -180,7 +180,9 @@ class FlowFramesAccumulator:
             samples=sum(samples),
             extra={
                 "samples": np.array(samples, np.int64),
-                "positions": _stack(self.positions, (len(self.ids), self.case.box.dimension)),
+                "positions": _stack(
+                    self.positions[: len(frames)], (len(self.ids), self.case.box.dimension)
+                ),
             },
         )
 
