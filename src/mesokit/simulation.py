@@ -8,7 +8,7 @@ import os
 import signal
 import threading
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -26,6 +26,7 @@ from mesokit.io.run_directory import RunDirectory, now, provenance
 from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.method.protocol import method_of
 from mesokit.report.progress import Reporter
+from mesokit.running.callbacks import Callback, Callbacks
 
 if TYPE_CHECKING:
     from mesokit.observe.shared.protocol import Accumulator, Observable
@@ -52,6 +53,8 @@ class Simulation:
     positions, velocities, beads, bead_velocities : array (n, d), optional
         Start from these, by particle number, in cells and cells per unit of time; another method
         of simulation than MPCD may have arrays of other names.
+    callbacks : sequence of Callback, optional
+        Functions to call while it runs: `[every(100, function)]`, see `mesokit.every`.
 
     Raises
     ------
@@ -75,8 +78,10 @@ class Simulation:
         *,
         output: str | Path | None = None,
         threads: int | None = None,
+        callbacks: Sequence[Callback] = (),
         **parts: Any,
     ) -> None:
+        self.callbacks = Callbacks(callbacks)
         self.case, arrays = _case_and_arrays(case, parts)
         self.threads = _threads(threads)
         method = method_of(self.case)
@@ -98,8 +103,15 @@ class Simulation:
         self._save_provenance(provenance(self.case, self.threads))
 
     @classmethod
-    def resume(cls, output: str | Path, threads: int | None = None) -> Simulation:
+    def resume(
+        cls,
+        output: str | Path,
+        threads: int | None = None,
+        callbacks: Sequence[Callback] = (),
+    ) -> Simulation:
         """Go on with the run in a folder, from its last checkpoint (or the start, if none).
+
+        Callbacks are not kept with a run: name them again.
 
         Raises RunError, CheckpointError if there is none or it is damaged. A damaged record of
         where the run comes from is a warning, and begun anew.
@@ -113,6 +125,7 @@ class Simulation:
         self = cls.__new__(cls)
         self.case = Case.from_toml(directory.case_file)
         self.threads = _threads(threads)
+        self.callbacks = Callbacks(callbacks)
         self._build()
         self._attach(directory)
         if directory.checkpoint_file.exists():
@@ -123,6 +136,7 @@ class Simulation:
         if self.writer is not None:
             require_frames(directory, self.case, self.step)
             self.writer.resume(self.step)
+        self.callbacks.resume(self.step)
         record = self._earlier_record(directory) or provenance(self.case, self.threads)
         resumed = [*record.get("resumed", []), now()]
         self._save_provenance(record | {"resumed": resumed, "failed": None})
@@ -151,6 +165,11 @@ class Simulation:
     def step(self) -> int:
         """Steps done, the warm-up included."""
         return self.engine.step
+
+    @property
+    def time(self) -> float:
+        """Time since the start of the warm-up."""
+        return self.engine.time
 
     def __getitem__(self, name: str) -> Result:
         """What an observable says so far."""
@@ -183,6 +202,7 @@ class Simulation:
     def run(self, progress: Reporter | None = None) -> None:
         """Run to the end, then write results and figures.
 
+        A callback that raises `StopRun` ends it early, with a checkpoint where there is a folder.
         Ctrl-C or SIGTERM raises KeyboardInterrupt after the steps in hand, with a checkpoint where
         there is a folder; `resume`, or `run` again in the same process, goes on.
         """
@@ -201,7 +221,7 @@ class Simulation:
             raise
         finally:
             progress.finish()
-        if self.step < self.last_step:
+        if self._stopped_by is not None and self.step < self.last_step:
             raise KeyboardInterrupt(self._stopped)
 
     @property
@@ -226,7 +246,9 @@ class Simulation:
 
     def _loop(self, progress: Reporter) -> None:
         chunk, saved = 1, perf_counter()
-        while self.step < self.last_step and self._stopped_by is None:
+        self.callbacks.stopped = None
+        self.callbacks.call(self)
+        while self.step < self.last_step and not self._stopping:
             began, target = perf_counter(), min(self._next_stop(), self.step + chunk)
             steps = target - self.step
             due = self._due(target)
@@ -234,6 +256,7 @@ class Simulation:
             self.engine.advance(steps, measure_stress=stress)
             chunk = _next_chunk(steps, perf_counter() - began)
             self._observe(due)
+            self.callbacks.call(self)
             if self._checkpoint_due(perf_counter() - saved):
                 self.checkpoint()
                 saved = perf_counter()
@@ -254,7 +277,12 @@ class Simulation:
             stops = [self.step + every - passed % every for every in intervals]
         if run.checkpoint_every is not None:
             stops.append(self.step + run.checkpoint_every - self.step % run.checkpoint_every)
-        return min([self.last_step, *stops])
+        return min([self.last_step, *stops, *self.callbacks.next_stops(self.step)])
+
+    @property
+    def _stopping(self) -> bool:
+        """Whether a signal or a callback has asked to end the run."""
+        return self._stopped_by is not None or self.callbacks.stopped is not None
 
     def _due(self, step: int) -> list[Observable]:
         passed = step - self.case.run.warmup
@@ -332,7 +360,7 @@ class Simulation:
                 self._save_provenance(self.directory.read_provenance() | {"failed": reason})
 
     def _checkpoint_due(self, seconds: float) -> bool:
-        if self.directory is None or self._stopped_by is not None:
+        if self.directory is None or self._stopping:
             return False
         every = self.case.run.checkpoint_every
         by_steps = every is not None and self.step % every == 0

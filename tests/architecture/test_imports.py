@@ -28,7 +28,9 @@ ROWS = {
     "engine.py": (),
     "simulation.py": (
         "case", "errors", "io", "=method", "method.protocol", "observe.shared", "report",
+        "running",
     ),
+    "running/": ("case", "errors", "io", "method.protocol", "report", "running"),
     "scalar/": ("scalar",),
     "theory/": ("theory",),
     "statistics/": ("statistics",),
