@@ -8,7 +8,7 @@ import os
 import signal
 import threading
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -27,6 +27,8 @@ from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.method.protocol import method_of
 from mesokit.report.progress import Reporter
 from mesokit.running.callbacks import Callback, Callbacks
+from mesokit.running.cores import usable_cores
+from mesokit.running.signals import Stopped, catching
 
 if TYPE_CHECKING:
     from mesokit.observe.shared.protocol import Accumulator, Observable
@@ -203,14 +205,15 @@ class Simulation:
         """Run to the end, then write results and figures.
 
         A callback that raises `StopRun` ends it early, with a checkpoint where there is a folder.
-        Ctrl-C or SIGTERM raises KeyboardInterrupt after the steps in hand, with a checkpoint where
-        there is a folder; `resume`, or `run` again in the same process, goes on.
+        Ctrl-C, SIGTERM, SIGHUP or SIGUSR1 raises KeyboardInterrupt after the steps in hand, with a
+        checkpoint where there is a folder; `resume`, or `run` again in the same process, goes on.
         """
         progress = progress or Reporter(quiet=True)
         particles = sum(group.number for group in self.case.groups)
         progress.start(self.last_step, particles, "running", self.step)
+        self._stopped_by = None
         try:
-            with blaming(self.case), self._catching_signals():
+            with blaming(self.case), catching(self._stop):
                 if self.step < self.last_step:
                     self._compile(progress)
                     self._loop(progress)
@@ -222,14 +225,14 @@ class Simulation:
         finally:
             progress.finish()
         if self._stopped_by is not None and self.step < self.last_step:
-            raise KeyboardInterrupt(self._stopped)
+            raise self._stopped
 
     @property
-    def _stopped(self) -> str:
+    def _stopped(self) -> Stopped:
         """Where the run was stopped, and by what."""
-        assert self._stopped_by is not None
-        doing = ", while compiling," if self._compiling else ""
-        return f"stopped at step {self.step}{doing} by {self._stopped_by.name}"
+        by, doing = self._stopped_by, ", while compiling," if self._compiling else ""
+        assert by is not None
+        return Stopped(by, f"stopped at step {self.step}{doing} by {by.name}")
 
     def _compile(self, progress: Reporter) -> None:
         """Load or compile the kernels; say so if it takes long. A signal ends it at once."""
@@ -370,27 +373,13 @@ class Simulation:
         assert self.directory is not None
         self.directory.write_provenance(record)
 
-    @contextlib.contextmanager
-    def _catching_signals(self) -> Iterator[None]:
-        """Ctrl-C and SIGTERM end the loop after the steps in hand; a second one stops at once."""
-        self._stopped_by = None
-        if threading.current_thread() is not threading.main_thread():
-            yield
-            return
-
-        def stop(number: int, frame: Any) -> None:
-            if self._stopped_by is not None:
-                raise KeyboardInterrupt
-            self._stopped_by = signal.Signals(number)
-            if self._compiling:
-                raise KeyboardInterrupt(self._stopped)
-
-        before = {s: signal.signal(s, stop) for s in (signal.SIGINT, signal.SIGTERM)}
-        try:
-            yield
-        finally:
-            for number, handler in before.items():
-                signal.signal(number, handler)
+    def _stop(self, by: signal.Signals) -> None:
+        """A signal ends the loop after the steps in hand; a second one stops at once."""
+        if self._stopped_by is not None:
+            raise Stopped(by)
+        self._stopped_by = by
+        if self._compiling:
+            raise self._stopped
 
 
 def _case_and_arrays(given: Any, parts: dict[str, Any]) -> tuple[Case, dict[str, Any]]:
@@ -415,7 +404,7 @@ def _case_and_arrays(given: Any, parts: dict[str, Any]) -> tuple[Case, dict[str,
 def _threads(given: Any) -> int:
     """So many as said, or one for each core."""
     if given is None:
-        return len(os.sched_getaffinity(0))
+        return usable_cores()
     whole = isinstance(given, numbers.Integral) and not isinstance(given, bool)
     if whole and 1 <= int(given) <= MOST_THREADS:
         return int(given)

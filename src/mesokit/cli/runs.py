@@ -13,6 +13,7 @@ import click
 from mesokit.cli.commands import CASE, RUN, SET, THREADS, cli, naming, read, require_run
 from mesokit.cli.words import patience, reason, say
 from mesokit.errors import CaseError, RunError
+from mesokit.running.signals import Stopped
 
 
 @cli.command()
@@ -32,7 +33,8 @@ def run(
     overwrite: bool,
     quiet: bool,
 ) -> None:
-    """Run CASE. Ctrl-C stops it at a checkpoint; mesokit resume goes on."""
+    """Run CASE. Ctrl-C (or SIGTERM, SIGHUP, SIGUSR1) stops it at a checkpoint; mesokit resume goes
+    on."""
     from mesokit.method.protocol import method_of
     from mesokit.report.progress import Reporter
 
@@ -160,11 +162,11 @@ def _run_errors(output: Path) -> Iterator[None]:
     """A full disk while running is a failure of the run, not of the command."""
     try:
         yield
-    except KeyboardInterrupt as stop:
+    except Stopped as stop:
         if not str(stop):  # stopped so hard that nothing is known
             raise
         say(f"mesokit: {stop}; go on with: mesokit resume {output}")
-        raise SystemExit(130) from None
+        raise SystemExit(stop.status) from None
     except OSError as error:
         raise RunError(reason(error)) from None
 
