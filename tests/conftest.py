@@ -8,7 +8,7 @@ import pytest
 from hypothesis import settings
 
 worker = os.environ.get("PYTEST_XDIST_WORKER")  # "gw0", "gw1", ...
-if worker and hasattr(os, "sched_setaffinity"):
+if worker and hasattr(os, "sched_setaffinity"):  # not on every system
     # A core each: runs take all cores that they are given, and threads of several runs that wait
     # for one another on the same cores make all of them slow.
     cores = sorted(os.sched_getaffinity(0))

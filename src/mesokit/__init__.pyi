@@ -101,4 +101,7 @@ from mesokit.potential.protocol import Angle as Angle
 from mesokit.potential.protocol import Bond as Bond
 from mesokit.potential.protocol import Pair as Pair
 from mesokit.potential.wca import WCA as WCA
+from mesokit.running.callbacks import Callback as Callback
+from mesokit.running.callbacks import StopRun as StopRun
+from mesokit.running.callbacks import every as every
 from mesokit.simulation import Simulation as Simulation

@@ -8,7 +8,7 @@ import os
 import signal
 import threading
 import warnings
-from collections.abc import Iterator
+from collections.abc import Sequence
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -26,11 +26,15 @@ from mesokit.io.run_directory import RunDirectory, now, provenance, recorded_cas
 from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.method.protocol import method_of
 from mesokit.report.progress import Reporter
+from mesokit.running.callbacks import Callback, Callbacks
+from mesokit.running.cores import usable_cores
 from mesokit.running.longer import longer, require_steps
 from mesokit.running.schedule import Schedule
+from mesokit.running.signals import Stopped, catching
+from mesokit.running.until import Goal, limit_of, next_length
 
 if TYPE_CHECKING:
-    from mesokit.observe.shared.protocol import Accumulator, Observable
+    from mesokit.observe.shared.protocol import Accumulator
     from mesokit.observe.shared.result import Result
     from mesokit.report.flow import Film
 
@@ -54,6 +58,8 @@ class Simulation:
     positions, velocities, beads, bead_velocities : array (n, d), optional
         Start from these, by particle number, in cells and cells per unit of time; another method
         of simulation than MPCD may have arrays of other names.
+    callbacks : sequence of Callback, optional
+        Functions to call while it runs: `[every(100, function)]`, see `mesokit.every`.
 
     Raises
     ------
@@ -77,8 +83,10 @@ class Simulation:
         *,
         output: str | Path | None = None,
         threads: int | None = None,
+        callbacks: Sequence[Callback] = (),
         **parts: Any,
     ) -> None:
+        self.callbacks = Callbacks(callbacks)
         self.case, arrays = _case_and_arrays(case, parts)
         self.threads = _threads(threads)
         method = method_of(self.case)
@@ -101,12 +109,17 @@ class Simulation:
 
     @classmethod
     def resume(
-        cls, output: str | Path, threads: int | None = None, steps: int | None = None
+        cls,
+        output: str | Path,
+        threads: int | None = None,
+        steps: int | None = None,
+        callbacks: Sequence[Callback] = (),
     ) -> Simulation:
         """Go on with the run in a folder, from its last checkpoint (or the start, if none).
 
         With `steps` it lasts so many after its warm-up, and what has ended goes on, to the bits of
-        a run that was as long from the start; the case on record says so.
+        a run that was as long from the start; the case on record says so. Callbacks are not kept
+        with a run: name them again.
 
         Raises CaseError if it has done more steps than that.
         Raises RunError, CheckpointError if there is none or it is damaged. A damaged record of
@@ -121,6 +134,7 @@ class Simulation:
         self = cls.__new__(cls)
         self.case = Case.from_toml(directory.case_file)
         self.threads = _threads(threads)
+        self.callbacks = Callbacks(callbacks)
         self._build()
         self._attach(directory)
         if directory.checkpoint_file.exists():
@@ -135,6 +149,7 @@ class Simulation:
             self.lengthen(steps)
         if self.step < self.last_step:  # the case may have been made longer by hand
             self._take_back()
+        self.callbacks.resume(self.step)
         record = self._earlier_record(directory) or provenance(self.case, self.threads)
         resumed = [*record.get("resumed", []), now()]
         self._save_provenance(record | {"resumed": resumed, "failed": None})
@@ -165,6 +180,11 @@ class Simulation:
         """Steps done, the warm-up included."""
         return self.engine.step
 
+    @property
+    def time(self) -> float:
+        """Time since the start of the warm-up."""
+        return self.engine.time
+
     def __getitem__(self, name: str) -> Result:
         """What an observable says so far."""
         if name not in self.accumulators:
@@ -193,28 +213,45 @@ class Simulation:
 
     # --- running --------------------------------------------------------------------------------
 
-    def run(self, steps: int | None = None, *, progress: Reporter | None = None) -> None:
+    def run(
+        self,
+        steps: int | None = None,
+        *,
+        until: str | None = None,
+        progress: Reporter | None = None,
+    ) -> None:
         """Run to the end of the case, or so many steps on; at the end write results and figures.
 
         Where `steps` lead beyond the end of the case, the case becomes longer, also on record: the
-        bits are those of a case that was as long from the start.
+        bits are those of a case that was as long from the start. With `until`, such as
+        "velocity-profile.viscosity=1%", it becomes longer until the standard error of that number
+        is so small, by `steps` at most (100 times its length unless said); if that is not enough,
+        there is a warning.
 
-        Ctrl-C or SIGTERM raises KeyboardInterrupt after the steps in hand, with a checkpoint where
-        there is a folder; `resume`, or `run` again in the same process, goes on.
+        A callback that raises `StopRun` ends it early, with a checkpoint where there is a folder.
+        Ctrl-C, SIGTERM, SIGHUP or SIGUSR1 raises KeyboardInterrupt after the steps in hand, with a
+        checkpoint where there is a folder; `resume`, or `run` again in the same process, goes on.
         """
+        goal = None if until is None else Goal.parse(until, self.case)
+        if goal is not None and self._looked and self[goal.observable].comparisons:
+            goal.found(self[goal.observable])
+        limit = None if steps is None else self.step + require_steps(steps) - self.case.run.warmup
         last = self.last_step
-        if steps is not None:
-            last = self.step + require_steps(steps)
+        if limit is not None and goal is None:
+            last = limit + self.case.run.warmup
             if last > self.last_step:
-                self.lengthen(last - self.case.run.warmup)
+                self.lengthen(limit)
         progress = progress or Reporter(quiet=True)
         particles = sum(group.number for group in self.case.groups)
         progress.start(last, particles, "running", self.step)
+        self._stopped_by = None
         try:
-            with blaming(self.case), self._catching_signals():
+            with blaming(self.case), catching(self._stop):
                 if self.step < last or not self._looked:
                     self._compile(progress)
                     self._loop(progress, last)
+                if goal is not None:
+                    self._reach(goal, limit_of(self.case, limit), progress)
                 if self.step == self.last_step:
                     self._end()
         except Exception as error:
@@ -222,8 +259,24 @@ class Simulation:
             raise
         finally:
             progress.finish()
-        if self.step < last:
-            raise KeyboardInterrupt(self._stopped)
+        if self._stopped_by is not None and self.step < max(last, self.last_step):
+            raise self._stopped
+
+    def _reach(self, goal: Goal, limit: int, progress: Reporter) -> None:
+        """Go on until the goal is reached, or so many steps after the warm-up are done."""
+        every = next(o.every for o in self.case.observe if o.label == goal.observable)
+        while self.step == self.last_step and not self._stopping:
+            excess, done = goal.excess(self[goal.observable]), self.case.run.steps
+            if excess <= 1:
+                return
+            if done >= limit:
+                said = goal.said(self[goal.observable])
+                warnings.warn(f"{said} after {done} steps: more is needed", stacklevel=3)
+                return
+            self.lengthen(next_length(excess, done, every, limit))
+            progress.lengthen(self.last_step)
+            self._compile(progress)
+            self._loop(progress, self.last_step)
 
     def lengthen(self, steps: int) -> None:
         """Let the run last so many steps after its warm-up, also on record.
@@ -256,11 +309,11 @@ class Simulation:
         return self.schedule.last_step
 
     @property
-    def _stopped(self) -> str:
+    def _stopped(self) -> Stopped:
         """Where the run was stopped, and by what."""
-        assert self._stopped_by is not None
-        doing = ", while compiling," if self._compiling else ""
-        return f"stopped at step {self.step}{doing} by {self._stopped_by.name}"
+        by, doing = self._stopped_by, ", while compiling," if self._compiling else ""
+        assert by is not None
+        return Stopped(by, f"stopped at step {self.step}{doing} by {by.name}")
 
     def _compile(self, progress: Reporter) -> None:
         """Load or compile the kernels; say so if it takes long. A signal ends it at once."""
@@ -279,20 +332,29 @@ class Simulation:
         chunk, saved = 1, perf_counter()
         if self.step == self.case.run.warmup and not self._looked:
             self._observe()
-        while self.step < last and self._stopped_by is None:
+        self.callbacks.stopped = None
+        self.callbacks.call(self)
+        while self.step < last and not self._stopping:
             began = perf_counter()
-            target = min(self.schedule.next_stop(self.step), self.step + chunk, last)
+            stops = self.schedule.next_stop(self.step), *self.callbacks.next_stops(self.step)
+            target = min(self.step + chunk, last, *stops)
             steps, due = target - self.step, self.schedule.due(target)
             stress = any("stress" in observable.measures for observable in due)
             self.engine.advance(steps, measure_stress=stress)
             chunk = _next_chunk(steps, perf_counter() - began)
             self._observe()
+            self.callbacks.call(self)
             if self._checkpoint_due(perf_counter() - saved):
                 self.checkpoint()
                 saved = perf_counter()
             progress.update(self.step)
         if self.step < self.last_step and self.directory is not None:
             self.checkpoint()
+
+    @property
+    def _stopping(self) -> bool:
+        """Whether a signal or a callback has asked to end the run."""
+        return self._stopped_by is not None or self.callbacks.stopped is not None
 
     def _observe(self) -> None:
         """Take the samples and the frame that are due at this step."""
@@ -372,7 +434,7 @@ class Simulation:
                 self._save_provenance(self.directory.read_provenance() | {"failed": reason})
 
     def _checkpoint_due(self, seconds: float) -> bool:
-        if self.directory is None or self._stopped_by is not None:
+        if self.directory is None or self._stopping:
             return False
         return self.schedule.checkpoint_due(self.step, seconds)
 
@@ -380,27 +442,13 @@ class Simulation:
         assert self.directory is not None
         self.directory.write_provenance(record)
 
-    @contextlib.contextmanager
-    def _catching_signals(self) -> Iterator[None]:
-        """Ctrl-C and SIGTERM end the loop after the steps in hand; a second one stops at once."""
-        self._stopped_by = None
-        if threading.current_thread() is not threading.main_thread():
-            yield
-            return
-
-        def stop(number: int, frame: Any) -> None:
-            if self._stopped_by is not None:
-                raise KeyboardInterrupt
-            self._stopped_by = signal.Signals(number)
-            if self._compiling:
-                raise KeyboardInterrupt(self._stopped)
-
-        before = {s: signal.signal(s, stop) for s in (signal.SIGINT, signal.SIGTERM)}
-        try:
-            yield
-        finally:
-            for number, handler in before.items():
-                signal.signal(number, handler)
+    def _stop(self, by: signal.Signals) -> None:
+        """A signal ends the loop after the steps in hand; a second one stops at once."""
+        if self._stopped_by is not None:
+            raise Stopped(by)
+        self._stopped_by = by
+        if self._compiling:
+            raise self._stopped
 
 
 def _case_and_arrays(given: Any, parts: dict[str, Any]) -> tuple[Case, dict[str, Any]]:
@@ -425,7 +473,7 @@ def _case_and_arrays(given: Any, parts: dict[str, Any]) -> tuple[Case, dict[str,
 def _threads(given: Any) -> int:
     """So many as said, or one for each core."""
     if given is None:
-        return len(os.sched_getaffinity(0))
+        return usable_cores()
     whole = isinstance(given, numbers.Integral) and not isinstance(given, bool)
     if whole and 1 <= int(given) <= MOST_THREADS:
         return int(given)

@@ -19,7 +19,10 @@ MODULES = {".".join(parts).removesuffix(".__init__"): path for path, parts in PA
 
 # Files or folders, the longest name that fits decides: which modules of mesokit they may import, at
 # run time, inside functions or for type hints. "=" before a name: that module, not what is in it.
-MPCD = ("case", "errors", "geometry", "method.mpcd", "potential", "scalar", "statistics", "theory")
+MPCD = (
+    "case", "errors", "geometry", "method.mpcd", "potential", "running.cores", "scalar",
+    "statistics", "theory",
+)  # fmt: skip
 START = (*MPCD, "execute.cpu.numbers")  # a type hint only, as the test of what is loaded shows
 ROWS = {
     "__init__.py": (),
@@ -28,6 +31,12 @@ ROWS = {
     "engine.py": (),
     "simulation.py": (
         "case", "errors", "io", "=method", "method.protocol", "observe.shared", "report",
+        "running",
+    ),
+    "running/cores.py": (),
+    "running/signals.py": (),
+    "running/": (
+        "case", "errors", "io", "method.protocol", "observe.shared", "report", "running",
     ),
     "scalar/": ("scalar",),
     "theory/": ("theory",),
@@ -43,8 +52,8 @@ ROWS = {
     "method/mpcd/start/first_state.py": (*MPCD, "execute", "io"),
     "method/mpcd/method.py": (*MPCD, "engine", "execute", "io", "method.protocol", "observe"),
     "method/brownian/": (
-        "case", "engine", "errors", "method.brownian", "method.protocol", "observe", "scalar",
-        "statistics",
+        "case", "engine", "errors", "method.brownian", "method.protocol", "observe",
+        "running.cores", "scalar", "statistics",
     ),
     "execute/": ("case", "errors", "execute", "geometry", "method.mpcd", "potential", "scalar"),
     "observe/": (
@@ -57,7 +66,8 @@ ROWS = {
     ),
     "report/": ("case", "errors", "geometry", "io", "method.protocol", "observe", "report"),
     "cli/": (
-        "case", "cli", "errors", "io", "=method", "method.protocol", "report", "simulation",
+        "case", "cli", "errors", "io", "=method", "method.protocol", "report", "running",
+        "simulation",
     ),
     "cli/theory.py": ("case", "cli", "errors", "method.mpcd.fluid", "theory"),
 }  # fmt: skip

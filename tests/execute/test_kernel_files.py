@@ -59,6 +59,22 @@ def test_a_part_from_outside_has_a_folder_for_each_state_of_its_sources(
         del sys.modules["outside_part_of_a_test"]
 
 
+def test_a_folder_of_the_users_own_is_divided_by_sources_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Many jobs share NUMBA_CACHE_DIR, also those of earlier and later versions."""
+    usual = Path(folder())
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    folder.cache_clear()
+    try:
+        assert Path(folder()) == tmp_path / "mesokit" / usual.name
+        found = place(0, 1, SRD().kernel(2, 1.0))
+        assert found is not None and tmp_path / "mesokit" / usual.name in Path(found).parents
+        assert str(tmp_path) == numba.config.CACHE_DIR
+    finally:
+        folder.cache_clear()
+
+
 def test_what_no_other_process_can_name_is_not_kept() -> None:
     class Local(NamedTuple):
         x: float

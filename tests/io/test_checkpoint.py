@@ -109,6 +109,7 @@ def test_full_disk_leaves_the_old_one(path, where, monkeypatch):
 
 def test_really_running_out_of_space(path):
     """A limit on the size of files stands for a full disk."""
+    pytest.importorskip("resource")
     before = path.read_bytes()
     code = """
 import resource, sys

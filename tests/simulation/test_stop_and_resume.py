@@ -1,7 +1,6 @@
 """A run that is stopped and resumed, in whatever way, ends with the bits of one that was not."""
 
 import errno
-import resource
 import signal
 import threading
 
@@ -74,7 +73,14 @@ def test_checkpoints_do_not_depend_on_when_they_are_written(case, ends_alike, tm
     ends_alike(resumed(tmp_path / "run", threads=2))
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+STOPS = [
+    getattr(signal, name)
+    for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGUSR1")
+    if hasattr(signal, name)
+]
+
+
+@pytest.mark.parametrize("number", STOPS)
 def test_a_signal_writes_a_checkpoint(case, ends_alike, tmp_path, number):
     simulation = Simulation(case, output=tmp_path / "run", threads=1)
     before = signal.getsignal(number)
@@ -84,13 +90,45 @@ def test_a_signal_writes_a_checkpoint(case, ends_alike, tmp_path, number):
             if step > 150 and simulation._stopped_by is None:
                 signal.raise_signal(number)
 
-    with pytest.raises(KeyboardInterrupt, match=number.name):
+    with pytest.raises(KeyboardInterrupt, match=number.name) as stop:
         simulation.run(progress=Press(quiet=True))
+    assert stop.value.status == 128 + number
     assert signal.getsignal(number) is before
     again = Simulation.resume(tmp_path / "run", threads=1)
     assert again.step == simulation.step > 150
     again.run()
     ends_alike(again)
+
+
+def test_a_second_signal_stops_at_once(case):
+    simulation = Simulation(case, threads=1)
+
+    class Press(Reporter):
+        def update(self, step):
+            signal.raise_signal(signal.SIGINT)
+            signal.raise_signal(signal.SIGTERM)
+            raise AssertionError("went on")
+
+    with pytest.raises(KeyboardInterrupt) as stop:
+        simulation.run(progress=Press(quiet=True))
+    assert stop.value.status == 128 + signal.SIGTERM
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="the system has no such signal")
+def test_nohup_is_respected(case):
+    """A terminal that is closed stops no run that was told to ignore it."""
+    simulation, before = Simulation(case, threads=1), signal.signal(signal.SIGHUP, signal.SIG_IGN)
+
+    class Press(Reporter):
+        def update(self, step):
+            signal.raise_signal(signal.SIGHUP)
+
+    try:
+        simulation.run(progress=Press(quiet=True))
+        assert signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGHUP, before)
+    assert simulation.step == simulation.last_step
 
 
 def test_a_signal_after_the_last_step_stops_nothing(case, ends_alike, tmp_path):
@@ -154,6 +192,7 @@ def test_a_checkpoint_that_breaks_off_leaves_the_old_one(case, ends_alike, tmp_p
         simulation.run(progress=crash_at(100))
     file = simulation.directory.checkpoint_file
     whole = file.read_bytes()
+    resource = pytest.importorskip("resource")
     old = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (5000, old[1]))
     try:

@@ -14,16 +14,17 @@ from collections.abc import Sequence
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line: one line on standard error and a status for whatever goes wrong.
 
-    Exit status: 0 done, 1 the run failed, 2 the case or the command is wrong, 130 interrupted.
+    Exit status: 0 done, 1 the run failed, 2 the case or the command is wrong, 128 + its number
+    stopped by a signal (130 Ctrl-C, 143 SIGTERM, 129 SIGHUP, 138 SIGUSR1).
     """
     _settle()
     try:
         from mesokit.cli.end import status_of
 
         status = status_of(arguments)
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stop:
         print("mesokit: interrupted", file=sys.stderr)
-        status = 130
+        status = getattr(stop, "status", 130)
     with contextlib.suppress(OSError):  # a full disk, told where it can be: in the run's folder
         sys.stderr.flush()
     raise SystemExit(status)

@@ -19,8 +19,9 @@ def status_of(arguments: Sequence[str] | None) -> int:
     try:
         status = cli.main(arguments, prog_name="mesokit", standalone_mode=False)
         return status if isinstance(status, int) else 0
-    except click.exceptions.Abort:
-        raise KeyboardInterrupt from None
+    except click.exceptions.Abort as abort:
+        stop = abort.__cause__
+        raise stop if isinstance(stop, KeyboardInterrupt) else KeyboardInterrupt from None
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message())
         return 2

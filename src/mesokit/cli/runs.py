@@ -13,6 +13,7 @@ import click
 from mesokit.cli.commands import CASE, RUN, SET, THREADS, cli, naming, read, require_run
 from mesokit.cli.words import patience, reason, say
 from mesokit.errors import CaseError, RunError
+from mesokit.running.signals import Stopped
 
 
 @cli.command()
@@ -32,7 +33,8 @@ def run(
     overwrite: bool,
     quiet: bool,
 ) -> None:
-    """Run CASE. Ctrl-C stops it at a checkpoint; mesokit resume goes on."""
+    """Run CASE. Ctrl-C (or SIGTERM, SIGHUP, SIGUSR1) stops it at a checkpoint; mesokit resume goes
+    on."""
     from mesokit.method.protocol import method_of
     from mesokit.report.progress import Reporter
 
@@ -59,24 +61,38 @@ def run(
 
 @cli.command()
 @click.argument("run", type=RUN)
+@click.option("--steps", type=click.IntRange(0), help="Let it last so many after its warm-up.")
+@click.option(
+    "--until-error",
+    metavar="NUMBER=ERROR",
+    help="Let it last until a compared number is known so well, such as "
+    "velocity-profile.viscosity=1%; then --steps is the limit.",
+)
 @THREADS
 @click.option("--quiet", is_flag=True, help="No progress, no summary; errors only.")
-def resume(run: Path, threads: int | None, quiet: bool) -> None:
-    """Go on with RUN from its last checkpoint, to the same bits as if it had never stopped."""
+def resume(
+    run: Path, steps: int | None, until_error: str | None, threads: int | None, quiet: bool
+) -> None:
+    """Go on with RUN from its last checkpoint, to the same bits as if it had never stopped.
+
+    A RUN that has ended goes on if it is to be longer, to the bits of a run that was as long from
+    the start; else its results and figures are written again.
+    """
     from mesokit.report.progress import Reporter
 
     require_run(run)
     from mesokit.io.run_directory import RunDirectory
     from mesokit.simulation import Simulation
 
-    with _run_errors(run):
-        with warnings.catch_warnings(record=True) as said:
-            simulation = Simulation.resume(run, threads=threads)
-        for warning in said:
-            say(f"warning: {warning.message}")
+    longer = None if until_error else steps
+    with _run_errors(run), _warnings_said():
+        simulation = Simulation.resume(run, threads=threads, steps=longer)
         if not (quiet or RunDirectory(run).checkpoint_file.exists()):
             say(f"{run}: no checkpoint yet; starting from step 0")
-        simulation.run(progress=Reporter(quiet))
+        limit = None
+        if until_error and steps is not None:
+            limit = max(simulation.case.run.warmup + steps - simulation.step, 0)
+        simulation.run(limit, until=until_error, progress=Reporter(quiet))
     if not quiet:
         _show_results(run)
 
@@ -156,15 +172,28 @@ def _clear(output: Path) -> None:
 
 
 @contextlib.contextmanager
+def _warnings_said() -> Iterator[None]:
+    """Warnings of the Python API as lines on standard error."""
+
+    def show(message: Warning | str, *where: object) -> None:
+        say(f"warning: {message}")
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", UserWarning)
+        warnings.showwarning = show  # type: ignore[assignment]
+        yield
+
+
+@contextlib.contextmanager
 def _run_errors(output: Path) -> Iterator[None]:
     """A full disk while running is a failure of the run, not of the command."""
     try:
         yield
-    except KeyboardInterrupt as stop:
+    except Stopped as stop:
         if not str(stop):  # stopped so hard that nothing is known
             raise
         say(f"mesokit: {stop}; go on with: mesokit resume {output}")
-        raise SystemExit(130) from None
+        raise SystemExit(stop.status) from None
     except OSError as error:
         raise RunError(reason(error)) from None
 

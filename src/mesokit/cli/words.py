@@ -43,7 +43,9 @@ def show_table(rows: Sequence[tuple[str, str, str]]) -> None:
 
 def reason(error: OSError) -> str:
     """What the system refused, in a few words."""
-    words = {errno.ENOSPC: "no space left on the disk", errno.EDQUOT: "disk quota exceeded"}
+    words = {errno.ENOSPC: "no space left on the disk"}
+    if hasattr(errno, "EDQUOT"):
+        words[errno.EDQUOT] = "disk quota exceeded"
     text = words.get(error.errno or 0) or error.strerror or str(error)
     name = f"{error.filename}: " if error.filename else ""
     return f"{name}{text[0].lower()}{text[1:]}" if text else repr(error)

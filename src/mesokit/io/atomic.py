@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from mesokit.errors import RunError
+
+PAUSES = (0.01, 0.05, 0.2, 0.5)  # seconds, as virus scanners and other readers may need
+CANNOT = (errno.EINVAL, errno.ENOTSUP, errno.EBADF, errno.EACCES)  # for a folder
 
 
 @contextmanager
@@ -29,8 +35,8 @@ def replacing(path: str | Path) -> Iterator[Path]:
     try:
         yield temporary
         _to_disk(temporary)
-        os.replace(temporary, path)
-        _to_disk(path.parent)
+        _replace(temporary, path)
+        _folder_to_disk(path.parent)
     except OSError as error:
         raise RunError(f"cannot write {path}: {_reason(error)}") from error
     finally:
@@ -44,13 +50,33 @@ def write_text(path: str | Path, text: str) -> None:
         temporary.write_text(text, encoding="utf-8")
 
 
+def _replace(temporary: Path, path: Path) -> None:
+    """Rename; where a file that somebody reads cannot be replaced, wait for him a little."""
+    for pause in PAUSES if sys.platform == "win32" else ():
+        with suppress(PermissionError):
+            return os.replace(temporary, path)
+        time.sleep(pause)
+    os.replace(temporary, path)
+
+
 def _to_disk(path: Path) -> None:
     """Make what was written survive a loss of power."""
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
+    with path.open("rb+") as file:  # Windows asks for the right to write
+        os.fsync(file.fileno())
+
+
+def _folder_to_disk(path: Path) -> None:
+    """The same for the names in a folder, where the system can: Windows cannot, nor can some disks
+    in a network, and there it does so itself."""
+    with suppress(PermissionError):
+        handle = os.open(path, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        except OSError as error:
+            if error.errno not in CANNOT:
+                raise
+        finally:
+            os.close(handle)
 
 
 def _reason(error: OSError) -> str:

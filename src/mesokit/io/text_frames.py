@@ -18,7 +18,7 @@ FIGURES = "%.9g"  # of a number: all that single precision has
 def dump(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
     """A text dump of LAMMPS: numbers from 1, wrapped positions, images and velocities if known."""
     marks = " ".join("ff" if shut else "pp" for shut in particles.closed)
-    with path.open("w", encoding="utf-8") as file:
+    with path.open("w", encoding="utf-8", newline="\n") as file:
         for now in moments:
             bounds = np.stack([np.zeros(3), particles.size], axis=1)
             head, tilts = f"ITEM: BOX BOUNDS {marks}", ["", "", ""]
@@ -42,7 +42,7 @@ def xyz(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
     """Extended XYZ: kinds are A, B, ...; velocities if known; images have no place."""
     kinds = np.array(list(ascii_uppercase))[particles.kind % 26]
     open_axes = " ".join("F" if shut else "T" for shut in particles.closed)
-    with path.open("w", encoding="utf-8") as file:
+    with path.open("w", encoding="utf-8", newline="\n") as file:
         for now in moments:
             edges = np.diag(particles.size)
             edges[1, 0] = now.tilt

@@ -84,6 +84,12 @@ class Reporter:
         else:
             self._say(f"{phase}: {self.amount(total_steps - step)}")
 
+    def lengthen(self, total_steps: int) -> None:
+        """There is more to do than was thought."""
+        self.total = total_steps
+        if self.bar is not None and self.task is not None:
+            self.bar.update(self.task, total=total_steps)
+
     def compiling(self) -> None:
         """The first step of a new version takes long: say why, and leave it out of the rates."""
         if self.quiet:

@@ -78,7 +78,7 @@ def next_length(excess: float, done: int, every: int, limit: int) -> int:
     """Steps after the warm-up to go on to: errors fall with the root of the time.
 
     >>> next_length(1.2, done=1000, every=10, limit=10**6), next_length(9.0, 1000, 10, 1500)
-    (1510, 1500)
+    (1520, 1500)
     """
     factor = min(max(SHORTEST * min(excess, LONGEST) ** 2, SHORTEST), LONGEST)
     wanted = max(math.ceil(done * factor), done + every)

@@ -28,16 +28,14 @@ COMPILED = ("scalar", "case", "geometry", "potential", "method", "execute")
 
 @functools.cache
 def folder() -> str:
-    """NUMBA_CACHE_DIR, or a folder in the user's cache named after the sources."""
-    if config.CACHE_DIR:
-        return str(config.CACHE_DIR)
+    """The folder named after the sources, in NUMBA_CACHE_DIR or the user's cache."""
     root = Path(__file__).parent.parent
     code = hashlib.sha256()
     for path in sorted(path for name in COMPILED for path in (root / name).rglob("*.py")):
         source = path.read_bytes()
         if b"mesokit.scalar" in source or b"numba" in source:
             code.update(path.name.encode() + source)
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    base = config.CACHE_DIR or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     return str(Path(base) / "mesokit" / code.hexdigest()[:16])
 
 

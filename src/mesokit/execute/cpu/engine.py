@@ -21,6 +21,7 @@ from mesokit.execute.cpu.strips.cell_energy import MOST_PARTICLES, ONE_PARTICLE,
 from mesokit.execute.cpu.threads import Threads
 from mesokit.execute.measure.readings import Moments, Readings
 from mesokit.method.mpcd.molecule import Springs
+from mesokit.scalar.system import TICK
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -217,7 +218,7 @@ class CPU:
     def seconds(self) -> dict[str, float]:
         """Time spent so far in each stage."""
         names = {"sweep": SWEEP, "cells": CELLS, "finish": FINISH}
-        seconds = {name: 1e-9 * float(self.threads.clock[STAGES + k]) for name, k in names.items()}
+        seconds = {name: TICK * float(self.threads.clock[STAGES + k]) for name, k in names.items()}
         return seconds | {"sort": self.sort_seconds}
 
     # --- what observables ask -------------------------------------------------------------------

@@ -14,13 +14,12 @@ from numba.extending import intrinsic
 
 from mesokit.execute.cpu.clock import CLOCK_SIZE
 from mesokit.scalar.jit import scalar
+from mesokit.scalar.system import yield_core
 
 SPINS = 1_000  # some ten microseconds; a thread that waits longer lets others have the core
 
 # The gate: how many threads have come, and how often it has opened; each on its own cache line.
 ARRIVED, OPENED, GATE_SIZE = 0, 8, 16
-
-_yield_core = types.ExternalFunction("sched_yield", types.int32())
 
 
 @intrinsic
@@ -57,7 +56,7 @@ def meet(team):
         while _add_atomic(opened, np.int64(0)) == now:
             spins += 1
             if spins > SPINS:
-                _yield_core()
+                yield_core()
 
 
 class Threads:

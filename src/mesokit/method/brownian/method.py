@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +18,7 @@ from mesokit.method.brownian.engine import Brownians
 from mesokit.method.brownian.section import Sections
 from mesokit.method.protocol import Method, Row, Summary
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
+from mesokit.running.cores import usable_cores
 from mesokit.statistics import spread_ids
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ def groups(case: Case) -> tuple[Group, ...]:
 
 def summary(case: Case, threads: int | None = None) -> Summary:
     """Derived numbers, cost, and warnings."""
-    threads = threads or os.cpu_count() or 1
+    threads = threads or usable_cores()
     given, d, steps = case.brownian, case.box.dimension, case.run.warmup + case.run.steps
     step = (2 * d * given.diffusion * given.timestep) ** 0.5
     memory = case.particles * BYTES[d] + 200_000_000

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import os
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +13,7 @@ from mesokit.geometry.shape.plates import Plates
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.numbers import Derived
 from mesokit.method.mpcd.warnings import cautions
+from mesokit.running.cores import usable_cores
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -42,7 +42,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
     >>> numbers.particles, round(numbers.transport.viscosity, 2)
     (270000, 0.87)
     """
-    threads = threads or os.cpu_count() or 1
+    threads = threads or usable_cores()
     fluid, dimension = case.fluid, case.box.dimension
     steps = case.run.warmup + case.run.steps
     transport = setting.transport(case)

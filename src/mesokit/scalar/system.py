@@ -1,0 +1,50 @@
+"""What compiled code asks of the operating system, whichever it is.
+
+The functions have the same names on all systems, under which their addresses are told to LLVM when
+this is imported; so kernels that were compiled in another process find them too.
+"""
+
+import ctypes
+import sys
+import time
+from typing import Any
+
+import numpy as np
+from llvmlite import binding
+from numba import types
+
+from mesokit.scalar.jit import scalar
+
+
+def _named(name: str, function: Any, *arguments: Any) -> Any:
+    """A C function that gives an int, for compiled code."""
+    binding.add_symbol(name, ctypes.cast(function, ctypes.c_void_p).value)
+    return types.ExternalFunction(name, types.int32(*arguments))
+
+
+if sys.platform == "win32":
+    _library = ctypes.WinDLL("kernel32")
+    _frequency = ctypes.c_int64()
+    _library.QueryPerformanceFrequency(ctypes.byref(_frequency))
+    TICK = 1.0 / _frequency.value  # seconds of one unit of `read_clock`
+    yield_core = _named("mesokit_yield_core", _library.SwitchToThread)
+    _counter = _named("mesokit_counter", _library.QueryPerformanceCounter, types.uintp)
+
+    @scalar
+    def read_clock(room):
+        """Time in ticks; the system writes its answer to an int64 array."""
+        _counter(np.uint64(room.ctypes.data))
+        return room[0]
+
+else:
+    _library = ctypes.CDLL(None)
+    TICK = 1e-9
+    _MONOTONIC = np.int32(time.CLOCK_MONOTONIC)
+    yield_core = _named("mesokit_yield_core", _library.sched_yield)
+    _clock = _named("mesokit_clock", _library.clock_gettime, types.int32, types.uintp)
+
+    @scalar
+    def read_clock(room):
+        """Time in ticks; the system writes its answer to an int64 array."""
+        _clock(_MONOTONIC, np.uint64(room.ctypes.data))
+        return room[0] * 1_000_000_000 + room[1]

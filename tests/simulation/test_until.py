@@ -1,0 +1,71 @@
+"""Runs that go on until a number is known well enough."""
+
+import dataclasses
+
+import pytest
+
+import mesokit
+from mesokit.errors import CaseError
+from mesokit.running.until import Goal
+from mesokit.simulation import Simulation
+
+
+@pytest.fixture
+def short(case):
+    """The case with few steps: its numbers are poorly known."""
+    return dataclasses.replace(case, run=dataclasses.replace(case.run, steps=60))
+
+
+def error_of(simulation):
+    return simulation["velocity-profile"]["slip"].error
+
+
+def test_longer_until_the_error_is_small(short, tmp_path):
+    """It ends where the goal is reached, with the bits of a run that was as long from the start."""
+    simulation = Simulation(short, output=tmp_path / "run", threads=1)
+    simulation.run()
+    before = error_of(simulation)
+    Simulation.resume(tmp_path / "run", threads=2).run(until=f"velocity-profile.slip={before / 2}")
+    files = mesokit.open(tmp_path / "run")
+    steps = files.case.run.steps
+    assert files["velocity-profile"]["slip"].error <= before / 2
+    assert steps > 60 and steps % 3 == 0
+    longer = dataclasses.replace(short, run=dataclasses.replace(short.run, steps=steps))
+    whole = Simulation(longer, threads=1)
+    whole.run()
+    assert whole.results == files.results
+
+
+def test_goal_that_is_met(short):
+    simulation = Simulation(short, threads=1)
+    simulation.run(until="velocity-profile.slip=1e9")
+    assert simulation.case.run.steps == 60
+
+
+def test_limit(short):
+    """What cannot be reached in time is said."""
+    simulation = Simulation(short, threads=1)
+    with pytest.warns(UserWarning, match="known to .* after 90 steps: more is needed"):
+        simulation.run(37 + 90, until="velocity-profile.viscosity=0.001%")
+    assert simulation.case.run.steps == 90 and simulation.step == 127
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("velocity-profile.viscosity", "expected OBSERVABLE.NUMBER=ERROR"),
+        ("velocity-profile.viscosity=-1%", "expected OBSERVABLE.NUMBER=ERROR"),
+        ("velocity-profil.viscosity=1%", "did you mean 'velocity-profile'"),
+        ("=1", "no observable ''; there is"),
+    ],
+)
+def test_poor_goals(case, text, words):
+    with pytest.raises(CaseError, match=words):
+        Goal.parse(text, case)
+
+
+def test_unknown_number(short):
+    simulation = Simulation(short, threads=1)
+    simulation.run(50)
+    with pytest.raises(CaseError, match=r"until velocity-profile: .*viscosity"):
+        simulation.run(until="velocity-profile.viscocity=1%")
