@@ -22,6 +22,7 @@ from mesokit.case.trajectory import written
 from mesokit.errors import CaseError, CheckpointError, RunError
 from mesokit.io import checkpoint, h5md
 from mesokit.io.frames import require_frames
+from mesokit.io.measured import fitting, restore
 from mesokit.io.run_directory import RunDirectory, now, provenance, recorded_case
 from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.method.protocol import method_of
@@ -407,12 +408,9 @@ class Simulation:
         assert self.directory is not None
         path = self.directory.checkpoint_file
         arrays, meta = checkpoint.read(path, self._digest, method_of(self.case).start_from_run)
-        try:
+        with fitting(path):
             self.engine.restore(checkpoint.part(arrays, "engine/"))
-            for name, accumulator in self.accumulators.items():
-                accumulator.restore(checkpoint.part(arrays, f"observe/{name}/"))
-        except (KeyError, ValueError, IndexError) as error:
-            raise CheckpointError(f"{path}: does not fit this case: {error}") from None
+            restore(self.accumulators, arrays)
         self._looked = bool(meta["looked"])
 
     @property

@@ -54,6 +54,7 @@ class ConservationAccumulator:
         self.first = np.zeros(width)
         self.drift = np.zeros(2)  # largest change of momentum and of kinetic energy so far
         self.counts = np.array([0, 1, 0])  # rows kept, samples per row, samples
+        self.pooled = 1  # runs
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
@@ -107,6 +108,23 @@ class ConservationAccumulator:
         self.rows[: len(state["rows"])] = state["rows"]
         self.first, self.drift = np.array(state["first"]), np.array(state["drift"])
         self.counts = np.array(state["counts"])
+
+    def pool(self, other: ConservationAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read.
+
+        The time series becomes the mean of both, where both have kept a row.
+        """
+        self.blocks.pool(other.blocks)
+        own, others = self.rows[: self.counts[0]], other.rows[: other.counts[0]]
+        _, here, there = np.intersect1d(own[:, 0], others[:, 0], return_indices=True)
+        share = 1 / (1 + self.pooled)
+        rows = (1 - share) * own[here] + share * others[there]
+        rows[:, 0] = own[here, 0]
+        self.rows[: len(rows)] = rows
+        self.first = (1 - share) * self.first + share * other.first
+        self.drift = np.maximum(self.drift, other.drift)
+        self.counts = np.array([len(rows), self.counts[1], self.counts[2] + other.counts[2]])
+        self.pooled += 1
 
     def result(self) -> Result:
         """The time series; its error is that of one sample, which is not a mean: nan."""

@@ -109,6 +109,11 @@ class DynamicModuliAccumulator:
         for name in ("squares", "products", "began", "samples"):
             setattr(self, name, np.array(state[name]))
 
+    def pool(self, other: DynamicModuliAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.blocks.pool(other.blocks)
+        self.samples += other.samples
+
     def result(self) -> Result:
         """Both moduli by parts."""
         return Result(

@@ -106,6 +106,7 @@ class FlowFramesAccumulator:
         self.frames: list[NDArray[np.float32]] = []
         self.positions: list[NDArray[np.float32]] = []
         self.times: list[float] = []
+        self.pooled = 1  # runs
         self._begin()
 
     def _begin(self) -> None:
@@ -158,10 +159,29 @@ class FlowFramesAccumulator:
         self.sums = np.array(state["sums"])
         self.samples, self.time = int(state["samples"]), float(state["time"])
 
+    def pool(self, other: FlowFramesAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read.
+
+        Windows that both have seen whole become their means; particles stay those of the first.
+        """
+        shared = min(len(self.frames), len(other.frames))
+        share, densities = 1 / (1 + self.pooled), len(self.parts) - self.case.box.dimension
+        for i, frame in enumerate(other.frames[:shared]):
+            own = self.frames[i]
+            density = (1 - share) * own[:densities] + share * frame[:densities]
+            mass = np.stack([(1 - share) * own[densities - 1], share * frame[densities - 1]])
+            momentum = [m * np.nan_to_num(f[densities:]) for m, f in zip(mass, (own, frame))]
+            with np.errstate(divide="ignore", invalid="ignore"):
+                velocity = sum(momentum) / mass.sum(axis=0)
+            self.frames[i] = np.concatenate([density, velocity]).astype(np.float32)
+        self.frames, self.times = self.frames[:shared], self.times[:shared]
+        self.pooled += 1
+        self._begin()
+
     def result(self) -> Result:
         """All frames, that of the unfinished window last."""
         frames, times = self.frames, self.times
-        samples = [self.per_frame] * len(frames)
+        samples = [self.per_frame * self.pooled] * len(frames)
         if self.samples > 1 or (self.samples and not frames):  # one alone only begins a window
             frames, times = [*frames, self._frame()], [*times, self.time / self.samples]
             samples.append(self.samples)

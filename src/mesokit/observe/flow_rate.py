@@ -82,6 +82,11 @@ class FlowRateAccumulator:
         self.blocks = Blocks.from_state(unpack(state, "blocks"))
         self.series = TimeSeries.from_state(unpack(state, "series"))
 
+    def pool(self, other: FlowRateAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.blocks.pool(other.blocks)
+        self.series.pool(other.series)
+
     def result(self) -> Result:
         """The velocity in time, whose points are no means of their own: the error is nan."""
         time, value = self.series.time(), self.series.values()[:, 0]

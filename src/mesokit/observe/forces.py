@@ -114,6 +114,11 @@ class ForcesAccumulator:
         self.blocks = Blocks.from_state(unpack(state, "blocks"))
         self.series = TimeSeries.from_state(unpack(state, "series"))
 
+    def pool(self, other: ForcesAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.blocks.pool(other.blocks)
+        self.series.pool(other.series)
+
     def result(self) -> Result:
         """Every component on every solid; the time series is in `extra`."""
         size, expected = int(np.prod(self.shape)), self.expected()

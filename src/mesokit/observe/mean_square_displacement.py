@@ -135,6 +135,10 @@ class MeanSquareDisplacementAccumulator:
         """Go on from `state()`."""
         self.origins.restore(unpack(state, "origins"))
 
+    def pool(self, other: MeanSquareDisplacementAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.origins.pool(other.origins)
+
     def result(self) -> Result:
         """The curve and the slope of its late part."""
         steps = self.origins.sampled() * self.observable.every

@@ -92,6 +92,11 @@ class NormalModesAccumulator:
             MultipleTau.from_state(unpack(state, f"mode_{p}")) for p in range(self.count)
         ]
 
+    def pool(self, other: NormalModesAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        for own, others in zip(self.correlators, other.correlators, strict=True):
+            own.pool(others)
+
     def interval(self) -> float:
         """Time between two samples."""
         return self.observable.every * self.case.fluid.timestep

@@ -17,7 +17,14 @@ from mesokit.method.mpcd.expected import setting
 from mesokit.observe.shared.estimate import of_mean
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Array, Comparison, Result
-from mesokit.statistics import Blocks, TimeSeries, dominant_frequency, spectrum
+from mesokit.statistics import (
+    Blocks,
+    TimeSeries,
+    dominant_frequency,
+    mean_frequency,
+    mean_spectrum,
+    spectrum,
+)
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -111,6 +118,7 @@ class ProbeAccumulator:
         self.lengths = np.where(shut, np.inf, lengths)
         self.component = observable.seen(case)
         self.blocks, self.series = Blocks((d,)), TimeSeries(d, ROWS)
+        self.others: list[TimeSeries] = []  # of runs pooled with it
         self.last = np.zeros(d)  # the velocity where nobody is there to tell a new one
 
     def observe(self, fluid: RunningFluid) -> None:
@@ -134,13 +142,29 @@ class ProbeAccumulator:
         self.series = TimeSeries.from_state(unpack(state, "series"))
         self.last = np.array(state["last"])
 
+    def pool(self, other: ProbeAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.blocks.pool(other.blocks)
+        self.others.append(other.series)
+
+    def signals(self) -> tuple[list[Array], float]:
+        """The series of the component in each run, as long as the shortest, and their interval.
+
+        Runs whose series are thinner than others are left out.
+        """
+        series = [self.series, *self.others]
+        stride = min(one.stride for one in series)
+        signals = [one.values()[:, self.component] for one in series if one.stride == stride]
+        shortest = min(map(len, signals))
+        interval = self.observable.every * self.case.fluid.timestep * stride
+        return [signal[:shortest] for signal in signals], interval
+
     def result(self) -> Result:
         """The spectrum of one component; the time series of all is in `extra`."""
-        given = self.observable
-        interval = given.every * self.case.fluid.timestep * self.series.stride
         values, letter = self.series.values(), AXES[self.component]
-        found = spectrum(values[:, self.component], interval)
-        peak = dominant_frequency(values[:, self.component], interval)
+        signals, interval = self.signals()
+        found = mean_spectrum([spectrum(signal, interval) for signal in signals])
+        peak = mean_frequency([dominant_frequency(signal, interval) for signal in signals])
         return Result(
             quantity="probe",
             drawing="signal",

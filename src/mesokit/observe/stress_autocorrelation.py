@@ -74,6 +74,10 @@ class StressAutocorrelationAccumulator:
         """Go on from `state()`."""
         self.correlator = MultipleTau.from_state(unpack(state, "correlator"))
 
+    def pool(self, other: StressAutocorrelationAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.correlator.pool(other.correlator)
+
     def modulus(self) -> tuple[Array, Estimate]:
         """Time (n,) and G(t) with what each block of time adds to it."""
         case = self.case

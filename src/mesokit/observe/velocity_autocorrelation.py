@@ -69,6 +69,10 @@ class VelocityAutocorrelationAccumulator:
         """Go on from `state()`."""
         self.origins.restore(unpack(state, "origins"))
 
+    def pool(self, other: VelocityAutocorrelationAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.origins.pool(other.origins)
+
     def result(self) -> Result:
         """The curve with molecular chaos and the hydrodynamic tail."""
         total, axes = self.origins.estimate(), len(self.axes)

@@ -183,6 +183,11 @@ class WakeAccumulator:
         self.blocks = Blocks.from_state(unpack(state, "blocks"))
         self.whole = Blocks.from_state(unpack(state, "whole"))
 
+    def pool(self, other: WakeAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.blocks.pool(other.blocks)
+        self.whole.pool(other.whole)
+
     def result(self) -> Result:
         """The velocity behind the body, positive along the flow; distances from its rear."""
         sums, _ = self.blocks.sums()

@@ -13,7 +13,14 @@ from mesokit.statistics.fit import (
 from mesokit.statistics.multiple_tau import Correlation, MultipleTau
 from mesokit.statistics.ratio import ratio
 from mesokit.statistics.sample import spread_ids
-from mesokit.statistics.spectrum import Frequency, Spectrum, dominant_frequency, spectrum
+from mesokit.statistics.spectrum import (
+    Frequency,
+    Spectrum,
+    dominant_frequency,
+    mean_frequency,
+    mean_spectrum,
+    spectrum,
+)
 from mesokit.statistics.time_series import TimeSeries
 
 __all__ = [
@@ -29,6 +36,8 @@ __all__ = [
     "chi_square",
     "deviation",
     "dominant_frequency",
+    "mean_frequency",
+    "mean_spectrum",
     "plateau_error",
     "ratio",
     "spectrum",

@@ -43,6 +43,7 @@ class Blocks:
         self._sums = np.zeros((capacity, *self.shape))
         self._complete = 0  # blocks that are full
         self._partial = 0  # samples in the block being filled
+        self._others: list[tuple[NDArray[np.float64], NDArray[np.int64]]] = []  # pooled with it
 
     def add(self, value: ArrayLike) -> None:
         """Add one sample of shape `shape`; raises ValueError for any other shape."""
@@ -69,10 +70,27 @@ class Blocks:
         n = self._complete + (self._partial > 0)
         samples = np.full(n, self.block_length)
         samples[self._complete :] = self._partial
-        return self._sums[:n].copy(), samples
+        series = [(self._sums[:n].copy(), samples), *self._others]
+        return np.concatenate([s for s, _ in series]), np.concatenate([n for _, n in series])
+
+    def pool(self, other: "Blocks") -> None:
+        """Take in the blocks of another, independent series of the same: `sums`, `mean` and `error`
+        are then those of both. Raises ValueError for another shape.
+
+        >>> one, other = Blocks(), Blocks()
+        >>> one.add(1.0), other.add(4.0)
+        (None, None)
+        >>> one.pool(other)
+        >>> one.count, one.mean()
+        (2, array(2.5))
+        """
+        if other.shape != self.shape:
+            raise ValueError(f"cannot pool samples of shapes {self.shape} and {other.shape}")
+        self._others.append(other.sums())
+        self.count += other.count
 
     def blocks(self) -> NDArray[np.float64]:
-        """Means of the complete blocks, oldest first, (n, *shape)."""
+        """Means of the complete blocks of this series, oldest first, (n, *shape)."""
         return self._sums[: self._complete] / self.block_length
 
     def mean(self) -> NDArray[np.float64]:

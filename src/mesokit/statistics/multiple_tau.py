@@ -100,7 +100,8 @@ class MultipleTau:
         self.averages = averages
         self.max_lag = max_lag
         self.blocks = blocks
-        self.count = 0
+        self._count = 0  # samples of this series
+        self._others: list[MultipleTau] = []  # pooled with it
         self.block_length = 1
         # A complex signal is two real ones whose products add up.
         self._sample = np.zeros((1 + (np.dtype(dtype).kind == "c"), *self.shape))
@@ -121,12 +122,12 @@ class MultipleTau:
         Raises ValueError for any other shape, TypeError for a complex sample of real signals.
         """
         self._store(value)
-        block = self.count // self.block_length
+        block = self._count // self.block_length
         if block == self.blocks:
             self._merge()
             block //= 2
-        entry, number = self._sample, self.count  # the entry of the level, and how many before it
-        self.count += 1
+        entry, number = self._sample, self._count  # the entry of the level, and how many before it
+        self._count += 1
         depth = 0
         while depth < len(self._levels):
             ring, sums = self._levels[depth]
@@ -135,7 +136,7 @@ class MultipleTau:
             ring[slot] = ring[end - 1] = entry
             products = ring[slot + 1 : slot + 1 + sums.shape[1]] * entry
             for part in range(products.shape[1]):
-                sums[block] += self._pool(products[:, part])
+                sums[block] += self._average(products[:, part])
             number += 1
             if number % self.averages:
                 break
@@ -145,7 +146,32 @@ class MultipleTau:
             if depth == len(self._levels):
                 self._grow()
 
-    def _pool(self, products: NDArray[np.float64]) -> NDArray[np.float64]:
+    @property
+    def count(self) -> int:
+        """Samples so far, those pooled included."""
+        return self._count + sum(other._count for other in self._others)
+
+    def pool(self, other: "MultipleTau") -> None:
+        """Take in the products of another, independent series of the same signals: only to read.
+
+        Raises ValueError for a correlator of other signals or lags.
+
+        >>> one, other = MultipleTau(max_lag=1), MultipleTau(max_lag=1)
+        >>> for sample in (1.0, 2.0, 3.0):
+        ...     one.add(sample), other.add(2 * sample)
+        (None, None)
+        (None, None)
+        (None, None)
+        >>> one.pool(other)
+        >>> one.correlation().value  # (1 + 4 + 9) (1 + 4) / 6 and (2 + 6) (1 + 4) / 4
+        array([11.66666667, 10.        ])
+        """
+        alike = ("shape", "pooled", "points", "averages", "max_lag")
+        if any(getattr(self, name) != getattr(other, name) for name in alike):
+            raise ValueError("cannot pool correlators of different signals or lags")
+        self._others.append(other)
+
+    def _average(self, products: NDArray[np.float64]) -> NDArray[np.float64]:
         """Mean over the pooled axes."""
         return products.mean(axis=tuple(range(-self.pooled, 0))) if self.pooled else products
 
@@ -225,22 +251,27 @@ class MultipleTau:
         >>> sums.sum(axis=0), counts.sum(axis=0)
         (array([14.,  8.]), array([3., 2.]))
         """
-        for depth in range(len(self._levels)):
-            if within_blocks and self.averages**depth > self.block_length:
+        series = [self, *self._others]
+        for depth in range(max(len(one._levels) for one in series)):
+            found = [
+                one._level_products(depth)
+                for one in series
+                if depth < len(one._levels)
+                and not (within_blocks and self.averages**depth > one.block_length)
+            ]
+            if not (found := [products for products in found if len(products.lag)]):
                 return
-            found = self._level_products(depth)
-            if len(found.lag):
-                yield found
+            yield _joined(found)
 
     def _level_products(self, depth: int) -> Products:
         step = self.averages**depth
         sums = self._levels[depth].sums[:, ::-1]  # shortest lag first
         offsets = np.arange(self.points - sums.shape[1], self.points)
-        used = -(-self.count // self.block_length)
-        ends = np.minimum(np.arange(1, used + 1) * self.block_length, self.count) // step
+        used = -(-self._count // self.block_length)
+        ends = np.minimum(np.arange(1, used + 1) * self.block_length, self._count) // step
         starts = np.arange(used) * self.block_length // step
         counts = np.maximum(ends[:, None] - np.maximum(starts[:, None], offsets), 0)
-        keep = offsets < self.count // step  # the entry `offset` before the last exists
+        keep = offsets < self._count // step  # the entry `offset` before the last exists
         if self.max_lag is not None:
             keep &= offsets * step <= self.max_lag
         return Products(step * offsets[keep], sums[:used, keep], counts[:, keep].astype(float))
@@ -249,7 +280,7 @@ class MultipleTau:
         """Everything that `from_state` needs to go on with the same bits, as arrays."""
         max_lag = -1 if self.max_lag is None else self.max_lag
         numbers = [
-            self.count, self.block_length, self.points, self.averages, max_lag, self.pooled,
+            self._count, self.block_length, self.points, self.averages, max_lag, self.pooled,
         ]  # fmt: skip
         state: dict[str, NDArray[Any]] = {"numbers": np.array(numbers, np.int64)}
         for depth, (ring, sums) in enumerate(self._levels):
@@ -277,7 +308,7 @@ class MultipleTau:
             blocks=len(state["sums_0"]),
             pooled=pooled,
         )
-        correlator.count, correlator.block_length = count, block_length
+        correlator._count, correlator.block_length = count, block_length
         correlator._levels = []
         while f"ring_{len(correlator._levels)}" in state:
             depth = len(correlator._levels)
@@ -285,6 +316,18 @@ class MultipleTau:
             sums = np.array(state[f"sums_{depth}"], np.float64, order="C")
             correlator._levels.append(_Level(ring, sums))
         return correlator
+
+
+def _joined(found: list[Products]) -> Products:
+    """The blocks of several series one after the other; lags that one has not reached are empty."""
+    longest = max(found, key=lambda products: len(products.lag)).lag
+    sums, counts = [], []
+    for products in found:
+        lacking = len(longest) - len(products.lag)
+        rest = [(0, 0)] * (products.sums.ndim - 2)
+        sums.append(np.pad(products.sums, [(0, 0), (0, lacking), *rest]))
+        counts.append(np.pad(products.counts, [(0, 0), (0, lacking)]))
+    return Products(longest, np.concatenate(sums), np.concatenate(counts))
 
 
 def _axes(average_over: int | tuple[int, ...] | None, ndim: int) -> tuple[int, ...]:

@@ -1,6 +1,7 @@
 """Power spectrum of a time series, and the frequency at which it oscillates, with error bars."""
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -109,6 +110,34 @@ def dominant_frequency(series: ArrayLike, interval: float) -> Frequency | None:
     scale = 2 * np.pi * length * interval
     error = plateau_error(aligned.imag / aligned.real.sum(), np.ones(len(steps))) / scale
     return Frequency(first + float(turn) / scale, float(error), contrast)
+
+
+def mean_spectrum(found: Sequence[Spectrum]) -> Spectrum:
+    """Mean of the spectra of independent series of equal length.
+
+    >>> one, other = Spectrum(*np.ones((3, 2))), Spectrum(np.ones(2), 3 * np.ones(2), np.ones(2))
+    >>> mean_spectrum([one, other]).power
+    array([2., 2.])
+    """
+    power = np.mean([one.power for one in found], axis=0)
+    error = np.sqrt(np.sum([one.error**2 for one in found], axis=0)) / len(found)
+    return Spectrum(found[0].frequency, power, error)
+
+
+def mean_frequency(found: Sequence[Frequency | None]) -> Frequency | None:
+    """Mean over the independent series that have a clear oscillation, None if none has.
+
+    >>> mean_frequency([Frequency(1.0, 0.3, 9.0), None, Frequency(2.0, 0.4, 5.0)])
+    Frequency(value=1.5, error=0.25, contrast=5.0)
+    """
+    clear = [one for one in found if one is not None]
+    if not clear:
+        return None
+    return Frequency(
+        float(np.mean([one.value for one in clear])),
+        float(np.sqrt(np.sum([one.error**2 for one in clear]))) / len(clear),
+        min(one.contrast for one in clear),
+    )
 
 
 def _background(power: NDArray[np.float64]) -> NDArray[np.float64]:

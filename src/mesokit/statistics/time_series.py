@@ -32,7 +32,8 @@ class TimeSeries:
         self._rows = np.zeros((rows, 1 + width))  # time first
         self._full = 0  # rows that are complete
         self._partial = 0  # samples in the row being filled
-        self.stride = 1
+        self._stride = 1  # samples in a row
+        self._others: list[TimeSeries] = []  # pooled with it
 
     def add(self, time: float, values: ArrayLike) -> None:
         """Add one row; raises ValueError for another number of values."""
@@ -40,28 +41,59 @@ class TimeSeries:
             self._full //= 2
             self._rows[: self._full] = (self._rows[0::2] + self._rows[1::2]) / 2
             self._rows[self._full :] = 0
-            self.stride *= 2
+            self._stride *= 2
         row = self._rows[self._full]
         row[0] += time
         row[1:] += values
         self._partial += 1
-        if self._partial == self.stride:
-            row /= self.stride
+        if self._partial == self._stride:
+            row /= self._stride
             self._full += 1
             self._partial = 0
 
+    def pool(self, other: "TimeSeries") -> None:
+        """Take in another, independent series that began at the same time: `time` and `values` are
+        then the mean of both, as far as the shorter one goes.
+
+        >>> one, other = TimeSeries(1), TimeSeries(1)
+        >>> one.add(0, [1]), one.add(1, [2]), other.add(0, [3])
+        (None, None, None)
+        >>> one.pool(other)
+        >>> one.time(), one.values()
+        (array([0.]), array([[2.]]))
+        """
+        self._others.append(other)
+
+    @property
+    def stride(self) -> int:
+        """Samples that a row is the mean of."""
+        return max(series._stride for series in (self, *self._others))
+
     def time(self) -> NDArray[np.float64]:
         """Mean time of each complete row, (n,)."""
-        return self._rows[: self._full, 0].copy()
+        return self._pooled()[:, 0]
 
     def values(self) -> NDArray[np.float64]:
         """The complete rows, oldest first, (n, width)."""
-        return self._rows[: self._full, 1:].copy()
+        return self._pooled()[:, 1:]
+
+    def _pooled(self) -> NDArray[np.float64]:
+        """The mean of all series."""
+        if not self._others:
+            return self._rows[: self._full].copy()
+        all_rows = [series._coarse(self.stride) for series in (self, *self._others)]
+        shortest = min(map(len, all_rows))
+        return np.asarray(np.mean([rows[:shortest] for rows in all_rows], axis=0))
+
+    def _coarse(self, stride: int) -> NDArray[np.float64]:
+        """Complete rows that are means over `stride` samples, a power of two times its own."""
+        rows, many = self._rows[: self._full], stride // self._stride
+        return rows[: len(rows) // many * many].reshape(-1, many, rows.shape[1]).mean(axis=1)
 
     def state(self) -> dict[str, NDArray[Any]]:
         """Everything that `from_state` needs to go on with the same bits, as arrays."""
         used = self._full + (self._partial > 0)
-        counts = [len(self._rows), self._full, self._partial, self.stride]
+        counts = [len(self._rows), self._full, self._partial, self._stride]
         return {"rows": self._rows[:used].copy(), "counts": np.array(counts, np.int64)}
 
     @classmethod
@@ -76,5 +108,5 @@ class TimeSeries:
         rows, full, partial, stride = (int(number) for number in state["counts"])
         series = cls(state["rows"].shape[1] - 1, rows)
         series._rows[: len(state["rows"])] = state["rows"]
-        series._full, series._partial, series.stride = full, partial, stride
+        series._full, series._partial, series._stride = full, partial, stride
         return series

@@ -109,6 +109,11 @@ class ModesAccumulator(ABC):
             for i, shell in enumerate(self.shells)
         ]
 
+    def pool(self, other: ModesAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        for own, others in zip(self.shells, other.shells, strict=True):
+            own.correlator.pool(others.correlator)
+
     @property
     def wavenumbers(self) -> Array:
         """Lengths of the wave vectors, (shells,)."""

@@ -35,7 +35,8 @@ class Origins:
     def __init__(self, particles: int, dimension: int, max_lag: int, groups: int = GROUPS) -> None:
         self.groups = min(groups, particles)
         self.particles = particles // self.groups * self.groups
-        self.max_lag, self.count, levels = max_lag, 0, 1
+        self.max_lag, self.added, levels = max_lag, 0, 1
+        self.others: list[Origins] = []  # pooled with it
         while POINTS // 2 << levels <= max_lag:
             levels += 1
         self.memory = np.zeros((levels, POINTS, self.particles, dimension))
@@ -58,7 +59,7 @@ class Origins:
         index = 1
         for level in range(len(self.memory)):
             first = POINTS // 2 if level else 1
-            number, rest = divmod(self.count, 1 << level)
+            number, rest = divmod(self.added, 1 << level)
             for j in range(first, POINTS):
                 if j << level > self.max_lag:
                     break
@@ -68,22 +69,43 @@ class Origins:
                 index += 1
             if rest == 0:
                 self.memory[level, number % POINTS] = sample
-        self.count += 1
+        self.added += 1
 
     def _average(self, index: int, values: Array) -> None:
         self.sums[index] += values.reshape(-1, self.groups).mean(axis=0)
         self.counts[index] += 1
 
+    @property
+    def count(self) -> int:
+        """Samples so far, those pooled included."""
+        return self.added + sum(other.added for other in self.others)
+
+    def pool(self, other: Origins) -> None:
+        """Take in the groups of another, independent system of the same kind: only to read.
+
+        Raises ValueError for other lags.
+        """
+        if not np.array_equal(other.lags, self.lags):
+            raise ValueError("cannot pool averages over other lags")
+        self.others.append(other)
+
     def sampled(self) -> NDArray[np.int64]:
-        """The lags that have been reached."""
-        return self.lags[self.counts > 0]
+        """The lags that all have reached."""
+        return self.lags[self._reached()]
+
+    def _reached(self) -> NDArray[np.bool_]:
+        return np.all([one.counts > 0 for one in (self, *self.others)], axis=0)
 
     def estimate(self) -> Estimate:
         """Value at each lag that has been reached, with the groups in place of blocks of time."""
-        reached = self.counts > 0
-        means = (self.sums[reached] / self.counts[reached, None]).T
-        value = means.mean(axis=0)
-        return Estimate(value, (means - value) / self.groups, np.ones(self.groups))
+        reached = self._reached()
+        systems = (self, *self.others)
+        means = np.concatenate([(o.sums[reached] / o.counts[reached, None]).T for o in systems])
+        # what a group counts for: products that its mean is over, relative to those of all
+        weights = np.concatenate([np.tile(o.counts[reached], (o.groups, 1)) for o in systems])
+        share = weights / weights.mean(axis=0)
+        value = (means * share).mean(axis=0)
+        return Estimate(value, (means - value) * share / len(means), share)
 
     def state(self) -> State:
         """All it has to remember."""
@@ -91,11 +113,11 @@ class Origins:
             "memory": self.memory,
             "sums": self.sums.copy(),
             "counts": self.counts.copy(),
-            "count": np.array(self.count),
+            "count": np.array(self.added),
         }
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Go on from `state()`."""
         self.memory[:] = state["memory"]
         self.sums[:], self.counts[:] = state["sums"], state["counts"]
-        self.count = int(state["count"])
+        self.added = int(state["count"])

@@ -33,6 +33,9 @@ class Accumulator(Protocol):
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Go on from `state()`."""
 
+    def pool(self, other: Any) -> None:
+        """Take in the samples of an independent run of the same case: only to read from then on."""
+
     def result(self) -> Result:
         """What the samples so far say."""
 
@@ -104,3 +107,7 @@ class BlockAccumulator(ABC):
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Go on from `state()`."""
         self.blocks = Blocks.from_state(unpack(state, "blocks"))
+
+    def pool(self, other: BlockAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.blocks.pool(other.blocks)

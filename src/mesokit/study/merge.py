@@ -1,0 +1,149 @@
+"""Runs of one case as one: their samples are pooled, not their results.
+
+The blocks of time of all runs are put in a row, so that ratios and fits are those of all samples,
+and error bars see both what is correlated within a run and how runs scatter.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mesokit.case.component import show
+from mesokit.errors import RunError
+from mesokit.io import h5md
+from mesokit.io.measured import measured
+from mesokit.io.open import RunFiles
+from mesokit.io.run_directory import RunDirectory, now, provenance
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.observe.shared.result import Result
+
+MAY_DIFFER = ("run.seed", "run.steps", "run.checkpoint_minutes", "run.checkpoint_every", "title")
+
+
+def merge(runs: Sequence[str | Path], output: str | Path) -> RunFiles:
+    """Pool the observables of runs of one case into a new folder, which opens as a run does.
+
+    Parameters
+    ----------
+    runs: folders of runs whose cases differ in their seeds, and at most in how long they are. One
+        that has not ended counts up to its last checkpoint.
+    output: folder to write to: results, figures, the case (of the first run) and where all came from.
+
+    Raises RunError for runs of different cases, with the first key that differs, for the same seed
+    twice, for observables that cannot be pooled, or if a folder holds no run or checkpoint.
+
+    >>> import tempfile
+    >>> from mesokit import Box, Case, Conservation, Run, Simulation
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> for seed in (1, 2):
+    ...     run = Run(steps=20, seed=seed)
+    ...     case = Case(run=run, box=Box([8, 8]), observe=[Conservation(every=5)])
+    ...     Simulation(case, output=folder / f"{seed}").run()
+    >>> merge([folder / "1", folder / "2"], folder / "both")["conservation"].samples
+    10
+    """
+    if len(runs) < 2:
+        raise RunError(f"merge: {len(runs)} run: expected two or more")
+    files = [RunFiles(run) for run in runs]
+    _require_alike(files)
+    pooled, steps = measured(files[0].directory, files[0].case)
+    record = [_record(files[0], steps)]
+    for each in files[1:]:
+        more, steps = measured(each.directory, each.case)
+        for name, accumulator in pooled.items():
+            _pool(name, accumulator, more[name])
+        record.append(_record(each, steps))
+    results = [accumulator.result() for accumulator in pooled.values()]
+    return _write(files[0].case, results, record, output)
+
+
+def _write(
+    case: Case, results: Sequence[Result], record: list[dict[str, Any]], output: str | Path
+) -> RunFiles:
+    from mesokit.report import save_all
+
+    directory = RunDirectory.create(output, case)
+    kept = provenance(case, threads=0) | {"merged": record, "ended": now()}
+    h5md.write(directory.data_file, case, kept, results)
+    directory.write_provenance(kept)
+    save_all(results, directory.path, case)
+    return RunFiles(directory.path)
+
+
+def _record(files: RunFiles, step: int) -> dict[str, Any]:
+    """What is kept of one of the runs."""
+    return {"run": str(files.path.resolve()), "seed": files.case.run.seed, "step": step}
+
+
+def _pool(name: str, accumulator: Any, other: Any) -> None:
+    if not hasattr(accumulator, "pool"):
+        raise RunError(
+            f"observable {show(name)}: its runs cannot be pooled; {type(accumulator).__name__} has "
+            "no method pool"
+        )
+    try:
+        accumulator.pool(other)
+    except ValueError as error:
+        raise RunError(f"observable {show(name)}: {error}") from None
+
+
+def _require_alike(files: Sequence[RunFiles]) -> None:
+    """Raise RunError unless all runs are of one case, each with a seed of its own."""
+    first, seeds = files[0], {}
+    for each in files:
+        if "merged" in each.provenance:
+            raise RunError(f"{each.path}: holds merged runs; name those that it is made of")
+        key = different_key(_text(first), _text(each))
+        if key is not None:
+            here, there = (_flat(_text(files)).get(key) for files in (first, each))
+            raise RunError(
+                f"{each.path}: another case than {first.path}: {key} = {show(there)}, "
+                f"not {show(here)}"
+            )
+        seed = each.case.run.seed
+        if seed in seeds:
+            raise RunError(
+                f"{each.path}: run.seed = {seed}, as in {seeds[seed]}: the same run would count twice"
+            )
+        seeds[seed] = each.path
+
+
+def different_key(one: str, other: str) -> str | None:
+    """The first key, but for seed and length, in which two cases differ; None if there is none.
+
+    >>> different_key("[run]\\nseed = 1\\n[fluid]\\nkT = 1.0", "[run]\\nseed = 2\\n[fluid]\\nkT = 2.0")
+    'fluid.kT'
+    """
+    here, there = _flat(one), _flat(other)
+    for key in [*here, *(key for key in there if key not in here)]:
+        if key not in MAY_DIFFER and here.get(key) != there.get(key):
+            return key
+    return None
+
+
+def _text(files: RunFiles) -> str:
+    """The case of a run; files that it keeps in its folder are named without it."""
+    return files.case.to_toml(files.path)
+
+
+def _flat(text: str) -> dict[str, Any]:
+    """The values of a case by their key paths."""
+    found: dict[str, Any] = {}
+
+    def walk(path: str, value: Any) -> None:
+        if isinstance(value, Mapping):
+            for key, inner in value.items():
+                walk(f"{path}.{key}" if path else key, inner)
+        elif isinstance(value, list) and value and isinstance(value[0], Mapping):
+            for number, inner in enumerate(value, 1):
+                walk(f"{path}.{number}", inner)
+        else:
+            found[path] = value
+
+    walk("", tomllib.loads(text))
+    return found
