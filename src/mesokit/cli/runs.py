@@ -142,7 +142,8 @@ def _files_of_run(output: Path) -> list[Path]:
     with contextlib.suppress(CaseError):
         figures = [run.figure_file(o.label) for o in Case.from_toml(run.case_file).observe]
     figures += [run.flow_file(kind, end) for kind in KINDS for end in (".png", ".mp4")]
-    files = [run.data_file, run.checkpoint_file, run.log_file, run.provenance_file]
+    files = [run.data_file, run.checkpoint_file, run.log_file, run.report_file]
+    files += [run.provenance_file]
     solids = output.glob(run.wall_file("*").name)
     files += [run.trajectory_folder, run.trajectory_remains, run.case_file]
     return [*figures, *output.glob(".*.tmp"), *solids, *files]

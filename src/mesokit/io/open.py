@@ -72,6 +72,21 @@ class RunFiles:
             raise KeyError(f"no result {name!r}; there are {', '.join(self.results) or 'none'}")
         return self.results[name]
 
+    @property
+    def ended(self) -> bool:
+        """Whether the run has come to its end, and has results."""
+        return self.directory.data_file.exists()
+
+    def report(self, path: str | Path | None = None, films: bool = False) -> Path:
+        """Write one HTML file with all of the run: see `mesokit.report.document.write_report`.
+
+        `files.report()` writes `report.html` into the folder of the run; `films` puts small films
+        into it. Raises RunError if it cannot be written.
+        """
+        from mesokit.report.document import write_report
+
+        return write_report(self, path, films)
+
     def plot(self, folder: str | Path | None = None) -> list[Path]:
         """Draw every result into the folder (that of the run unless said)."""
         from mesokit.report import save_all
@@ -109,7 +124,7 @@ class RunFiles:
 
     def _data(self) -> Path:
         if not self.directory.data_file.exists():
-            raise RunError(f"{self.path}: the run {self._state()}")
+            raise RunError(f"{self.path}: the run {self.state}")
         return self.directory.data_file
 
     @contextlib.contextmanager
@@ -130,8 +145,9 @@ class RunFiles:
             return f"put a copy in its place, or run anew: {self.directory.again}"
         return f"mesokit resume {self.path} writes it again"
 
-    def _state(self) -> str:
-        """How far a run has come that has no results yet."""
+    @property
+    def state(self) -> str:
+        """How far a run has come that has no results yet, and how to go on."""
         failed, file = None, self.directory.checkpoint_file
         with contextlib.suppress(RunError):  # to go on, a damaged record does not matter
             failed = self.provenance.get("failed")
@@ -155,8 +171,8 @@ class RunFiles:
         lines = [f"mesokit run {self.path}", f"  {self.case.title or 'untitled'}"]
         if self.case.units is not None:
             lines.append("  " + str(self.si).replace("\n", "\n  "))
-        if not self.directory.data_file.exists():
-            return "\n".join([*lines, f"  {self._state()}"])
+        if not self.ended:
+            return "\n".join([*lines, f"  {self.state}"])
         lines += ["  " + repr(result).replace("\n", "\n  ") for result in self.results.values()]
         if self.trajectory is not None:
             lines.append(f"  {self.trajectory!r}")

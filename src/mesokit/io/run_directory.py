@@ -57,6 +57,11 @@ class RunDirectory:
         """What the run said."""
         return self.path / "log.txt"
 
+    @property
+    def report_file(self) -> Path:
+        """All of the run for people, where they name no other."""
+        return self.path / "report.html"
+
     def wall_file(self, number: int | str) -> Path:
         """Distances from a solid that was read from a file, by the number of its wall."""
         return self.path / f"wall-{number}.npy"
