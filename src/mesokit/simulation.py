@@ -28,6 +28,7 @@ from mesokit.method.protocol import method_of
 from mesokit.report.progress import Reporter
 from mesokit.running.callbacks import Callback, Callbacks
 from mesokit.running.cores import usable_cores
+from mesokit.running.log import RunLog
 from mesokit.running.signals import Stopped, catching
 
 if TYPE_CHECKING:
@@ -139,6 +140,7 @@ class Simulation:
             require_frames(directory, self.case, self.step)
             self.writer.resume(self.step)
         self.callbacks.resume(self.step)
+        self.log.resume(self.step)
         record = self._earlier_record(directory) or provenance(self.case, self.threads)
         resumed = [*record.get("resumed", []), now()]
         self._save_provenance(record | {"resumed": resumed, "failed": None})
@@ -150,6 +152,8 @@ class Simulation:
         self.accumulators: dict[str, Accumulator] = {
             observable.label: observable.accumulator(self.case) for observable in self.case.observe
         }
+        self.log = RunLog(self.case)
+        self.callbacks.given[:0] = self.log.callbacks()  # first: others may write a checkpoint
         self.writer: TrajectoryWriter | None = None
         self.last_step = self.case.run.warmup + self.case.run.steps
         self._observe_seconds = dict.fromkeys(self.accumulators, 0.0)
@@ -158,6 +162,7 @@ class Simulation:
 
     def _attach(self, directory: RunDirectory) -> None:
         self.directory = directory
+        self.log.write_to(directory.log_file)
         if self.case.trajectory is not None:
             folder = directory.trajectory_folder
             number, first = written(self.case.trajectory, self.case.groups)
@@ -209,6 +214,7 @@ class Simulation:
         checkpoint where there is a folder; `resume`, or `run` again in the same process, goes on.
         """
         progress = progress or Reporter(quiet=True)
+        self.log.tell = progress.tell
         particles = sum(group.number for group in self.case.groups)
         progress.start(self.last_step, particles, "running", self.step)
         self._stopped_by = None
@@ -331,6 +337,7 @@ class Simulation:
             raise RunError("no checkpoint without an output folder")
         if self.writer is not None:
             self.writer.flush()
+        self.log.sync()
         arrays = {f"engine/{key}": value for key, value in self.engine.state().items()}
         for name, accumulator in self.accumulators.items():
             arrays |= {f"observe/{name}/{key}": v for key, v in accumulator.state().items()}

@@ -35,7 +35,9 @@ ROWS = {
     ),
     "running/cores.py": (),
     "running/signals.py": (),
-    "running/": ("case", "errors", "io", "method.protocol", "report", "running"),
+    "running/": (
+        "case", "errors", "io", "method.protocol", "observe.shared", "report", "running",
+    ),
     "scalar/": ("scalar",),
     "theory/": ("theory",),
     "statistics/": ("statistics",),
@@ -45,6 +47,7 @@ ROWS = {
     "method/__init__.py": (),
     "method/protocol.py": ("case", "engine", "=method"),
     "method/mpcd/": MPCD,
+    "method/mpcd/columns.py": (*MPCD, "method.protocol"),
     "method/mpcd/summary.py": (*MPCD, "method.protocol"),
     "method/mpcd/start/": START,
     "method/mpcd/start/first_state.py": (*MPCD, "execute", "io"),

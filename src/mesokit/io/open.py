@@ -8,9 +8,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from numpy.typing import NDArray
+
 from mesokit.case.component import require_known, show
 from mesokit.errors import CaseError, RunError
-from mesokit.io import checkpoint, h5md
+from mesokit.io import checkpoint, h5md, log_file
 from mesokit.io.frames import require_frames
 from mesokit.io.run_directory import RunDirectory
 from mesokit.io.trajectory_reader import TrajectoryReader
@@ -25,8 +27,8 @@ if TYPE_CHECKING:
 class RunFiles:
     """What a run has written, read when asked for.
 
-    `files["velocity-profile"]` is a result; `case`, `provenance`, `results`, `trajectory` and `si`
-    are the rest. Raises RunError where a file is missing or damaged.
+    `files["velocity-profile"]` is a result; `case`, `provenance`, `results`, `trajectory`, `log`
+    and `si` are the rest. Raises RunError where a file is missing or damaged.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -58,6 +60,17 @@ class RunFiles:
         if convert is None:
             raise CaseError(f"units: method {show(self.case.run.method)} does not know them in SI")
         return convert(self.case)
+
+    @property
+    def log(self) -> NDArray[Any]:
+        """Numbers in time, as `files.log["temperature"]`; also while the run goes on.
+
+        A structured array with a field for each column: `pandas.DataFrame(files.log)` is a table.
+        Raises RunError if the case asks for none.
+        """
+        if self.case.log is None:
+            raise RunError(f"{self.path}: the case has no [log]")
+        return log_file.read(self.directory.log_file)
 
     @cached_property
     def trajectory(self) -> TrajectoryReader | None:

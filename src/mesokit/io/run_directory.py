@@ -54,8 +54,8 @@ class RunDirectory:
 
     @property
     def log_file(self) -> Path:
-        """What the run said."""
-        return self.path / "log.txt"
+        """Numbers in time."""
+        return self.path / "log.csv"
 
     @property
     def report_file(self) -> Path:

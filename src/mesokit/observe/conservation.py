@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mesokit.case.box import AXES
 from mesokit.case.component import component, tag
 from mesokit.engine import RunningFluid
+from mesokit.method.mpcd.columns import forgets, temperature
 from mesokit.method.mpcd.expected import setting
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Array, Comparison, Result
@@ -58,9 +59,9 @@ class ConservationAccumulator:
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         number, momentum, energy = fluid.totals()
-        temperature = self._temperature(number, momentum, energy)
+        warmth = temperature(self.case, number, momentum, energy)
         bound = [fluid.potential_energy()] if self.bonded else []
-        sample = np.array([number, *momentum, *bound, energy, temperature])
+        sample = np.array([number, *momentum, *bound, energy, warmth])
         kept, stride, samples = self.counts
         if samples == 0:
             self.first = sample
@@ -77,19 +78,6 @@ class ConservationAccumulator:
                 self.rows[kept] = [fluid.step, fluid.time, *sample]
                 kept += 1
         self.counts = np.array([kept, stride, samples + 1])
-
-    def _temperature(self, number: int, momentum: Array, energy: float) -> float:
-        """Twice the energy per degree of freedom; a free fluid cannot move as a whole."""
-        if number == 0:
-            return np.nan
-        solutes = self.case.solutes
-        if self.case.walls or self.forgets():
-            return 2 * energy / (self.dimension * number)
-        total_mass = number * self.case.fluid.mass
-        if solutes is not None:
-            total_mass += solutes.beads * (solutes.mass - self.case.fluid.mass)
-        about_mean = 2 * energy - float(momentum @ momentum) / total_mass
-        return about_mean / (self.dimension * max(number - 1, 1))
 
     def state(self) -> State:
         """All it has to remember."""
@@ -139,7 +127,7 @@ class ConservationAccumulator:
 
     def forgets(self) -> bool:
         """Whether the solvent takes momentum and energy, and forgets them."""
-        return self.case.solutes is not None and self.case.solutes.solvent == "random"
+        return forgets(self.case)
 
     def conserves_momentum(self) -> bool:
         """Nothing outside acts on the fluid."""
