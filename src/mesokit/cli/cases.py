@@ -12,11 +12,13 @@ from mesokit.cli.words import patience, show_table
 from mesokit.errors import CaseError
 
 TEMPLATES = methods.templates()
+SCHEMA = "case.schema.json"
 
 
 @cli.command(
     help="Write a commented case NAME.toml: "
-    f"{', '.join(TEMPLATES)}.\n\nWith another NAME, say which --template."
+    f"{', '.join(TEMPLATES)}.\n\nWith another NAME, say which --template. Beside it comes "
+    f"{SCHEMA}, by which editors complete and check all cases of the folder."
 )
 @click.argument("name")
 @click.option("--template", type=click.Choice(list(TEMPLATES)), help="What to start from.")
@@ -35,10 +37,16 @@ def new(name: str, template: str | None) -> None:
     text = text.replace(f"{template}.toml", path.name).replace(f"{template}/", f"{path.stem}/")
     try:
         with open(path, "x", encoding="utf-8") as file:
-            file.write(text)
+            file.write(f"#:schema ./{SCHEMA}\n{text}")
     except FileExistsError:
         raise CaseError(f"{path}: exists already; remove it, or choose another name") from None
-    click.echo(f"wrote {path}; next: mesokit check {path}, mesokit run {path}")
+    from mesokit.case.describe.schema import schema_text
+    from mesokit.io.atomic import write_text
+
+    write_text(path.with_name(SCHEMA), schema_text())  # for the parts that are installed now
+    click.echo(
+        f"wrote {path} (and {SCHEMA}, for editors); next: mesokit check {path}, mesokit run {path}"
+    )
 
 
 @cli.command()
