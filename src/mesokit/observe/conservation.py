@@ -114,7 +114,7 @@ class ConservationAccumulator:
             error=np.full(value.shape, np.nan),
             label="conserved quantities",
             units={"value": ""} | units,
-            expected=self._expected(value),
+            expected=self._expected(value, rows[:, 1]),
             theory="kT of the case, conservation",
             comparisons=tuple(self._comparisons()),
             samples=int(self.counts[2]),
@@ -122,6 +122,8 @@ class ConservationAccumulator:
                 "step": rows[:, 0].copy(),
                 "mean": self.blocks.mean(),
                 "mean_error": self.blocks.error(),
+                "conserves_momentum": int(self.conserves_momentum()),
+                "driven": int(setting.driven(self.case)),
             },
         )
 
@@ -137,16 +139,31 @@ class ConservationAccumulator:
         """No thermostat, and no work is done."""
         return self.conserves_momentum() and not setting.isothermal(self.case)
 
-    def _expected(self, value: Array) -> Array:
+    def _expected(self, value: Array, time: Array) -> Array:
         expected = np.full(value.shape, np.nan)
         expected[:, 0] = self.first[0]
         if self.conserves_momentum():
             expected[:, 1 : self.dimension + 1] = self.first[1 : self.dimension + 1]
+        elif not self.forgets() and len(time):
+            for axis in range(self.dimension):
+                expected[:, 1 + axis] = self._driven_momentum(axis, time - time[0])
         if self.conserves_energy() and not self.bonded:
             expected[:, -2:] = self.first[-2:]
         elif self._at_rest():
             expected[:, -1] = self.case.fluid.kT
         return expected
+
+    def _driven_momentum(self, axis: int, since: Array) -> Array | float:
+        """Of the steady flow, or of a fluid that nothing holds; nan where there is no theory."""
+        case, flow = self.case, setting.flow(self.case, axis)
+        mass = setting.superficial_mass(case)
+        if flow.kind == "accelerating" and not case.walls:
+            push = float(setting.acceleration(case)[axis])
+            return self.first[1 + axis] + mass * push * since
+        if flow.profile is None or setting.obstructed(case):
+            return np.nan
+        edges = np.linspace(0.0, case.box.size[flow.across], 65)
+        return mass * float(setting.bin_average(flow.profile, edges).mean())
 
     def _at_rest(self) -> bool:
         held = setting.isothermal(self.case) or self.forgets()

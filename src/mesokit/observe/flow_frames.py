@@ -189,8 +189,8 @@ class FlowFramesAccumulator:
 
     def _units(self) -> dict[str, str]:
         return {
-            "density": "1/cell",
-            "mass_density": "m/cell",
+            "density": self.case.box.density_unit,
+            "mass_density": self.case.box.density_unit.replace("1", "m"),
             **{name: "a/tau" for name in self.parts if name.startswith("velocity")},
         }
 
