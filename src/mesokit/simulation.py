@@ -14,10 +14,12 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from mesokit import method as methods
+from mesokit.case import toml
 from mesokit.case.case import Case, method_named
 from mesokit.case.component import nearest, require_known, show
 from mesokit.case.kind import note_run
 from mesokit.case.outside import blaming
+from mesokit.case.shown import Shown
 from mesokit.case.trajectory import written
 from mesokit.errors import CaseError, CheckpointError, RunError
 from mesokit.io import checkpoint, h5md
@@ -41,7 +43,7 @@ MOST_THREADS = 1024
 COMPILE_SECONDS = 0.7  # a first call that takes longer is compiling, not loading
 
 
-class Simulation:
+class Simulation(Shown):
     """A case in memory, ready to run.
 
     Parameters
@@ -184,6 +186,20 @@ class Simulation:
             known = ", ".join(self.accumulators) or "none"
             raise KeyError(f"no observable {name!r}; there are {known}")
         return self.accumulators[name].result()
+
+    def __repr__(self) -> str:
+        where = f", {self.directory.path}" if self.directory is not None else ""
+        title = f" {show(self.case.title)}" if self.case.title else ""
+        return f"<Simulation{title}: step {self.step} of {self.last_step}{where}>"
+
+    def _card(self) -> dict[str, Any]:
+        rows = [(key, text, "") for key, text in toml.given(self.case, method_of(self.case).keys)]
+        return {
+            "title": self.case.title or "simulation",
+            "words": f"step {self.step} of {self.last_step}",
+            "rows": rows,
+            "results": self.results.values() if self.step > self.case.run.warmup else (),
+        }
 
     @property
     def results(self) -> dict[str, Result]:

@@ -15,6 +15,7 @@ from mesokit.case.component import build, component, known_keys, nearest, param,
 from mesokit.case.log import Log
 from mesokit.case.registry import FAMILIES
 from mesokit.case.run import Run
+from mesokit.case.shown import Shown
 from mesokit.case.trajectory import Group, Trajectory
 from mesokit.case.units import Units
 from mesokit.errors import CaseError
@@ -36,7 +37,7 @@ FIELDS: dict[str, Any] = {
 }  # fmt: skip
 
 
-class Case:
+class Case(Shown):
     """Everything that defines a run.
 
     Beside `run`, `box`, `observe`, `trajectory`, `log`, `units` and `title` it has the sections of
@@ -91,6 +92,11 @@ class Case:
         checks.check(self, method.name, method.observables, self.groups)
         if self.log is not None:
             checks.log(self, method.log(self).names)
+
+    def _card(self) -> dict[str, Any]:
+        rows = [(key, text, "") for key, text in toml.given(self, self._method.keys)]
+        words, text = self.title, self.to_toml()
+        return {"title": "case", "words": words, "rows": rows, "text": text, "fold": "all defaults"}
 
     def __reduce__(self) -> Any:
         return _again, ({name: getattr(self, name) for name in type(self)._fields()},)

@@ -7,8 +7,8 @@ from pathlib import Path
 import click
 
 from mesokit import method as methods
-from mesokit.cli.commands import CASE, SET, THREADS, cli, naming, read
-from mesokit.cli.words import patience, show_table
+from mesokit.cli.commands import CASE, JSON, SET, THREADS, cli, naming, read
+from mesokit.cli.words import in_json, patience, show_table
 from mesokit.errors import CaseError
 
 TEMPLATES = methods.templates()
@@ -53,7 +53,8 @@ def new(name: str, template: str | None) -> None:
 @click.argument("case", type=CASE)
 @SET
 @THREADS
-def check(case: Path, settings: dict[str, str], threads: int | None) -> None:
+@JSON
+def check(case: Path, settings: dict[str, str], threads: int | None, as_json: bool) -> None:
     """Check CASE, show it with all defaults, what follows from it, and what to mind."""
     from mesokit.case.kind import has_run
     from mesokit.method.protocol import method_of
@@ -64,6 +65,11 @@ def check(case: Path, settings: dict[str, str], threads: int | None) -> None:
         with naming(case):
             method.first_state(full, {})
         summary = method.summary(full, threads)
+    if as_json:
+        from mesokit.case import toml
+
+        click.echo(in_json({"case": toml.parse(full.to_toml())} | summary.record()))
+        return
     click.echo(full.to_toml())
     ahead = [("first start", "up to a minute", "compiling, once for each kind of case")]
     show_table([*summary.rows, *([] if has_run(full) else ahead)])

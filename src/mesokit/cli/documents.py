@@ -1,4 +1,4 @@
-"""Commands that write what people read: report."""
+"""Commands that write what people read and other programs take: report, table."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from mesokit.cli.commands import RUN, cli, require_run
+from mesokit.errors import CaseError
 
 FILE = click.Path(dir_okay=False, path_type=Path)
 
@@ -21,3 +22,26 @@ def report(run: Path, output: Path | None, films: bool) -> None:
 
     require_run(run)
     click.echo(mesokit.open(run).report(output, films))
+
+
+@cli.command()
+@click.argument("run", type=RUN)
+@click.option("--result", metavar="NAME", help="All values of this result; else all comparisons.")
+@click.option("--output", type=FILE, required=True, help="The CSV file.")
+def table(run: Path, result: str | None, output: Path) -> None:
+    """Write the comparisons of RUN, or the values of one result, as a CSV file."""
+    import mesokit
+
+    require_run(run)
+    files = mesokit.open(run)
+    if result is None:
+        click.echo(files.to_csv(output))
+        return
+    if result not in files:
+        from mesokit.case.component import nearest
+
+        known = ", ".join(files) or "none"
+        raise CaseError(
+            f"--result {result}: no such result; there are {known}{nearest(result, files)}"
+        )
+    click.echo(files[result].to_csv(output))

@@ -10,8 +10,18 @@ from pathlib import Path
 
 import click
 
-from mesokit.cli.commands import CASE, RUN, SET, THREADS, cli, naming, read, require_run
-from mesokit.cli.words import patience, reason, say
+from mesokit.cli.commands import (
+    CASE,
+    JSON,
+    RUN,
+    SET,
+    THREADS,
+    cli,
+    naming,
+    read,
+    require_run,
+)
+from mesokit.cli.words import in_json, patience, reason, say
 from mesokit.errors import CaseError, RunError
 from mesokit.running.signals import Stopped
 
@@ -85,12 +95,14 @@ def resume(run: Path, threads: int | None, quiet: bool) -> None:
 
 @cli.command()
 @click.argument("run", type=RUN)
-def info(run: Path) -> None:
+@JSON
+def info(run: Path, as_json: bool) -> None:
     """Show what is in the files of RUN."""
     import mesokit
 
     require_run(run)
-    click.echo(mesokit.open(run))
+    files = mesokit.open(run)
+    click.echo(in_json(files.record()) if as_json else files)
 
 
 @cli.command()

@@ -3,32 +3,36 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
+from mesokit.case import toml
 from mesokit.case.component import require_known, show
+from mesokit.case.shown import Shown
 from mesokit.errors import CaseError, RunError
-from mesokit.io import checkpoint, h5md, log_file
+from mesokit.io import checkpoint, h5md, log_file, tables
 from mesokit.io.frames import require_frames
 from mesokit.io.run_directory import RunDirectory
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.method.protocol import method_of
+from mesokit.observe.shared.named import keyed
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.observe.shared.result import Result
+    from mesokit.observe.shared.result import Comparison, Result
     from mesokit.report.flow import Film
 
 
-class RunFiles:
-    """What a run has written, read when asked for.
+class RunFiles(Shown, Mapping[str, "Result"]):
+    """What a run has written, read when asked for: a mapping of its results by name.
 
-    `files["velocity-profile"]` is a result; `case`, `provenance`, `results`, `trajectory`, `log`
-    and `si` are the rest. Raises RunError where a file is missing or damaged.
+    `files["velocity-profile"]` is a result, `list(files)` their names; `case`, `provenance`,
+    `results`, `trajectory`, `log` and `si` are the rest. Raises RunError where a file is missing
+    or damaged.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -84,6 +88,63 @@ class RunFiles:
         if name not in self.results:
             raise KeyError(f"no result {name!r}; there are {', '.join(self.results) or 'none'}")
         return self.results[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Names of the results."""
+        return iter(self.results)
+
+    def __len__(self) -> int:
+        """Number of results."""
+        return len(self.results)
+
+    def __bool__(self) -> bool:
+        """There is a run, whether it has results or not."""
+        return True
+
+    __eq__ = object.__eq__  # two runs are not equal because their results are
+    __hash__ = object.__hash__
+
+    def comparisons(self) -> dict[str, Comparison]:
+        """All comparisons of the run, by `result.key`: `velocity-profile.slip-at-the-walls`."""
+        return {
+            f"{name}.{key}": comparison
+            for name, result in self.results.items()
+            for key, comparison in keyed(result.comparisons).items()
+        }
+
+    def to_dataframe(self) -> Any:
+        """All comparisons as a pandas.DataFrame, a row for each.
+
+        Raises CaseError without `pip install 'mesokit[tables]'`.
+        """
+        return tables.rows_dataframe(self.results)
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write all comparisons as a CSV file, a row for each. Raises RunError."""
+        return tables.write_rows(self.results, path)
+
+    def record(self) -> dict[str, Any]:
+        """What `mesokit info --json` prints: plain numbers and texts."""
+        results = self.results if self.ended else {}
+        return {
+            "run": str(self.path),
+            "title": self.case.title,
+            "ended": self.ended,
+            "state": "has ended" if self.ended else self.state,
+            "case": toml.parse(self.case.to_toml()),
+            "provenance": self.provenance,
+            "results": [
+                {
+                    "name": r.name,
+                    "quantity": r.quantity,
+                    "label": r.label,
+                    "samples": r.samples,
+                    "shape": {key: len(axis) for key, axis in r.x.items()},
+                }
+                for r in results.values()
+            ],
+            "comparisons": tables.rows(results),
+        }
 
     @property
     def ended(self) -> bool:
@@ -179,6 +240,18 @@ class RunFiles:
             f"has not ended: {reached}; if it is not running any more, go on with: "
             f"mesokit resume {self.path}"
         )
+
+    def _card(self) -> dict[str, Any]:
+        words = self.case.title if self.ended else f"{self.case.title}: {self.state}"
+        found = self.results.values() if self.ended else ()
+        text = self.case.to_toml()
+        return {
+            "title": f"mesokit run {self.path}",
+            "words": words,
+            "results": found,
+            "text": text,
+            "fold": "the case",
+        }
 
     def __repr__(self) -> str:
         lines = [f"mesokit run {self.path}", f"  {self.case.title or 'untitled'}"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -21,12 +22,23 @@ Row = tuple[str, str, str]  # what, its value, and a word on it
 
 
 class Summary(NamedTuple):
-    """What follows from a case before it runs: a table for `mesokit check`, warnings, and about
-    how many seconds the run takes."""
+    """What follows from a case before it runs: a table for `mesokit check`, warnings, about how
+    many seconds the run takes, and the same as plain numbers by name, for scripts."""
 
     rows: tuple[Row, ...]
     warnings: tuple[str, ...]
     seconds: float
+    numbers: Mapping[str, Any] = MappingProxyType({})
+
+    def record(self) -> dict[str, Any]:
+        """What `mesokit check --json` prints of it."""
+        rows = [{"what": what, "value": value, "note": note} for what, value, note in self.rows]
+        return {
+            "numbers": dict(self.numbers),
+            "rows": rows,
+            "warnings": list(self.warnings),
+            "seconds": self.seconds,
+        }
 
 
 class Columns(NamedTuple):
