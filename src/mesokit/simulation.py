@@ -14,14 +14,16 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from mesokit import method as methods
+from mesokit.case import toml
 from mesokit.case.case import Case, method_named
 from mesokit.case.component import nearest, require_known, show
 from mesokit.case.kind import note_run
 from mesokit.case.outside import blaming
+from mesokit.case.shown import Shown
 from mesokit.case.trajectory import written
 from mesokit.errors import CaseError, CheckpointError, RunError
 from mesokit.io import checkpoint, h5md
-from mesokit.io.frames import require_frames
+from mesokit.io.frames import NONE_YET, require_frames
 from mesokit.io.measured import fitting, restore
 from mesokit.io.run_directory import RunDirectory, now, provenance, recorded_case
 from mesokit.io.trajectory import TrajectoryWriter
@@ -29,6 +31,7 @@ from mesokit.method.protocol import method_of
 from mesokit.report.progress import Reporter
 from mesokit.running.callbacks import Callback, Callbacks
 from mesokit.running.cores import usable_cores
+from mesokit.running.log import RunLog
 from mesokit.running.longer import longer, require_steps
 from mesokit.running.schedule import Schedule
 from mesokit.running.signals import Stopped, catching
@@ -44,7 +47,7 @@ MOST_THREADS = 1024
 COMPILE_SECONDS = 0.7  # a first call that takes longer is compiling, not loading
 
 
-class Simulation:
+class Simulation(Shown):
     """A case in memory, ready to run.
 
     Parameters
@@ -127,6 +130,8 @@ class Simulation:
         where the run comes from is a warning, and begun anew.
         """
         directory = RunDirectory.existing(output)
+        if not directory.checkpoint_file.exists() and "merged" in cls._earlier_record(directory):
+            raise RunError(f"{output}: holds merged runs; go on with those and merge them again")
         if directory.data_file.exists() and not directory.checkpoint_file.exists():
             raise CheckpointError(
                 f"{directory.checkpoint_file}: no such checkpoint, though the run had come to "
@@ -144,13 +149,14 @@ class Simulation:
             method = method_of(self.case)
             method.start(self.engine, method.first_state(self.case, {}))
         if self.writer is not None:
-            require_frames(directory, self.case, self.step)
+            require_frames(directory, self.case, self.step if self._looked else NONE_YET)
             self.writer.resume(self.step)
         if steps is not None:
             self.lengthen(steps)
         if self.step < self.last_step:  # the case may have been made longer by hand
             self._take_back()
         self.callbacks.resume(self.step)
+        self.log.resume(self.step)
         record = self._earlier_record(directory) or provenance(self.case, self.threads)
         resumed = [*record.get("resumed", []), now()]
         self._save_provenance(record | {"resumed": resumed, "failed": None})
@@ -162,6 +168,8 @@ class Simulation:
         self.accumulators: dict[str, Accumulator] = {
             observable.label: observable.accumulator(self.case) for observable in self.case.observe
         }
+        self.log = RunLog(self.case)
+        self.callbacks.given[:0] = self.log.callbacks()  # first: others may write a checkpoint
         self.writer: TrajectoryWriter | None = None
         self.schedule = Schedule(self.case)
         self._looked = False  # whether the state that the run begins with has been sampled
@@ -171,6 +179,7 @@ class Simulation:
 
     def _attach(self, directory: RunDirectory) -> None:
         self.directory = directory
+        self.log.write_to(directory.log_file)
         if self.case.trajectory is not None:
             folder = directory.trajectory_folder
             number, first = written(self.case.trajectory, self.case.groups)
@@ -192,6 +201,20 @@ class Simulation:
             known = ", ".join(self.accumulators) or "none"
             raise KeyError(f"no observable {name!r}; there are {known}")
         return self.accumulators[name].result()
+
+    def __repr__(self) -> str:
+        where = f", {self.directory.path}" if self.directory is not None else ""
+        title = f" {show(self.case.title)}" if self.case.title else ""
+        return f"<Simulation{title}: step {self.step} of {self.last_step}{where}>"
+
+    def _card(self) -> dict[str, Any]:
+        rows = [(key, text, "") for key, text in toml.given(self.case, method_of(self.case).keys)]
+        return {
+            "title": self.case.title or "simulation",
+            "words": f"step {self.step} of {self.last_step}",
+            "rows": rows,
+            "results": self.results.values() if self.step > self.case.run.warmup else (),
+        }
 
     @property
     def results(self) -> dict[str, Result]:
@@ -243,6 +266,7 @@ class Simulation:
             if last > self.last_step:
                 self.lengthen(limit)
         progress = progress or Reporter(quiet=True)
+        self.log.tell = progress.tell
         particles = sum(group.number for group in self.case.groups)
         progress.start(last, particles, "running", self.step)
         self._stopped_by = None
@@ -398,6 +422,7 @@ class Simulation:
             raise RunError("no checkpoint without an output folder")
         if self.writer is not None:
             self.writer.flush()
+        self.log.sync()
         arrays = {f"engine/{key}": value for key, value in self.engine.state().items()}
         for name, accumulator in self.accumulators.items():
             arrays |= {f"observe/{name}/{key}": v for key, v in accumulator.state().items()}

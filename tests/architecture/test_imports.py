@@ -47,6 +47,7 @@ ROWS = {
     "method/__init__.py": (),
     "method/protocol.py": ("case", "engine", "=method"),
     "method/mpcd/": MPCD,
+    "method/mpcd/columns.py": (*MPCD, "method.protocol"),
     "method/mpcd/summary.py": (*MPCD, "method.protocol"),
     "method/mpcd/start/": START,
     "method/mpcd/start/first_state.py": (*MPCD, "execute", "io"),
@@ -60,21 +61,29 @@ ROWS = {
         "case", "engine", "errors", "geometry", "method.mpcd", "method.protocol", "observe",
         "statistics", "theory",
     ),
-    "io/": ("case", "errors", "geometry", "io", "method.protocol", "observe.shared.result"),
+    "io/": (
+        "case", "errors", "geometry", "io", "method.protocol", "observe.shared.named",
+        "observe.shared.result",
+    ),
     "io/open.py": (
-        "case", "errors", "io", "method.protocol", "observe.shared.result", "report",
+        "case", "errors", "io", "method.protocol", "observe.shared.named", "observe.shared.result",
+        "report",
     ),
     "report/": ("case", "errors", "geometry", "io", "method.protocol", "observe", "report"),
+    "study/": (
+        "case", "errors", "io", "method.protocol", "observe.shared", "report", "running", "study",
+        "simulation",
+    ),
     "cli/": (
         "case", "cli", "errors", "io", "=method", "method.protocol", "report", "running",
-        "simulation",
+        "simulation", "study",
     ),
     "cli/theory.py": ("case", "cli", "errors", "method.mpcd.fluid", "theory"),
 }  # fmt: skip
 # what loads modules by names that are data: public names, methods, parts, figures, options
 BY_NAME = {
     "__init__.py", "method/__init__.py", "case/registry.py", "case/outside.py",
-    "observe/shared/result.py", "io/optional.py", "geometry/shape/mesh.py",
+    "case/shown.py", "observe/shared/result.py", "io/optional.py", "geometry/shape/mesh.py",
 }  # fmt: skip
 MOST_FILES = 16  # in a folder of machinery; of laws, quantities and pictures there may be more
 LONG = ("theory", "observe", "report/flow", "io")

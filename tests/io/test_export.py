@@ -35,10 +35,10 @@ def no_figures(monkeypatch):
 class Watched(Simulation):
     """A run that remembers what it was like at each frame."""
 
-    def _observe(self, due):
-        super()._observe(due)
+    def _observe(self):
+        super()._observe()
         trajectory = self.case.trajectory
-        if trajectory and self.step and self.step % trajectory.every == 0:
+        if trajectory and self.step % trajectory.every == 0:
             self.__dict__.setdefault("seen", {})[self.step] = (
                 self.engine.positions(), self.engine.velocities(), self.engine.images(),
                 self.engine.bond_vectors(),
@@ -182,7 +182,7 @@ def test_a_run_that_goes_on_gives_what_it_has_so_far(whole, tmp_path):
     assert not (tmp_path / "a.gsd").exists()
     while simulation.step < 20:
         simulation.engine.advance(10)
-        simulation._observe([])
+        simulation._observe()
     simulation.checkpoint()
     early = read(mesokit.open(tmp_path / "run").export(tmp_path / "a.gsd"))
     simulation.run()
@@ -229,7 +229,7 @@ def test_solutes_come_after_the_fluid(tmp_path):
     )  # fmt: skip
     simulation = Simulation(case, output=tmp_path / "run", threads=1)
     simulation.engine.advance(10)
-    simulation._observe([])
+    simulation._observe()
     simulation.checkpoint()
     files, seen = mesokit.open(tmp_path / "run"), []
     seen.append(read(files.export(tmp_path / "a.gsd"))[0])
@@ -257,7 +257,7 @@ def test_the_fluid_or_the_solutes_alone(of, tmp_path):
     )  # fmt: skip
     simulation = Simulation(case, output=tmp_path / "run", threads=1)
     simulation.engine.advance(10)
-    simulation._observe([])
+    simulation._observe()
     simulation.checkpoint()
     files = mesokit.open(tmp_path / "run")
     early = read(files.export(tmp_path / "early.gsd"))

@@ -13,6 +13,7 @@ from mesokit import Comparison
 from mesokit.errors import RunError
 from mesokit.observe import OBSERVABLES, Result
 from mesokit.report import plot, print_comparisons, save, save_all
+from mesokit.report.caption import MOST, compared, mathematics
 
 
 def result_of(kind, make_case, samples):
@@ -37,7 +38,7 @@ def test_every_observable_has_a_figure(kind, make_case, tmp_path):
     axis = figure.axes[0]
     assert axis.get_xlabel() or figure.axes[-1].get_xlabel() or axis.get_xticklabels()
     if result.comparisons:
-        assert result.comparisons[0].what in figure._supxlabel.get_text()
+        assert mathematics(result.comparisons[0].what) in figure._supxlabel.get_text()
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning:matplotlib")
@@ -67,8 +68,12 @@ def test_the_legend_of_a_tensor_hides_no_data(make_case):
 
     figure = plot(result_of(WallStress, make_case, 40))
     figure.canvas.draw()
+    (legend,) = figure.legends
+    texts = [text.get_text() for text in legend.get_texts()]
+    assert len(texts) == len(set(texts)) and "theory" in texts
     for ax in figure.axes:
-        assert ax.get_legend().get_window_extent().y1 < ax.get_window_extent().y0
+        assert ax.get_legend() is None
+        assert legend.get_window_extent().y0 > ax.get_window_extent().y1
 
 
 def test_wrong_ending_and_missing_folder(make_case, tmp_path):
@@ -112,17 +117,103 @@ def test_plates_have_panels_of_their_own_and_no_torques(make_case):
     from mesokit import Disk, Forces, Plates
 
     walls = [Plates(axis="y"), Disk(centre=[8, 4], radius=1.5, name="post")]
-    case = make_case((16, 8), [Forces()], walls)
-    accumulator, fluid = Forces().accumulator(case), FakeFluid(case)
+    forces = Forces(length=3, speed=0.5, flow="x")
+    case = make_case((16, 8), [forces], walls)
+    accumulator, fluid = forces.accumulator(case), FakeFluid(case)
     for _ in range(5):
         fluid.wall_impulse, fluid.wall_steps = np.array([[1, -900, 7], [1, 900, 7], [2, 1, 3]]), 1
         fluid.advance(1)
         accumulator.observe(fluid)
-    figure = plot(accumulator.result())
-    panels = [ax for ax in figure.axes if ax.axison]
+    result = accumulator.result()
+    *panels, in_time = plot(result).axes
     solids = [[label.get_text() for label in ax.get_xticklabels()] for ax in panels]
-    assert solids == 3 * [["post"]] + 2 * [["plates-1-lower", "plates-1-upper"]]
-    assert panels[2].get_title().endswith("about (8, 4)")
+    assert solids == 2 * [["post"]] + 2 * [["plates-1-lower", "plates-1-upper"]]
+    assert panels[1].get_title().endswith("about (8, 4)")
+    assert "post" in in_time.get_ylabel()
+    (right,) = in_time.child_axes  # the coefficient of the same force
+    drag = next(c.measured for c in result.comparisons if c.what == "drag coefficient of post")
+    assert right._functions[0](result.value[2, 0]) == pytest.approx(drag)
+
+
+def test_captions_keep_cautions_and_say_them_once():
+    lines = compared(
+        [
+            Comparison("viscosity", 1.0, 0.1, 0.9, "a^2/tau", "error bar is a lower bound: short"),
+            Comparison("time 1", 9.0, 0.1, 10.0, "tau", "approximate: Rouse" + 20 * "!"),
+            Comparison("time 2", 8.0, 0.1, 10.0, "tau", "approximate: Rouse" + 20 * "!"),
+            Comparison("slope", 1.0, 0.1, 1.0, "", "whatever the slip"),
+        ],
+        6.4,
+    ).splitlines()
+    assert lines[0].endswith("(theory 0.9, +1.0 s.e.; error bar is a lower bound: short)")
+    assert lines[1].endswith("(theory 10, -10 %; approximate)") and "tau$" in lines[1]
+    assert lines[3].endswith("+0.0 s.e.)") and lines[4] == "approximate: Rouse" + 20 * "!"
+
+
+def test_captions_are_short_and_fit_the_figure():
+    one = Comparison("drag coefficient", 1.0, 0.1, note="U = 0.5 a/tau, " + 20 * "long ")
+    lines = compared([one], 6.4).splitlines()
+    assert len(lines) == 2 and max(map(len, lines)) < 110 and r"$a/\tau$" in lines[0]
+    many = [Comparison(f"share {i}", 1.0, 0.1) for i in range(MOST + 3)]
+    assert compared(many, 6.4).splitlines()[-1] == "and 3 more, which mesokit info shows"
+
+
+@pytest.mark.parametrize("text", ["velocity v_x", "N sqrt(m kT)", "exp(-t/tau_p)", "0.2(1) a/tau"])
+def test_formulas_in_words_are_set_as_formulas(text):
+    from matplotlib.mathtext import MathTextParser
+
+    drawn = mathematics(text)
+    assert drawn.count("$") == 2 and mathematics(drawn) == drawn
+    MathTextParser("path").parse(drawn)
+
+
+def test_momentum_of_a_driven_flow_has_its_theory(make_case):
+    """And number and size of the momentum have panels of their own."""
+    from mesokit import Conservation, Plates, Uniform
+    from mesokit.method.mpcd.expected.setting import transport
+
+    case = make_case((12, 10), [Conservation()], [Plates("y")], force=Uniform([0.01, 0]))
+    accumulator, fluid = Conservation().accumulator(case), FakeFluid(case)
+    for _ in range(5):
+        fluid.advance(1)
+        accumulator.observe(fluid)
+    result = accumulator.result()
+    nu, mass = transport(case).viscosity, case.particles * case.fluid.mass
+    np.testing.assert_allclose(result.expected[:, 1], mass * 0.01 * 10**2 / (12 * nu), rtol=1e-12)
+    np.testing.assert_allclose(result.expected[:, 2], 0, atol=1e-12)
+    figure = plot(result)
+    labels = [ax.get_ylabel() for ax in figure.axes]
+    assert labels[0].endswith("$N$") and "|change|" in labels[2] and "flow" in labels[4]
+    assert not labels[1].startswith("momentum\nchange")
+    assert figure.axes[1].get_legend().get_texts()[-1].get_text() == "theory"
+
+
+def test_a_mode_that_has_reached_noise_ends_with_its_theory():
+    lag = np.arange(6.0)
+    value = np.array([1, 0.5, 0.2, 0.01, 0.3, 0.01])[:, None]
+    result = Result(
+        "normal-modes", "modes", {"time": lag, "mode": np.array([1])}, value, 0.05 + 0 * value,
+        "mode", {"value": "", "time": "tau"}, expected=np.exp(-lag[:, None]), samples=9,
+        theory="Rouse, exp(-t/tau_p)", drawing="normal modes",
+    )  # fmt: skip
+    ax = plot(result).axes[0]
+    theory = next(line for line in ax.lines if line.get_label().startswith("theory"))
+    assert list(theory.get_xdata()) == [0, 1, 2] and r"e^{-t/\tau_p}" in theory.get_label()
+
+
+def test_a_displacement_without_a_curve_shows_the_diffusion_of_theory():
+    time = np.array([0.0, 1, 10, 100])
+    result = Result(
+        "mean-square-displacement", "d", {"time": time}, 6 * time, 0.1 * time,
+        "mean square displacement of centres of mass", {"value": "a^2", "time": "tau"},
+        fit=np.where(time >= 10, 6 * time, np.nan), samples=9, extra={"components": "xyz"},
+        comparisons=(Comparison("diffusion coefficient", 1.0, 0.1, 1.5, "a^2/tau"),),
+        drawing="displacement",
+    )  # fmt: skip
+    ax = plot(result).axes[0]
+    line = next(line for line in ax.lines if line.get_label().startswith("theory"))
+    np.testing.assert_allclose(line.get_ydata(), 9 * line.get_xdata())
+    assert "\n" not in ax.get_ylabel()
 
 
 class TestMaps:

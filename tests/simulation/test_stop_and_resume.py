@@ -42,13 +42,28 @@ def test_a_crash_at_any_step(case, ends_alike, tmp_path, crash_at, seed):
     ends_alike(simulation)
 
 
+def test_results_so_far(case, tmp_path, crash_at):
+    """A run that goes on shows what it has measured by its last checkpoint."""
+    simulation = Simulation(case, output=tmp_path / "run", threads=1)
+    with pytest.raises(crash_at.error):
+        simulation.run(progress=crash_at(200))
+    files = mesokit.open(tmp_path / "run")
+    early = dict(files.results)
+    assert not files.ended and 0 < files["velocity-profile"].samples < 200 / 3
+    assert repr(files["conservation"]).splitlines()[0] in repr(files)
+    resumed = Simulation.resume(tmp_path / "run")
+    assert resumed.results == early
+    resumed.run()
+    assert files.results == resumed.results and files.results != early
+
+
 def test_lost_frames_are_missed(case, tmp_path, crash_at):
     simulation = Simulation(case, output=tmp_path / "run", threads=1)
     with pytest.raises(crash_at.error):
         simulation.run(progress=crash_at(200))
     assert "its last checkpoint is at step" in repr(mesokit.open(tmp_path / "run"))
     with pytest.raises(RunError, match=r"has not ended.* of 437.*mesokit resume"):
-        mesokit.open(tmp_path / "run").plot()
+        _ = mesokit.open(tmp_path / "run").trajectory
     segments = simulation.writer.segments()
     lost = segments[1]
     lost.unlink()

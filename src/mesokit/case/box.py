@@ -48,6 +48,15 @@ class Box:
         return size
 
     @property
+    def density_unit(self) -> str:
+        """Unit of a number of particles in a cell.
+
+        >>> Box([8, 8]).density_unit
+        '1/a^2'
+        """
+        return f"1/a^{self.dimension}"
+
+    @property
     def dimension(self) -> int:
         """2 or 3."""
         return len(self.size)

@@ -12,8 +12,10 @@ from mesokit import method as methods
 from mesokit.case import checks, toml
 from mesokit.case.box import Box
 from mesokit.case.component import build, component, known_keys, nearest, param, show
+from mesokit.case.log import Log
 from mesokit.case.registry import FAMILIES
 from mesokit.case.run import Run
+from mesokit.case.shown import Shown
 from mesokit.case.trajectory import Group, Trajectory
 from mesokit.case.units import Units
 from mesokit.errors import CaseError
@@ -27,6 +29,7 @@ FIELDS: dict[str, Any] = {
     "trajectory": (
         Trajectory | None, param(None, doc="particles to write (none unless said)")
     ),
+    "log": (Log | None, param(None, doc="numbers to tell in time (none unless said)")),
     "units": (
         Units | None, param(None, doc="what the units are in SI (reduced units unless said)")
     ),
@@ -34,11 +37,11 @@ FIELDS: dict[str, Any] = {
 }  # fmt: skip
 
 
-class Case:
+class Case(Shown):
     """Everything that defines a run.
 
-    Beside `run`, `box`, `observe`, `trajectory`, `units` and `title` it has the sections of its
-    method, `run.method`: those of an MPCD fluid are `fluid`, `solutes` and `walls`.
+    Beside `run`, `box`, `observe`, `trajectory`, `log`, `units` and `title` it has the sections of
+    its method, `run.method`: those of an MPCD fluid are `fluid`, `solutes` and `walls`.
 
     Raises CaseError for values out of range and for combinations without a physics.
 
@@ -56,6 +59,7 @@ class Case:
     box: Box
     observe: tuple[Any, ...]
     trajectory: Trajectory | None
+    log: Log | None
     units: Units | None
     title: str
     _method: ClassVar[Any]  # typed in `mesokit.method.protocol`, which knows cases
@@ -86,6 +90,13 @@ class Case:
             raise CaseError(f"units: method {show(method.name)} does not know them in SI")
         method.check(self)
         checks.check(self, method.name, method.observables, self.groups)
+        if self.log is not None:
+            checks.log(self, method.log(self).names)
+
+    def _card(self) -> dict[str, Any]:
+        rows = [(key, text, "") for key, text in toml.given(self, self._method.keys)]
+        words, text = self.title, self.to_toml()
+        return {"title": "case", "words": words, "rows": rows, "text": text, "fold": "all defaults"}
 
     def __reduce__(self) -> Any:
         return _again, ({name: getattr(self, name) for name in type(self)._fields()},)

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from mesokit.case.box import AXES
-from mesokit.case.component import name_of, one_of, show, tag_of
+from mesokit.case.component import name_of, nearest, one_of, show, tag_of
 from mesokit.case.trajectory import Group, written
 from mesokit.errors import CaseError
 
@@ -77,6 +77,22 @@ def bins(case: Any) -> Iterator[str]:
             yield (
                 f"observe[#{i + 1}].bins_per_cell = {per_cell}: {number} bins in this box; "
                 f"expected at most {MOST_BINS}"
+            )
+
+
+def log(case: Any, known: Sequence[str]) -> None:
+    """Raise CaseError for a column that is neither one of these nor of an observable."""
+    labels, columns = [observable.label for observable in case.observe], case.log.columns
+    for i, column in enumerate(columns):
+        if columns.index(column) < i:
+            raise CaseError(f"log.columns = {show(columns)}: expected each column once")
+        label, _, name = column.partition(".")
+        if column not in known and not (label in labels and name):
+            near = nearest(label, labels) if name else nearest(column, known)
+            also = f", or {show(f'{labels[0]}.<what it compares>')}" if labels else ""
+            choice = one_of(known) if known else "no column: the method has none"
+            raise CaseError(
+                f"log.columns[#{i + 1}] = {show(column)}: expected {choice}{also}{near}"
             )
 
 

@@ -33,6 +33,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
+from mesokit.case.describe.docstring import Documented
 from mesokit.case.registry import FAMILIES, Family, register
 from mesokit.errors import CaseError
 
@@ -85,6 +86,7 @@ def component(cls: type[T]) -> type[T]:
             raise CaseError(first_line(made, error, start=made.__name__)) from None
 
     setattr(made, "__init__", __init__)  # noqa: B010 (mypy forbids assigning to a method)
+    setattr(made, "__doc__", Documented(made.__doc__))  # noqa: B010
     if found := tag_of(made):
         register(typing.cast(type, made), found[1])
     return typing.cast(type[T], made)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 NUMBER = re.compile(r"-?\d+(\.\d+)?(e[-+]?\d+)?")
-NOT_COMPILED = ("[[observe]]", "[trajectory]", "[units]", "[run]", "title")
+NOT_COMPILED = ("[[observe]]", "[trajectory]", "[log]", "[units]", "[run]", "title")
 
 
 def has_run(case: Case) -> bool:

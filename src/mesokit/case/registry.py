@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Mapping
 from importlib import metadata
 from typing import Any, TypeVar
 
-from pydantic import GetCoreSchemaHandler, ValidationError, ValidationInfo
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationError, ValidationInfo
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
 
 from mesokit.errors import CaseError
@@ -106,6 +106,14 @@ class Family:
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
         return core_schema.with_info_plain_validator_function(self._validated)
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """One of the parts by their tag, those that packages bring included."""
+        parts: dict[Any, Any] = {name: self.find(name) for name in self.names()}
+        known = {name: part.__pydantic_core_schema__ for name, part in parts.items() if part}
+        return handler(core_schema.tagged_union_schema(known, self.tag))
 
     def _validated(self, value: Any, info: ValidationInfo) -> Any:
         """A part as it is, or built from a table that names it."""

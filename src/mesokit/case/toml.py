@@ -105,6 +105,26 @@ def write(case: Any, keys: Mapping[str, str], folder: Path | None = None) -> str
     return text.replace(f"file = {_value(f'{folder.resolve()}{os.sep}')[:-1]}", 'file = "')
 
 
+def given(case: Any, keys: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Sections of a case, with those of their values that are not the defaults."""
+    rows = []
+    for field in _fields(case):
+        value, key = getattr(case, field.name), keys.get(field.name, field.name)
+        parts = value if isinstance(value, tuple) else (value,)
+        rows += [(key, _differing(part)) for part in parts if is_component(type(part))]
+    return [(key, text) for key, text in rows if text]
+
+
+def _differing(part: Any) -> str:
+    """The tag of a component, and its values that are not the defaults."""
+    fields = type(part).__pydantic_fields__
+    return ", ".join(
+        f"{key} = {text}"
+        for key, text in _entries(part)
+        if key in TAGS or getattr(part, key) != fields[key].get_default(call_default_factory=True)
+    )
+
+
 def _fields(part: Any) -> list[Any]:
     """Fields in the order of a file, the tag (rule, shape, quantity) first."""
     return sorted(dataclasses.fields(part), key=lambda f: f.name not in TAGS)

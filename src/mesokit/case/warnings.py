@@ -27,6 +27,8 @@ def run_warnings(case: Case, memory: int, trajectory: int) -> Iterator[str]:
             )
         else:
             yield from (f"observe[#{i + 1}].{text}" for text in observable.warnings(case))
+    if case.log is not None and case.log.every > run.warmup + run.steps:
+        yield f"log.every = {case.log.every}: more than the steps of the run; one line, of step 0"
     if case.trajectory is not None:
         if case.trajectory.every > run.steps:
             yield f"trajectory.every = {case.trajectory.every}: more than run.steps = {run.steps}"

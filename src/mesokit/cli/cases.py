@@ -7,16 +7,18 @@ from pathlib import Path
 import click
 
 from mesokit import method as methods
-from mesokit.cli.commands import CASE, SET, THREADS, cli, naming, read
-from mesokit.cli.words import patience, show_table
+from mesokit.cli.commands import CASE, JSON, SET, THREADS, cli, naming, read
+from mesokit.cli.words import in_json, patience, show_table
 from mesokit.errors import CaseError
 
 TEMPLATES = methods.templates()
+SCHEMA = "case.schema.json"
 
 
 @cli.command(
     help="Write a commented case NAME.toml: "
-    f"{', '.join(TEMPLATES)}.\n\nWith another NAME, say which --template."
+    f"{', '.join(TEMPLATES)}.\n\nWith another NAME, say which --template. Beside it comes "
+    f"{SCHEMA}, by which editors complete and check all cases of the folder."
 )
 @click.argument("name")
 @click.option("--template", type=click.Choice(list(TEMPLATES)), help="What to start from.")
@@ -35,17 +37,24 @@ def new(name: str, template: str | None) -> None:
     text = text.replace(f"{template}.toml", path.name).replace(f"{template}/", f"{path.stem}/")
     try:
         with open(path, "x", encoding="utf-8") as file:
-            file.write(text)
+            file.write(f"#:schema ./{SCHEMA}\n{text}")
     except FileExistsError:
         raise CaseError(f"{path}: exists already; remove it, or choose another name") from None
-    click.echo(f"wrote {path}; next: mesokit check {path}, mesokit run {path}")
+    from mesokit.case.describe.schema import schema_text
+    from mesokit.io.atomic import write_text
+
+    write_text(path.with_name(SCHEMA), schema_text())  # for the parts that are installed now
+    click.echo(
+        f"wrote {path} (and {SCHEMA}, for editors); next: mesokit check {path}, mesokit run {path}"
+    )
 
 
 @cli.command()
 @click.argument("case", type=CASE)
 @SET
 @THREADS
-def check(case: Path, settings: dict[str, str], threads: int | None) -> None:
+@JSON
+def check(case: Path, settings: dict[str, str], threads: int | None, as_json: bool) -> None:
     """Check CASE, show it with all defaults, what follows from it, and what to mind."""
     from mesokit.case.kind import has_run
     from mesokit.method.protocol import method_of
@@ -56,6 +65,11 @@ def check(case: Path, settings: dict[str, str], threads: int | None) -> None:
         with naming(case):
             method.first_state(full, {})
         summary = method.summary(full, threads)
+    if as_json:
+        from mesokit.case import toml
+
+        click.echo(in_json({"case": toml.parse(full.to_toml())} | summary.record()))
+        return
     click.echo(full.to_toml())
     ahead = [("first start", "up to a minute", "compiling, once for each kind of case")]
     show_table([*summary.rows, *([] if has_run(full) else ahead)])

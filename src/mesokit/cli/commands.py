@@ -48,6 +48,7 @@ SET = click.option(
     metavar="KEY=VALUE",
     help="Replace a value of the case, such as fluid.density=5. May be repeated.",
 )
+JSON = click.option("--json", "as_json", is_flag=True, help="All of it as JSON, for scripts.")
 THREADS = click.option("--threads", type=click.IntRange(1), help="Threads (all cores unless said).")
 
 

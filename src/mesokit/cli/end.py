@@ -8,7 +8,14 @@ from collections.abc import Sequence
 
 import click
 
-from mesokit.cli import cases, pictures, runs, theory  # noqa: F401  they register their commands
+from mesokit.cli import (  # noqa: F401  they register their commands
+    cases,
+    documents,
+    pictures,
+    reference,
+    runs,
+    theory,
+)
 from mesokit.cli.commands import cli
 from mesokit.cli.words import reason, say
 from mesokit.errors import MesokitError, RunError

@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from mesokit.cli.commands import RUN, cli, require_run
+from mesokit.cli.words import say
 from mesokit.errors import CaseError
 
 KIND = "quiver, streamlines, particles, density, speed, vorticity or four"
@@ -84,6 +85,8 @@ def plot(run: Path, kind: str | None, output: Path | None, **choices: Any) -> No
         raise CaseError(f"--{option}: only for a picture of the flow; add --kind ({KIND})")
     require_run(run)
     files = mesokit.open(run)
+    if not files.ended and files.results:
+        say(f"{run}: the run {files.state}; what is drawn is so far")
     if kind is None:
         for picture in files.plot():
             click.echo(picture)

@@ -10,8 +10,18 @@ from pathlib import Path
 
 import click
 
-from mesokit.cli.commands import CASE, RUN, SET, THREADS, cli, naming, read, require_run
-from mesokit.cli.words import patience, reason, say
+from mesokit.cli.commands import (
+    CASE,
+    JSON,
+    RUN,
+    SET,
+    THREADS,
+    cli,
+    naming,
+    read,
+    require_run,
+)
+from mesokit.cli.words import in_json, patience, reason, say
 from mesokit.errors import CaseError, RunError
 from mesokit.running.signals import Stopped
 
@@ -99,12 +109,14 @@ def resume(
 
 @cli.command()
 @click.argument("run", type=RUN)
-def info(run: Path) -> None:
+@JSON
+def info(run: Path, as_json: bool) -> None:
     """Show what is in the files of RUN."""
     import mesokit
 
     require_run(run)
-    click.echo(mesokit.open(run))
+    files = mesokit.open(run)
+    click.echo(in_json(files.record()) if as_json else files)
 
 
 @cli.command()
@@ -156,7 +168,8 @@ def _files_of_run(output: Path) -> list[Path]:
     with contextlib.suppress(CaseError):
         figures = [run.figure_file(o.label) for o in Case.from_toml(run.case_file).observe]
     figures += [run.flow_file(kind, end) for kind in KINDS for end in (".png", ".mp4")]
-    files = [run.data_file, run.checkpoint_file, run.log_file, run.provenance_file]
+    files = [run.data_file, run.checkpoint_file, run.log_file, run.report_file]
+    files += [run.provenance_file]
     solids = output.glob(run.wall_file("*").name)
     files += [run.trajectory_folder, run.trajectory_remains, run.trajectory_coming, run.case_file]
     return [*figures, *output.glob(".*.tmp"), *solids, *files]

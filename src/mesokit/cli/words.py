@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import json
+import math
 import threading
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 SILENT = 2.0  # seconds
 
@@ -39,6 +42,21 @@ def show_table(rows: Sequence[tuple[str, str, str]]) -> None:
     for row in rows:
         table.add_row(*row)
     Console(highlight=False, soft_wrap=True).print(table)
+
+
+def in_json(record: object) -> str:
+    """Plain numbers and texts as JSON, which knows neither nan nor infinity: null."""
+    return json.dumps(_finite(record), indent=2, ensure_ascii=False)
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(key): _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
 
 
 def reason(error: OSError) -> str:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 from mesokit.case.trajectory import written
 from mesokit.errors import RunError
@@ -12,6 +13,13 @@ from mesokit.io.trajectory import TrajectoryWriter
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+
+NONE_YET = -1  # the step of a run that has not looked at its first state
+
+
+def seen_until(meta: Mapping[str, Any]) -> int:
+    """The step up to which the run of a checkpoint has looked, from the meta of that checkpoint."""
+    return int(meta["step"]) if meta["looked"] else NONE_YET
 
 
 def require_frames(directory: RunDirectory, case: Case, step: int) -> None:

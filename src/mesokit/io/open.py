@@ -3,30 +3,37 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from numpy.typing import NDArray
+
+from mesokit.case import toml
 from mesokit.case.component import require_known, show
+from mesokit.case.shown import Shown
 from mesokit.errors import CaseError, RunError
-from mesokit.io import checkpoint, h5md
-from mesokit.io.frames import require_frames
+from mesokit.io import checkpoint, h5md, log_file, tables
+from mesokit.io.frames import require_frames, seen_until
+from mesokit.io.measured import measured
 from mesokit.io.run_directory import RunDirectory
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.method.protocol import method_of
+from mesokit.observe.shared.named import keyed
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.observe.shared.result import Result
+    from mesokit.observe.shared.result import Comparison, Result
     from mesokit.report.flow import Film
 
 
-class RunFiles:
-    """What a run has written, read when asked for.
+class RunFiles(Shown, Mapping[str, "Result"]):
+    """What a run has written, read when asked for: a mapping of its results by name.
 
-    `files["velocity-profile"]` is a result; `case`, `provenance`, `results`, `trajectory` and `si`
-    are the rest. Raises RunError where a file is missing or damaged.
+    `files["velocity-profile"]` is a result, `list(files)` their names; `case`, `provenance`,
+    `results`, `trajectory`, `log` and `si` are the rest. Raises RunError where a file is missing
+    or damaged.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -45,9 +52,21 @@ class RunFiles:
         """Versions, seed, host, times."""
         return self.directory.read_provenance()
 
-    @cached_property
+    @property
     def results(self) -> dict[str, Result]:
-        """Results by name. Raises RunError if the run has not ended."""
+        """Results by name: those so far, by the last checkpoint, if the run has not ended.
+
+        Raises RunError if there are none yet.
+        """
+        if self.ended:
+            return self._final
+        if not self.directory.checkpoint_file.exists():
+            raise RunError(f"{self.path}: the run {self.state}")
+        made, _ = measured(self.directory, self.case)
+        return {name: accumulator.result() for name, accumulator in made.items()}
+
+    @cached_property
+    def _final(self) -> dict[str, Result]:
         with self._advising():
             return h5md.read_results(self._data())
 
@@ -58,6 +77,17 @@ class RunFiles:
         if convert is None:
             raise CaseError(f"units: method {show(self.case.run.method)} does not know them in SI")
         return convert(self.case)
+
+    @property
+    def log(self) -> NDArray[Any]:
+        """Numbers in time, as `files.log["temperature"]`; also while the run goes on.
+
+        A structured array with a field for each column: `pandas.DataFrame(files.log)` is a table.
+        Raises RunError if the case asks for none.
+        """
+        if self.case.log is None:
+            raise RunError(f"{self.path}: the case has no [log]")
+        return log_file.read(self.directory.log_file)
 
     @cached_property
     def trajectory(self) -> TrajectoryReader | None:
@@ -71,6 +101,78 @@ class RunFiles:
         if name not in self.results:
             raise KeyError(f"no result {name!r}; there are {', '.join(self.results) or 'none'}")
         return self.results[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Names of the results."""
+        return iter(self.results)
+
+    def __len__(self) -> int:
+        """Number of results."""
+        return len(self.results)
+
+    def __bool__(self) -> bool:
+        """There is a run, whether it has results or not."""
+        return True
+
+    __eq__ = object.__eq__  # two runs are not equal because their results are
+    __hash__ = object.__hash__
+
+    def comparisons(self) -> dict[str, Comparison]:
+        """All comparisons of the run, by `result.key`: `velocity-profile.slip-at-the-walls`."""
+        return {
+            f"{name}.{key}": comparison
+            for name, result in self.results.items()
+            for key, comparison in keyed(result.comparisons).items()
+        }
+
+    def to_dataframe(self) -> Any:
+        """All comparisons as a pandas.DataFrame, a row for each.
+
+        Raises CaseError without `pip install 'mesokit[tables]'`.
+        """
+        return tables.rows_dataframe(self.results)
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write all comparisons as a CSV file, a row for each. Raises RunError."""
+        return tables.write_rows(self.results, path)
+
+    def record(self) -> dict[str, Any]:
+        """What `mesokit info --json` prints: plain numbers and texts."""
+        results = self.results if self.ended else {}
+        return {
+            "run": str(self.path),
+            "title": self.case.title,
+            "ended": self.ended,
+            "state": "has ended" if self.ended else self.state,
+            "case": toml.parse(self.case.to_toml()),
+            "provenance": self.provenance,
+            "results": [
+                {
+                    "name": r.name,
+                    "quantity": r.quantity,
+                    "label": r.label,
+                    "samples": r.samples,
+                    "shape": {key: len(axis) for key, axis in r.x.items()},
+                }
+                for r in results.values()
+            ],
+            "comparisons": tables.rows(results),
+        }
+
+    @property
+    def ended(self) -> bool:
+        """Whether the run has come to its end, and has results."""
+        return self.directory.data_file.exists()
+
+    def report(self, path: str | Path | None = None, films: bool = False) -> Path:
+        """Write one HTML file with all of the run: see `mesokit.report.document.write_report`.
+
+        `files.report()` writes `report.html` into the folder of the run; `films` puts small films
+        into it. Raises RunError if it cannot be written.
+        """
+        from mesokit.report.document import write_report
+
+        return write_report(self, path, films)
 
     def plot(self, folder: str | Path | None = None) -> list[Path]:
         """Draw every result into the folder (that of the run unless said)."""
@@ -109,7 +211,7 @@ class RunFiles:
 
     def _data(self) -> Path:
         if not self.directory.data_file.exists():
-            raise RunError(f"{self.path}: the run {self._state()}")
+            raise RunError(f"{self.path}: the run {self.state}")
         return self.directory.data_file
 
     @contextlib.contextmanager
@@ -125,23 +227,24 @@ class RunFiles:
     def _advice(self) -> str:
         try:
             _, meta = checkpoint.read(self.directory.checkpoint_file)
-            require_frames(self.directory, self.case, meta["step"])
+            require_frames(self.directory, self.case, seen_until(meta))
         except RunError:
             return f"put a copy in its place, or run anew: {self.directory.again}"
         return f"mesokit resume {self.path} writes it again"
 
-    def _state(self) -> str:
-        """How far a run has come that has no results yet."""
+    @property
+    def state(self) -> str:
+        """How far a run has come that has no results yet, and how to go on."""
         failed, file = None, self.directory.checkpoint_file
         with contextlib.suppress(RunError):  # to go on, a damaged record does not matter
             failed = self.provenance.get("failed")
         last = self.case.run.warmup + self.case.run.steps
         reached = "it has no checkpoint yet"
         if file.exists():
-            step = checkpoint.read_meta(file)["step"]
-            reached = f"its last checkpoint is at step {step} of {last}"
+            meta = checkpoint.read_meta(file)
+            reached = f"its last checkpoint is at step {meta['step']} of {last}"
             try:
-                require_frames(self.directory, self.case, step)
+                require_frames(self.directory, self.case, seen_until(meta))
             except RunError as error:
                 return f"cannot go on: {reached}, but {error}"
         if failed:
@@ -151,14 +254,32 @@ class RunFiles:
             f"mesokit resume {self.path}"
         )
 
+    def _there(self) -> dict[str, Result]:
+        """The results, none if there are none yet or what they were in is lost."""
+        with contextlib.suppress(RunError) if not self.ended else contextlib.nullcontext():
+            return self.results
+        return {}
+
+    def _card(self) -> dict[str, Any]:
+        words = self.case.title if self.ended else f"{self.case.title}: {self.state}"
+        found = self._there().values()
+        text = self.case.to_toml()
+        return {
+            "title": f"mesokit run {self.path}",
+            "words": words,
+            "results": found,
+            "text": text,
+            "fold": "the case",
+        }
+
     def __repr__(self) -> str:
         lines = [f"mesokit run {self.path}", f"  {self.case.title or 'untitled'}"]
         if self.case.units is not None:
             lines.append("  " + str(self.si).replace("\n", "\n  "))
-        if not self.directory.data_file.exists():
-            return "\n".join([*lines, f"  {self._state()}"])
-        lines += ["  " + repr(result).replace("\n", "\n  ") for result in self.results.values()]
-        if self.trajectory is not None:
+        if not self.ended:
+            lines.append(f"  {self.state}")
+        lines += ["  " + repr(result).replace("\n", "\n  ") for result in self._there().values()]
+        if self.ended and self.trajectory is not None:
             lines.append(f"  {self.trajectory!r}")
         return "\n".join(lines)
 

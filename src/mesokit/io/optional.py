@@ -9,10 +9,11 @@ from types import ModuleType
 from mesokit.errors import CaseError
 
 
-def package(module: str, what: str) -> ModuleType:
+def package(module: str, what: str, extra: str = "files") -> ModuleType:
     """A module of a package that may not be there.
 
-    Raises CaseError that says how to install it; `what` names the files that need it.
+    Raises CaseError that says how to install it; `what` names what needs it, `extra` the
+    group of packages of mesokit that has it.
     """
     try:
         with warnings.catch_warnings():
@@ -20,4 +21,4 @@ def package(module: str, what: str) -> ModuleType:
             return importlib.import_module(module)
     except ImportError:
         name = module.split(".")[0]
-        raise CaseError(f"{what} need the package {name}: pip install 'mesokit[files]'") from None
+        raise CaseError(f"{what} need the package {name}: pip install 'mesokit[{extra}]'") from None

@@ -54,8 +54,13 @@ class RunDirectory:
 
     @property
     def log_file(self) -> Path:
-        """What the run said."""
-        return self.path / "log.txt"
+        """Numbers in time."""
+        return self.path / "log.csv"
+
+    @property
+    def report_file(self) -> Path:
+        """All of the run for people, where they name no other."""
+        return self.path / "report.html"
 
     def wall_file(self, number: int | str) -> Path:
         """Distances from a solid that was read from a file, by the number of its wall."""

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -21,12 +22,35 @@ Row = tuple[str, str, str]  # what, its value, and a word on it
 
 
 class Summary(NamedTuple):
-    """What follows from a case before it runs: a table for `mesokit check`, warnings, and about
-    how many seconds the run takes."""
+    """What follows from a case before it runs: a table for `mesokit check`, warnings, about how
+    many seconds the run takes, and the same as plain numbers by name, for scripts."""
 
     rows: tuple[Row, ...]
     warnings: tuple[str, ...]
     seconds: float
+    numbers: Mapping[str, Any] = MappingProxyType({})
+
+    def record(self) -> dict[str, Any]:
+        """What `mesokit check --json` prints of it."""
+        rows = [{"what": what, "value": value, "note": note} for what, value, note in self.rows]
+        return {
+            "numbers": dict(self.numbers),
+            "rows": rows,
+            "warnings": list(self.warnings),
+            "seconds": self.seconds,
+        }
+
+
+class Columns(NamedTuple):
+    """What a log may tell of the particles: all names, those that are usual, and how to find some
+    of them in an engine."""
+
+    names: tuple[str, ...]
+    usual: tuple[str, ...]
+    read: Callable[[Any, Collection[str]], Mapping[str, float]]
+
+
+NO_COLUMNS = Columns((), (), lambda engine, wanted: {})
 
 
 @dataclass(frozen=True)
@@ -78,6 +102,8 @@ class Method:
         A line for each file that a case needs and that is not there.
     keep_files : function of a case and the folder of its run, optional
         The case, with copies in that folder of the files that it was made from.
+    log : function of a case, optional
+        What the log of its run may tell.
     si : function of a case, optional
         What its units are in SI; without it, a case must not have the section `[units]`.
     """
@@ -102,6 +128,7 @@ class Method:
     start_from_run: str = ""
     missing_files: Callable[[Case], list[str]] = lambda case: []
     keep_files: Callable[[Case, Path], Case] = lambda case, folder: case
+    log: Callable[[Case], Columns] = lambda case: NO_COLUMNS
     si: Callable[[Case], Any] | None = None
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mesokit.case.box import AXES
 from mesokit.case.component import component, tag
 from mesokit.engine import RunningFluid
+from mesokit.method.mpcd.columns import forgets, temperature
 from mesokit.method.mpcd.expected import setting
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Array, Comparison, Result
@@ -59,9 +60,9 @@ class ConservationAccumulator:
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         number, momentum, energy = fluid.totals()
-        temperature = self._temperature(number, momentum, energy)
+        warmth = temperature(self.case, number, momentum, energy)
         bound = [fluid.potential_energy()] if self.bonded else []
-        sample = np.array([number, *momentum, *bound, energy, temperature])
+        sample = np.array([number, *momentum, *bound, energy, warmth])
         kept, stride, samples = self.counts
         if samples == 0:
             self.first = sample
@@ -78,19 +79,6 @@ class ConservationAccumulator:
                 self.rows[kept] = [fluid.step, fluid.time, *sample]
                 kept += 1
         self.counts = np.array([kept, stride, samples + 1])
-
-    def _temperature(self, number: int, momentum: Array, energy: float) -> float:
-        """Twice the energy per degree of freedom; a free fluid cannot move as a whole."""
-        if number == 0:
-            return np.nan
-        solutes = self.case.solutes
-        if self.case.walls or self.forgets():
-            return 2 * energy / (self.dimension * number)
-        total_mass = number * self.case.fluid.mass
-        if solutes is not None:
-            total_mass += solutes.beads * (solutes.mass - self.case.fluid.mass)
-        about_mean = 2 * energy - float(momentum @ momentum) / total_mass
-        return about_mean / (self.dimension * max(number - 1, 1))
 
     def state(self) -> State:
         """All it has to remember."""
@@ -144,7 +132,7 @@ class ConservationAccumulator:
             error=np.full(value.shape, np.nan),
             label="conserved quantities",
             units={"value": ""} | units,
-            expected=self._expected(value),
+            expected=self._expected(value, rows[:, 1]),
             theory="kT of the case, conservation",
             comparisons=tuple(self._comparisons()),
             samples=int(self.counts[2]),
@@ -152,12 +140,14 @@ class ConservationAccumulator:
                 "step": rows[:, 0].copy(),
                 "mean": self.blocks.mean(),
                 "mean_error": self.blocks.error(),
+                "conserves_momentum": int(self.conserves_momentum()),
+                "driven": int(setting.driven(self.case)),
             },
         )
 
     def forgets(self) -> bool:
         """Whether the solvent takes momentum and energy, and forgets them."""
-        return self.case.solutes is not None and self.case.solutes.solvent == "random"
+        return forgets(self.case)
 
     def conserves_momentum(self) -> bool:
         """Nothing outside acts on the fluid."""
@@ -167,16 +157,31 @@ class ConservationAccumulator:
         """No thermostat, and no work is done."""
         return self.conserves_momentum() and not setting.isothermal(self.case)
 
-    def _expected(self, value: Array) -> Array:
+    def _expected(self, value: Array, time: Array) -> Array:
         expected = np.full(value.shape, np.nan)
         expected[:, 0] = self.first[0]
         if self.conserves_momentum():
             expected[:, 1 : self.dimension + 1] = self.first[1 : self.dimension + 1]
+        elif not self.forgets() and len(time):
+            for axis in range(self.dimension):
+                expected[:, 1 + axis] = self._driven_momentum(axis, time - time[0])
         if self.conserves_energy() and not self.bonded:
             expected[:, -2:] = self.first[-2:]
         elif self._at_rest():
             expected[:, -1] = self.case.fluid.kT
         return expected
+
+    def _driven_momentum(self, axis: int, since: Array) -> Array | float:
+        """Of the steady flow, or of a fluid that nothing holds; nan where there is no theory."""
+        case, flow = self.case, setting.flow(self.case, axis)
+        mass = setting.superficial_mass(case)
+        if flow.kind == "accelerating" and not case.walls:
+            push = float(setting.acceleration(case)[axis])
+            return self.first[1 + axis] + mass * push * since
+        if flow.profile is None or setting.obstructed(case):
+            return np.nan
+        edges = np.linspace(0.0, case.box.size[flow.across], 65)
+        return mass * float(setting.bin_average(flow.profile, edges).mean())
 
     def _at_rest(self) -> bool:
         held = setting.isothermal(self.case) or self.forgets()

@@ -57,7 +57,7 @@ class DensityFieldAccumulator(FieldAccumulator):
             value=self.blocks.mean()[0],
             error=self.blocks.error()[0],
             label="density",
-            units={"value": "1/cell"} | dict.fromkeys(self.coordinates, "a"),
+            units={"value": self.case.box.density_unit} | dict.fromkeys(self.coordinates, "a"),
             expected=None if pressed else expected,
             theory="uniform",
             samples=self.blocks.count,

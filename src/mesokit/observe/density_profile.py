@@ -63,6 +63,7 @@ class DensityProfileAccumulator(ProfileAccumulator):
     def __init__(self, observable: DensityProfile, case: Case) -> None:
         super().__init__(observable, case, width=1)
         size = case.box.size
+        self.unit = case.box.density_unit
         self.slice_volume = np.prod(size) / self.bins
         self.of, self.group = observable.of, group_of(case, observable.of, observable.kind)
         if self.of != "particles":
@@ -101,7 +102,8 @@ class DensityProfileAccumulator(ProfileAccumulator):
                     mean[part] = 1 / cell
                     value, error = density.scalar(mean @ density.value, mean)
                     where = f"density in the cell at the {name} plate"
-                    found.append(Comparison(where, value, error, float(mean @ expected), "1/cell"))
+                    wanted = float(mean @ expected)
+                    found.append(Comparison(where, value, error, wanted, self.unit))
         return Result(
             quantity="density-profile",
             drawing="profile",
@@ -110,7 +112,7 @@ class DensityProfileAccumulator(ProfileAccumulator):
             value=density.value,
             error=density.error,
             label=LABELS[self.of],
-            units={"value": "1/cell", self.observable.axis: "a"},
+            units={"value": self.unit, self.observable.axis: "a"},
             expected=expected,
             theory=self.legend(),
             comparisons=tuple(found),

@@ -170,9 +170,9 @@ class FlowFramesAccumulator:
             own = self.frames[i]
             density = (1 - share) * own[:densities] + share * frame[:densities]
             mass = np.stack([(1 - share) * own[densities - 1], share * frame[densities - 1]])
-            momentum = [m * np.nan_to_num(f[densities:]) for m, f in zip(mass, (own, frame))]
+            momentum = mass[:, None] * np.nan_to_num([own[densities:], frame[densities:]])
             with np.errstate(divide="ignore", invalid="ignore"):
-                velocity = sum(momentum) / mass.sum(axis=0)
+                velocity = momentum.sum(axis=0) / mass.sum(axis=0)
             self.frames[i] = np.concatenate([density, velocity]).astype(np.float32)
         self.frames, self.times = self.frames[:shared], self.times[:shared]
         self.pooled += 1
@@ -211,8 +211,8 @@ class FlowFramesAccumulator:
 
     def _units(self) -> dict[str, str]:
         return {
-            "density": "1/cell",
-            "mass_density": "m/cell",
+            "density": self.case.box.density_unit,
+            "mass_density": self.case.box.density_unit.replace("1", "m"),
             **{name: "a/tau" for name in self.parts if name.startswith("velocity")},
         }
 

@@ -137,6 +137,7 @@ class ForcesAccumulator:
             comparisons=tuple(self.comparisons(expected)) if self.blocks.count else (),
             samples=self.blocks.count,
             extra={
+                "coefficient": self.coefficient(),
                 "time": self.series.time(),
                 "series": self.series.values().reshape(-1, *self.shape),
                 "plates": np.isin(range(len(self.bodies)), self.obstacles(), invert=True).astype(
@@ -259,15 +260,44 @@ class ForcesAccumulator:
             found.append(Comparison(what, value, error, known, "%", "of the force on the fluid"))
         return found
 
-    def coefficients(self, mean: Estimate, force: NDArray[np.intp], few: bool) -> list[Comparison]:
-        """Reynolds number, drag and lift, with the error of the speed where that is measured."""
+    def coefficient(self) -> float:
+        """What turns a force along the flow into its coefficient, nan without a length."""
+        if self.observable.length is None or not self.blocks.count:
+            return np.nan
+        slope, speed = self.slope(), self.observable.speed
+        if speed is None:
+            speed = float(slope @ self.blocks.mean())
+        return self.scale(speed) if speed else np.nan
+
+    def slope(self) -> Array:
+        """Of the mean superficial velocity along the flow, by the numbers in a sample."""
+        size = int(np.prod(self.shape))
+        slope = np.zeros(size + self.dimension)
+        rho = setting.mass_density(self.case)
+        slope[size + self.along()] = 1.0 / (rho * np.prod(self.case.box.size))
+        return slope
+
+    def along(self) -> int:
+        """Number of the axis of the drag."""
+        given = self.observable.flow
+        flow = setting.push_axis(self.case) if given is None else AXES.index(given)
+        assert flow is not None  # as `check` has seen
+        return flow
+
+    def scale(self, speed: float) -> float:
+        """Coefficient over force at a speed."""
         given, rho = self.observable, setting.mass_density(self.case)
         assert given.length is not None
-        flow = setting.push_axis(self.case) if given.flow is None else AXES.index(given.flow)
-        assert flow is not None  # as `check` has seen
-        slope = np.zeros(mean.value.shape)  # of the speed
+        area = given.length if self.dimension == 2 else given.area or given.length**2
+        return float(2.0 / (rho * speed**2 * area) * np.sign(speed))
+
+    def coefficients(self, mean: Estimate, force: NDArray[np.intp], few: bool) -> list[Comparison]:
+        """Reynolds number, drag and lift, with the error of the speed where that is measured."""
+        given, flow = self.observable, self.along()
+        assert given.length is not None
+        slope: Array = np.zeros(mean.value.shape)  # of the speed
         if given.speed is None:
-            slope[force.size + flow] = 1.0 / (rho * np.prod(self.case.box.size))
+            slope = self.slope()
             speed, error = mean.scalar(slope @ mean.value, slope)
             note = f"U = {with_error(abs(speed), error)} a/tau, the mean superficial velocity"
         else:
@@ -276,13 +306,12 @@ class ForcesAccumulator:
             return []
         transport, found = setting.transport(self.case), []
         if transport is not None:
-            scale = given.length / transport.viscosity
-            value, error = mean.scalar(abs(speed) * scale, slope * scale)
+            inverse = given.length / transport.viscosity
+            value, error = mean.scalar(abs(speed) * inverse, slope * inverse)
             found.append(Comparison("Reynolds number", value, error, note=note))
-        area = given.length if self.dimension == 2 else given.area or given.length**2
+        scale = self.scale(speed)
         for body in self.obstacles() if few else ():
             for axis in (flow, *(k for k in range(self.dimension) if k != flow)):
-                scale = 2.0 / (rho * speed**2 * area) * np.sign(speed)
                 place = force[body, axis]
                 value = scale * mean.value[place]
                 gradient = -2.0 * value / speed * slope

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 ENOUGH = 100  # relaxation times of a flow, for an error bar
 COMPONENTS = ("radial", "azimuthal", "axial")
-UNITS = {"density": "1/cell", "temperature": "m a^2/tau^2"}
+UNITS = {"density": "1/a^d", "temperature": "m a^2/tau^2"}
 
 
 @component
@@ -127,7 +127,7 @@ class RadialProfileAccumulator(ShellAccumulator):
             value=value.value,
             error=value.error,
             label=label,
-            units={"value": UNITS.get(of, "a/tau"), "r": "a"},
+            units={"value": self.unit(of), "r": "a"},
             expected=expected,
             fit=curve,
             theory=self.flow.name(of) if self.known else "rest",
@@ -135,6 +135,10 @@ class RadialProfileAccumulator(ShellAccumulator):
             samples=self.blocks.count,
             extra={"of": of, "kind": kind, "edges": self.edges},
         )
+
+    def unit(self, of: str) -> str:
+        """Unit of what is measured."""
+        return UNITS.get(of, "a/tau").replace("1/a^d", self.case.box.density_unit)
 
     def approximate(self) -> bool:
         """Whether theory is known to be off by more than an error bar."""

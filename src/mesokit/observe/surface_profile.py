@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 LABELS = {
-    "density": ("density", "1/cell"),
     "temperature": ("temperature k_B T", "m a^2/tau^2"),
     "speed": ("speed along the surface", "a/tau"),
 }
@@ -105,6 +104,10 @@ class SurfaceProfileAccumulator(ShellAccumulator):
         frame = [out, tangent] + ([np.cross(out, tangent)] if d == 3 else [])
         return np.stack([(direction * v).sum(axis=1) for direction in frame])
 
+    def labels(self, of: str) -> tuple[str, str]:
+        """What is measured, and its unit."""
+        return LABELS.get(of, (of, self.case.box.density_unit))
+
     def result(self) -> Result:
         """The profile, what is expected of it, and how near the surface that holds."""
         of, expected, found = self.observable.of, self.expected(), []
@@ -118,7 +121,7 @@ class SurfaceProfileAccumulator(ShellAccumulator):
             found = self.next_to_surface(value, expected, note)
             if not note:
                 found += self.chi_square(value, expected, "against theory")
-        label, unit = LABELS[of]
+        label, unit = self.labels(of)
         return Result(
             quantity="surface-profile",
             drawing="profile",
@@ -169,7 +172,7 @@ class SurfaceProfileAccumulator(ShellAccumulator):
         if of == "temperature":
             error = setting.with_start(self.case, error, known)
         what = f"{of} in the cell at the surface"
-        return [Comparison(what, mean, error, known, LABELS[of][1], note)]
+        return [Comparison(what, mean, error, known, self.labels(of)[1], note)]
 
     @functools.cached_property
     def volumes(self) -> Array:

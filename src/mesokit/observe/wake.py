@@ -209,8 +209,20 @@ class WakeAccumulator:
             units={"value": "a/tau", "distance": "a"},
             comparisons=tuple(found),
             samples=self.blocks.count,
-            extra={"edges": self.edges, "size": self.body.size, "recirculation": length},
+            extra={
+                "edges": self.edges,
+                "size": self.body.size,
+                "recirculation": length,
+                "speed": self.speed(),
+            },
         )
+
+    def speed(self) -> float:
+        """Mean velocity along the flow, over the whole box; nan before the first sample."""
+        if not self.whole.count:
+            return np.nan
+        mass = setting.mass_density(self.case) * float(np.prod(self.case.box.size))
+        return float(of_mean(self.whole).value) / mass
 
     def comparisons(self, velocity: Estimate) -> list[Comparison]:
         """Velocity next to the rear, and how far the fluid flows back."""

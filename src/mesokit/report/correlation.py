@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.observe.shared.result import Result
-from mesokit.report.style import COLOURS, LINES, MARKERS, labelled
+from mesokit.report.caption import mathematics
+from mesokit.report.style import COLOURS, MARKERS, labelled, legend_above, sparse_logarithm
 
 SHOWN = 6  # curves in one figure
 
@@ -22,6 +23,10 @@ def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
     else:
         ax = figure.subplots() if ax is None else ax
     t = time[use]
+    components = result.extra.get("components", "")
+    of = result.label.removeprefix("mean square displacement").strip()
+    along = f"along {', '.join(components)}" if components else ""
+    seen = " ".join(filter(None, (of, along)))
     ax.errorbar(
         t,
         result.value[use],
@@ -29,23 +34,23 @@ def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
         fmt="o",
         mfc="white",
         color=COLOURS[0],
-        label=r"measured, $\pm$ one standard error",
+        label=f"measured{f' ({seen})' if seen else ''}, $\\pm$ one standard error",
         zorder=2,
     )
     if result.expected is not None:
-        label = f"theory: {result.theory}"
+        label = mathematics(f"theory: {result.theory}")
         ax.plot(t, result.expected[use], "-", color="black", label=label, zorder=3)
+    elif use.any():
+        _straight(ax, result, t, result.value[use])
     if result.fit is not None:
         late = "fit of the diffusion coefficient"
         ax.plot(t, result.fit[use], "--", color=COLOURS[1], lw=1.5, label=late, zorder=4)
     if len(t):
         ax.set_xscale("log")
         ax.set_yscale("log")
-    components = result.extra.get("components", "")
-    label = result.label.replace(" displacement", "\ndisplacement").replace(" of mass", "\nof mass")
-    label += f" along {', '.join(components)}" if components else ""
-    ax.set_ylabel(labelled(label, result.units["value"]))
-    ax.legend(loc="upper left")
+        sparse_logarithm(ax.xaxis, t[0], t[-1])
+    ax.set_ylabel(labelled("mean square displacement", result.units["value"]))
+    legend_above(ax, columns=1)
     if below is not None:
         theory = np.asarray(result.expected)[use]
         ratio, error = result.value[use] / theory, result.error[use] / theory
@@ -53,6 +58,18 @@ def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
         below.errorbar(t, ratio, error, fmt="o", mfc="white", ms=3, color=COLOURS[0])
         below.set_ylabel("measured\n/ theory")
     (below or ax).set_xlabel(labelled("time lag $t$", result.units["time"]))
+
+
+def _straight(ax: Any, result: Result, t: Any, value: Any) -> None:
+    """Where no curve is known: that of the diffusion coefficient of theory, or else slope 1."""
+    known = [c for c in result.comparisons if c.unit == "a^2/tau" and np.isfinite(c.expected)]
+    if known and result.extra.get("components"):
+        slope = 2 * len(result.extra["components"]) * known[0].expected
+        late = t if result.fit is None else t[t >= 0.1 * result.x["time"][-1]]
+        label = mathematics(f"theory: {known[0].what}, {known[0].expected:.3g} a^2/tau")
+        ax.plot(late, slope * late, "-", color="black", label=label, zorder=3)
+    else:
+        ax.plot(t, value[-1] * t / t[-1], ":", color="0.5", label="slope 1", zorder=1)
 
 
 def draw_memory(result: Result, figure: Any, ax: Any) -> None:
@@ -84,9 +101,10 @@ def draw_modulus(result: Result, figure: Any, ax: Any) -> None:
         )
     right.set_xscale("log")
     right.set_yscale("log", nonpositive="mask")
+    sparse_logarithm(right.xaxis, w[0], w[-1])
     right.set_xlabel(labelled(r"frequency $\omega$", "1/tau"))
     right.set_ylabel(labelled("modulus", result.units["value"]))
-    right.legend(loc="best")
+    legend_above(right)
 
 
 def _logarithmic(result: Result, ax: Any) -> None:
@@ -109,7 +127,7 @@ def _logarithmic(result: Result, ax: Any) -> None:
                 zorder=2,
             )
     if result.expected is not None:
-        line, label = abs(result.expected), f"theory: {result.theory}"
+        line, label = abs(result.expected), mathematics(f"theory: {result.theory}")
         ax.plot(time[late], line[late], "-", color="black", label=label, zorder=3)
     tail = result.extra.get("tail")
     if tail is not None and np.isfinite(tail).any():
@@ -121,8 +139,7 @@ def _logarithmic(result: Result, ax: Any) -> None:
         largest = size[late].max()
         ax.set_ylim(0.2 * max(noise, 1e-6 * largest), 3 * largest)
     ax.set_xlabel(labelled("time lag $t$", result.units["time"]))
-    if ax.get_legend_handles_labels()[0]:
-        ax.legend(loc="best")
+    legend_above(ax, columns=1)
 
 
 def draw_modes(result: Result, figure: Any, ax: Any) -> None:
@@ -142,21 +159,21 @@ def draw_modes(result: Result, figure: Any, ax: Any) -> None:
             mfc="white",
             color=colour,
             lw=0.8,
-            label=f"$k = {k:.4g}/a$",
+            label=rf"$k = {k:.4g}\,a^{{-1}}$",
             zorder=2,
         )
         if result.expected is not None:
             fine, line = time[use], result.expected[use, i]
             if "curve" in result.extra:
                 fine, line = result.extra["curve_time"], result.extra["curve"][:, i]
-            label = f"theory: {_pretty(result.theory)}" if i == 0 else None
-            ax.plot(fine, line, ls=LINES[i % len(LINES)], color="black", lw=1, label=label)
+            label = mathematics(f"theory: {result.theory}") if i == 0 else None
+            ax.plot(fine, line, color="black", lw=1, label=label)
     ax.axhline(0, color="0.6", lw=0.8, zorder=1)
     ax.set_xlim(0, end)
     ax.set_xlabel(labelled("time lag $t$", result.units["time"]))
     kind = result.label[0].upper()  # transverse or longitudinal
     ax.set_ylabel(rf"$C_v^{kind}(k, t)\,/\,C_v^{kind}(k, 0)$")
-    ax.legend(loc="upper right", ncols=1 + shown // 4)
+    legend_above(ax)
 
 
 def draw_normal_modes(result: Result, figure: Any, ax: Any) -> None:
@@ -164,7 +181,8 @@ def draw_normal_modes(result: Result, figure: Any, ax: Any) -> None:
     ax = figure.subplots() if ax is None else ax
     time = result.x["time"]
     for i, p in enumerate(result.x["mode"][:SHOWN]):
-        colour, use = COLOURS[i % len(COLOURS)], result.value[:, i] > 2 * result.error[:, i]
+        colour = COLOURS[i % len(COLOURS)]
+        use = np.logical_and.accumulate(result.value[:, i] > 2 * result.error[:, i])
         ax.errorbar(
             time[use],
             result.value[use, i],
@@ -177,20 +195,12 @@ def draw_normal_modes(result: Result, figure: Any, ax: Any) -> None:
             zorder=2,
         )
         if result.expected is not None:
-            line = result.expected[:, i] > 1e-3
-            label = f"theory: {result.theory}" if i == 0 else None
-            ax.plot(
-                time[line],
-                result.expected[line, i],
-                ls=LINES[i % len(LINES)],
-                color="black",
-                lw=1,
-                label=label,
-            )
+            label = mathematics(f"theory: {result.theory}") if i == 0 else None
+            ax.plot(time[use], result.expected[use, i], color="black", lw=1, label=label)
     ax.set_yscale("log", nonpositive="mask")
     ax.set_xlabel(labelled("time lag $t$", result.units["time"]))
     ax.set_ylabel(r"$\langle X_p(0) X_p(t)\rangle\,/\,\langle X_p^2\rangle$")
-    ax.legend(loc="upper right")
+    legend_above(ax)
 
 
 def _end(time: NDArray[np.float64], result: Result) -> float:
@@ -199,7 +209,3 @@ def _end(time: NDArray[np.float64], result: Result) -> float:
     alive = np.flatnonzero(abs(curve[:, 0]) > 0.03)
     last = min(alive[-1] + 1 if len(alive) else 1, len(time) - 1)
     return float(time[max(last, min(4, len(time) - 1))]) or 1.0
-
-
-def _pretty(theory: str) -> str:
-    return r"$e^{-\nu k^2 t}$" if theory == "exp(-nu k^2 t)" else theory

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from mesokit.observe.shared.result import Result
-from mesokit.report.style import COLOURS, LINES, MARKERS, labelled
+from mesokit.report.caption import mathematics
+from mesokit.report.style import COLOURS, MARKERS, labelled, legend_above
 
 SHOWN = 6  # curves
 
@@ -42,10 +43,10 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
             zorder=2,
         )
         if result.expected is not None and np.isfinite(result.expected[at]).any():
-            theory = f"theory: {result.theory}" if i == 0 else None
-            ax.plot(places, result.expected[at], ls=LINES[i], color="black", lw=1, label=theory)
+            theory = mathematics(f"theory: {result.theory}") if i == 0 else None
+            ax.plot(places, result.expected[at], color="black", lw=1, label=theory)
     if x.dtype.kind in "US":
         ax.set_xticks(places, [str(name) for name in x])
     ax.set_xlabel(labelled(axis, result.units.get(axis, "")))
     ax.set_ylabel(labelled(result.label, result.units.get("value", "")))
-    ax.legend(loc="best")
+    legend_above(ax)

@@ -9,6 +9,7 @@ import numpy as np
 
 from mesokit.observe.flow_frames import average
 from mesokit.observe.shared.result import Result
+from mesokit.report.caption import symbols
 from mesokit.report.flow import density, quiver, speed
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.field_source import FieldSource
@@ -17,7 +18,7 @@ from mesokit.report.flow.region import region_of
 from mesokit.report.flow.setting import Setting
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import axes_of
-from mesokit.report.style import labelled, symbols
+from mesokit.report.style import labelled
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -13,7 +13,8 @@ from mesokit.errors import RunError
 from mesokit.io.atomic import replacing
 from mesokit.observe.shared.result import Result
 from mesokit.report import correlation, curve, field, forces, probe, profile, series, tensor, wake
-from mesokit.report.style import HEIGHT, STYLE, WIDTH, below
+from mesokit.report.caption import LINE, below, compared
+from mesokit.report.style import HEIGHT, STYLE, WIDTH
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -54,10 +55,11 @@ def plot(result: Result, ax: Any = None, case: Case | None = None) -> Any:
         if ax is not None:
             DRAW[result.drawing](result, ax.figure, ax)
             return ax.figure
-        lines = 0.17 * len(result.comparisons)
+        text = compared(result.comparisons, WIDTH)
+        lines = LINE * len(text.splitlines())
         figure = ShownFigure(figsize=(WIDTH, HEIGHT + lines), layout="constrained")
         DRAW[result.drawing](result, figure, None)
-        below(figure, result.comparisons)
+        below(figure, text)
         return figure
 
 

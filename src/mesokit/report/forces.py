@@ -1,4 +1,4 @@
-"""Forces on solids: each component on each body, next to what a balance expects."""
+"""Forces on solids: their components side by side, next to what a balance expects, and in time."""
 
 from __future__ import annotations
 
@@ -8,51 +8,63 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.observe.shared.result import Result
-from mesokit.report.style import COLOURS, MARKERS, labelled
+from mesokit.report.style import COLOURS, LINES, MARKERS, labelled, legend_above
 
 SHOWN = 12  # bodies in one figure
-MORE = 1.6  # inches for each further row
+MORE = 1.7  # inches for each further row
+PIECES = 120  # means that a force in time is drawn with
+BAR = r"$\pm$ one standard error"
+
+Places = NDArray[np.intp]
 
 
 def draw(result: Result, figure: Any, ax: Any) -> None:
-    """A panel for each component, as their sizes differ; in given axes the first alone.
+    """Forces and torques, and in time what acts on the first; in given axes the forces alone.
 
-    Plates have panels of their own: the fluid presses on them with far more than it gives to what
-    stands in it. Their torques are left out.
+    Plates have panels of their own, one for each component: the fluid presses on them with far more
+    than it gives to what stands in it. Their torques are left out.
     """
     names = [str(name) for name in result.x["component"]]
     plates = np.asarray(result.extra.get("plates", np.zeros(len(result.x["body"]), int)), bool)
-    if ax is not None:
-        _panel(ax, result, 0, np.arange(len(plates)))
-        return
     forces = [k for k, name in enumerate(names) if name[0] == "f"]
-    rows: list[tuple[NDArray[np.intp], list[int]]] = []
+    torques = [k for k in range(len(names)) if k not in forces]
+    if ax is not None:
+        _panel(ax, result, forces, np.arange(len(plates)))
+        ax.legend(loc="best")
+        return
     solids, plain = np.flatnonzero(~plates), np.flatnonzero(plates)
+    rows: list[list[tuple[Places, list[int]]]] = []
     if len(solids):
-        torques = [k for k in range(len(names)) if k not in forces]
-        rows += [(solids, forces + torques)] if len(names) == 3 else [
-            (solids, forces), (solids, torques)
-        ]  # fmt: skip
+        rows.append([(solids, forces), (solids, torques)])
     if len(plain):
-        rows.append((plain, forces))
-    figure.set_figheight(figure.get_figheight() + MORE * (len(rows) - 1))
-    wide = max(len(columns) for _, columns in rows)
-    panels = figure.subplots(len(rows), wide, squeeze=False)
-    for (bodies, columns), row in zip(rows, panels, strict=True):
-        for panel in row[len(columns) :]:
-            panel.set_axis_off()
-        for column, panel in zip(columns, row, strict=False):
-            _panel(panel, result, column, bodies)
-            title = panel.get_ylabel() + _about(result, bodies, names[column])
+        rows.append([(plain, [k]) for k in forces])
+    timed = len(solids) > 0 and len(result.extra.get("time", ())) > 2
+    count = len(rows) + timed
+    figure.set_figheight(figure.get_figheight() + MORE * (count - 1))
+    parts = np.atleast_1d(figure.subfigures(count, 1))
+    panels: list[Any] = []
+    for part, row in zip(parts, rows, strict=False):
+        drawn = part.subplots(1, len(row), squeeze=False)[0]
+        panels += list(drawn)
+        for panel, (bodies, columns) in zip(drawn, row, strict=True):
+            _panel(panel, result, columns, bodies)
+            title = panel.get_ylabel() + _about(result, bodies, names[columns[0]])
             panel.set_title(title, fontsize=10)
             panel.set_ylabel("")
+    if timed:
+        panels.append(parts[-1].subplots())
+        _in_time(panels[-1], result, forces, int(solids[0]))
     handles: dict[str, Any] = {}
-    for panel in panels.ravel():
-        handles = dict(zip(*panel.get_legend_handles_labels()[::-1], strict=True)) | handles
-    figure.legend(handles.values(), handles, loc="outside upper center", ncols=2)
+    for panel in panels[: len(panels) - timed]:
+        found, labels = panel.get_legend_handles_labels()
+        handles |= dict(zip(labels, found, strict=True))
+    theory = handles.pop("theory", None)
+    handles |= {"theory": theory} if theory is not None else {}
+    number = len(handles)
+    figure.legend(handles.values(), handles, loc="outside upper center", ncols=number, title=BAR)
 
 
-def _about(result: Result, bodies: NDArray[np.intp], name: str) -> str:
+def _about(result: Result, bodies: Places, name: str) -> str:
     """What a torque is about."""
     if name[0] == "f" or "pivot" not in result.extra:
         return ""
@@ -62,31 +74,68 @@ def _about(result: Result, bodies: NDArray[np.intp], name: str) -> str:
     return f"\nabout ({place})"
 
 
-def _panel(ax: Any, result: Result, column: int, chosen: NDArray[np.intp]) -> None:
+def _symbol(name: str) -> str:
+    return f"${name[0].upper()}_{name[1]}$"
+
+
+def _panel(ax: Any, result: Result, columns: list[int], chosen: Places) -> None:
+    """Components side by side, body by body."""
     chosen = chosen[:SHOWN]
     bodies = [str(body) for body in result.x["body"][chosen]]
-    name, place = str(result.x["component"][column]), np.arange(len(bodies))
-    axis = "xyz".index(name[1])
+    names = [str(result.x["component"][k]) for k in columns]
+    width = 0.7 / len(columns)
     ax.axhline(0, color="0.6", lw=0.8, zorder=1)
-    ax.errorbar(
-        place,
-        result.value[chosen, column],
-        result.error[chosen, column],
-        fmt=MARKERS[axis],
-        mfc="white",
-        color=COLOURS[axis],
-        label=r"measured, $\pm$ one standard error",
-        zorder=3,
-    )
-    if result.expected is not None and np.isfinite(result.expected[chosen, column]).any():
-        expected = result.expected[chosen, column]
-        ax.hlines(expected, place - 0.35, place + 0.35, color="black", lw=1.5, label="theory")
+    for number, (k, name) in enumerate(zip(columns, names, strict=True)):
+        axis = "xyz".index(name[1])
+        place = np.arange(len(bodies)) + (number - (len(columns) - 1) / 2) * width
+        ax.errorbar(
+            place,
+            result.value[chosen, k],
+            result.error[chosen, k],
+            fmt=MARKERS[axis + 3 * (name[0] == "t")],
+            mfc="white",
+            color=COLOURS[axis],
+            label=_symbol(name),
+            zorder=3,
+        )
+        if result.expected is not None and np.isfinite(result.expected[chosen, k]).any():
+            ends = place - width / 2, place + width / 2
+            ax.hlines(result.expected[chosen, k], *ends, color="black", lw=1.5, label="theory")
     tilted = max(map(len, bodies)) * len(bodies) > 12
     ax.set_xticks(
-        place, bodies, rotation=40 if tilted else 0, ha="right" if tilted else "center", fontsize=9
+        np.arange(len(bodies)),
+        bodies,
+        rotation=40 if tilted else 0,
+        ha="right" if tilted else "center",
+        fontsize=9,
     )
-    ax.set_xlabel("solid")
     ax.set_xlim(-0.6, len(bodies) - 0.4)
     ax.margins(y=0.15)
-    kind = "force" if name[0] == "f" else "torque"
-    ax.set_ylabel(labelled(f"{kind} ${name[0].upper()}_{name[1]}$", result.units[name]))
+    kind = "force" if names[0][0] == "f" else "torque"
+    letters = ", ".join(map(_symbol, names))
+    ax.set_ylabel(labelled(f"{kind} {letters}", result.units[names[0]]))
+
+
+def _in_time(ax: Any, result: Result, columns: list[int], body: int) -> None:
+    """The force on a body, in means over parts of the run; its coefficient at the right."""
+    time, series = result.extra["time"], result.extra["series"][:, body]
+    size = -(-len(time) // PIECES)
+    count = len(time) // size
+    time, series = (
+        a[: count * size].reshape(count, size, *a.shape[1:]).mean(axis=1) for a in (time, series)
+    )
+    ax.axhline(0, color="0.6", lw=0.8, zorder=1)
+    for number, k in enumerate(columns):
+        name = str(result.x["component"][k])
+        style = {"ls": LINES[number], "color": COLOURS["xyz".index(name[1])]}
+        ax.plot(time, series[:, k], lw=1, label=_symbol(name), **style)
+    ax.set_xlabel(labelled("time $t$", "tau"))
+    ax.set_ylabel(labelled(f"force on {result.x['body'][body]}", result.units["fx"]))
+    legend_above(ax)
+    if count > 1:
+        ax.set_xlim(time[0], time[-1])
+    scale = result.extra.get("coefficient", np.nan)
+    if np.isfinite(scale) and scale:
+        right = ax.secondary_yaxis("right", functions=(lambda f: f * scale, lambda c: c / scale))
+        right.set_ylabel("coefficient $C$")
+        ax.tick_params(right=False)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mesokit.observe.shared.result import Result
-from mesokit.report.style import COLOURS, labelled
+from mesokit.report.style import COLOURS, labelled, legend_above, sparse_logarithm
 
 
 def draw(result: Result, figure: Any, ax: Any) -> None:
@@ -46,4 +46,6 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         )
     bottom.set_xscale("log")
     bottom.set_yscale("log")
-    bottom.legend(loc="best")
+    sparse_logarithm(bottom.xaxis, frequency[use][0], frequency[use][-1])
+    sparse_logarithm(bottom.yaxis, float(low[use].min()), float(result.value[use].max()))
+    legend_above(bottom)

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from mesokit.observe.shared.result import Result
-from mesokit.report.style import COLOURS, labelled
+from mesokit.report.caption import mathematics
+from mesokit.report.style import COLOURS, labelled, legend_above
 
 AXES = {"r": "distance from the axis $r$", "distance": "distance from the surface"}
 NAMES = {
@@ -37,7 +38,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         fmt="o",
         mfc="white",
         color=COLOURS[0],
-        ms=2 if many else 4,
+        ms=2 if many else 3 if len(x) > 60 else 4,
         lw=0.8,
         capsize=0 if many else 2,
         label=r"measured, $\pm$ one standard error",
@@ -45,12 +46,13 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     )
     if result.expected is not None and np.isfinite(result.expected).any():
         name = NAMES.get(result.theory, result.theory)
-        ax.plot(x, result.expected, "-", color="black", lw=1.5, label=f"theory: {name}", zorder=3)
+        label = mathematics(f"theory: {name}")
+        ax.plot(x, result.expected, "-", color="black", lw=1.5, label=label, zorder=3)
     if result.fit is not None:
         ax.plot(x, result.fit, "--", color=COLOURS[1], lw=1.3, label="fit", zorder=4)
-    ax.set_ylabel(labelled(_with_index(result.label), result.units["value"]))
+    ax.set_ylabel(labelled(result.label, result.units["value"]))
     _frame(ax, result)
-    ax.legend(loc="best")
+    legend_above(ax)
     bottom = ax
     if residuals is not None:
         bottom = residuals
@@ -68,16 +70,17 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
 
 
 def _frame(ax: Any, result: Result) -> None:
-    """Do not blow noise about a constant up to the height of the figure."""
-    expected = result.expected
+    """Do not blow noise about a constant up to the height of the figure.
+
+    Every value is seen; the error bar of a bin that was nearly empty may go beyond the edge.
+    """
+    expected, error = result.expected, result.error
     if expected is None or not np.isfinite(expected).any() or np.ptp(expected) > 0:
         return
-    low, high = ax.get_ylim()
-    level = float(np.nanmean(expected))
-    half = max(high - level, level - low, 0.01 * abs(level)) * 1.5
-    ax.set_ylim(level - half, level + half)
-
-
-def _with_index(label: str) -> str:
-    words = label.replace("k_B T", "k_BT").split()
-    return " ".join(f"${w}$" if "_" in w else w for w in words)
+    level, bar = float(np.nanmean(expected)), 0.0
+    if np.isfinite(error).any():
+        bar = 2 * float(np.nanmedian(error))
+    away = abs(result.value[np.isfinite(result.value)] - level)
+    half = max(1.1 * (float(away.max(initial=0.0)) + bar), 0.015 * abs(level))
+    if half > 0:
+        ax.set_ylim(level - half, level + half)

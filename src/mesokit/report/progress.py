@@ -123,6 +123,15 @@ class Reporter:
             done = (step - self.first) / max(self.total - self.first, 1)
             self._say(f"{self.phase}: {100 * done:3.0f} %, {self.words(step)}")
 
+    def tell(self, line: str) -> None:
+        """Say a line that stays, above the bar if there is one."""
+        if self.quiet:
+            return
+        if self.bar is not None:
+            self.bar.console.print(line, markup=False, highlight=False, soft_wrap=True)
+        else:
+            self._say(line)
+
     def finish(self) -> None:
         """The phase is over, or the run was stopped."""
         if self.quiet or not self.phase:

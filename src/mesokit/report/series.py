@@ -2,42 +2,101 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from mesokit.observe.shared.result import Result
-from mesokit.report.style import COLOURS, LINES, labelled
+from mesokit.report.caption import symbols
+from mesokit.report.style import COLOURS, LINES, labelled, legend_above
+
+MORE = 2.0  # inches for five panels
 
 
 def draw(result: Result, figure: Any, ax: Any) -> None:
-    """Momentum, kinetic energy and temperature in time; in given axes the temperature alone."""
+    """Number, momentum, energy and temperature in time; in given axes the temperature alone.
+
+    Where momentum is conserved its change since the first sample is drawn, which is round-off.
+    """
     time, names = result.x["time"], [str(name) for name in result.x["component"]]
     if ax is not None:
-        _one(result, ax, names.index("temperature"), "temperature\n$k_BT$")
+        _temperature(result, ax, names.index("temperature"))
         ax.set_xlabel(labelled("time $t$", result.units["time"]))
         return
-    top, middle, bottom = figure.subplots(3, 1, sharex=True)
+    figure.set_figheight(figure.get_figheight() + MORE)
+    panels = figure.subplots(5, 1, sharex=True)
+    panels[0].plot(time, result.value[:, names.index("number")], color=COLOURS[0], lw=1)
+    panels[0].set_ylabel("particles\n$N$")
+    panels[0].ticklabel_format(axis="y", useOffset=False)
     momenta = [i for i, name in enumerate(names) if name.startswith("momentum")]
-    for line, i in enumerate(momenta):
-        change = result.value[:, i] - result.value[:1, i]
-        top.plot(time, change, ls=LINES[line], color=COLOURS[line], lw=1, label=f"${names[i][-1]}$")
-    top.set_ylabel(labelled("momentum\nchange", result.units[names[momenta[0]]]))
-    top.legend(loc="upper left", ncols=3)
+    _momentum(result, panels[1], panels[2], momenta)
     energy = result.value[:, names.index("kinetic_energy")]
     first = energy[0] if len(energy) and energy[0] else 1.0
-    middle.plot(time, energy / first - 1, color=COLOURS[0], lw=1)
-    middle.set_ylabel("kinetic energy\nrelative change")
-    _one(result, bottom, names.index("temperature"), "temperature\n$k_BT$")
-    bottom.set_xlabel(labelled("time $t$", result.units["time"]))
-    for panel in (top, middle):
-        panel.ticklabel_format(axis="y", style="sci", scilimits=(-2, 3))
-    bottom.ticklabel_format(axis="y", useOffset=False)
+    _scaled(panels[3], "kinetic energy\nrel. change", [(time, energy / first - 1, {})], "")
+    _temperature(result, panels[4], names.index("temperature"))
+    panels[4].set_xlabel(labelled("time $t$", result.units["time"]))
     if len(time) > 1:
-        bottom.set_xlim(time[0], time[-1])
-    for panel in (top, middle, bottom):
+        panels[4].set_xlim(time[0], time[-1])
+    for panel in panels:
         panel.yaxis.label.set_size(9)
+        panel.locator_params(axis="y", nbins=4)
     figure.align_ylabels()
+
+
+def _momentum(result: Result, above: Any, below: Any, columns: list[int]) -> None:
+    """Its components above, how far all of it has moved from the first sample below."""
+    time, names = result.x["time"], [str(name) for name in result.x["component"]]
+    expected, unit = result.expected, result.units[names[columns[0]]]
+    value = result.value[:, columns]
+    change = value - value[:1]
+    flows = not bool(result.extra.get("conserves_momentum", _constant(expected, columns)))
+    curves: list[Any] = [
+        (
+            time,
+            (value if flows else change)[:, k],
+            {"ls": LINES[k], "color": COLOURS[k], "label": f"${names[i][-1]}$"},
+        )
+        for k, i in enumerate(columns)
+    ]
+    theory = {"color": "black", "lw": 1.3, "label": "theory"}
+    if flows and expected is not None:
+        known = [i for i in columns if np.isfinite(expected[:, i]).any()]
+        curves += [(time, expected[:, i], theory) for i in known]
+    _scaled(above, "momentum" if flows else "momentum\nchange", curves, unit)
+    size = np.linalg.norm(change, axis=1)
+    _scaled(below, "momentum\n|change|", [(time, size, {})], unit)
+    _beside(above)
+
+
+def _constant(expected: Any, columns: list[int]) -> bool:
+    """Whether theory says that these stay as they were."""
+    if expected is None or not len(expected):
+        return False
+    wanted = expected[:, columns]
+    return bool(np.isfinite(wanted).all() and (wanted == wanted[:1]).all())
+
+
+def _scaled(ax: Any, label: str, curves: Iterable[tuple[Any, Any, Any]], unit: str) -> None:
+    """Lines of numbers that are all very large or small, with the power of ten in the label."""
+    curves = list(curves)
+    sizes = [abs(y[np.isfinite(y)]).max(initial=0.0) for _, y, _ in curves]
+    largest = max(sizes, default=0.0)
+    power = math.floor(math.log10(largest)) if largest > 0 else 0
+    power = power if not -2 <= power < 4 else 0
+    for x, y, style in curves:
+        ax.plot(x, y / 10.0**power, **{"color": COLOURS[0], "lw": 1, **style})
+    times = rf"$10^{{{power}}}$" if power else ""
+    words = " ".join(filter(None, (times, symbols(unit))))
+    ax.set_ylabel(f"{label} [{words}]" if words else label)
+
+
+def _beside(ax: Any) -> None:
+    """A legend to the right of the panel, where it hides no data."""
+    handles = dict(zip(*ax.get_legend_handles_labels()[::-1], strict=True))
+    if handles:
+        ax.legend(handles.values(), handles, loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 
 def draw_flow(result: Result, figure: Any, ax: Any) -> None:
@@ -57,7 +116,7 @@ def draw_flow(result: Result, figure: Any, ax: Any) -> None:
     ax.set_ylabel(labelled(f"mean velocity along ${result.extra['axis']}$", result.units["value"]))
     if len(time) > 1:
         ax.set_xlim(time[0], time[-1])
-    ax.legend(loc="best")
+    legend_above(ax)
 
 
 def _pretty(theory: str) -> str:
@@ -65,13 +124,17 @@ def _pretty(theory: str) -> str:
     return names.get(theory, theory)
 
 
-def _one(result: Result, ax: Any, index: int, label: str) -> None:
+def _temperature(result: Result, ax: Any, index: int) -> None:
     value, expected = result.value[:, index], result.expected
-    ax.plot(result.x["time"], value, color=COLOURS[0], lw=0.8, label="measured")
-    if expected is not None and np.isfinite(expected[:, index]).any():
-        ax.plot(result.x["time"], expected[:, index], color="black", lw=1.3, label="expected")
+    known = expected is not None and bool(np.isfinite(expected[:, index]).any())
+    label = "measured" if known else None
+    ax.plot(result.x["time"], value, color=COLOURS[0], lw=0.8, label=label)
+    if expected is not None and known:
+        ax.plot(result.x["time"], expected[:, index], color="black", lw=1.3, label="theory")
         level = float(np.nanmean(expected[:, index]))
         reach = 1.6 * max(float(np.nanmax(abs(value - level))), 1e-3 * abs(level))
         ax.set_ylim(level - reach, level + reach)
-    ax.set_ylabel(labelled(label, result.units[str(result.x["component"][index])]))
-    ax.legend(loc="upper left", ncols=2)
+    words = "$k_BT$, flow\ncounted" if result.extra.get("driven") else "temperature\n$k_BT$"
+    ax.set_ylabel(labelled(words, result.units[str(result.x["component"][index])]))
+    ax.ticklabel_format(axis="y", useOffset=False)
+    _beside(ax)

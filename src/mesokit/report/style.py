@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any
 
-from mesokit.observe.shared.result import Comparison, with_error
+from mesokit.report.caption import mathematics, symbols
 
 WIDTH, HEIGHT = 6.4, 4.8  # inches
 MARKERS = "osD^v<>pP*X"
@@ -26,49 +25,26 @@ STYLE: Any = {
     "lines.markersize": 4,
     "savefig.dpi": 200,
 }
-_SYMBOLS = {
-    "a": "a", "tau": r"\tau", "m": "m", "1/a": "a^{-1}", "1/tau": r"\tau^{-1}", "a^2": "a^2",
-    "a/tau": r"a/\tau", "a^2/tau": r"a^2/\tau", "a^2/tau^2": r"a^2/\tau^2",
-    "1/a^2": "a^{-2}", "1/a^3": "a^{-3}",
-    "m a^2/tau^2": r"m a^2/\tau^2", "m a/tau": r"m a/\tau", "m a/tau^2": r"m a/\tau^2",
-    "m/tau^2": r"m/\tau^2", "a^3/tau": r"a^3/\tau", "m/(a tau^2)": r"m/(a\tau^2)",
-}  # fmt: skip
-
-
-def symbols(unit: str) -> str:
-    """A unit as Matplotlib writes it, without the brackets; texts stay texts.
-
-    >>> symbols("a^2/tau"), symbols("% of the flow")
-    ('$a^2/\\\\tau$', '% of the flow')
-    """
-    return f"${_SYMBOLS[unit]}$" if unit in _SYMBOLS else unit
 
 
 def labelled(label: str, unit: str) -> str:
     """An axis label with its unit."""
-    return f"{label}  [{symbols(unit)}]" if unit else label
+    return f"{mathematics(label)}  [{symbols(unit)}]" if unit else mathematics(label)
 
 
-def compared(comparisons: Iterable[Comparison]) -> str:
-    """Lines for a box in a figure: measured with error, theory, deviation."""
-    return "\n".join(_line(c) for c in comparisons)
+def legend_above(ax: Any, columns: int = 3) -> None:
+    """A legend over the axes, where it hides no data."""
+    if ax.get_legend_handles_labels()[0]:
+        ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=columns, borderaxespad=0.2)
 
 
-def _line(c: Comparison) -> str:
-    text = f"{c.what}: {with_error(c.measured, c.error)} {symbols(c.unit)}".rstrip()
-    if c.expected == c.expected and (c.expected or c.error > 0):
-        text += f"   (theory {c.expected:.4g}"
-        if c.approximate:
-            text += f", approximate, {c.percent:+.2g} %)"
-        else:
-            text += f", {c.deviation:+.1f} s.e.)" if c.error > 0 else ")"
-    elif c.expected != c.expected and c.note:
-        text += f"   ({c.note})"
-    return text
+def sparse_logarithm(axis: Any, least: float, most: float) -> None:
+    """Numbers on a logarithmic axis that do not run into one another: powers of ten, and where
+    there are less than two of these also 2 and 5 times as much."""
+    from matplotlib.ticker import FuncFormatter, NullFormatter
 
-
-def below(figure: Any, comparisons: Iterable[Comparison]) -> None:
-    """Write the comparisons under the axes, where they hide no data."""
-    text = compared(comparisons)
-    if text:
-        figure.supxlabel(text, fontsize=8, ha="left", x=0.02, linespacing=1.5)
+    few = least > 0 and most / least < 100
+    shown = FuncFormatter(lambda x, _: f"{x:g}" if f"{x:e}"[0] in "25" else "")
+    axis.set_minor_formatter(shown if few else NullFormatter())
+    if few:
+        axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))

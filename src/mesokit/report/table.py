@@ -24,7 +24,7 @@ def comparison_table(results: Iterable[Result]) -> Any:
         name = result.name
         for comparison in result.comparisons:
             style = "bold yellow" if abs(comparison.deviation) > SUSPICIOUS else None
-            table.add_row(name, *_cells(comparison)[:-1], style=style)
+            table.add_row(name, *cells(comparison)[:-1], style=style)
             name = ""
     return table
 
@@ -45,7 +45,8 @@ def print_comparisons(results: Iterable[Result], console: Console | None = None)
             console.print(f"{result.name}: {comparison}", soft_wrap=True, highlight=False)
 
 
-def _cells(c: Comparison) -> tuple[str, ...]:
+def cells(c: Comparison) -> tuple[str, str, str, str, str, str]:
+    """The texts of one comparison under all `HEADINGS` but the first."""
     expected = "" if math.isnan(c.expected) else f"{c.expected:.4g}"
     deviation = ""
     if math.isfinite(c.deviation):

@@ -17,32 +17,66 @@ SYMBOLS = {
     "products of bond components": r"$\langle b_\alpha b_\beta\rangle$",
 }
 
+TITLES = {"products of bond components": ("off the diagonal", "on the diagonal")}  # of panels
+
 
 def draw(result: Result, figure: Any, ax: Any) -> None:
-    """Off-diagonal and diagonal parts in panels of their own, as their sizes differ."""
+    """Off-diagonal and diagonal parts in panels of their own, as their sizes differ.
+
+    Of sizes each part has a panel: the ends of a chain are farther apart than its beads.
+    """
     entries = list(itertools.product(*(range(len(axis)) for axis in result.x.values())))
     normal = [e for e in entries if _is_normal(result, e)]
     across = [e for e in entries if not _is_normal(result, e) and _once(result, e)]
-    panels = [ax, None] if ax is not None else list(figure.subplots(1, 2))
-    _panel(panels[0], result, across, "shear")
-    if panels[1] is not None:
-        _panel(panels[1], result, normal, "normal")
+    shear, straight = TITLES.get(result.label, ("shear", "normal"))
+    panels = [(across, shear), (normal, straight)]
+    if result.label == "size of molecules":
+        parts = result.x["part"]
+        every = sorted(normal + across, key=lambda e: not _is_normal(result, e))
+        panels = [([e for e in every if e[0] == k], str(part)) for k, part in enumerate(parts)]
+    if ax is not None:
+        _panel(ax, result, *panels[0])
+        _legend(ax.figure, [ax], ax)
+        return
+    drawn = figure.subplots(1, len(panels), squeeze=False)[0]
+    for axes, (chosen, title) in zip(drawn, panels, strict=True):
+        _panel(axes, result, chosen, title)
+    _legend(figure, drawn)
 
 
 def draw_moduli(result: Result, figure: Any, ax: Any) -> None:
     """Storage and loss modulus, by parts."""
     entries = list(itertools.product(*(range(len(axis)) for axis in result.x.values())))
-    ax = ax if ax is not None else figure.subplots()
-    _panel(ax, result, entries, f"frequency {result.extra['frequency']:g}")
+    own = ax is None
+    ax = figure.subplots() if own else ax
+    _panel(ax, result, entries, rf"$\omega = {result.extra['frequency']:g}\,\tau^{{-1}}$")
+    _legend(ax.figure, [ax], None if own else ax)
+
+
+def _legend(figure: Any, panels: Any, ax: Any = None) -> None:
+    """One for all panels, below them: no data there."""
+    handles: dict[str, Any] = {}
+    for panel in panels:
+        found, labels = panel.get_legend_handles_labels()
+        handles |= dict(zip(labels, found, strict=True))
+    theory = handles.pop("theory", None)
+    handles |= {"theory": theory} if theory is not None else {}
+    if ax is not None:
+        ax.legend(
+            handles.values(), handles, loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=2
+        )
+    else:
+        figure.legend(handles.values(), handles, loc="outside upper center", ncols=len(handles))
 
 
 def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) -> None:
     groups, inner = next(iter(result.x.values())), _inner_names(result, entries)
-    width = 0.6 / max(len(groups), 1)
-    for number, group in enumerate(groups):
+    numbers = sorted({e[0] for e in entries})
+    width = 0.6 / max(len(numbers), 1)
+    for place_of, number in enumerate(numbers):
         chosen = [e for e in entries if e[0] == number]
         place = np.array([inner.index(_name(result, e)) for e in chosen], float)
-        place += (number - (len(groups) - 1) / 2) * width
+        place += (place_of - (len(numbers) - 1) / 2) * width
         value = np.array([result.value[e] for e in chosen])
         error = np.array([result.error[e] for e in chosen])
         ax.errorbar(
@@ -52,21 +86,19 @@ def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) 
             fmt=MARKERS[number],
             mfc="white",
             color=COLOURS[number],
-            label=str(group),
+            label=str(groups[number]),
             zorder=3,
         )
         if result.expected is not None:
             expected = np.array([result.expected[e] for e in chosen])
-            label = "theory" if number == len(groups) - 1 else None
-            ax.hlines(
-                expected, place - width / 2, place + width / 2, color="black", lw=1.5, label=label
-            )
+            if np.isfinite(expected).any():
+                ends = place - width / 2, place + width / 2
+                ax.hlines(expected, *ends, color="black", lw=1.5, label="theory")
     ax.set_xticks(range(len(inner)), [f"${name}$" for name in inner])
     ax.set_xlim(-0.6, len(inner) - 0.4)
     ax.set_title(title, fontsize=10)
     ax.margins(y=0.2)
     ax.set_ylabel(labelled(SYMBOLS.get(result.label, "force per area"), result.units["value"]))
-    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=2)  # below: no data there
 
 
 def _names(result: Result, entry: tuple[int, ...]) -> list[str]:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.observe.shared.result import Result
 
-MAY_DIFFER = ("run.seed", "run.steps", "run.checkpoint_minutes", "run.checkpoint_every", "title")
+MAY_DIFFER = ("run.seed", "run.steps", "run.checkpoint_", "trajectory.", "log.", "title")
 
 
 def merge(runs: Sequence[str | Path], output: str | Path) -> RunFiles:
@@ -32,7 +32,8 @@ def merge(runs: Sequence[str | Path], output: str | Path) -> RunFiles:
     ----------
     runs: folders of runs whose cases differ in their seeds, and at most in how long they are. One
         that has not ended counts up to its last checkpoint.
-    output: folder to write to: results, figures, the case (of the first run) and where all came from.
+    output: folder to write to: results, figures, the case of the first run, and where all came
+        from.
 
     Raises RunError for runs of different cases, with the first key that differs, for the same seed
     twice, for observables that cannot be pooled, or if a folder holds no run or checkpoint.
@@ -94,7 +95,8 @@ def _pool(name: str, accumulator: Any, other: Any) -> None:
 
 def _require_alike(files: Sequence[RunFiles]) -> None:
     """Raise RunError unless all runs are of one case, each with a seed of its own."""
-    first, seeds = files[0], {}
+    first = files[0]
+    seeds: dict[int, Path] = {}
     for each in files:
         if "merged" in each.provenance:
             raise RunError(f"{each.path}: holds merged runs; name those that it is made of")
@@ -108,20 +110,21 @@ def _require_alike(files: Sequence[RunFiles]) -> None:
         seed = each.case.run.seed
         if seed in seeds:
             raise RunError(
-                f"{each.path}: run.seed = {seed}, as in {seeds[seed]}: the same run would count twice"
+                f"{each.path}: run.seed = {seed}, as in {seeds[seed]}: the same run would count "
+                "twice"
             )
         seeds[seed] = each.path
 
 
 def different_key(one: str, other: str) -> str | None:
-    """The first key, but for seed and length, in which two cases differ; None if there is none.
+    """The first key in which two cases differ that changes what is measured; None if none does.
 
-    >>> different_key("[run]\\nseed = 1\\n[fluid]\\nkT = 1.0", "[run]\\nseed = 2\\n[fluid]\\nkT = 2.0")
-    'fluid.kT'
+    >>> different_key("[run]\\nseed = 1\\n[box]\\nsize = [8, 8]", "[box]\\nsize = [8, 9]")
+    'box.size'
     """
     here, there = _flat(one), _flat(other)
     for key in [*here, *(key for key in there if key not in here)]:
-        if key not in MAY_DIFFER and here.get(key) != there.get(key):
+        if not key.startswith(MAY_DIFFER) and here.get(key) != there.get(key):
             return key
     return None
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,7 @@ from mesokit.case.warnings import run_warnings
 from mesokit.errors import CaseError
 from mesokit.method.brownian.engine import Brownians
 from mesokit.method.brownian.section import Sections
-from mesokit.method.protocol import Method, Row, Summary
+from mesokit.method.protocol import Columns, Method, Row, Summary
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
 from mesokit.running.cores import usable_cores
 from mesokit.statistics import spread_ids
@@ -129,6 +129,17 @@ def first_state(case: Case, arrays: Mapping[str, Any]) -> Array | None:
     return found
 
 
+def columns(case: Case) -> Columns:
+    """Where the middle of all particles has gone to, of which the log of a run may tell."""
+    names = tuple(f"centre {axis}" for axis in case.box.axes)
+
+    def read(engine: Any, wanted: Collection[str]) -> dict[str, float]:
+        centre = engine.positions(unwrapped=True).mean(axis=0)
+        return {name: float(centre[names.index(name)]) for name in wanted}
+
+    return Columns(names, names, read)
+
+
 def _engine(case: Case, threads: int, measures: Sequence[str]) -> Brownians:
     return Brownians(case, threads)
 
@@ -153,4 +164,5 @@ METHOD = Method(
     first_state=first_state,
     engine=_engine,
     start=Brownians.start,
+    log=columns,
 )

@@ -101,7 +101,7 @@ def _flow(case: Case) -> tuple[str, int, float | None]:
     if setting.obstructed(case):
         plates = tuple(wall for wall in case.walls if isinstance(wall, Plates))
         if len(plates) == 1 and not plates[0].diffuse:
-            bare = dataclasses.replace(case, walls=plates, observe=(), trajectory=None)
+            bare = dataclasses.replace(case, walls=plates, observe=(), trajectory=None, log=None)
             kind, across, speed = _flow(bare)
             if speed is not None and setting.surface_speed(case) > speed:
                 return "of moving surfaces", across, setting.surface_speed(case)

@@ -14,6 +14,7 @@ from mesokit.case.component import show
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.checks import combinations
+from mesokit.method.mpcd.columns import columns
 from mesokit.method.mpcd.expected.displacement import Displacement
 from mesokit.method.mpcd.expected.setting import closed_axes
 from mesokit.method.mpcd.groups import bonds, groups
@@ -98,5 +99,6 @@ METHOD = Method(
     start=_start,
     keep_files=_keep_files,
     expected={"mean-square-displacement": Displacement},
+    log=columns,
     si=_si,
 )

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
+from typing import Any
 
 from mesokit import theory
+from mesokit.case.amounts import duration_text, number, size_text
+from mesokit.case.shown import Shown
+
+Row = tuple[str, str, str]  # what, its value, and a word on it
 
 
-@dataclass(frozen=True)
-class Derived:
+@dataclass(frozen=True, repr=False)
+class Derived(Shown):
     """What follows from a case. Lengths in cells; None where there is no formula.
 
     `flow_speed` is the largest velocity that theory expects of the steady flow, `flow_size` the
@@ -34,3 +40,57 @@ class Derived:
     substeps: int | None
     assumed: str
     warnings: tuple[str, ...]
+
+    def fluid_rows(self) -> list[Row]:
+        """Transport coefficients in words, none without a theory."""
+        known = self.transport
+        if known is None:
+            return []
+        parts = (
+            f"kinetic {known.viscosity_kinetic:.4g}, collisional {known.viscosity_collisional:.4g}"
+        )
+        return [
+            ("mean free path", number(known.mean_free_path, "a"), ""),
+            ("kinematic viscosity", number(known.viscosity, "a^2/time"), parts),
+            ("self-diffusion", number(known.diffusion, "a^2/time"), ""),
+            ("Schmidt number", number(known.schmidt), ""),
+            ("speed of sound", number(known.sound_speed, "a/time"), ""),
+        ]
+
+    def flow_rows(self, timestep: float | None = None) -> list[Row]:
+        """The steady flow in words, none where there is no flow or no theory of it."""
+        if not self.flow_speed:
+            return []
+        rows = [
+            ("flow speed", number(self.flow_speed, "a/time"), self.flow),
+            ("Reynolds number", number(self.reynolds), ""),
+            ("Mach number", number(self.mach), ""),
+        ]
+        if self.steady_time is not None:
+            steps = "" if timestep is None else f"{round(self.steady_time / timestep)} steps to 1/e"
+            rows.append(("time to build up", number(self.steady_time), steps))
+        return rows
+
+    def rows(self) -> list[Row]:
+        """All of it in words."""
+        particles = f"{self.particles:,}".replace(",", " ")
+        return [
+            ("particles", particles, ""),
+            *self.fluid_rows(),
+            *self.flow_rows(),
+            ("run time", duration_text(self.seconds), f"estimate: {self.assumed}"),
+            ("memory", size_text(self.memory), "estimate"),
+        ]
+
+    def record(self) -> dict[str, Any]:
+        """All of it as plain numbers and texts, but for the warnings."""
+        return {key: value for key, value in dataclasses.asdict(self).items() if key != "warnings"}
+
+    def _card(self) -> dict[str, Any]:
+        warnings = [("warning", text, "") for text in self.warnings]
+        return {"title": "derived numbers", "rows": [*self.rows(), *warnings], "pretty": True}
+
+    def __repr__(self) -> str:
+        rows = [*self.rows(), *(("warning", text, "") for text in self.warnings)]
+        width = max(len(name) for name, _, _ in rows)
+        return "\n".join(f"{name:{width}}  {v}  {word}".rstrip() for name, v, word in rows)

@@ -6,18 +6,21 @@ import importlib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.shown import Shown
 from mesokit.observe.shared.named import find, key_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 Array = NDArray[np.floating[Any]]
-FIGURES = "mesokit.report"  # by its name: results know nothing of how they are drawn
+FIGURES = "mesokit.report"  # by their names: results know nothing of how they are drawn
+TABLES = "mesokit.io.tables"  # and written
 
 
 @dataclass(frozen=True)
@@ -119,7 +122,7 @@ def with_error(value: float, error: float) -> str:
 
 
 @dataclass(frozen=True, eq=False)
-class Result:
+class Result(Shown):
     """What an observable measured.
 
     Parameters
@@ -228,6 +231,40 @@ class Result:
         """
         return importlib.import_module(FIGURES).plot(self, ax, case)
 
+    def to_dataframe(self) -> Any:
+        """A pandas.DataFrame: a row for each value, with its coordinates, error and theory.
+
+        `attrs["units"]` has the units. Raises CaseError without `pip install 'mesokit[tables]'`.
+        """
+        return importlib.import_module(TABLES).dataframe(self)
+
+    def to_xarray(self) -> Any:
+        """An xarray.Dataset: value, error, expected and fit, with their units, over `x`.
+
+        Raises CaseError without `pip install 'mesokit[tables]'`.
+        """
+        return importlib.import_module(TABLES).dataset(self)
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write a CSV file, a row for each value, and return its path. Raises RunError.
+
+        >>> import tempfile
+        >>> r = Result("q", "q", {"y": np.array([0.5])}, [3], [0.1], "speed", {"y": "a"})
+        >>> print(r.to_csv(Path(tempfile.mkdtemp()) / "q.csv").read_text())
+        # q: speed, 0 samples; y in a
+        y,value,error
+        0.5,3.0,0.1
+        """
+        written: Path = importlib.import_module(TABLES).write_result(self, path)
+        return written
+
+    def _card(self) -> dict[str, Any]:
+        return {"title": self.name, "words": self._words(), "results": [self]}
+
+    def _words(self) -> str:
+        shape = " x ".join(f"{len(axis)} {name}" for name, axis in self.x.items()) or "a number"
+        return f"{self.label}, {shape}, {self.samples} samples"
+
     def __eq__(self, other: object) -> bool:
         """Every number, text and unit the same (nan equals nan)."""
         if not isinstance(other, Result):
@@ -236,8 +273,7 @@ class Result:
         return all(_same(getattr(self, n), getattr(other, n)) for n in names)
 
     def __repr__(self) -> str:
-        shape = " x ".join(f"{len(axis)} {name}" for name, axis in self.x.items()) or "a number"
-        lines = [f"{self.name}: {self.label}, {shape}, {self.samples} samples"]
+        lines = [f"{self.name}: {self._words()}"]
         return "\n  ".join(lines + [str(c) for c in self.comparisons])
 
 

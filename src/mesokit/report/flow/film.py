@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.io.atomic import replacing
+from mesokit.report.caption import symbols
 from mesokit.report.flow.beads import BeadFrames, frames_of
 from mesokit.report.flow.encode import ENCODERS, Pixels
 from mesokit.report.flow.kinds import panels_of, quieted
@@ -23,7 +24,6 @@ from mesokit.report.flow.region import Ranges, frames_in, region_of
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import Source, choose_one, sources
 from mesokit.report.progress import FilmReporter, Reporter
-from mesokit.report.style import symbols
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

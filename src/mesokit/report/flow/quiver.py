@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from mesokit.report.caption import symbols
 from mesokit.report.flow.data import Array, Flow, spacing
 from mesokit.report.flow.layout import KEY_BESIDE
 from mesokit.report.flow.region import Region
 from mesokit.report.flow.scale import reach_of
-from mesokit.report.style import symbols
 
 NEEDS = "velocity"
 TITLE = "velocity"

@@ -120,12 +120,16 @@ def without_bonds(case: Case) -> theory.Transport | None:
     if case.solutes is not None:
         return None
     fluid = dataclasses.replace(case.fluid, molecule=None)
-    return setting.transport(dataclasses.replace(case, fluid=fluid, observe=(), trajectory=None))
+    return setting.transport(
+        dataclasses.replace(case, fluid=fluid, observe=(), trajectory=None, log=None)
+    )
 
 
 def without_solutes(case: Case) -> theory.Transport | None:
     """The same of what the solutes are in, be there any."""
-    return without_bonds(dataclasses.replace(case, solutes=None, observe=(), trajectory=None))
+    return without_bonds(
+        dataclasses.replace(case, solutes=None, observe=(), trajectory=None, log=None)
+    )
 
 
 def rouse_times_of(case: Case, kind: int = 1) -> theory.RouseTimes | None:

@@ -1,0 +1,1 @@
+"""What a case may say, described from its components: JSON schema, explanations, docstrings."""

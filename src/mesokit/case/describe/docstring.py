@@ -1,0 +1,37 @@
+"""Docstrings of components: what their authors wrote, and their keys, described when asked for."""
+
+from __future__ import annotations
+
+import inspect
+from typing import Any
+
+from mesokit.case.describe.keys import Key, keys_of
+from mesokit.case.describe.plain import PLAIN, plain_schemas
+
+
+class Documented:
+    """The `__doc__` of a component, made when `help` looks: imports stay quick."""
+
+    def __init__(self, text: str | None) -> None:
+        self.text = inspect.cleandoc(text or "")
+        self.whole = ""
+
+    def __get__(self, instance: Any, owner: type) -> str:
+        if PLAIN.get():
+            return self.text
+        self.whole = self.whole or self._described(owner)
+        return self.whole
+
+    def _described(self, owner: type) -> str:
+        found, definitions = plain_schemas({"": owner})
+        keys = [key for key in keys_of(found[""], definitions) if not key.tag]
+        if not keys or "Parameters" in self.text:
+            return self.text
+        summary, end, examples = self.text.partition("\nExamples:")
+        table = "\n".join(_line(key) for key in keys)
+        parts = [summary.rstrip(), f"Parameters:\n{table}", (end + examples).strip()]
+        return "\n\n".join(filter(None, parts)) + "\n"
+
+
+def _line(key: Key) -> str:
+    return f"    {key.name} ({key.values}): {key.meaning}"

@@ -1,0 +1,133 @@
+"""What a key of a case file means: `mesokit explain`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from mesokit.case.component import nearest
+from mesokit.case.describe.keys import Key, keys_of, parts_of
+from mesokit.case.describe.schema import schema
+from mesokit.errors import CaseError
+
+
+class Explanation(NamedTuple):
+    """A key or a part, where it is in a case, what it means, and the keys inside."""
+
+    path: str
+    meaning: str
+    keys: Sequence[Key]
+
+
+class Place(NamedTuple):
+    """Where a path has come to: what is said there of a key, and what its table may be."""
+
+    path: str
+    node: Mapping[str, Any]
+    tables: Mapping[str, Any]  # by the name of the part
+    key: Key | None = None
+
+
+def explain(path: str = "") -> list[Explanation]:
+    """What a key or a part of a case means, such as "wall.disk" or "fluid.force.acceleration".
+
+    The name of a part alone, such as "wake", is looked for everywhere. Without a path: sections.
+
+    Raises:
+        CaseError: there is no such key; it names the nearest.
+
+    Examples:
+        >>> (found,) = explain("run.seed")
+        >>> found.meaning
+        'the same seed gives the same bits'
+        >>> explain("wake")[0].path
+        'observe.wake'
+    """
+    whole = schema()
+    definitions = whole["definitions"]
+    if not path:
+        return [Explanation("", whole["description"], keys_of(whole, definitions))]
+    start = Place("", whole, {"": whole})
+    first, *rest = path.split(".")
+    places = list(_inside(start, first, definitions))
+    if not places:
+        places = [p for p in _everywhere(start, definitions) if p.path.endswith(f".{first}")]
+        places.sort(key=lambda place: place.path.count("."), reverse=True)
+        places = list({id(place.node): place for place in places}.values())  # where it is nearest
+    if not places:
+        raise _unknown(path, first, start, definitions)
+    for word in rest:
+        found = [inner for place in places for inner in _inside(place, word, definitions)]
+        if not found:
+            raise _unknown(path, word, places[0], definitions)
+        places = found
+    paths: dict[tuple[Any, ...], list[str]] = {}  # what is the same in several parts is said once
+    for place in places:
+        where, *said = _explained(place, definitions)
+        paths.setdefault((said[0], tuple(said[1])), []).append(where)
+    return [Explanation(", ".join(where), *said) for said, where in paths.items()]
+
+
+def _inside(place: Place, word: str, definitions: Any) -> Iterator[Place]:
+    """The part of that name, or else the keys of that name in any of the tables."""
+    if word.isdecimal() and "items" in place.node:
+        yield place  # one of several, as --set names it
+        return
+    if word in place.tables and place.path:
+        yield Place(f"{place.path}.{word}", place.tables[word], {word: place.tables[word]})
+        return
+    for name, table in place.tables.items():
+        for key in keys_of(table, definitions):
+            if key.name == word:
+                node = table["properties"][word]
+                path = [place.path] if len(place.tables) == 1 else [place.path, name]
+                parts = parts_of(node, definitions)
+                inner = ".".join([*filter(None, path), word])
+                yield Place(inner, node, parts[1] if parts else {}, key)
+
+
+def _everywhere(place: Place, definitions: Any, deep: int = 4) -> Iterator[Place]:
+    """All parts of a case, by the path of each."""
+    for table in place.tables.values() if deep else ():
+        for key in table["properties"]:
+            for inner in _inside(Place(place.path, place.node, {"": table}), key, definitions):
+                for name, part in inner.tables.items():
+                    path = f"{inner.path}.{name}" if name else inner.path
+                    found = Place(path, part, {name: part})
+                    if name:
+                        yield found
+                    yield from _everywhere(found, definitions, deep - 1)
+
+
+def _explained(place: Place, definitions: Any) -> Explanation:
+    if place.key is None:  # a part
+        meaning, keys = place.node.get("description", ""), keys_of(place.node, definitions)
+        return Explanation(place.path, meaning, keys)
+    meaning = place.key.meaning
+    if len(place.tables) == 1:
+        (table,) = place.tables.values()
+        text = "\n\n".join([meaning, table.get("description", "")])
+        return Explanation(place.path, text, keys_of(table, definitions))
+    if place.tables:
+        rows = [
+            Key(name, "", "", "", _first(table["description"]))
+            for name, table in place.tables.items()
+        ]
+        return Explanation(place.path, meaning, rows)
+    return Explanation(place.path, meaning, [place.key])
+
+
+def _first(text: str) -> str:
+    return " ".join(text.split("\n\n")[0].split())
+
+
+def _unknown(path: str, word: str, place: Place, definitions: Any) -> CaseError:
+    known = [name for name in place.tables if name and len(place.tables) > 1]
+    known += [key for table in place.tables.values() for key in table["properties"]]
+    if not place.path:
+        known += [p.path.rpartition(".")[2] for p in _everywhere(place, definitions)]
+    known = list(dict.fromkeys(known))
+    if not known:
+        return CaseError(f"{path}: {place.path} has no keys inside")
+    hint = nearest(word, known) or f"; valid here: {', '.join(known)}"
+    return CaseError(f"{path}: unknown key{hint}")

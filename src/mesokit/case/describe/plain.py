@@ -1,0 +1,121 @@
+"""JSON schema of components as pydantic knows them, made plain for the editors of case files.
+
+Draft 7, which editors of TOML understand: nothing beside a `$ref`, no `null` (TOML has none), units
+at the end of descriptions, and tags required wherever they tell parts apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from contextvars import ContextVar
+from typing import Any
+
+from pydantic import TypeAdapter
+from pydantic.json_schema import GenerateJsonSchema
+
+Schema = dict[str, Any]
+PLAIN = ContextVar("PLAIN", default=False)  # docstrings as written, for they are described here
+PLACE = "#/definitions/"
+TAGS = ("rule", "shape", "quantity", "substance")  # as in `component`, which this file comes before
+LIMITS = {  # as pydantic leaves them beside a choice that has None
+    "gt": "exclusiveMinimum",
+    "ge": "minimum",
+    "lt": "exclusiveMaximum",
+    "le": "maximum",
+    "min_length": "minLength",
+    "max_length": "maxLength",
+}
+
+
+def plain_schemas(components: Mapping[str, Any]) -> tuple[dict[str, Schema], dict[str, Schema]]:
+    """The schema of each component by its name here, and the definitions that they refer to."""
+    wanted = [(name, _inputs, TypeAdapter(cls)) for name, cls in components.items()]
+    token = PLAIN.set(True)
+    try:
+        found, rest = TypeAdapter.json_schemas(
+            wanted, ref_template=f"{PLACE}{{model}}", schema_generator=_Untitled
+        )
+    finally:
+        PLAIN.reset(token)
+    definitions = rest.get("$defs", {})
+    for tag, parts in _choices([*found.values(), *definitions.values()]):
+        for name, place in parts.items():
+            definition = definitions[place]
+            definition["properties"][tag] |= {"const": name}  # also where its author wrote `str`
+            if len(parts) > 1:  # the only part need not be named
+                definition["required"] = sorted({*definition.get("required", ()), tag})
+    schemas = {name: _resolved(found[name, _inputs], definitions) for name in components}
+    return (
+        {name: _plain(schema) for name, schema in schemas.items()},
+        {name: _plain(schema) for name, schema in definitions.items()},
+    )
+
+
+_inputs: Any = "validation"
+
+
+class _Untitled(GenerateJsonSchema):
+    """Classes have titles, which are their names; keys need none."""
+
+    def field_title_should_be_set(self, schema: Any) -> bool:
+        return False
+
+
+def _resolved(schema: Schema, definitions: Mapping[str, Schema]) -> Schema:
+    """What a schema refers to, if it does nothing else."""
+    place = schema.get("$ref")
+    return definitions[place.removeprefix(PLACE)] if place else schema
+
+
+def _choices(node: Any) -> Iterable[tuple[str, dict[str, str]]]:
+    """Each choice among parts: the tag, and the definition of each part by its name."""
+    if isinstance(node, dict):
+        if isinstance(choice := node.get("discriminator"), dict) and "mapping" in choice:
+            places = choice["mapping"].items()
+            yield choice["propertyName"], {name: p.removeprefix(PLACE) for name, p in places}
+        node = list(node.values())
+    if isinstance(node, list):
+        for inner in node:
+            yield from _choices(inner)
+
+
+def _plain(node: Schema) -> Schema:
+    made: Schema = {}
+    for key, value in node.items():
+        if key == "properties":
+            made[key] = {name: _plain(inner) for name, inner in value.items()}
+        elif key in ("anyOf", "oneOf", "allOf"):
+            made[key] = [_plain(inner) for inner in value if inner != {"type": "null"}]
+        elif key == "items":
+            made[key] = _plain(value)
+        elif key == "prefixItems":
+            items = [_plain(inner) for inner in value]
+            made["items"] = items[0] if items.count(items[0]) == len(items) else items
+        elif key != "discriminator":
+            made[LIMITS.get(key, key)] = value
+    for key in ("anyOf", "oneOf"):
+        if len(made.get(key, ())) == 1:
+            made = {**made.pop(key)[0], **made}
+    _settle_default(made)
+    if made.get("unit"):
+        made["description"] = f"{made['description']} [{made['unit']}]"
+    else:
+        made.pop("unit", None)
+    if "$ref" in made and len(made) > 1:
+        made["allOf"] = [{"$ref": made.pop("$ref")}]
+    return made
+
+
+def _settle_default(made: Schema) -> None:
+    """Leave out a default that says nothing: a table of defaults, or what stands for one that is
+    found later."""
+    default = made.pop("default", None)
+    if isinstance(default, dict):
+        named = any(tag in default for tag in TAGS)
+        default = {key: each for key, each in default.items() if named and each not in (None, [])}
+    limited = isinstance(default, float | int) and (
+        default <= made.get("exclusiveMinimum", float("-inf"))
+        or default < made.get("minimum", float("-inf"))
+    )
+    if default not in (None, [], {}, "") and not limited:
+        made["default"] = default

@@ -1,0 +1,100 @@
+"""JSON schema of case files, those of every method: `mesokit schema`."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from mesokit import method as methods
+from mesokit.case.case import FIELDS, SECTIONS, Case, case_class
+from mesokit.case.component import tag_of
+from mesokit.case.describe.plain import plain_schemas
+from mesokit.case.registry import FAMILIES
+from mesokit.errors import CaseError
+
+DIALECT = "http://json-schema.org/draft-07/schema#"
+
+
+def schema() -> dict[str, Any]:
+    """The JSON schema (draft 7) of a case file: every key, its meaning, unit, limits and default.
+
+    It covers all methods and the parts that installed packages bring. Editors complete and check
+    case files by it: Taplo and Even Better TOML where the first line is
+    `#:schema ./case.schema.json`. What it lets pass may still be refused: it knows no physics.
+
+    Raises:
+        CaseError: a method or a part that a package brings cannot be loaded.
+
+    Examples:
+        >>> found = schema()
+        >>> found["definitions"]["SRD"]["properties"]["angle"]["description"]
+        'rotation angle [degrees]'
+        >>> sorted(found["properties"])[:4]
+        ['box', 'brownian', 'fluid', 'observe']
+    """
+    cases = {name: _case_class(name) for name in methods.modules()}
+    found, definitions = plain_schemas(cases)
+    sections = {name: _by_key(cases[name], each["properties"]) for name, each in found.items()}
+    together: dict[str, Any] = {}
+    for each in reversed(sections.values()):  # the usual method says what a shared key means
+        together |= each
+    order = [*sections[methods.DEFAULT], *sorted(together)]
+    return {
+        "$schema": DIALECT,
+        "title": "mesokit case",
+        "description": "Everything that defines a run.",
+        "type": "object",
+        "properties": {key: together[key] for key in dict.fromkeys(order)},
+        "required": [key for key, field in FIELDS.items() if key != SECTIONS and _needed(field)],
+        "additionalProperties": False,
+        "allOf": [_rules(name, cases[name], sections[name], together) for name in cases],
+        "definitions": dict(sorted(definitions.items())),
+    }
+
+
+def schema_text() -> str:
+    """The schema as a file."""
+    return json.dumps(schema(), indent=1, ensure_ascii=False) + "\n"
+
+
+def _case_class(name: str) -> type[Case]:
+    try:
+        return case_class(name)
+    except Exception as error:
+        if name in methods.METHODS:
+            raise
+        reason = " ".join(f"{type(error).__name__}: {error}".split())
+        raise CaseError(f"run.method {name!r} cannot be loaded: {reason}") from error
+
+
+def _needed(field: Any) -> bool:
+    return bool(field[1].is_required())
+
+
+def _by_key(case: Any, fields: dict[str, Any]) -> dict[str, Any]:
+    """The sections of a method by their keys in a file."""
+    return {case._method.keys.get(name, name): inner for name, inner in fields.items()}
+
+
+def _rules(name: str, case: Any, own: dict[str, Any], together: dict[str, Any]) -> dict[str, Any]:
+    """What holds for cases of one method only: its sections and its observables."""
+    named: dict[str, Any] = {"properties": {"method": {"const": name}}}
+    if name != methods.DEFAULT:
+        named["required"] = ["method"]
+    closed: dict[str, Any] = {key: False for key in together if key not in own}
+    closed |= {key: inner for key, inner in own.items() if together[key] != inner}
+    closed["observe"] = {"items": {"properties": {"quantity": {"enum": _offered(name, case)}}}}
+    return {"if": {"properties": {"run": named}}, "then": {"properties": closed}}
+
+
+def _offered(name: str, case: Any) -> list[str]:
+    """The observables of a method, and those which say that they are for it."""
+    offered = case._method.observables
+    family = next(known for base, known in FAMILIES.items() if issubclass(offered[0], base))
+    for each in family.names():
+        family.find(each)
+    return [
+        found[1]
+        for part in family.parts.values()
+        if (issubclass(part, offered) or name in part.methods) and (found := tag_of(part))
+    ]

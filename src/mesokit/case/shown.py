@@ -1,0 +1,21 @@
+"""What notebooks show of an object: a small table."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+PAGES = "mesokit.report.document"  # by its name: what is shown knows nothing of how
+
+
+class Shown:
+    """Something that a notebook shows as the table that `_card` describes."""
+
+    def _card(self) -> dict[str, Any]:
+        """The arguments of `mesokit.report.document.card`."""
+        raise NotImplementedError
+
+    def _repr_html_(self) -> str:
+        """What a notebook asks for."""
+        html: str = importlib.import_module(PAGES).card(**self._card())
+        return html

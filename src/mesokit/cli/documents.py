@@ -1,0 +1,47 @@
+"""Commands that write what people read and other programs take: report, table."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from mesokit.cli.commands import RUN, cli, require_run
+from mesokit.errors import CaseError
+
+FILE = click.Path(dir_okay=False, path_type=Path)
+
+
+@cli.command()
+@click.argument("run", type=RUN)
+@click.option("--output", type=FILE, help="The file (RUN/report.html unless said).")
+@click.option("--films", is_flag=True, help="Put small films into the file; else they are linked.")
+def report(run: Path, output: Path | None, films: bool) -> None:
+    """Write one HTML file with the case, all numbers and all figures of RUN."""
+    import mesokit
+
+    require_run(run)
+    click.echo(mesokit.open(run).report(output, films))
+
+
+@cli.command()
+@click.argument("run", type=RUN)
+@click.option("--result", metavar="NAME", help="All values of this result; else all comparisons.")
+@click.option("--output", type=FILE, required=True, help="The CSV file.")
+def table(run: Path, result: str | None, output: Path) -> None:
+    """Write the comparisons of RUN, or the values of one result, as a CSV file."""
+    import mesokit
+
+    require_run(run)
+    files = mesokit.open(run)
+    if result is None:
+        click.echo(files.to_csv(output))
+        return
+    if result not in files:
+        from mesokit.case.component import nearest
+
+        known = ", ".join(files) or "none"
+        raise CaseError(
+            f"--result {result}: no such result; there are {known}{nearest(result, files)}"
+        )
+    click.echo(files[result].to_csv(output))

@@ -1,0 +1,63 @@
+"""What the log of a run may tell of an MPCD fluid."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.method.protocol import Columns
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+Array = NDArray[np.floating[Any]]
+
+
+def columns(case: Case) -> Columns:
+    """Temperature, energies, momentum and mean velocity of all particles, beads included."""
+    bonded = case.fluid.molecule is not None or case.solutes is not None
+    energies = ("kinetic energy", *("potential energy", "total energy") * bonded)
+    momenta = tuple(f"momentum {axis}" for axis in case.box.axes)
+    velocities = tuple(f"velocity {axis}" for axis in case.box.axes)
+
+    def read(engine: Any, wanted: Collection[str]) -> dict[str, float]:
+        number, momentum, kinetic = engine.totals()
+        values = [temperature(case, number, momentum, kinetic), kinetic]
+        if bonded:
+            asked = {"potential energy", "total energy"} & set(wanted)
+            potential = engine.potential_energy() if asked else np.nan
+            values += [potential, kinetic + potential]
+        values += [*momentum, *(momentum / (total_mass(case, number) or np.nan))]
+        found = dict(zip(names, values, strict=True))
+        return {name: float(found[name]) for name in wanted}
+
+    names = ("temperature", *energies, *momenta, *velocities)
+    return Columns(names, ("temperature", *energies[:2], *velocities), read)
+
+
+def total_mass(case: Case, number: int) -> float:
+    """Of so many particles, all there are."""
+    solutes = case.solutes
+    mass = number * case.fluid.mass
+    if solutes is not None:
+        mass += solutes.beads * (solutes.mass - case.fluid.mass)
+    return float(mass)
+
+
+def temperature(case: Case, number: int, momentum: Array, energy: float) -> float:
+    """Twice the energy per degree of freedom; a free fluid cannot move as a whole."""
+    d = case.box.dimension
+    if number == 0:
+        return float(np.nan)
+    if case.walls or forgets(case):
+        return 2 * energy / (d * number)
+    about_mean = 2 * energy - float(momentum @ momentum) / total_mass(case, number)
+    return about_mean / (d * max(number - 1, 1))
+
+
+def forgets(case: Case) -> bool:
+    """Whether the solvent takes momentum and energy, and forgets them."""
+    return case.solutes is not None and case.solutes.solvent == "random"

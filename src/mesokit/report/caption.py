@@ -1,0 +1,122 @@
+"""Captions: what was compared, in words and formulas, below a figure."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from mesokit.observe.shared.result import Comparison, with_error
+
+MOST = 8  # comparisons below a figure; the table of the run has all
+LETTERS = 16.0  # in an inch
+LINE = 0.17  # inches
+SHORT = 30  # letters of a note that may be said on every line
+SIZE, LEFT = 8, 0.02  # points; of the width, at the left
+
+_SYMBOLS = {
+    "a": "a", "tau": r"\tau", "m": "m", "1/a": "a^{-1}", "1/tau": r"\tau^{-1}", "a^2": "a^2",
+    "a/tau": r"a/\tau", "a^2/tau": r"a^2/\tau", "a^2/tau^2": r"a^2/\tau^2",
+    "a^2/time": r"a^2/\tau", "1/a^2": "a^{-2}", "1/a^3": "a^{-3}",
+    "m a^2/tau^2": r"m a^2/\tau^2", "m a/tau": r"m a/\tau", "m a/tau^2": r"m a/\tau^2",
+    "m/tau^2": r"m/\tau^2", "a^3/tau": r"a^3/\tau", "m/(a tau^2)": r"m/(a\tau^2)",
+    "a^2/sums": "a^2", "kT": "k_BT", "kT/a^3": r"k_BT/a^3", "N kT": r"N\,k_BT",
+    "N m kT": r"N\,m\,k_BT", "N sqrt(m kT)": r"N\sqrt{m\,k_BT}", "m/a^2": "m/a^2", "m/a^3": "m/a^3",
+}  # fmt: skip
+_FORMULAS = (
+    (r"\bexp\(-t/tau_p\)", r"$e^{-t/\\tau_p}$"),
+    (r"\bexp\(-nu k\^2 t\)", r"$e^{-\\nu k^2 t}$"),
+    (r"\bN sqrt\(m kT\)", r"$N\\sqrt{m\\,k_BT}$"),
+    (r"\bL_r/D\b", r"$L_r/D$"),
+    (r"\btau_p\b", r"$\\tau_p$"),
+    (r"\bk_B T\b", r"$k_BT$"),
+    (r"\b([vFTR])_([xyzrgp])\b", r"$\1_\2$"),
+    (r"(?<=\d)/a\b", r" $a^{-1}$"),
+    (r"(?<=[\d)]) a\^2/tau\b", r" $a^2/\\tau$"),
+    (r"(?<=[\d)]) a/tau\b", r" $a/\\tau$"),
+    (r"(?<=[\d)]) a\b(?![/^])", r" $a$"),
+    (r"\bkT\b", r"$k_BT$"),
+)
+
+
+def symbols(unit: str) -> str:
+    """A unit as Matplotlib writes it, without the brackets; texts stay texts.
+
+    >>> symbols("a^2/tau"), symbols("% of the flow")
+    ('$a^2/\\\\tau$', '% of the flow')
+    """
+    return f"${_SYMBOLS[unit]}$" if unit in _SYMBOLS else mathematics(unit)
+
+
+def mathematics(text: str) -> str:
+    """Plain words with the formulas in them set as such.
+
+    >>> print(mathematics("velocity v_x at U = 0.2 a/tau"))
+    velocity $v_x$ at U = 0.2 $a/\\tau$
+    >>> print(mathematics("Rouse, exp(-t/tau_p)"))
+    Rouse, $e^{-t/\\tau_p}$
+    """
+    parts = re.split(r"(\$[^$]*\$)", text)  # what is a formula already stays
+    for formula, sign in _FORMULAS:
+        parts = [
+            piece
+            for part in parts
+            for piece in (
+                [part]
+                if part.startswith("$")
+                else re.split(r"(\$[^$]*\$)", re.sub(formula, sign, part))
+            )
+        ]
+    return "".join(parts)
+
+
+def compared(comparisons: Iterable[Comparison], width: float) -> str:
+    """Lines that fit into so many inches: measured with error, theory, deviation, and cautions.
+
+    What several lines would say of their theory is said once, below them.
+    """
+    found = list(comparisons)
+    notes = Counter(filter(None, map(_caution, found[:MOST])))
+    shared = [note for note, number in notes.items() if number > 1 and len(note) > SHORT]
+    lines = [line for c in found[:MOST] for line in _wrapped(_line(c, shared), width)]
+    lines += [line for note in shared for line in _wrapped(note, width)]
+    if len(found) > MOST:
+        lines.append(f"and {len(found) - MOST} more, which mesokit info shows")
+    return "\n".join(map(mathematics, lines))
+
+
+def _wrapped(text: str, width: float) -> list[str]:
+    letters = max(30, int(width * (1 - 2 * LEFT) * LETTERS))
+    return textwrap.wrap(text, letters, subsequent_indent="    ", break_long_words=False)
+
+
+def _caution(c: Comparison) -> str:
+    """What must be known to read a deviation, or why there is none."""
+    if c.approximate or "lower bound" in c.note or c.expected != c.expected:
+        return c.note
+    return ""
+
+
+def _line(c: Comparison, shared: Sequence[str]) -> str:
+    unit = symbols(c.unit)
+    unit = unit.replace(" ", "") if unit.startswith("$") else unit  # no line ends in a formula
+    text, note = f"{c.what}: {with_error(c.measured, c.error)} {unit}".rstrip(), _caution(c)
+    note = "" if note in shared and not c.approximate else note
+    note = "approximate" if note in shared else note
+    said = []
+    if c.expected == c.expected and (c.expected or c.error > 0):
+        said.append(f"theory {c.expected:.4g}")
+        if c.approximate and c.expected:
+            said[0] += f", {c.percent:+.2g} %"
+        elif c.error > 0 and not c.approximate:
+            said[0] += f", {c.deviation:+.1f} s.e."
+    said += [note] if note else []
+    return f"{text} ({'; '.join(said)})" if said else text
+
+
+def below(figure: Any, text: str) -> None:
+    """Write a caption under the axes, where it hides no data."""
+    if text:
+        figure.supxlabel(text, fontsize=SIZE, ha="left", x=LEFT, linespacing=1.5)

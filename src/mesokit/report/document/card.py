@@ -1,0 +1,39 @@
+"""A small table in HTML, as notebooks show an object."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from mesokit.observe.shared.result import Result
+from mesokit.report.document.comparisons import lines_of
+from mesokit.report.document.template import render
+
+
+def card(
+    title: str,
+    words: str = "",
+    rows: Iterable[tuple[str, str, str]] = (),
+    results: Iterable[Result] = (),
+    text: str = "",
+    fold: str = "all of it",
+    pretty: bool = False,
+) -> str:
+    """A title with some words, facts, comparisons of results, and a text that can be unfolded.
+
+    `pretty` sets powers and indices of the facts as such.
+
+    >>> "<b>box</b> empty" in card("box", "empty")
+    True
+    """
+    lines = lines_of(results)
+    facts = list(rows)
+    return render(
+        "card.html",
+        title=title,
+        words=words,
+        rows=facts,
+        lines=lines,
+        text=text,
+        fold=fold,
+        pretty=pretty,
+    )

@@ -1,0 +1,107 @@
+"""Figures and films as they stand inside a page."""
+
+from __future__ import annotations
+
+import base64
+import io
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from mesokit.case.amounts import size_text
+from mesokit.observe.shared.result import Result
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+LARGEST_SVG = 250_000  # bytes; larger drawings are kept as PNG
+LARGEST_FILM = 8_000_000  # bytes of a film that goes into the page
+DPI = 160
+TYPES = {".png": "image/png", ".svg": "image/svg+xml", ".gif": "image/gif", ".mp4": "video/mp4"}
+
+
+class Picture(NamedTuple):
+    """A figure: what it is called, a data URI, and its caption."""
+
+    name: str
+    source: str
+    words: str
+
+
+class Reel(NamedTuple):
+    """A film: its file, its size in words, a link to it, and a data URI or nothing."""
+
+    name: str
+    size: str
+    link: str
+    source: str
+    moving: bool
+
+
+def embedded(data: bytes, ending: str) -> str:
+    """A file as a data URI.
+
+    >>> embedded(b"<svg/>", ".svg")
+    'data:image/svg+xml;base64,PHN2Zy8+'
+    """
+    return f"data:{TYPES[ending]};base64,{base64.b64encode(data).decode()}"
+
+
+def figures(results: Iterable[Result], case: Case) -> list[Picture]:
+    """A figure of each result that has samples."""
+    from mesokit.report.figures import plot
+
+    return [
+        Picture(result.name, drawn(plot(result, case=case)), caption(result))
+        for result in results
+        if result.samples
+    ]
+
+
+def drawn(figure: Any) -> str:
+    """A Matplotlib figure as a data URI: SVG, which is sharp in print, or PNG if that is large."""
+    import matplotlib as mpl
+
+    from mesokit.report.style import STYLE
+
+    with mpl.rc_context(STYLE | {"svg.hashsalt": "mesokit"}):  # the same picture, the same bytes
+        data = io.BytesIO()
+        figure.savefig(data, format="svg", metadata={"Date": None})
+        if data.tell() <= LARGEST_SVG:
+            return embedded(data.getvalue(), ".svg")
+        data = io.BytesIO()
+        figure.savefig(data, format="png", dpi=DPI)
+        return embedded(data.getvalue(), ".png")
+
+
+def caption(result: Result) -> str:
+    """What a figure shows, how much is behind it, and what to mind."""
+    words = [f"{result.label}, {result.samples} samples"]
+    if result.theory and result.expected is not None:
+        words.append(f"theory: {result.theory}")
+    notes = [c.note for c in result.comparisons if "lower bound" in c.note]
+    words += dict.fromkeys(notes)
+    return "; ".join(words) + "."
+
+
+def pictures_of_flow(folder: Path, but: Iterable[str]) -> list[Picture]:
+    """Pictures of the flow that were drawn into the folder of a run, `but` for some names."""
+    names = set(but)
+    return [
+        Picture(path.stem, embedded(path.read_bytes(), path.suffix), f"drawn into {path.name}.")
+        for path in sorted(folder.glob("flow-*.png"))
+        if path.stem not in names
+    ]
+
+
+def films_of(folder: Path, page: Path, inline: bool) -> list[Reel]:
+    """The films in the folder of a run, linked from the page, or inside it if they are small."""
+    found = []
+    for path in sorted([*folder.glob("*.mp4"), *folder.glob("*.gif")]):
+        size = path.stat().st_size
+        inside = inline and size <= LARGEST_FILM
+        source = embedded(path.read_bytes(), path.suffix) if inside else ""
+        link = Path(os.path.relpath(path, page.parent)).as_posix()
+        found.append(Reel(path.name, size_text(size), link, source, path.suffix == ".mp4"))
+    return found

@@ -1,0 +1,121 @@
+"""Numbers of a run leave as CSV, JSON, data frames and labelled arrays, and are the same there."""
+
+from __future__ import annotations
+
+import csv
+import json
+import sys
+
+import numpy as np
+import pytest
+
+import mesokit
+from mesokit import CaseError
+from mesokit.cli import main
+
+
+@pytest.fixture(scope="module")
+def files(run_folder):
+    return mesokit.open(run_folder(True))
+
+
+def said(capsys, *arguments):
+    with pytest.raises(SystemExit) as status:
+        main([str(argument) for argument in arguments])
+    return status.value.code, capsys.readouterr()
+
+
+def test_the_files_of_a_run_are_a_mapping(files):
+    names = ["conservation", "velocity-field", "velocity-profile"]
+    assert list(files) == list(files.keys()) == names and len(files) == 3
+    assert "velocity-field" in files and "viscosity" not in files and files.get("nothing") is None
+    assert [result.name for result in files.values()] == names
+    assert files == files and files != mesokit.open(files.path) and len({files}) == 1
+
+
+def test_comparisons_of_a_run_have_one_name_each(files):
+    found = files.comparisons()
+    assert found["velocity-profile.slip-at-the-walls"] is files["velocity-profile"]["slip"]
+    assert len(found) == sum(len(result.comparisons) for result in files.values())
+
+
+def test_a_run_without_results_is_still_there(run_folder):
+    early = mesokit.open(run_folder(False))
+    assert early and not early.ended
+    with pytest.raises(mesokit.RunError, match="has not ended"):
+        list(early)
+
+
+@pytest.mark.parametrize("name", ["velocity-profile", "velocity-field", "conservation"])
+def test_tables_of_a_result_hold_its_numbers(files, name, tmp_path):
+    result = files[name]
+    frame, data = result.to_dataframe(), result.to_xarray()
+    assert len(frame) == result.value.size and list(frame)[: len(result.x)] == list(result.x)
+    np.testing.assert_array_equal(data["value"], result.value)
+    np.testing.assert_array_equal(data["error"], result.error)
+    np.testing.assert_array_equal(data["expected"], result.expected)
+    for axis, places in result.x.items():
+        np.testing.assert_array_equal(data[axis], places)
+        chosen = data["value"].isel({axis: -1}).to_numpy().ravel()
+        rows = frame[frame[axis] == places[-1]]["value"].to_numpy()
+        np.testing.assert_array_equal(chosen, rows)
+    assert data["value"].attrs.get("units", "") == result.units["value"]
+    assert frame.attrs["units"] == result.units and data.attrs["samples"] == result.samples
+    lines = result.to_csv(tmp_path / "r.csv").read_text().splitlines()
+    assert lines[0].startswith(f"# {name}: {result.label}, {result.samples} samples")
+    rows = list(csv.DictReader(lines[1:]))
+    np.testing.assert_array_equal([float(row["value"]) for row in rows], frame["value"])
+
+
+def test_comparisons_as_data_frame_and_csv(files, tmp_path):
+    frame = files.to_dataframe()
+    with open(files.to_csv(tmp_path / "c.csv"), newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["key"] for row in rows] == list(frame["key"]) and list(frame) == list(rows[0])
+    for row, (name, comparison) in zip(rows, files.comparisons().items(), strict=True):
+        assert name == f"{row['result']}.{row['key']}"
+        assert float(row["measured"]) == comparison.measured
+
+
+def test_without_pandas_the_extra_is_named(files, monkeypatch):
+    for name, call in (("pandas", files.to_dataframe), ("xarray", files["conservation"].to_xarray)):
+        monkeypatch.setitem(sys.modules, name, None)
+        with pytest.raises(CaseError, match=rf"{name}: pip install 'mesokit\[tables\]'"):
+            call()
+
+
+def test_info_as_json(files, run_folder, capsys):
+    status, out = said(capsys, "info", files.path, "--json")
+    record = json.loads(out.out)
+    assert status == 0 and record["ended"] and record["case"]["fluid"]["density"] == 5.0
+    measured = [row["measured"] for row in record["comparisons"]]
+    assert measured == [c.measured for c in files.comparisons().values()]
+    assert record["provenance"]["seed"] == 1 and record["results"][1]["shape"]["x"] == 6
+    assert "NaN" not in out.out
+    status, out = said(capsys, "info", run_folder(False), "--json")
+    record = json.loads(out.out)
+    assert status == 0 and "has not ended" in record["state"] and record["comparisons"] == []
+
+
+def test_check_as_json(files, capsys):
+    status, out = said(capsys, "check", files.path / "case.toml", "--json", "--threads", 1)
+    record = json.loads(out.out)
+    assert status == 0 and record["case"]["run"]["steps"] == 60
+    numbers = mesokit.derive(files.case, threads=1)
+    assert record["numbers"]["transport"]["viscosity"] == numbers.transport.viscosity
+    assert record["seconds"] == numbers.seconds
+    assert ["particles", str(numbers.particles)] in [
+        [row["what"], row["value"]] for row in record["rows"]
+    ]
+
+
+def test_table_writes_csv(files, tmp_path, capsys):
+    path = tmp_path / "t.csv"
+    assert said(capsys, "table", files.path, "--output", path)[0] == 0
+    assert path.read_text().startswith("result,key,what,measured")
+    wanted = ["--result", "velocity-profile", "--output", path]
+    assert said(capsys, "table", files.path, *wanted)[0] == 0
+    assert path.read_text().splitlines()[1] == "y,value,error,expected,fit"
+    wanted[1] = "velocity-profil"
+    status, out = said(capsys, "table", files.path, *wanted)
+    assert status == 2 and "did you mean 'velocity-profile'?" in out.err
