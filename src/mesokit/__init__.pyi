@@ -8,9 +8,9 @@ from mesokit.case.case import Case as Case
 from mesokit.case.component import component as component
 from mesokit.case.component import param as param
 from mesokit.case.component import tag as tag
-from mesokit.case.log import Log as Log
 from mesokit.case.describe.explain import explain as explain
 from mesokit.case.describe.schema import schema as schema
+from mesokit.case.log import Log as Log
 from mesokit.case.run import Run as Run
 from mesokit.case.trajectory import Trajectory as Trajectory
 from mesokit.case.units import OtherFluid as OtherFluid
