@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 READY := .venv/ready
 
-.PHONY: help demo test test-long test-all quick lint check bench validate clean
+.PHONY: help demo test test-long test-all quick lint check site bench validate clean
 help:
 	@echo "make demo      run a channel flow and draw it with the theory"
 	@echo "make test      run the tests but the long ones: some minutes"
@@ -11,6 +11,7 @@ help:
 	@echo "make quick     run the tests that simulate nothing: cases, theory, statistics, documents"
 	@echo "make lint      lint and types"
 	@echo "make check     the same, import rules, and that the physics compiles for a GPU"
+	@echo "make site      write the documentation as a site: build/site/index.html"
 	@echo "make bench     measure the speed, side by side with LAMMPS"
 	@echo "make validate  write docs/validation: measured against theory, law by law"
 	@echo "make clean     remove what these made"
@@ -47,6 +48,11 @@ lint: $(READY)
 
 check: lint
 	@$(TEST) tests/architecture tests/gpu
+
+site: export NO_MKDOCS_2_WARNING = 1
+site: $(READY)
+	@$(BIN)/python -m mkdocs build --strict --quiet
+	@echo "look at build/site/index.html"
 
 bench: $(READY)
 	@$(BIN)/python -m benchmarks

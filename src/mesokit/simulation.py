@@ -17,9 +17,9 @@ from mesokit import method as methods
 from mesokit.case import toml
 from mesokit.case.case import Case, method_named
 from mesokit.case.component import nearest, require_known, show
+from mesokit.case.describe.shown import Shown
 from mesokit.case.kind import note_run
 from mesokit.case.outside import blaming
-from mesokit.case.shown import Shown
 from mesokit.case.trajectory import written
 from mesokit.errors import CaseError, CheckpointError, RunError
 from mesokit.io import checkpoint, h5md

@@ -83,7 +83,8 @@ ROWS = {
 # what loads modules by names that are data: public names, methods, parts, figures, options
 BY_NAME = {
     "__init__.py", "method/__init__.py", "case/registry.py", "case/outside.py",
-    "case/shown.py", "observe/shared/result.py", "io/optional.py", "geometry/shape/mesh.py",
+    "case/describe/shown.py", "observe/shared/result.py", "io/optional.py",
+    "geometry/shape/mesh.py",
 }  # fmt: skip
 MOST_FILES = 16  # in a folder of machinery; of laws, quantities and pictures there may be more
 LONG = ("theory", "observe", "report/flow", "io")

@@ -11,6 +11,7 @@ FILES = sorted(SOURCE.rglob("*.py"))
 # The files that may use some of it: what they use
 HOMES = {
     "running/cores.py": {"os.sched_getaffinity"},
+    "case/warnings.py": {"os.sysconf"},
     "scalar/system.py": {"time.CLOCK_MONOTONIC", "ctypes", "ExternalFunction"},
     "io/run_directory.py": {"/proc"},
 }
@@ -18,7 +19,7 @@ MODULES = {"fcntl", "resource", "pwd", "grp", "termios", "tty", "pty", "posix", 
 OF_OS = {
     "sched_getaffinity", "sched_setaffinity", "sched_yield", "fork", "forkpty", "killpg", "nice",
     "getuid", "geteuid", "getgid", "getegid", "getpgid", "getloadavg", "setsid", "uname", "mkfifo",
-    "chown", "lchown", "fchmod", "fchown", "statvfs", "fstatvfs", "sync", "fdatasync",
+    "chown", "lchown", "fchmod", "fchown", "statvfs", "fstatvfs", "sync", "fdatasync", "sysconf",
     "symlink", "posix_fallocate", "sendfile", "pread", "pwrite", "O_DIRECTORY", "O_NOFOLLOW",
 }  # fmt: skip
 OF_SIGNAL = {

@@ -86,3 +86,4 @@ def test_kinds_of_cases(monkeypatch, tmp_path):
 def test_check_says_that_compiling_is_ahead(case_file, tmp_path):
     told, _ = command(tmp_path, "check", case_file).communicate()
     assert "first start" in told and "once for each kind of case" in told
+    assert "280 MB while it compiles, the first time" in " ".join(told.split())

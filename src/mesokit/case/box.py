@@ -8,6 +8,7 @@ from typing import Literal, NamedTuple
 from pydantic import field_validator
 
 from mesokit.case.component import component, param
+from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
 from mesokit.scalar.elementary import sincos_turn
 from mesokit.scalar.intrinsics import floor, with_item
@@ -22,7 +23,7 @@ TURNS = 0.5 / math.pi  # in a radian
 class Box:
     """A rectangular box of whole cells; two sizes make it 2D. Periodic where no wall closes it."""
 
-    size: tuple[int, ...] = param(doc="length along each axis: two numbers (2D) or three", unit="a")
+    size: Many[int] = param(doc="length along each axis: two numbers (2D) or three", unit="a")
     shear_rate: float = param(
         0.0,
         doc="Lees-Edwards shear: flow along x, gradient along y",

@@ -20,7 +20,7 @@ import types
 import typing
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Annotated, Any, TypeVar, dataclass_transform
+from typing import Annotated, Any, Literal, TypeVar, dataclass_transform
 
 import pydantic
 from pydantic import (
@@ -34,6 +34,7 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from mesokit.case.describe.docstring import Documented
+from mesokit.case.describe.hints import show_signature
 from mesokit.case.registry import FAMILIES, Family, register
 from mesokit.errors import CaseError
 
@@ -52,15 +53,26 @@ TAGS = ("rule", "shape", "quantity", "substance")
 
 def param(default: Any = ..., *, doc: str, unit: str = "", **limits: Any) -> Any:
     """A field of a component: default (none: required), one-line meaning, unit, gt/ge/lt/le."""
-    return Field(default, description=doc, json_schema_extra={"unit": unit}, **limits)
+    extra: dict[str, Any] = {"unit": unit}
+    if "unless_said" in limits:  # what a default that is no value stands for
+        extra["unless_said"] = limits.pop("unless_said")
+    return Field(default, description=doc, json_schema_extra=extra, **limits)
 
 
-def tag(value: str) -> Any:
-    """The field, one of TAGS, whose value names the component in a case file."""
+def option(*, default: Any, doc: str, kw_only: Literal[True], unit: str = "", **limits: Any) -> Any:
+    """A field that is only given by name, as type checkers ask to have it said."""
+    return param(default, doc=doc, kw_only=kw_only, unit=unit, **limits)
+
+
+def tag(value: str, *, init: Literal[False] = False) -> Any:
+    """The field, one of TAGS, whose value names the component in a case file.
+
+    Python code has no need to give it, and type checkers (`init`) offer it to nobody.
+    """
     return Field(value, description="name of the component", kw_only=True)
 
 
-@dataclass_transform(frozen_default=True)
+@dataclass_transform(frozen_default=True, field_specifiers=(tag, option))
 def component(cls: type[T]) -> type[T]:
     """Make a class a frozen, validated dataclass that raises CaseError for bad values.
 
@@ -73,6 +85,7 @@ def component(cls: type[T]) -> type[T]:
         mesokit.errors.CaseError: Spring.stiffness = -1: expected a number above 0
     """
     hints = typing.get_type_hints(cls, include_extras=True)
+    plain = typing.get_type_hints(cls)
     cls.__annotations__ = {name: strict(hints[name]) for name in cls.__annotations__}
     config = ConfigDict(extra="forbid", allow_inf_nan=False, validate_default=True)
     made = pydantic.dataclasses.dataclass(cls, frozen=True, config=config)
@@ -87,6 +100,8 @@ def component(cls: type[T]) -> type[T]:
 
     setattr(made, "__init__", __init__)  # noqa: B010 (mypy forbids assigning to a method)
     setattr(made, "__doc__", Documented(made.__doc__))  # noqa: B010
+    made.__annotations__ = {name: plain[name] for name in made.__annotations__}
+    show_signature(made, plain)
     if found := tag_of(made):
         register(typing.cast(type, made), found[1])
     return typing.cast(type[T], made)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.component import component, param
+from mesokit.case.describe.hints import Many
 
 Quantity = Literal["position", "velocity", "image", "id"]
 WIDTHS = {"image": 4, "id": 8}  # bytes of a field; the others follow the precision
@@ -44,7 +45,7 @@ class Trajectory:
 
     every: int = param(doc="steps between two frames", ge=1)
     of: str = param("all", doc='whose particles: "all", or, of an MPCD fluid, "fluid" or "solutes"')
-    fields: tuple[Quantity, ...] = param(("position",), doc="what is written", min_length=1)
+    fields: Many[Quantity] = param(("position",), doc="what is written", min_length=1)
     subset: int | None = param(
         None, doc="only the first particles, so many (all unless said)", ge=1
     )

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 from mesokit.case.box import Axis
-from mesokit.case.component import component, param
+from mesokit.case.component import component, option
 from mesokit.case.registry import family
 from mesokit.errors import CaseError
 from mesokit.geometry.region import Region, Term, complement, images
@@ -59,9 +59,12 @@ class Wall(ABC):
     """What the fluid cannot enter."""
 
     dimensions: ClassVar[tuple[int, ...]] = (2, 3)
-    virtual: Virtual = param("extrapolate", doc=VIRTUAL, kw_only=True)
-    name: str | None = param(
-        None, doc="name in the results (shape and number unless said)", kw_only=True, min_length=1
+    virtual: Virtual = option(default="extrapolate", doc=VIRTUAL, kw_only=True)
+    name: str | None = option(
+        default=None,
+        doc="name in the results (shape and number unless said)",
+        kw_only=True,
+        min_length=1,
     )
 
     @property
@@ -91,10 +94,10 @@ def closed_axes(walls: Iterable[Wall]) -> set[Axis]:
 class Shape(Wall):
     """A solid: where it is, what its surface does, and on which side of it the fluid is."""
 
-    fluid: Literal["outside", "inside"] = param(
-        "outside", doc="side of the surface on which the fluid is", kw_only=True
+    fluid: Literal["outside", "inside"] = option(
+        default="outside", doc="side of the surface on which the fluid is", kw_only=True
     )
-    surface: Surface = param(Surface(), doc="what its surface does", kw_only=True)
+    surface: Surface = option(default=Surface(), doc="what its surface does", kw_only=True)
 
     def sided(self, within: Region, room: Room) -> Region:
         """The solid, given what lies within the surface."""

@@ -7,6 +7,7 @@ from typing import Any, Literal
 from pydantic import field_validator
 
 from mesokit.case.component import component, param
+from mesokit.case.describe.hints import Either
 
 FASTEST = 1e6  # a surface's speed and rate of rotation: beyond it is a slip of the pen
 
@@ -20,10 +21,10 @@ class Surface:
         doc="'no-slip' bounces particles back, 'slip' reflects them like a mirror, 'diffuse' sends "
         "them out with the wall's temperature",
     )
-    velocity: tuple[float, ...] | None = param(
+    velocity: Either[None, float] = param(
         None, doc="one number for each axis, along the wall (at rest unless said)", unit="a/time"
     )
-    rotation: float | tuple[float, ...] | None = param(
+    rotation: Either[float | None, float] = param(
         None,
         doc="rate of rotation, in radians: a number, about z in 2D or about the shape's own axis, "
         "or a vector in 3D",

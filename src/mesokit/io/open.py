@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from mesokit.case import toml
 from mesokit.case.component import require_known, show
-from mesokit.case.shown import Shown
+from mesokit.case.describe.shown import Shown
 from mesokit.errors import CaseError, RunError
 from mesokit.io import checkpoint, h5md, log_file, tables
 from mesokit.io.frames import require_frames, seen_until

@@ -10,9 +10,9 @@ from mesokit.case.component import component, param, tag
 from mesokit.engine import RunningFluid
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import KIND, bond_in_shear, bonds_of, molecule_of
+from mesokit.observe.shared.molecule_tensor import MoleculeTensorAccumulator
 from mesokit.observe.shared.protocol import Observable
 from mesokit.observe.shared.result import Array, Comparison, Result
-from mesokit.observe.shared.tensor import TensorAccumulator
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -37,12 +37,12 @@ class BondLength(Observable):
         return BondLengthAccumulator(self, case)
 
 
-class BondLengthAccumulator(TensorAccumulator):
+class BondLengthAccumulator(MoleculeTensorAccumulator):
     """Block averages of the products."""
 
     def __init__(self, observable: BondLength, case: Case) -> None:
         observable.check(case)
-        super().__init__(observable, case, ("bonds",))
+        super().__init__(observable, case, ("bonds",), observable.kind)
         self.molecule = molecule_of(case, kind=observable.kind)
         self.bonds = bonds_of(case, observable.kind)
 
@@ -51,6 +51,9 @@ class BondLengthAccumulator(TensorAccumulator):
         way = fluid.bond_vectors()[self.bonds]
         products = np.einsum("ij,ik->jk", way, way) / len(way)
         self.blocks.add(products[None])
+        square = way**2
+        elements = np.einsum("ij,ik->jk", square, square) / len(way)
+        self.note_squares(elements[None], (square.sum(axis=1) ** 2).mean(keepdims=True), len(way))
 
     def result(self) -> Result:
         """The products, and the mean square bond length beside that of Boltzmann."""
@@ -76,7 +79,7 @@ class BondLengthAccumulator(TensorAccumulator):
     def comparisons(self) -> list[Comparison]:
         """Mean square and root mean square length."""
         case, box = self.case, self.case.box
-        mean, error = self.summed(0, np.eye(box.dimension))
+        mean, error = self.size(0)
         expected, note = self.square(), ""
         undisturbed = not case.walls and not case.fluid.force.acts
         if box.shear_rate and not box.shear_frequency and undisturbed and setting.isothermal(case):
@@ -84,6 +87,7 @@ class BondLengthAccumulator(TensorAccumulator):
             if flowing is not None:
                 expected, note = flowing, IN_SHEAR
         root = max(mean, 0.0) ** 0.5
+        note = "; ".join(filter(None, (note, self.short_run())))
         error = setting.with_start(case, error, mean)
         return [
             Comparison("mean square bond length", mean, error, expected, "a^2", note),

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
-from mesokit.case.component import component, param, tag
+from mesokit.case.component import component, option, tag
 from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
@@ -37,7 +37,7 @@ class DynamicModuli(Observable):
 
     quantity: Literal["dynamic-moduli"] = tag("dynamic-moduli")
     measures: ClassVar[tuple[str, ...]] = ("stress",)
-    every: int = param(1, doc="steps between two samples", ge=1, kw_only=True)
+    every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
 
     def check(self, case: Case) -> None:
         """Raise CaseError without an oscillating shear, or with too few samples in its period."""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.box import Axis
 from mesokit.case.component import component, param, tag
+from mesokit.case.describe.hints import Either
 from mesokit.engine import Particles
 from mesokit.method.protocol import method_of
 from mesokit.observe.shared.estimate import Estimate, fit
@@ -71,7 +72,7 @@ class MeanSquareDisplacement(Observable):
     )
     particles: int = param(2000, doc="particles (or molecules) followed", ge=1)
     max_lag: int = param(1000, doc="longest lag", unit="steps", ge=1)
-    components: tuple[Axis, ...] | None = param(
+    components: Either[None, Axis] = param(
         None, doc="axes that count (all without flow and walls unless said)", min_length=1
     )
 

@@ -18,9 +18,9 @@ from mesokit.method.mpcd.expected.molecules import (
     modes_of,
     molecule_of,
 )
+from mesokit.observe.shared.molecule_tensor import MoleculeTensorAccumulator
 from mesokit.observe.shared.protocol import Observable
 from mesokit.observe.shared.result import Array, Comparison, Result
-from mesokit.observe.shared.tensor import TensorAccumulator
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -46,24 +46,35 @@ class MoleculeSize(Observable):
         return MoleculeSizeAccumulator(self, case)
 
 
-class MoleculeSizeAccumulator(TensorAccumulator):
+class MoleculeSizeAccumulator(MoleculeTensorAccumulator):
     """Block averages of the tensors."""
 
     def __init__(self, observable: MoleculeSize, case: Case) -> None:
         self.molecule = molecule_of(case, observable.quantity, observable.kind)
         parts = PARTS if self.molecule.topology == "chain" else PARTS[:1]
-        super().__init__(observable, case, parts)
-        self.kind = observable.kind
+        super().__init__(observable, case, parts, observable.kind)
         self.beads = beads_of(case, observable.molecules, observable.kind)
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         r = fluid.whole_positions(self.beads.ravel()).reshape(*self.beads.shape, -1)
-        tensors = [gyration(r).mean(axis=0)]
+        each = gyration(r)
+        tensors, squares = [each.mean(axis=0)], [(each**2).mean(axis=0)]
+        traces = [(np.trace(each, axis1=1, axis2=2) ** 2).mean()]
         if len(self.parts) > 1:
             end = r[:, -1] - r[:, 0]
+            square = end**2
             tensors.append(np.einsum("ma,mb->ab", end, end) / len(end))
+            squares.append(np.einsum("ma,mb->ab", square, square) / len(end))
+            traces.append((square.sum(axis=1) ** 2).mean())
         self.blocks.add(np.stack(tensors))
+        self.note_squares(np.stack(squares), np.array(traces), len(r))
+
+    def weights(self, part: int) -> Array:
+        """Part of the mean square size that each normal mode has; of the ends only odd ones."""
+        assert self.times is not None
+        mode = np.asarray(self.times.mode)
+        return mode * (np.arange(len(mode)) % 2 == 0) if part else mode
 
     def result(self) -> Result:
         """Tensors and their traces."""
@@ -88,8 +99,7 @@ class MoleculeSizeAccumulator(TensorAccumulator):
     def comparisons(self) -> list[Comparison]:
         """Mean squares of radius of gyration and end-to-end distance."""
         names = ("mean square radius of gyration", "mean square end-to-end distance")
-        trace = np.eye(self.case.box.dimension)
         return [
-            Comparison(names[part], *self.summed(part, trace), expected, "a^2")
+            Comparison(names[part], *self.size(part), expected, "a^2", self.short_run())
             for part, expected in enumerate(self.squares())
         ]

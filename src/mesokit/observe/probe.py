@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, show, tag
+from mesokit.case.describe.hints import Either
 from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import solids_of
@@ -42,13 +43,13 @@ class Probe(Observable):
     """
 
     quantity: Literal["probe"] = tag("probe")
-    centre: tuple[float, ...] | None = param(
+    centre: Either[None, float] = param(
         None,
         doc="middle of the small box (that of the box unless said); what sticks out of a periodic "
         "axis is at its other end",
         unit="a",
     )
-    size: tuple[float, ...] | None = param(
+    size: Either[None, float] = param(
         None, doc="its sides (2 cells along each axis unless said)", unit="a"
     )
     component: Axis | None = param(

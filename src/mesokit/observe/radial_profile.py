@@ -11,6 +11,7 @@ import numpy as np
 from mesokit import theory
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, show, tag
+from mesokit.case.describe.hints import Either
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import FINE, solids_of
 from mesokit.method.mpcd.expected import recognise, setting
@@ -41,7 +42,7 @@ class RadialProfile(Observable):
     of: Literal["azimuthal", "axial", "radial", "density", "temperature"] = param(
         "azimuthal", doc="what: a velocity component, 'density' or 'temperature'"
     )
-    centre: tuple[float, ...] | None = param(None, doc="a place on the axis", unit="a")
+    centre: Either[None, float] = param(None, doc="a place on the axis", unit="a")
     axis: Axis | None = param(None, doc="direction of the axis, in 3D (z unless the walls say)")
     radii: tuple[float, float] | None = param(None, doc="innermost and outermost", unit="a")
     bins_per_cell: int = param(4, doc="rings per cell", ge=1)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 import numpy as np
 
 from mesokit import theory
-from mesokit.case.component import component, param, tag
+from mesokit.case.component import component, option, tag
 from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
@@ -33,7 +33,7 @@ class Stress(Observable):
 
     quantity: Literal["stress"] = tag("stress")
     measures: ClassVar[tuple[str, ...]] = ("stress",)
-    every: int = param(1, doc="steps between two samples", ge=1, kw_only=True)
+    every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
 
     def check(self, case: Case) -> None:
         """Raise CaseError between walls."""

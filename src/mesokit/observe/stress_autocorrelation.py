@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.component import component, param, tag
+from mesokit.case.component import component, option, param, tag
 from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
@@ -34,7 +34,7 @@ class StressAutocorrelation(Observable):
 
     quantity: Literal["stress-autocorrelation"] = tag("stress-autocorrelation")
     measures: ClassVar[tuple[str, ...]] = ("stress",)
-    every: int = param(1, doc="steps between two samples", ge=1, kw_only=True)
+    every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
     max_lag: int | None = param(
         None, doc="longest lag (as the run allows unless said)", unit="steps", ge=1
     )

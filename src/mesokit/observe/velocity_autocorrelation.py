@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
-from mesokit.case.component import component, param, tag
+from mesokit.case.component import component, option, param, tag
 from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
@@ -31,7 +31,7 @@ class VelocityAutocorrelation(Observable):
     """
 
     quantity: Literal["velocity-autocorrelation"] = tag("velocity-autocorrelation")
-    every: int = param(1, doc="steps between two samples", ge=1, kw_only=True)
+    every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
     particles: int = param(2000, doc="particles followed", ge=1)
     max_lag: int = param(200, doc="longest lag", unit="steps", ge=1)
 

@@ -17,8 +17,8 @@ class Documented:
         self.whole = ""
 
     def __get__(self, instance: Any, owner: type) -> str:
-        if PLAIN.get():
-            return self.text
+        if PLAIN.get():  # a schema has no room for code
+            return self.text.partition("\nExamples:")[0].rstrip()
         self.whole = self.whole or self._described(owner)
         return self.whole
 

@@ -110,6 +110,7 @@ def _settle_default(made: Schema) -> None:
     """Leave out a default that says nothing: a table of defaults, or what stands for one that is
     found later."""
     default = made.pop("default", None)
+    default = made.pop("unless_said", default)
     if isinstance(default, dict):
         named = any(tag in default for tag in TAGS)
         default = {key: each for key, each in default.items() if named and each not in (None, [])}

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import field_validator
 
 from mesokit.case.component import component, param, show, tag
+from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
 from mesokit.geometry import region
 from mesokit.geometry.composite import require_bare
@@ -30,7 +31,7 @@ class Array(Shape):
 
     shape: Literal["array"] = tag("array")
     of: Repeatable = param(doc="the shape to repeat")
-    repeat: tuple[int, ...] = param(doc="number of copies along each axis")
+    repeat: Many[int] = param(doc="number of copies along each axis")
 
     @field_validator("repeat")
     @classmethod

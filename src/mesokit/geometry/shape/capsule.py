@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal
 
 from mesokit.case.component import component, param, tag
+from mesokit.case.describe.hints import Many
 from mesokit.geometry import region
 from mesokit.geometry.shape_protocol import Simple
 
@@ -17,8 +18,8 @@ class Capsule(Simple):
     """All places within a radius of the straight line between two ends."""
 
     shape: Literal["capsule"] = tag("capsule")
-    start: tuple[float, ...] = param(doc="centre of one round end", unit="a")
-    end: tuple[float, ...] = param(doc="centre of the other", unit="a")
+    start: Many[float] = param(doc="centre of one round end", unit="a")
+    end: Many[float] = param(doc="centre of the other", unit="a")
     radius: float = param(doc="its radius", unit="a", gt=0)
 
     def __post_init__(self) -> None:

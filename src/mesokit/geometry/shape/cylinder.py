@@ -8,6 +8,7 @@ from pydantic import field_validator
 
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
+from mesokit.case.describe.hints import Either, Many
 from mesokit.geometry import region
 from mesokit.geometry.shape_protocol import Simple
 
@@ -21,9 +22,9 @@ class Cylinder(Simple):
 
     dimensions: ClassVar[tuple[int, ...]] = (3,)
     shape: Literal["cylinder"] = tag("cylinder")
-    centre: tuple[float, ...] = param(doc="a place on its axis", unit="a")
+    centre: Many[float] = param(doc="a place on its axis", unit="a")
     radius: float = param(doc="its radius", unit="a", gt=0)
-    axis: Axis | tuple[float, ...] = param("z", doc="its direction: 'x', 'y', 'z' or a vector")
+    axis: Either[Axis, float] = param("z", doc="its direction: 'x', 'y', 'z' or a vector")
 
     @field_validator("axis")
     @classmethod

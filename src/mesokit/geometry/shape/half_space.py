@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import field_validator
 
 from mesokit.case.component import component, param, tag
+from mesokit.case.describe.hints import Many
 from mesokit.geometry import region
 from mesokit.geometry.shape_protocol import Simple
 
@@ -19,8 +20,8 @@ class HalfSpace(Simple):
     """Everything behind a plane, such as a floor or an inclined wall."""
 
     shape: Literal["half-space"] = tag("half-space")
-    point: tuple[float, ...] = param(doc="a place on the plane", unit="a")
-    normal: tuple[float, ...] = param(doc="direction from the plane into the fluid")
+    point: Many[float] = param(doc="a place on the plane", unit="a")
+    normal: Many[float] = param(doc="direction from the plane into the fluid")
 
     @field_validator("normal")
     @classmethod

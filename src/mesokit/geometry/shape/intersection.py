@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal
 
 from mesokit.case.component import component, param, tag
+from mesokit.case.describe.hints import Many
 from mesokit.geometry import region
 from mesokit.geometry.composite import middle, require_plain, vectors_of
 from mesokit.geometry.shape_protocol import Joinable, Simple
@@ -18,9 +19,7 @@ class Intersection(Joinable):
     """Everything that is in all of its parts, with one surface."""
 
     shape: Literal["intersection"] = tag("intersection")
-    parts: tuple[Simple, ...] = param(
-        doc="shapes, of which each says where its fluid is", min_length=1
-    )
+    parts: Many[Simple] = param(doc="shapes, of which each says where its fluid is", min_length=1)
 
     def __post_init__(self) -> None:
         require_plain(self.parts, "intersection")

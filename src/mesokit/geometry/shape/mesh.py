@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from mesokit.case.component import component, param, show, tag
+from mesokit.case.describe.hints import Either
 from mesokit.errors import CaseError
 from mesokit.geometry.samples.distances import Grid, volume
 from mesokit.geometry.samples.from_file import FromFile
@@ -50,7 +51,7 @@ class Mesh(FromFile):
     """
 
     shape: Literal["mesh"] = tag("mesh")
-    position: tuple[float, ...] | None = param(
+    position: Either[None, float] = param(
         None,
         doc="where the origin of the mesh is put (the corner of the box unless said)",
         unit="a",

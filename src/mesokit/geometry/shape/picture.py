@@ -15,6 +15,7 @@ from scipy import ndimage
 from scipy.spatial import KDTree
 
 from mesokit.case.component import component, param, show, tag
+from mesokit.case.describe.hints import Either
 from mesokit.geometry.samples.distances import Grid, spans
 from mesokit.geometry.samples.from_file import FromFile
 
@@ -43,10 +44,10 @@ class Picture(FromFile):
 
     dimensions: ClassVar[tuple[int, ...]] = (2,)
     shape: Literal["picture"] = tag("picture")
-    origin: tuple[float, ...] | None = param(
+    origin: Either[None, float] = param(
         None, doc="place of its lower left corner (that of the box unless said)", unit="a"
     )
-    size: tuple[float, ...] | None = param(
+    size: Either[None, float] = param(
         None, doc="its width and height (those of the box unless said)", unit="a"
     )
 

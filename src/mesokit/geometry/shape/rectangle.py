@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from pydantic import field_validator
 
 from mesokit.case.component import component, param, tag
+from mesokit.case.describe.hints import Many
 from mesokit.geometry import region
 from mesokit.geometry.shape_protocol import Simple
 
@@ -20,8 +21,8 @@ class Rectangle(Simple):
 
     dimensions: ClassVar[tuple[int, ...]] = (2,)
     shape: Literal["rectangle"] = tag("rectangle")
-    centre: tuple[float, ...] = param(doc="its centre", unit="a")
-    size: tuple[float, ...] = param(doc="its sides", unit="a")
+    centre: Many[float] = param(doc="its centre", unit="a")
+    size: Many[float] = param(doc="its sides", unit="a")
     angle: float = param(0.0, doc="turn, counter-clockwise", unit="degrees")
 
     @field_validator("size")

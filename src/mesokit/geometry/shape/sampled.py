@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from mesokit.case.component import component, param, show, tag
+from mesokit.case.describe.hints import Either
 from mesokit.errors import CaseError
 from mesokit.geometry.samples.distances import Floats, Grid, checked, extent
 from mesokit.geometry.samples.from_file import FromFile
@@ -35,10 +36,10 @@ class Sampled(FromFile):
 
     shape: Literal["sampled"] = tag("sampled")
     spacing: float = param(doc="distance between samples", unit="a", gt=0)
-    origin: tuple[float, ...] | None = param(
+    origin: Either[None, float] = param(
         None, doc="place of the first sample (the corner of the box unless said)", unit="a"
     )
-    centre: tuple[float, ...] | None = param(
+    centre: Either[None, float] = param(
         None, doc="place about which torques are taken (the middle unless said)", unit="a"
     )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from mesokit.case.component import component, param, tag
+from mesokit.case.describe.hints import Many
 from mesokit.geometry import region
 from mesokit.geometry.shape_protocol import Simple
 
@@ -18,7 +19,7 @@ class Sphere(Simple):
 
     dimensions: ClassVar[tuple[int, ...]] = (3,)
     shape: Literal["sphere"] = tag("sphere")
-    centre: tuple[float, ...] = param(doc="its centre", unit="a")
+    centre: Many[float] = param(doc="its centre", unit="a")
     radius: float = param(doc="its radius", unit="a", gt=0)
 
     def body(self, room: Room) -> region.Region:

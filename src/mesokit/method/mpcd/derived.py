@@ -29,9 +29,12 @@ BYTES = {
     "particle 3D": 88,
     "cell 2D": 60,
     "cell 3D": 110,
-    "program": 250e6,
+    "program": 215e6,
+    "figures": 115e6,  # to draw them
     "bead": 500,
 }
+
+COMPILING = {"fluid": 280e6, "walls": 130e6, "solids": 30e6, "beads": 60e6}
 
 
 def derive(case: Case, threads: int | None = None) -> Derived:
@@ -83,7 +86,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         steady_time=_steady_time(case, across, nu) if nu and speed and builds_up else None,
         heating=_heating(case, across, nu) if nu else None,
         seconds=case.particles * steps / rate + bead_seconds + _observe_seconds(case),
-        memory=round(memory + BYTES["program"]),
+        memory=round(memory + BYTES["program"] + bool(case.observe) * BYTES["figures"]),
         trajectory=stored_bytes(case.trajectory, case.groups, dimension, case.run.steps),
         substeps=substeps,
         assumed=f"{threads} thread{'s' * (threads > 1)}, {rate / 1e6:.0f} million "
@@ -91,6 +94,22 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         warnings=(),
     )
     return Derived(**{**vars(numbers), "warnings": tuple(cautions(case, numbers, across))})
+
+
+def compiling_memory(case: Case) -> int:
+    """Bytes that a process takes while it compiles the kernels of such a case, measured.
+
+    >>> from mesokit import Box, Case, Fluid, Plates, Run
+    >>> slit = Case(run=Run(steps=1), box=Box([9, 9]), fluid=Fluid(), walls=[Plates("y")])
+    >>> compiling_memory(slit)
+    410000000
+    """
+    more = {
+        "walls": bool(case.walls),
+        "solids": setting.obstructed(case),
+        "beads": case.solutes is not None or case.fluid.molecule is not None,
+    }
+    return round(COMPILING["fluid"] + sum(COMPILING[name] * there for name, there in more.items()))
 
 
 def _flow(case: Case) -> tuple[str, int, float | None]:

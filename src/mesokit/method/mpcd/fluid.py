@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from mesokit.case.component import component, param
+from mesokit.case.describe.hints import Many
 from mesokit.method.mpcd.collision import CollisionRule
 from mesokit.method.mpcd.collision.srd import SRD
 from mesokit.method.mpcd.field import Force
@@ -33,6 +34,7 @@ class Fluid:
         gt=0,
         le=1e12,
         validate_default=False,
+        unless_said=10.0,
     )
     timestep: float = param(0.1, doc="time between two collisions", ge=1e-6, le=1e3)
     kT: float = param(1.0, doc="thermal energy", ge=1e-6, le=1e6)
@@ -43,6 +45,7 @@ class Fluid:
         ge=1e-3,
         le=1e3,
         validate_default=False,
+        unless_said=1.0,
     )
     collision: CollisionRule = param(SRD(), doc="collision rule")
     thermostat: Thermostat = param(NoThermostat(), doc="thermostat")
@@ -50,7 +53,7 @@ class Fluid:
     grid_shift: float = param(
         1.0, doc="strength of the random shift of the cells: 1 full, 0 none", ge=0, le=1
     )
-    species: tuple[Species, ...] = param((), doc="kinds of particles of different mass")
+    species: Many[Species] = param((), doc="kinds of particles of different mass")
     molecule: Molecule | None = param(
         None, doc="what every particle is a bead of (single particles unless said)"
     )

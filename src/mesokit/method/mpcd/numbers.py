@@ -8,7 +8,7 @@ from typing import Any
 
 from mesokit import theory
 from mesokit.case.amounts import duration_text, number, size_text
-from mesokit.case.shown import Shown
+from mesokit.case.describe.shown import Shown
 
 Row = tuple[str, str, str]  # what, its value, and a word on it
 

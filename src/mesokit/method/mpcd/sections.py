@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mesokit.case.component import param
+from mesokit.case.describe.hints import Many
 from mesokit.geometry.shape import Wall
 from mesokit.method.mpcd.fluid import Fluid
 from mesokit.method.mpcd.solutes import Solutes
@@ -15,4 +16,4 @@ class Sections:
 
     fluid: Fluid = param(Fluid(), doc="the fluid")
     solutes: Solutes | None = param(None, doc="monomers and polymers in the fluid (none)")
-    walls: tuple[Wall, ...] = param((), doc="walls; key `[[wall]]` in a file")
+    walls: Many[Wall] = param((), doc="walls; key `[[wall]]` in a file")

@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from mesokit.case.component import component, param
+from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
 from mesokit.method.mpcd import topology as links
 from mesokit.method.mpcd.molecule import MOST_SUBSTEPS, PHASE, Molecule
@@ -40,7 +41,7 @@ class Solutes:
     and Gompper 2007): friction and noise as in the fluid, but no hydrodynamics.
     """
 
-    polymers: tuple[Polymer, ...] = param(doc="the kinds of molecules", min_length=1)
+    polymers: Many[Polymer] = param(doc="the kinds of molecules", min_length=1)
     mass: float = param(1.0, doc="mass of a bead", unit="m", ge=1e-3, le=1e6)
     bond: Bond | None = param(None, doc="potential of the bonds")
     bending: Angle | None = param(None, doc="stiffness of two bonds in a row (none unless said)")

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mesokit.case.amounts import duration_text, size_text
-from mesokit.method.mpcd.derived import derive
+from mesokit.case.kind import has_run
+from mesokit.method.mpcd.derived import compiling_memory, derive
 from mesokit.method.mpcd.numbers import Derived
 from mesokit.method.protocol import Row, Summary
 
@@ -21,11 +22,18 @@ def summary(case: Case, threads: int | None = None) -> Summary:
         *numbers.fluid_rows(),
         *numbers.flow_rows(case.fluid.timestep),
         ("run time", duration_text(numbers.seconds), f"estimate: {numbers.assumed}"),
-        ("memory", size_text(numbers.memory), "estimate"),
+        ("memory", size_text(numbers.memory), _memory_word(case, numbers)),
     ]
     if numbers.trajectory:
         rows.append(("trajectory", size_text(numbers.trajectory), "estimate"))
     return Summary(tuple(rows), numbers.warnings, numbers.seconds, numbers.record())
+
+
+def _memory_word(case: Case, numbers: Derived) -> str:
+    compiling = compiling_memory(case)
+    if has_run(case) or compiling <= numbers.memory:
+        return "estimate"
+    return f"estimate; {size_text(compiling)} while it compiles, the first time"
 
 
 def _particle_rows(case: Case, numbers: Derived) -> list[Row]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.component import component, name_of, param
+from mesokit.case.component import component, name_of, option
 from mesokit.case.registry import family
 from mesokit.observe.shared.result import Result
 from mesokit.statistics import Blocks
@@ -48,9 +48,12 @@ class Observable(ABC):
     methods: ClassVar[tuple[str, ...]] = ()  # it is for, beside those that offer it
     needs_fluid: ClassVar[bool] = True  # whether solutes alone cannot answer it
     measures: ClassVar[tuple[str, ...]] = ()  # "stress" or "walls": what the step has to sum for it
-    every: int = param(10, doc="steps between two samples", ge=1, kw_only=True)
-    name: str | None = param(
-        None, doc="name of the results (the quantity unless said)", kw_only=True, min_length=1
+    every: int = option(default=10, doc="steps between two samples", ge=1, kw_only=True)
+    name: str | None = option(
+        default=None,
+        doc="name of the results (the quantity unless said)",
+        kw_only=True,
+        min_length=1,
     )
 
     @property

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.shown import Shown
+from mesokit.case.describe.shown import Shown
 from mesokit.observe.shared.named import find, key_of
 
 if TYPE_CHECKING:

@@ -32,6 +32,10 @@ class TensorAccumulator(BlockAccumulator):
     def comparisons(self) -> list[Comparison]:
         """Numbers that follow from the tensors."""
 
+    def errors(self) -> Array:
+        """Standard errors (parts, d, d)."""
+        return self.blocks.error()
+
     def tensors(self, quantity: str, label: str, unit: str, theory: str) -> Result:
         """The tensors with what is expected of them."""
         axes = np.array(AXES[: self.case.box.dimension])
@@ -41,7 +45,7 @@ class TensorAccumulator(BlockAccumulator):
             name=self.name,
             x={"part": np.array(self.parts), "row": axes, "column": axes},
             value=self.blocks.mean(),
-            error=self.blocks.error(),
+            error=self.errors(),
             label=label,
             units={"value": unit},
             expected=self.expected(),

@@ -6,6 +6,7 @@ import math
 from typing import Literal, NamedTuple
 
 from mesokit.case.component import component, param, tag
+from mesokit.case.describe.hints import Many
 from mesokit.method.mpcd.field.protocol import Force, acceleration
 
 
@@ -14,7 +15,7 @@ class Uniform(Force):
     """A uniform acceleration."""
 
     rule: Literal["uniform"] = tag("uniform")
-    acceleration: tuple[float, ...] = param(
+    acceleration: Many[float] = param(
         doc="one number for each axis", unit="a/time^2", min_length=2, max_length=3
     )
 

@@ -1,0 +1,116 @@
+"""Tensors of molecules, with error bars that are honest in runs no longer than a molecule relaxes.
+
+Blocking sees a number change only within the run, and a molecule changes in its relaxation time: a
+shorter run sees each molecule in one state, and the mean is off by the scatter of the molecules in
+one sample over the root of their number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.method.mpcd.expected.molecules import mode_times_of
+from mesokit.observe.shared.protocol import Observable, State, pack, unpack
+from mesokit.observe.shared.result import Array
+from mesokit.observe.shared.tensor import TensorAccumulator
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+ENOUGH = 30.0  # relaxation times of the slowest mode, for an error bar by blocking
+
+
+def kept(times: float) -> float:
+    """Part of the variance of one sample that the mean over so many correlation times keeps.
+
+    Of a process that decays as an exponential: 1 for none, 2/times for many.
+
+    >>> kept(0.0), round(kept(1e-3), 3), round(1e4 * kept(1e4), 1)
+    (1.0, 1.0, 2.0)
+    """
+    if times < 1e-3:
+        return 1.0
+    return float(2 * (times + np.expm1(-times)) / times**2)
+
+
+class MoleculeTensorAccumulator(TensorAccumulator):
+    """Block averages of tensors of molecules, and how much these differ in one sample."""
+
+    def __init__(
+        self, observable: Observable, case: Case, parts: tuple[str, ...], kind: int
+    ) -> None:
+        super().__init__(observable, case, parts)
+        self.every, self.kind = observable.every, kind
+        self.number = 1  # molecules, or bonds, in a sample
+        self.scatter = Blocks((len(parts), case.box.dimension**2 + 1))  # elements, and the trace
+        self.times = mode_times_of(case, kind)[0]
+
+    def note_squares(self, elements: Array, traces: Array, number: int) -> None:
+        """Take the means over `number` molecules of the squares of elements (parts, d, d) and of
+        traces (parts,)."""
+        self.number = number
+        self.scatter.add(np.concatenate([elements.reshape(len(traces), -1), traces[:, None]], 1))
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks, scatter=self.scatter, number=self.number)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        self.scatter = Blocks.from_state(unpack(state, "scatter"))
+        self.number = int(state["number"])
+
+    def weights(self, part: int) -> Array:
+        """Part of the size that each normal mode has: the same of the bonds."""
+        assert self.times is not None
+        return np.ones(len(self.times.mode))
+
+    def relaxations(self) -> float:
+        """How many relaxation times of the slowest mode the run has, nan where they are not known.
+
+        Those of molecules at rest: a flow makes them shorter.
+        """
+        if self.times is None:
+            return np.nan
+        length = self.blocks.count * self.every * self.case.fluid.timestep
+        return float(length / self.times.mode[0])
+
+    def short_run(self) -> str:
+        """Where blocking cannot see how slowly molecules change: a note."""
+        times = self.relaxations()
+        if not 0 < times < ENOUGH:
+            return ""
+        return f"error bar is a lower bound: the run has {times:.2g} relaxation times"
+
+    def bounds(self, part: int) -> tuple[Array, float]:
+        """Least errors of the elements (d, d) of a part, and of its trace; 0 in a long run."""
+        d = self.case.box.dimension
+        if not self.short_run():
+            return np.zeros((d, d)), 0.0
+        assert self.times is not None
+        weight = self.weights(part) ** 2
+        slow = float((weight * self.times.stress).sum() / weight.sum())  # of squares of modes
+        length = self.relaxations() * float(self.times.mode[0])
+        mean, square = self.blocks.mean()[part], self.scatter.mean()[part]
+        means = np.append(mean.ravel(), np.trace(mean))
+        variance = np.maximum(square - means**2, 0.0) * kept(length / slow) / self.number
+        bound = np.sqrt(variance)
+        return bound[:-1].reshape(d, d), float(bound[-1])
+
+    def errors(self) -> Array:
+        """Standard errors (parts, d, d)."""
+        found = self.blocks.error()
+        if not self.blocks.count:
+            return found
+        return np.maximum(found, np.stack([self.bounds(k)[0] for k in range(len(self.parts))]))
+
+    def size(self, part: int) -> tuple[float, float]:
+        """Trace of a part, and its standard error."""
+        value, error = self.summed(part, np.eye(self.case.box.dimension))
+        return value, float(np.maximum(error, self.bounds(part)[1]))
