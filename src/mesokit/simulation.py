@@ -158,7 +158,7 @@ class Simulation(Shown):
         self.callbacks.resume(self.step)
         self.log.resume(self.step)
         record = self._earlier_record(directory) or provenance(self.case, self.threads)
-        resumed = [*record.get("resumed", []), now()]
+        resumed = [*record.get("resumed", []), *([now()] if self._looked or self.step else [])]
         self._save_provenance(record | {"resumed": resumed, "failed": None})
         return self
 

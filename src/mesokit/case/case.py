@@ -130,12 +130,19 @@ class Case(Shown):
             data = toml.parse(toml.read(path))
             for key, value in (overrides or {}).items():
                 toml.override(data, key, value)
-            _require_method(data.get("run"))
-            made = case_class(method_named(data.get("run")))
-            keys = made._method.keys
-            return build(made, _by_field(made, data), keys, path.parent)
+            return cls.from_data(data, path.parent)
         except CaseError as error:
             raise CaseError(f"{path}: {error}") from None
+
+    @classmethod
+    def from_data(cls, data: dict[str, Any], folder: Path) -> Case:
+        """A case from the tables of a file; file names in it are relative to the folder.
+
+        Raises CaseError: one line with key, value and what was expected.
+        """
+        _require_method(data.get("run"))
+        made = case_class(method_named(data.get("run")))
+        return build(made, _by_field(made, data), made._method.keys, folder)
 
     def to_toml(self, folder: Path | None = None) -> str:
         """The case as a file, with every default written out; `from_toml` gives an equal case.

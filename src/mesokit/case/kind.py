@@ -32,8 +32,12 @@ def note_run(case: Case) -> None:
 
 
 def _mark(case: Case) -> Path:
+    return Path(folder()) / "kinds" / kind_of(case)
+
+
+def kind_of(case: Case) -> str:
+    """A name for the kind of a case."""
     tables = re.split(r"^(?=\[)", case.to_toml(), flags=re.MULTILINE)
     text = "".join(table.strip() for table in tables if not table.startswith(NOT_COMPILED))
     kind = case.run.method + NUMBER.sub(lambda n: "0" if float(n[0]) == 0 else "#", text)
-    code = hashlib.sha256(kind.encode(errors="surrogatepass"))
-    return Path(folder()) / "kinds" / code.hexdigest()[:16]
+    return hashlib.sha256(kind.encode(errors="surrogatepass")).hexdigest()[:16]

@@ -65,7 +65,24 @@ def override(data: dict[str, Any], key: str, value: Any) -> None:
         raise _which(key, here)
     if not isinstance(here, dict) or not last:
         raise CaseError(f"{key} = {show(value)}: expected a key path such as fluid.density")
-    here[last] = value
+    here[last] = _along(here.get(last), value)
+
+
+def _along(vector: Any, value: Any) -> Any:
+    """A number for a vector with one component that is not zero takes the place of that one.
+
+    >>> _along([0.01, 0.0], 0.02), _along([1.0, 2.0], 0.02), _along(3, 4)
+    ([0.02, 0.0], 0.02, 4)
+    """
+    if isinstance(vector, list) and _is_number(value) and all(map(_is_number, vector)):
+        there = [i for i, component in enumerate(vector) if component]
+        if len(there) == 1:
+            return [value if i == there[0] else component for i, component in enumerate(vector)]
+    return value
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _step(here: Any, part: str, path: str) -> Any:

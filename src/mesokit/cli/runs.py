@@ -171,7 +171,8 @@ def _files_of_run(output: Path) -> list[Path]:
     files = [run.data_file, run.checkpoint_file, run.log_file, run.report_file]
     files += [run.provenance_file]
     solids = output.glob(run.wall_file("*").name)
-    files += [run.trajectory_folder, run.trajectory_remains, run.trajectory_coming, run.case_file]
+    files += [run.trajectory_folder, run.trajectory_remains, run.trajectory_coming]
+    files += [run.progress_file, run.case_file]
     return [*figures, *output.glob(".*.tmp"), *solids, *files]
 
 

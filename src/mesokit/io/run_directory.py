@@ -67,6 +67,11 @@ class RunDirectory:
         return self.path / f"wall-{number}.npy"
 
     @property
+    def progress_file(self) -> Path:
+        """How many steps are done, while another process runs it."""
+        return self.path / ".progress"
+
+    @property
     def trajectory_folder(self) -> Path:
         """Frames that are not in the data file yet."""
         return self.path / "trajectory"

@@ -100,12 +100,12 @@ def _require_alike(files: Sequence[RunFiles]) -> None:
     for each in files:
         if "merged" in each.provenance:
             raise RunError(f"{each.path}: holds merged runs; name those that it is made of")
-        key = different_key(_text(first), _text(each))
+        here, there = _table(first), _table(each)
+        key = different_key(here, there, MAY_DIFFER)
         if key is not None:
-            here, there = (_flat(_text(files)).get(key) for files in (first, each))
             raise RunError(
-                f"{each.path}: another case than {first.path}: {key} = {show(there)}, "
-                f"not {show(here)}"
+                f"{each.path}: another case than {first.path}: {key} = {show(there.get(key))}, "
+                f"not {show(here.get(key))}"
             )
         seed = each.case.run.seed
         if seed in seeds:
@@ -116,26 +116,28 @@ def _require_alike(files: Sequence[RunFiles]) -> None:
         seeds[seed] = each.path
 
 
-def different_key(one: str, other: str) -> str | None:
-    """The first key in which two cases differ that changes what is measured; None if none does.
+def different_key(
+    one: Mapping[str, Any], other: Mapping[str, Any], may_differ: tuple[str, ...]
+) -> str | None:
+    """The first key path in which two cases differ, but for those that begin so; None if none does.
 
-    >>> different_key("[run]\\nseed = 1\\n[box]\\nsize = [8, 8]", "[box]\\nsize = [8, 9]")
+    >>> here, there = flat("[run]\\nseed = 1\\n[box]\\nsize = [8, 8]"), flat("[box]\\nsize = [8, 9]")
+    >>> different_key(here, there, ("run.seed",))
     'box.size'
     """
-    here, there = _flat(one), _flat(other)
-    for key in [*here, *(key for key in there if key not in here)]:
-        if not key.startswith(MAY_DIFFER) and here.get(key) != there.get(key):
+    for key in [*one, *(key for key in other if key not in one)]:
+        if not key.startswith(may_differ) and one.get(key) != other.get(key):
             return key
     return None
 
 
-def _text(files: RunFiles) -> str:
+def _table(files: RunFiles) -> dict[str, Any]:
     """The case of a run; files that it keeps in its folder are named without it."""
-    return files.case.to_toml(files.path)
+    return flat(files.case.to_toml(files.path))
 
 
-def _flat(text: str) -> dict[str, Any]:
-    """The values of a case by their key paths."""
+def flat(text: str) -> dict[str, Any]:
+    """The values of a case file by their key paths."""
     found: dict[str, Any] = {}
 
     def walk(path: str, value: Any) -> None:

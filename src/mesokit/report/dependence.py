@@ -1,0 +1,132 @@
+"""A measured number against a parameter: points with error bars, theory, fits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mesokit.case.component import one_of, show
+from mesokit.errors import CaseError
+from mesokit.observe.shared.result import Array, with_error
+from mesokit.report.style import COLOURS, HEIGHT, LINES, MARKERS, STYLE, WIDTH, labelled
+from mesokit.statistics import Fit, weighted_line
+
+FITS = ("line", "power")
+DECADE = 8.0  # last over first value beyond which an axis is logarithmic
+
+
+class Curve(NamedTuple):
+    """Points (n,) of one curve, what is expected there (nan where nothing is), and its name."""
+
+    label: str
+    x: Array
+    value: Array
+    error: Array
+    expected: Array
+    approximate: bool = False
+
+
+def draw(
+    curves: Sequence[Curve],
+    x: str,
+    y: tuple[str, str],
+    fit: str | None = None,
+    log: bool | None = None,
+    note: str = "",
+) -> Any:
+    """A figure of several curves.
+
+    Parameters
+    ----------
+    curves: what is drawn.
+    x, y: name of the axis; name and unit of the other.
+    fit: "line" or "power", fitted to each curve.
+    log: whether axes are logarithmic; where values span a decade or a power is fitted unless said.
+    note: what the points are, for the legend.
+
+    Raises CaseError for another fit, or one without enough points.
+    """
+    import matplotlib as mpl
+
+    from mesokit.report.notebook import ShownFigure
+
+    if fit is not None and fit not in FITS:
+        raise CaseError(f"fit = {show(fit)}: expected {one_of(FITS)}")
+    with mpl.rc_context(STYLE):
+        figure = ShownFigure(figsize=(WIDTH, HEIGHT), layout="constrained")
+        ax = figure.subplots()
+        for number, curve in enumerate(curves):
+            _draw(ax, curve, number, note, fit)
+        wide = all(_spans(curve.x) for curve in curves)
+        if log or (log is None and (wide or fit == "power")):
+            ax.set_xscale("log")
+        if log or (log is None and fit == "power"):
+            ax.set_yscale("log")
+        ax.set_xlabel(x)
+        ax.set_ylabel(labelled(y[0], y[1]))
+        ax.legend(loc="best")
+        return figure
+
+
+def _draw(ax: Any, curve: Curve, number: int, note: str, fit: str | None) -> None:
+    colour = COLOURS[number % len(COLOURS)]
+    words = ", ".join(filter(None, [curve.label, note]))
+    ax.errorbar(
+        curve.x, curve.value, curve.error, fmt=MARKERS[number % len(MARKERS)], mfc="white",
+        color=colour, ms=5, capsize=2, label=f"{words}, $\\pm$ one standard error", zorder=3,
+    )  # fmt: skip
+    known = np.isfinite(curve.expected)
+    if known.any():
+        words = "theory, approximate" if curve.approximate else "theory"
+        label = f"{words}, {curve.label}" if curve.label else words
+        line = LINES[number % len(LINES)]
+        lone = {"marker": "_", "ms": 14} if known.sum() == 1 else {}
+        ax.plot(
+            curve.x[known], curve.expected[known], ls=line, color="black", lw=1.3, label=label,
+            zorder=2, **lone,
+        )  # fmt: skip
+    if fit is not None:
+        found, words = fitted(curve, fit)
+        at = np.linspace(curve.x.min(), curve.x.max(), 200)
+        if fit == "power":
+            at = np.geomspace(curve.x.min(), curve.x.max(), 200)
+        shown = np.exp(found(np.log(at))) if fit == "power" else found(at)
+        ax.plot(at, shown, "--", color=colour, lw=1.1, label=words, zorder=1)
+
+
+def fitted(curve: Curve, kind: str) -> tuple[Fit, str]:
+    """A straight line, in logarithms for a power, and what to say of it.
+
+    Raises CaseError without enough points that have an error bar (and are above 0, for a power).
+
+    >>> x = np.array([1.0, 2.0, 4.0])
+    >>> fitted(Curve("", x, 3 * x**2, 0.01 * x**2, x), "power")[1]
+    'fit: $y = 3.0000(91)\\\\,x^{2.0000(24)}$, $p$ = 1'
+    """
+    use = np.isfinite(curve.value) & (curve.error > 0)
+    if kind == "power":
+        use &= (curve.value > 0) & (curve.x > 0)
+    x, value, error = curve.x[use], curve.value[use], curve.error[use]
+    if len(np.unique(x)) < 2:
+        raise CaseError(f"fit = {show(kind)}: too few points with an error bar")
+    if kind == "power":
+        found = weighted_line(np.log(x), np.log(value), error / value)
+        front = float(np.exp(found.coefficients[0]))
+        first = with_error(front, front * float(found.errors[0]))
+        second = with_error(float(found.coefficients[1]), float(found.errors[1]))
+        formula = f"y = {first}\\,x^{{{second}}}"
+    else:
+        found = weighted_line(x, value, error)
+        first, second = (
+            with_error(float(c), float(e))
+            for c, e in zip(found.coefficients, found.errors, strict=True)
+        )
+        formula = f"y = {first} + {second}\\,x"
+    quality = "" if np.isnan(found.p) else f", $p$ = {found.p:.2g}"
+    return found, f"fit: ${formula}${quality}"
+
+
+def _spans(x: Array) -> bool:
+    return len(x) > 1 and bool(x.min() > 0) and bool(x.max() / x.min() >= DECADE)

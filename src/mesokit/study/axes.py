@@ -1,0 +1,162 @@
+"""What a study varies: lists, ranges, and keys that change together."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import re
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mesokit.case.component import show
+from mesokit.errors import CaseError
+
+RANGE = re.compile(r"\s*([^:,\s]+):([^:,\s]+):(\d+)(:log)?\s*")
+FORM = "expected KEY=VALUE,VALUE,... or KEY=FIRST:LAST:NUMBER, such as fluid.timestep=0.05:0.2:4"
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Keys of a case that change together, and the values that they take.
+
+    Parameters
+    ----------
+    keys: key paths, such as ("fluid.timestep", "run.steps").
+    values: one row for each point of the axis, with a value for each key.
+
+    Raises CaseError without keys or values, or for a row of another length.
+
+    >>> axis = Axis.parse("fluid.timestep=0.1,0.05; run.steps=1000,2000")
+    >>> [point for point in axis]
+    [{'fluid.timestep': 0.1, 'run.steps': 1000}, {'fluid.timestep': 0.05, 'run.steps': 2000}]
+    >>> [point["fluid.kT"] for point in Axis.parse("fluid.kT=1:100:3:log")]
+    [1.0, 10.0, 100.0]
+    """
+
+    keys: tuple[str, ...]
+    values: tuple[tuple[Any, ...], ...]
+
+    def __post_init__(self) -> None:
+        if not self.keys or not self.values:
+            raise CaseError(f"vary {', '.join(self.keys)}: expected a key and a value at least")
+        for row in self.values:
+            if len(row) != len(self.keys):
+                raise CaseError(f"vary {', '.join(self.keys)}: {show(row)}: expected a value each")
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        for row in self.values:
+            yield dict(zip(self.keys, row, strict=True))
+
+    @classmethod
+    def parse(cls, text: str) -> Axis:
+        """From 'KEY=VALUES; KEY=VALUES', as the command line has it. Raises CaseError."""
+        columns: dict[str, list[Any]] = {}
+        for part in text.split(";"):
+            key, equals, values = part.partition("=")
+            if not equals or not key.strip() or not values.strip():
+                raise CaseError(f"vary {show(text)}: {FORM}")
+            columns[key.strip()] = _values(key.strip(), values)
+        return cls._of(columns)
+
+    @classmethod
+    def from_table(cls, table: Mapping[str, Any]) -> Axis:
+        """From the keys of a [[vary]] table: lists, or ranges as texts. Raises CaseError."""
+        if not isinstance(table, Mapping):
+            raise CaseError(f"vary = {show(table)}: expected [[vary]], in double brackets")
+        columns = {}
+        for key, given in _flat(table):
+            if isinstance(given, str):
+                given = _values(key, given)
+            if not isinstance(given, Sequence) or not given:
+                raise CaseError(
+                    f"vary.{key} = {show(given)}: expected a list, or a range as a text"
+                )
+            columns[key] = list(given)
+        return cls._of(columns)
+
+    @classmethod
+    def from_mapping(cls, vary: Mapping[Any, Any]) -> list[Axis]:
+        """The axes of a dictionary: by key the values, by several keys rows of values.
+
+        >>> [axis.keys for axis in Axis.from_mapping({"fluid.kT": [1, 2], ("a", "b"): [(1, 2)]})]
+        [('fluid.kT',), ('a', 'b')]
+        """
+        axes = []
+        for key, given in vary.items():
+            given = _values(key, given) if isinstance(given, str) else given
+            if isinstance(given, np.ndarray):
+                given = given.tolist()
+            if not isinstance(given, Sequence):
+                raise CaseError(f"vary {show(key)} = {show(given)}: expected a list of values")
+            linked = isinstance(key, tuple)
+            rows = [tuple(row) if linked else (row,) for row in given]
+            axes.append(cls(key if linked else (str(key),), tuple(rows)))
+        return axes
+
+    def table(self) -> dict[str, list[Any]]:
+        """By key its values, as a [[vary]] table holds them."""
+        return {key: [row[i] for row in self.values] for i, key in enumerate(self.keys)}
+
+    @classmethod
+    def _of(cls, columns: dict[str, list[Any]]) -> Axis:
+        lengths = {key: len(values) for key, values in columns.items()}
+        if len(set(lengths.values())) > 1:
+            words = ", ".join(f"{key} has {n}" for key, n in lengths.items())
+            raise CaseError(f"vary: keys that change together need as many values: {words}")
+        return cls(tuple(columns), tuple(zip(*columns.values(), strict=True)))
+
+
+def grid(axes: Sequence[Axis]) -> list[dict[str, Any]]:
+    """Every combination of the points of all axes. Raises CaseError for a key of two axes.
+
+    >>> len(grid([Axis.parse("a=1,2"), Axis.parse("b=1,2,3")]))
+    6
+    """
+    keys = [key for axis in axes for key in axis.keys]
+    for key in keys:
+        if keys.count(key) > 1:
+            raise CaseError(f"vary {key}: given twice")
+    points = itertools.product(*axes)
+    return [{key: value for part in point for key, value in part.items()} for point in points]
+
+
+def _values(key: str, text: str) -> list[Any]:
+    found = RANGE.fullmatch(text)
+    if found:
+        try:
+            first, last, number = float(found[1]), float(found[2]), int(found[3])
+        except ValueError:
+            raise CaseError(f"vary {key}={text.strip()}: {FORM}") from None
+        if found[4] and not (first > 0 and last > 0):
+            raise CaseError(f"vary {key}={text.strip()}: a logarithmic range begins above 0")
+        space = np.geomspace if found[4] else np.linspace
+        values = [float(f"{value:.12g}") for value in space(first, last, number)]
+        return [int(v) for v in values] if _whole(found, values) else list(values)
+    with contextlib.suppress(tomllib.TOMLDecodeError):
+        return list(tomllib.loads(f"values = [{text}]")["values"])
+    return [_value(part.strip()) for part in text.split(",")]  # bare words are texts
+
+
+def _whole(found: Any, values: Sequence[float]) -> bool:
+    """A range between whole numbers, all of whose values are whole."""
+    ends = all(re.fullmatch(r"[-+]?\d+", found[i]) for i in (1, 2))
+    return ends and not found[4] and all(value == round(value) for value in values)
+
+
+def _value(text: str) -> Any:
+    with contextlib.suppress(tomllib.TOMLDecodeError):
+        return tomllib.loads(f"value = {text}")["value"]
+    return text
+
+
+def _flat(table: Mapping[str, Any], start: str = "") -> Iterator[tuple[str, Any]]:
+    """Key paths of a table, whether written with dots or as tables."""
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{start}{key}.")
+        else:
+            yield f"{start}{key}", value

@@ -1,0 +1,174 @@
+"""Carries the runs of a study to their ends, and tells how far they are."""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Sequence
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Protocol
+
+from mesokit.case.amounts import duration_text
+from mesokit.case.kind import has_run, kind_of
+from mesokit.report.progress import Reporter
+from mesokit.running.signals import Stopped, catching
+from mesokit.study.plan import Planned
+
+POLL_SECONDS = 0.2
+LOOK_SECONDS = 1.0  # between two looks into the folders of the runs in hand
+
+
+class Workers(Protocol):
+    """Who carries runs: processes, this process, or a cluster."""
+
+    @property
+    def places(self) -> int:
+        """How many runs they take at once."""
+
+    def submit(self, path: Path) -> Future[str]:
+        """Carry the run in a folder to its end; the answer says why it did not come there."""
+
+    def stop(self) -> None:
+        """Let the runs in hand end at a checkpoint."""
+
+    def close(self) -> None:
+        """Wait for what is in hand, and end."""
+
+
+class StudyReporter(Reporter):
+    """Tells how a study goes: its steps are those of all particles of all runs, in millions."""
+
+    def __init__(self, quiet: bool = False, **options: Any) -> None:
+        super().__init__(quiet, **options)
+        self.runs = self.ended = 0
+
+    def amount(self, steps: int) -> str:
+        """How much there is to do."""
+        return f"{self.runs - self.ended} of {self.runs} runs"
+
+    def words(self, step: int) -> str:
+        """Runs that have ended, the rate and the time left."""
+        rate, ended = self.rate.steps_per_second, f"{self.ended} of {self.runs} runs"
+        if not rate:
+            return ended
+        left = duration_text((self.total - step) / rate)
+        return f"{ended}, {rate / 1e6:.3g} M particle-steps/s, {left} left"
+
+    def finish(self) -> None:
+        """The study is over, or was stopped."""
+        if self.quiet or not self.phase:
+            return
+        took = duration_text(time.monotonic() - self.started)
+        text = f"{self.phase}: {self.ended} of {self.runs} runs after {took}"
+        if self.bar is not None and self.task is not None:
+            self.bar.update(self.task, completed=self.last, words=text)
+            self.bar.stop()
+            self.bar = self.task = None
+        else:
+            self._say(text)
+        self.phase = ""
+
+
+@dataclass
+class _Work:
+    """A run in terms of what it costs: steps times particles."""
+
+    run: Planned
+    particles: int
+    steps: int
+    kind: str
+    compiled: bool
+    future: Future[str] | None = None
+    seen: int = field(default=0)  # steps done
+
+    @property
+    def total(self) -> int:
+        return self.particles * self.steps
+
+
+def drive(
+    runs: Sequence[Planned], workers: Workers, progress: StudyReporter
+) -> list[tuple[Planned, str]]:
+    """Carry the runs that have not ended to their ends; returns those that fail, and why.
+
+    Raises Stopped after a signal, once what is in hand has ended at its checkpoints.
+    """
+    works = [_work(run) for run in runs]
+    waiting = [work for work in works if not work.run.ended]
+    progress.runs, progress.ended = len(works), len(works) - len(waiting)
+    done = sum(work.total for work in works if work.run.ended)
+    stopped: list[signal.Signals] = []
+    failed: list[tuple[Planned, str]] = []
+    progress.start(sum(work.total for work in works), 1, "study", done)
+    in_hand: list[_Work] = []
+    looked = 0.0
+    try:
+        with catching(lambda by: _stop(stopped, by, workers)):
+            while in_hand or (waiting and not stopped):
+                if not stopped:
+                    _hand_out(waiting, in_hand, workers)
+                for work in [w for w in in_hand if w.future is not None and w.future.done()]:
+                    in_hand.remove(work)
+                    why = _answer(work, stopped)
+                    done += work.total
+                    for other in waiting:  # they find its kernels, or cannot be helped
+                        other.compiled = other.compiled or other.kind == work.kind
+                    if why:
+                        failed.append((work.run, why))
+                    else:
+                        progress.ended += 1
+                if (now := time.monotonic()) >= looked + LOOK_SECONDS:
+                    looked = now
+                    for work in in_hand:
+                        work.seen = work.run.step
+                progress.update(done + sum(w.particles * w.seen for w in in_hand))
+                if in_hand:
+                    time.sleep(POLL_SECONDS)
+    finally:
+        workers.close()
+        progress.finish()
+    if stopped:
+        by = stopped[0]
+        raise Stopped(by, f"stopped by {by.name}: {progress.ended} of {len(works)} runs have ended")
+    return failed
+
+
+def _work(run: Planned) -> _Work:
+    case = run.files.case
+    particles = sum(group.number for group in case.groups)
+    steps = case.run.warmup + case.run.steps
+    return _Work(run, particles, steps, kind_of(case), has_run(case))
+
+
+def _hand_out(waiting: list[_Work], in_hand: list[_Work], workers: Workers) -> None:
+    """Give out what there is room for; of a kind that is not compiled yet only one at first."""
+    for work in list(waiting):
+        if len(in_hand) >= workers.places:
+            return
+        first = [w for w in in_hand if w.kind == work.kind and not w.compiled]
+        if first and not has_run(first[0].run.files.case):
+            continue
+        waiting.remove(work)
+        in_hand.append(work)
+        work.future = workers.submit(work.run.path)
+
+
+def _answer(work: _Work, stopped: list[signal.Signals]) -> str:
+    """Why a run has not come to its end, nothing if it has or was stopped with the others."""
+    assert work.future is not None
+    try:
+        why = str(work.future.result())
+    except Exception as error:  # of what carries it: a node that is gone, a package that is not
+        why = f"{type(error).__name__}: {error}"
+    if why.startswith("stopped") and not stopped:
+        stopped.append(signal.SIGINT)
+    return "" if stopped and not work.run.failed else why
+
+
+def _stop(stopped: list[signal.Signals], by: signal.Signals, workers: Workers) -> None:
+    if stopped:
+        raise Stopped(by)
+    stopped.append(by)
+    workers.stop()

@@ -1,0 +1,96 @@
+"""Runs on the cores of this machine: processes of their own, each for one run after another."""
+
+from __future__ import annotations
+
+import os
+import queue
+import signal
+import subprocess
+import sys
+from collections.abc import Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+LOST = "its process ended"  # killed from outside, or for want of memory
+
+
+class Processes:
+    """So many workers at once.
+
+    Each is a program of its own, not a copy of this one: scripts and notebooks need no guard. They
+    do not hear Ctrl-C, which is for the study: `stop` tells those that run.
+    """
+
+    def __init__(self, jobs: int, threads: int = 1, modules: Sequence[str] = ()) -> None:
+        self.jobs, self.arguments = jobs, [str(threads), *modules]
+        self.pool = ThreadPoolExecutor(jobs)
+        self.idle: queue.SimpleQueue[subprocess.Popen[str]] = queue.SimpleQueue()
+        self.busy: set[subprocess.Popen[str]] = set()
+        self.stopping = False
+
+    def submit(self, path: Path) -> Future[str]:
+        """Carry the run in a folder to its end; the answer is that of `work.carry`."""
+        return self.pool.submit(self._carry, path)
+
+    def _carry(self, path: Path) -> str:
+        if self.stopping:
+            return "stopped before the start"
+        worker = self._worker()
+        self.busy.add(worker)
+        try:
+            assert worker.stdin is not None and worker.stdout is not None
+            worker.stdin.write(f"{path}\n")
+            worker.stdin.flush()
+            answer = worker.stdout.readline()
+        except OSError:
+            answer = ""
+        finally:
+            self.busy.discard(worker)
+        if not answer.endswith("\n"):
+            status = worker.wait()
+            by = f" by {signal.Signals(-status).name}" if status < 0 else f" with {status}"
+            return f"{LOST}{by}; perhaps there was too little memory"
+        self.idle.put(worker)
+        return answer.rstrip("\n")
+
+    def _worker(self) -> subprocess.Popen[str]:
+        """One that is idle, or a new one."""
+        while not self.idle.empty():
+            worker = self.idle.get()
+            if worker.poll() is None:
+                return worker
+        apart: Any = {"start_new_session": True}
+        if sys.platform == "win32":
+            apart = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
+        command = [sys.executable, "-m", "mesokit.study.work", *self.arguments]
+        pipes: Any = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+        paths = os.pathsep.join(["", *filter(None, sys.path)]).lstrip(os.pathsep)
+        return subprocess.Popen(
+            command, text=True, encoding="utf-8", env=os.environ | {"PYTHONPATH": paths},
+            **pipes, **apart,
+        )  # fmt: skip
+
+    @property
+    def places(self) -> int:
+        """How many runs it takes at once."""
+        return self.jobs
+
+    def stop(self) -> None:
+        """Let the runs in hand end at a checkpoint."""
+        self.stopping = True
+        for worker in list(self.busy):
+            if sys.platform == "win32":
+                worker.send_signal(signal.CTRL_BREAK_EVENT)
+            else:
+                worker.terminate()
+
+    def close(self) -> None:
+        """Wait for what is in hand, and end all workers."""
+        self.pool.shutdown()
+        while not self.idle.empty():
+            worker = self.idle.get()
+            assert worker.stdin is not None and worker.stdout is not None
+            worker.stdin.close()
+            worker.wait()
+            worker.stdout.close()

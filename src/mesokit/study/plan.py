@@ -1,0 +1,168 @@
+"""The runs of a study: which there are, where they lie, and how far they have come."""
+
+from __future__ import annotations
+
+import contextlib
+import copy
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from mesokit.case import toml
+from mesokit.case.case import Case
+from mesokit.case.component import show
+from mesokit.errors import CaseError, RunError
+from mesokit.io import checkpoint
+from mesokit.io.open import RunFiles
+from mesokit.io.run_directory import RunDirectory
+from mesokit.study.axes import Axis, grid
+from mesokit.study.merge import different_key, flat
+
+
+@dataclass(frozen=True)
+class Planned:
+    """One run of a study: the values that it varies, its seed and its folder."""
+
+    point: Mapping[str, Any]
+    seed: int
+    path: Path
+
+    @property
+    def files(self) -> RunFiles:
+        """What it has written. Raises RunError if it has not been made."""
+        return RunFiles(self.path)
+
+    @property
+    def ended(self) -> bool:
+        """Whether it has its results."""
+        return RunDirectory(self.path).data_file.exists()
+
+    @property
+    def failed(self) -> str:
+        """Why it cannot go on, nothing if it can."""
+        with contextlib.suppress(RunError):
+            return str(RunDirectory(self.path).read_provenance().get("failed") or "")
+        return ""
+
+    @property
+    def step(self) -> int:
+        """Steps done, by what the run says of itself while it goes on, or its last checkpoint."""
+        run = RunDirectory(self.path)
+        with contextlib.suppress(OSError, ValueError):
+            return int(run.progress_file.read_text())
+        with contextlib.suppress(RunError):
+            return int(checkpoint.read_meta(run.checkpoint_file)["step"])
+        return 0
+
+
+def planned(axes: Sequence[Axis], seeds: Sequence[int], folder: Path) -> list[Planned]:
+    """Every point with every seed, in folders that say which.
+
+    >>> runs = planned([Axis.parse("fluid.kT=1,2")], [1, 2], Path("study"))
+    >>> [run.path.as_posix() for run in runs][:2]
+    ['study/runs/kT=1/seed=1', 'study/runs/kT=1/seed=2']
+    """
+    keys = [key for axis in axes for key in axis.keys]
+    names = dict(zip(keys, short_names(keys), strict=True))
+    runs = []
+    for point in grid(axes):
+        words = [f"{names[key]}={_safe(value)}" for key, value in point.items()]
+        place = folder / "runs" / ",".join(words) if words else folder / "runs"
+        runs += [Planned(point, seed, place / f"seed={seed}") for seed in seeds]
+    paths = [run.path for run in runs]
+    for run in runs:
+        if paths.count(run.path) > 1:
+            raise CaseError(f"{run.path}: two runs would have this name; a value is there twice")
+    return runs
+
+
+def short_names(keys: Sequence[str]) -> list[str]:
+    """The last parts of key paths, whole paths where these are not enough.
+
+    >>> short_names(["fluid.kT", "run.steps", "wall.1.radius", "wall.2.radius"])
+    ['kT', 'steps', 'wall.1.radius', 'wall.2.radius']
+    """
+    last = [key.rpartition(".")[2] for key in keys]
+    return [
+        key if last.count(end) > 1 or len(end) < 2 else end
+        for key, end in zip(keys, last, strict=True)
+    ]
+
+
+def _safe(value: Any) -> str:
+    """A value in the name of a folder, on any system."""
+    text = f"{value:.6g}" if isinstance(value, float) else str(value)
+    return re.sub(r"[^\w.+-]+", "_", text).strip("_")[:60] or "none"
+
+
+class Base:
+    """The case that all runs differ from: as a file has it, so that choices can be changed whole.
+
+    Raises CaseError for a file that is not there or not TOML.
+    """
+
+    def __init__(self, text: str, folder: Path) -> None:
+        self.text, self.folder = text, folder
+        self.data = toml.parse(text)
+
+    @classmethod
+    def of(cls, given: Case | str | Path) -> Base:
+        """Of a case, or of the file of one."""
+        if isinstance(given, Case):
+            return cls(given.to_toml(), Path.cwd())
+        try:
+            return cls(toml.read(Path(given)), Path(given).resolve().parent)
+        except CaseError as error:
+            raise CaseError(f"{given}: {error}") from None
+
+    def case(self, point: Mapping[str, Any], seed: int) -> Case:
+        """The case of one run. Raises CaseError, which names the values that were set."""
+        data = copy.deepcopy(self.data)
+        try:
+            for key, value in point.items():
+                toml.override(data, key, value)
+            data.setdefault("run", {})["seed"] = seed
+            return Case.from_data(data, self.folder)
+        except CaseError as error:
+            words = ", ".join(f"{key} = {value}" for key, value in point.items())
+            raise CaseError(f"with {words}: {error}" if words else str(error)) from None
+
+
+def make(runs: Sequence[Planned], base: Base) -> list[Planned]:
+    """Make the folders of runs that are not there yet; returns all of them.
+
+    Raises CaseError for a case that cannot be, before any folder is made, and RunError where
+    another case lies in the place of a run.
+    """
+    cases = [(run, base.case(run.point, run.seed)) for run in runs]
+    for run, case in cases:
+        if RunDirectory(run.path).case_file.exists():
+            _require_same(run, case)
+    for run, case in cases:
+        if not RunDirectory(run.path).case_file.exists():
+            RunDirectory.create(run.path, case)
+    return list(runs)
+
+
+def _require_same(run: Planned, case: Case) -> None:
+    """Raise RunError if another case lies there; files lie elsewhere once they are kept."""
+    there = flat(RunDirectory(run.path).case_file.read_text(encoding="utf-8"))
+    wanted = flat(case.to_toml())
+    names = tuple(key for key in wanted if key.rpartition(".")[2] in ("file", "run"))
+    key = different_key(wanted, there, ("run.steps", *names))
+    if key is not None:
+        raise RunError(
+            f"{run.path}: holds a run with {key} = {show(there.get(key))}, not "
+            f"{show(wanted.get(key))}; choose another output"
+        )
+
+
+def by_point(runs: Sequence[Planned]) -> Iterator[list[Planned]]:
+    """The runs of each point, that is all its seeds."""
+    points: list[Mapping[str, Any]] = []
+    for run in runs:
+        if run.point not in points:
+            points.append(run.point)
+            yield [other for other in runs if other.point == run.point]

@@ -1,0 +1,69 @@
+"""One number of a study against one value that it varies."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mesokit.case.component import nearest, one_of, show
+from mesokit.errors import CaseError
+from mesokit.report.dependence import Curve, draw
+from mesokit.study.plan import short_names
+
+if TYPE_CHECKING:
+    from mesokit.study.study import Study
+    from mesokit.study.table import Pooled
+
+
+def plot(study: Study, x: str, y: str, fit: str | None = None, log: bool | None = None) -> Any:
+    """A figure with error bars, what is expected, and a fit; a curve for each other value.
+
+    Raises CaseError for a key or number that is not there, or values that are no numbers.
+    """
+    key = study.key(x)
+    rows = _rows(study.table(), y)
+    linked = next(axis.keys for axis in study.axes if key in axis.keys)
+    others = [other for other in study.keys if other not in linked]
+    names = dict(zip(study.keys, short_names(study.keys), strict=True))
+    curves: dict[str, list[Pooled]] = {}
+    for row in rows:
+        label = ", ".join(f"{names[other]} = {_word(row.point[other])}" for other in others)
+        curves.setdefault(label, []).append(row)
+    drawn = [_curve(label, key, group) for label, group in curves.items()]
+    number = rows[0].number
+    seeds = f"mean of {rows[0].runs} runs" if rows[0].runs > 1 else "one run each"
+    title = f"{rows[0].observable}: {number.what}"
+    return draw(drawn, x=key, y=(title, number.unit), fit=fit, log=log, note=seeds)
+
+
+def _rows(rows: list[Pooled], name: str) -> list[Pooled]:
+    """The rows of one number: by its name, or by its beginning if only one begins so."""
+    names = list(dict.fromkeys(row.name for row in rows))
+    if not names:
+        raise CaseError(f"{name}: no run has ended with a number to draw")
+    wanted = name.lower().replace(" ", "-")
+    fits = [wanted] if wanted in names else [n for n in names if n.startswith(wanted)]
+    if len(fits) != 1:
+        known = f"; it may be {one_of(fits)}" if fits else nearest(wanted, names)
+        raise CaseError(f"{name}: no such number{known or f'; expected {one_of(names)}'}")
+    return [row for row in rows if row.name == fits[0]]
+
+
+def _curve(label: str, key: str, rows: list[Pooled]) -> Curve:
+    values = [row.point[key] for row in rows]
+    if not all(isinstance(v, int | float) for v in values):
+        raise CaseError(f"{key} = {show(values[0])}: only numbers can be drawn against")
+    order = np.argsort(values)
+    numbers = [rows[i].number for i in order]
+    return Curve(
+        label,
+        np.array(values, float)[order],
+        *(np.array([getattr(n, part) for n in numbers]) for part in ("measured", "error")),
+        np.array([n.expected for n in numbers]),
+        any(n.approximate for n in numbers),
+    )
+
+
+def _word(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)

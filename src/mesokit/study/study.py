@@ -1,0 +1,276 @@
+"""A study: the same case for several values and seeds."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mesokit.case import toml
+from mesokit.case.case import Case
+from mesokit.case.component import nearest, one_of, show
+from mesokit.case.outside import outside_parts
+from mesokit.errors import CaseError, RunError
+from mesokit.io.atomic import write_text
+from mesokit.running.cores import usable_cores
+from mesokit.study import table as tables
+from mesokit.study.axes import Axis
+from mesokit.study.cluster import Cluster
+from mesokit.study.drive import StudyReporter, Workers, drive
+from mesokit.study.here import Here
+from mesokit.study.local import Processes
+from mesokit.study.merge import merge
+from mesokit.study.plan import Base, Planned, by_point, make, planned, short_names
+
+if TYPE_CHECKING:
+    from mesokit.io.open import RunFiles
+    from mesokit.study.table import Pooled
+
+FILE, CASE = "study.toml", "case.toml"
+HEAD = "# A study of mesokit: what it varies; its case is beside it, its runs are in runs/.\n"
+
+
+class Study:
+    """The same case for several values and seeds: a folder of runs, and what they say together.
+
+    Parameters
+    ----------
+    case : Case or path
+        What all runs have in common, or the file of it.
+    vary : mapping, optional
+        By key path the values, a list or a range as a text ("0.05:0.2:4"); by a tuple of keys rows
+        of values that belong together. Runs are made for every combination.
+    seeds : int or sequence of int, optional
+        So many seeds, from that of the case on, or which.
+    output : path
+        Folder of the study. Runs that are in it already are kept, so that a study can be made
+        larger, or go on after a stop.
+
+    Raises
+    ------
+    CaseError
+        For a case that cannot be, with the values that make it so; no folder is made then.
+    RunError
+        Where another study lies, or a folder cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from mesokit import Box, Case, Conservation, Run
+    >>> case = Case(run=Run(steps=20), box=Box([8, 8]), observe=[Conservation(every=5)])
+    >>> folder = Path(tempfile.mkdtemp()) / "study"
+    >>> study = Study(case, {"fluid.timestep": [0.1, 0.2]}, seeds=2, output=folder)
+    >>> len(study.runs)
+    4
+    >>> study.run(jobs=1)
+    >>> [(row.point["fluid.timestep"], row.key, row.runs) for row in study.table()]
+    [(0.1, 'largest-drift-of-momentum', 2), (0.2, 'largest-drift-of-momentum', 2)]
+    """
+
+    def __init__(
+        self,
+        case: Case | str | Path,
+        vary: Mapping[Any, Any] | Sequence[Axis] | None = None,
+        seeds: int | Sequence[int] = 1,
+        *,
+        output: str | Path,
+        settings: Mapping[str, str] | None = None,
+    ) -> None:
+        base = Base.of(case)
+        for key, value in (settings or {}).items():
+            toml.override(base.data, key, value)
+        self.path = Path(output)
+        axes = Axis.from_mapping(vary) if isinstance(vary, Mapping) else list(vary or ())
+        self._set(base, axes, _seeds(seeds, base))
+        self._make()
+
+    @classmethod
+    def open(cls, path: str | Path) -> Study:
+        """The study in a folder, or of a study file. Raises RunError or CaseError if there is none.
+
+        A study file names a `case`, `seeds` and [[vary]] tables; its folder is named after it.
+        """
+        path = Path(path)
+        file = path / FILE if path.is_dir() else path
+        if not file.is_file():
+            raise RunError(f"{path}: holds no study; expected a file {FILE} in it")
+        self = cls.__new__(cls)
+        try:
+            data = toml.parse(toml.read(file))
+            for key in data:
+                if key not in ("case", "seeds", "vary", "folder"):
+                    known = ["case", "seeds", "vary"]
+                    raise CaseError(
+                        f"{key}: unknown key{nearest(key, known)} (expected {one_of(known)})"
+                    )
+            given = data.get("case")
+            if not isinstance(given, str):
+                raise CaseError(f"case = {show(given)}: expected the name of a case file")
+            vary = data.get("vary", [])
+            if not isinstance(vary, list):
+                raise CaseError("vary: expected [[vary]], in double brackets")
+            axes = [Axis.from_table(each) for each in vary]
+            base = Base.of(file.parent / given)
+        except CaseError as error:
+            raise CaseError(f"{file}: {error}") from None
+        if "folder" in data:
+            base.folder = Path(data["folder"])
+        self.path = path if path.is_dir() else path.with_suffix("")
+        self._set(base, axes, _seeds(data.get("seeds", 1), base))
+        if not path.is_dir():
+            self._make()
+        return self
+
+    def _set(self, base: Base, axes: list[Axis], seeds: list[int]) -> None:
+        self.base, self.axes, self.seeds = base, axes, seeds
+        self.runs: list[Planned] = planned(axes, seeds, self.path)
+
+    def _make(self) -> None:
+        """The folder with all runs in it; those that are there are kept."""
+        if self.path.is_dir() and any(self.path.iterdir()) and not (self.path / FILE).exists():
+            raise RunError(f"{self.path}: folder is not empty, and holds no study")
+        make(self.runs, self.base)
+        lines = [HEAD, f"case = {json.dumps(CASE)}\n"]
+        lines += [f"folder = {json.dumps(str(self.base.folder))}  # of files that the case names\n"]
+        lines += [f"seeds = {json.dumps(self.seeds)}\n"]
+        for axis in self.axes:
+            rows = axis.table().items()
+            lines += ["\n[[vary]]\n", *(f"{json.dumps(k)} = {json.dumps(v)}\n" for k, v in rows)]
+        write_text(self.path / CASE, self.base.text)
+        write_text(self.path / FILE, "".join(lines))
+
+    @property
+    def keys(self) -> list[str]:
+        """The key paths that are varied."""
+        return [key for axis in self.axes for key in axis.keys]
+
+    @property
+    def ended(self) -> bool:
+        """Whether all runs have their results."""
+        return all(run.ended for run in self.runs)
+
+    def run(
+        self,
+        jobs: int | None = None,
+        *,
+        threads: int = 1,
+        cluster: str | None = None,
+        options: Mapping[str, Any] | None = None,
+        progress: StudyReporter | None = None,
+    ) -> None:
+        """Carry all runs that have not ended to their ends.
+
+        Parameters
+        ----------
+        jobs : int, optional
+            Runs at once: one for each core and its `threads` unless said; on a cluster, workers.
+        threads : int, optional
+            Threads of each run. Results do not depend on it.
+        cluster : str, optional
+            "slurm", "pbs", "sge", "lsf", "htcondor", "local" or the address of a Dask scheduler.
+        options : mapping, optional
+            Of the jobs of a cluster, such as {"queue": "long", "walltime": "10:00:00"}.
+        progress : StudyReporter, optional
+            Tells how it goes; nothing is said without.
+
+        Raises RunError when all others have ended, if runs have failed. A signal raises
+        KeyboardInterrupt when the runs in hand have come to a checkpoint; `run` again goes on.
+        """
+        workers = self._workers(jobs, threads, cluster, options)
+        failed = drive(self.runs, workers, progress or StudyReporter(quiet=True))
+        if failed:
+            run, why = failed[0]
+            more = f" (and {len(failed) - 1} more)" if len(failed) > 1 else ""
+            raise RunError(f"{run.path}: {why}{more}")
+
+    def _workers(
+        self, jobs: int | None, threads: int, cluster: str | None, options: Any
+    ) -> Workers:
+        case = self.base.case(self.runs[0].point, self.runs[0].seed)
+        modules = sorted({part["class"].partition(":")[0] for part in outside_parts(case)})
+        places = jobs or max(1, usable_cores() // threads)
+        if "__main__" in modules:
+            if cluster or jobs not in (None, 1):
+                raise CaseError(
+                    "parts of the case are defined in this script: put them into a module of their "
+                    "own, so that other processes can import it, or let jobs be 1"
+                )
+            return Here(threads)
+        if cluster:
+            return Cluster(cluster, places, threads, modules, options)
+        return Processes(min(places, len(self.runs)), threads, modules)
+
+    def table(self) -> list[Pooled]:
+        """Every compared number at every point, pooled over the seeds that have ended."""
+        return tables.table(self.runs)
+
+    def to_dataframe(self) -> Any:
+        """The table as a pandas.DataFrame."""
+        return tables.dataframe(self.table())
+
+    def to_csv(self, path: str | Path | None = None) -> Path:
+        """The table as a CSV file, `table.csv` in the folder unless said. Raises RunError."""
+        return tables.write(self.table(), path or self.path / "table.csv")
+
+    def plot(self, x: str, y: str, fit: str | None = None, **look: Any) -> Any:
+        """One number against one value that is varied: a Matplotlib figure.
+
+        Parameters
+        ----------
+        x : str
+            A key that is varied, or its last part.
+        y : str
+            A number, such as "velocity-profile.viscosity".
+        fit : "line" or "power", optional
+            Fit y = a + b x, or y = a x^b, to each curve.
+        look : optional
+            `log`, whether the axes are logarithmic (by the values unless said).
+
+        Raises CaseError for a key or number that is not there, with the nearest one.
+        """
+        from mesokit.study.plot import plot
+
+        return plot(self, x, y, fit, **look)
+
+    def merged(self, point: int = 0) -> RunFiles:
+        """The runs of one point as one, with pooled observables, in a folder `merged` beside them.
+
+        It is made anew. Raises RunError as `mesokit.merge` does.
+        """
+        runs = list(by_point(self.runs))[point]
+        output = runs[0].path.parent / "merged"
+        shutil.rmtree(output, ignore_errors=True)
+        return merge([run.path for run in runs], output)
+
+    def key(self, name: str) -> str:
+        """The varied key of that name, in whole or its last part. Raises CaseError."""
+        names = dict(zip(short_names(self.keys), self.keys, strict=True))
+        if name in self.keys:
+            return name
+        if name in names:
+            return names[name]
+        known = [*names, *self.keys]
+        raise CaseError(f"{name}: not varied; expected {one_of(list(names))}{nearest(name, known)}")
+
+    def __len__(self) -> int:
+        return len(self.runs)
+
+    def __repr__(self) -> str:
+        done = sum(run.ended for run in self.runs)
+        lines = [f"mesokit study {self.path}: {done} of {len(self.runs)} runs have ended"]
+        lines += [f"  {axis.keys[0]}: {len(axis.values)} values" for axis in self.axes]
+        lines += [f"  {len(self.seeds)} seeds"]
+        return "\n".join(lines)
+
+
+def _seeds(given: Any, base: Base) -> list[int]:
+    """Which seeds: so many from that of the case on, or as listed."""
+    if isinstance(given, int) and not isinstance(given, bool) and given >= 1:
+        first = base.data.get("run", {}).get("seed", 1)
+        return [first + i for i in range(given)] if isinstance(first, int) else [1]
+    whole = isinstance(given, Sequence) and all(type(seed) is int for seed in given)
+    if not whole or not given or len(set(given)) < len(given):
+        raise CaseError(f"seeds = {show(given)}: expected how many, or a list of different ones")
+    return list(given)

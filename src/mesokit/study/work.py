@@ -1,0 +1,99 @@
+"""What a worker does: carry one run of a study to its end."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import os
+import queue
+import signal
+import sys
+import threading
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from mesokit.errors import MesokitError
+from mesokit.io.run_directory import RunDirectory
+from mesokit.report.progress import Reporter
+from mesokit.running.signals import Stopped, catching
+from mesokit.simulation import Simulation
+
+NOTE_SECONDS = 1.0  # between two notes of how far a run has come
+
+
+class Note(Reporter):
+    """Keeps how far a run has come in a file of its folder, for whoever watches the study."""
+
+    def __init__(self, file: Path) -> None:
+        super().__init__(quiet=True)
+        self.file, self.noted = file, 0.0
+
+    def update(self, step: int) -> None:
+        """Note the step, if it is time."""
+        super().update(step)
+        if (now := time.monotonic()) >= self.noted + NOTE_SECONDS:
+            self.noted = now
+            beside = self.file.with_name(f"{self.file.name}.tmp")
+            with contextlib.suppress(OSError):  # a run does not end because nobody can be told
+                beside.write_text(str(step))
+                os.replace(beside, self.file)
+
+    def finish(self) -> None:
+        """The run is over."""
+        self.file.unlink(missing_ok=True)
+
+
+def carry(path: str, threads: int = 1, modules: Sequence[str] = ()) -> str:
+    """Carry the run in a folder to its end, from its last checkpoint.
+
+    `modules` define parts of its case. Returns nothing, or why it did not come to the end.
+    """
+    try:
+        with catching(_stop):
+            for module in modules:
+                importlib.import_module(module)
+            simulation = Simulation.resume(path, threads=threads)
+            simulation.run(progress=Note(RunDirectory(Path(path)).progress_file))
+    except Stopped as stop:
+        return str(stop) or "stopped"
+    except MesokitError as error:
+        return str(error)
+    except (OSError, MemoryError, ImportError) as error:
+        return f"{type(error).__name__}: {error}"
+    return ""
+
+
+def _stop(by: signal.Signals) -> None:
+    """A signal that comes before the run has begun."""
+    raise Stopped(by, f"stopped before the start by {by.name}")
+
+
+def serve(threads: int, modules: Sequence[str]) -> None:
+    """Carry the runs that come on standard input, a folder a line; answer each with a line.
+
+    When nobody is there any more to ask, the run in hand ends at a checkpoint.
+    """
+    answers = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what others print is no answer
+    asked: queue.SimpleQueue[str] = queue.SimpleQueue()
+    busy = threading.Event()
+    threading.Thread(target=_listen, args=(asked, busy), daemon=True).start()
+    while path := asked.get():
+        busy.set()
+        said = carry(path, threads, modules)
+        busy.clear()
+        with contextlib.suppress(OSError):
+            print(" ".join(said.split()), file=answers, flush=True)
+
+
+def _listen(asked: queue.SimpleQueue[str], busy: threading.Event) -> None:
+    for line in sys.stdin:
+        asked.put(line.rstrip("\n"))
+    asked.put("")
+    if busy.is_set():
+        signal.raise_signal(signal.SIGTERM)
+
+
+if __name__ == "__main__":
+    serve(int(sys.argv[1]), sys.argv[2:])
