@@ -102,7 +102,10 @@ def resume(
         limit = None
         if until_error and steps is not None:
             limit = max(simulation.case.run.warmup + steps - simulation.step, 0)
-        simulation.run(limit, until=until_error, progress=Reporter(quiet))
+        ended = simulation.step == simulation.last_step and not until_error
+        if ended and not quiet:
+            say(f"{run}: had ended at step {simulation.step}; drawing its figures again")
+        simulation.run(limit, until=until_error, progress=Reporter(quiet or ended))
     if not quiet:
         _show_results(run)
 
