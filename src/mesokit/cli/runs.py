@@ -173,9 +173,8 @@ def _files_of_run(output: Path) -> list[Path]:
     figures += [run.flow_file(kind, end) for kind in KINDS for end in (".png", ".mp4")]
     files = [run.data_file, run.checkpoint_file, run.log_file, run.report_file]
     files += [run.provenance_file]
-    solids = output.glob(run.wall_file("*").name)
     files += [run.trajectory_folder, run.trajectory_remains, run.trajectory_coming, run.case_file]
-    return [*figures, *output.glob(".*.tmp"), *solids, *files]
+    return [*figures, *output.glob(".*.tmp"), *run.files_of_parts(), *files]
 
 
 def _clear(output: Path) -> None:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.method.mpcd.numbers import Derived
 
+STRONG = 0.3  # thermal velocities that a force may add in a timestep
+
 
 def cautions(case: Case, numbers: Derived, across: int) -> Iterator[str]:
     """What one should know before a run; `across` is the number of the axis across the flow."""
@@ -135,6 +137,14 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
                 f"box.shear_rate = {case.box.shear_rate:g}: velocities differ by {cell:.2g} of the "
                 "speed of sound across a cell; keep it below 0.2"
             )
+    for note in force.notes(case.box.size):
+        yield f"fluid.force.{note}"
+    kick = force.largest_in(case.box.size) * fluid.timestep / math.sqrt(fluid.kT / fluid.mass)
+    if _above(kick, STRONG):
+        yield (
+            f"fluid.force: in a timestep it changes velocities by up to {kick:.2g} thermal "
+            f"velocities; above {STRONG:g} its steps are coarse: a shorter timestep, or less force"
+        )
     random = case.solutes is not None and case.solutes.solvent == "random"
     for axis, push in zip(AXES, setting.acceleration(case).tolist(), strict=False):
         if push and not case.walls and not random:
