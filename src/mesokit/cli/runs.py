@@ -129,7 +129,7 @@ def info(run: Path, as_json: bool) -> None:
     "path",
     type=click.Path(dir_okay=False, path_type=Path),
     required=True,
-    help="The file: .gsd, .lammpstrj or .xyz.",
+    help="The file: .gsd, .lammpstrj, .xyz, .h5md, .dcd, .xtc, .trr or .data.",
 )
 def export(run: Path, path: Path) -> None:
     """Write the trajectory of RUN as a file for OVITO, HOOMD-blue, VMD or LAMMPS."""
