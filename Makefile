@@ -1,6 +1,12 @@
 # Every target makes what it needs: python3 (3.11 or newer, with venv) and make are enough.
+# On Windows, in the shell that Git brings (Git Bash).
+ifeq ($(OS),Windows_NT)
+PYTHON ?= python
+BIN := .venv/Scripts
+else
 PYTHON ?= python3
 BIN := .venv/bin
+endif
 READY := .venv/ready
 
 .PHONY: help demo test test-long test-all quick lint check site bench validate clean

@@ -21,6 +21,7 @@ PAGES = {  # file of the repository: page of the site
     "CODE_OF_CONDUCT.md": "code_of_conduct.md",
     "examples/README.md": "examples/index.md",
 }
+STATIC = ("CITATION.cff",)
 LINK = re.compile(r"(\]\()([^)#:\s]+)(#[^)\s]*)?(\))")
 
 FENCE = re.compile(r"^(```\w+) [\w-]+$", re.MULTILINE)  # blocks that tests know by a name
@@ -38,6 +39,8 @@ def on_files(files: Files, config: Any) -> Files:
             files.append(File.generated(config, _page(source), content=text))
         elif path.suffix != ".md":
             files.append(File.generated(config, source, abs_src_path=str(path)))
+    for source in STATIC:
+        files.append(File.generated(config, source, abs_src_path=str(ROOT / source)))
     return files
 
 

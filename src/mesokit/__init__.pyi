@@ -49,6 +49,7 @@ from mesokit.method.mpcd.collision.srd_plus_a import SRDPlusA as SRDPlusA
 from mesokit.method.mpcd.derived import derive as derive
 from mesokit.method.mpcd.field.none import NoForce as NoForce
 from mesokit.method.mpcd.field.protocol import Force as Force
+from mesokit.method.mpcd.field.sampled import SampledForce as SampledForce
 from mesokit.method.mpcd.field.sinusoidal import Sinusoidal as Sinusoidal
 from mesokit.method.mpcd.field.uniform import Uniform as Uniform
 from mesokit.method.mpcd.fluid import Fluid as Fluid
@@ -108,3 +109,5 @@ from mesokit.running.callbacks import Callback as Callback
 from mesokit.running.callbacks import StopRun as StopRun
 from mesokit.running.callbacks import every as every
 from mesokit.simulation import Simulation as Simulation
+from mesokit.study.merge import merge as merge
+from mesokit.study.study import Study as Study

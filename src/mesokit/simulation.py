@@ -222,11 +222,16 @@ class Simulation(Shown):
         return {name: accumulator.result() for name, accumulator in self.accumulators.items()}
 
     def flow(self, kind: str = "four", **choices: Any) -> Any:
-        """A picture of the flow so far; `mesokit.report.flow.picture` says what may be chosen."""
-        from mesokit.report.flow import CHOICES, picture
+        """A picture of the flow so far; `mesokit.report.flow.picture` says what may be chosen.
+
+        `simulation.flow("particles")` works before the first step, too: it shows the solids, the
+        molecules and where the particles are.
+        """
+        from mesokit.report.flow import CHOICES, State, picture
 
         require_known(choices, CHOICES)
-        return picture(self.case, self.results, None, kind, **choices)
+        now = State(self.case, self.engine)
+        return picture(self.case, self.results, now, kind, **choices)
 
     def animate(self, path: str | Path, kind: str = "speed", **choices: Any) -> Film:
         """Write a film of the flow so far (MP4 or GIF by its ending)."""

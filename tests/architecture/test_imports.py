@@ -70,6 +70,7 @@ ROWS = {
         "report",
     ),
     "report/": ("case", "errors", "geometry", "io", "method.protocol", "observe", "report"),
+    "report/flow/state.py": ("case", "engine"),
     "study/": (
         "case", "errors", "io", "method.protocol", "observe.shared", "report", "running", "study",
         "simulation",

@@ -318,6 +318,35 @@ class TestProgress:
             rate.add(second, second if second < 50 else 50 + 10 * (second - 50))
         assert rate.steps_per_second == pytest.approx(10)
 
+    def test_no_time_left_is_said_of_what_is_being_compiled(self, monkeypatch) -> None:
+        """The first sample of an observable takes long, and says nothing about the others."""
+        from mesokit.report import progress
+
+        now = [0.0]
+        monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+        stream = io.StringIO()
+        reporter = progress.Reporter(stream=stream)
+        reporter.start(10_000, particles=500)
+        for step in range(100, 10_001, 100):
+            now[0] += 12.0 if step == 300 else 0.1  # 1000 steps a second but for one
+            reporter.update(step)
+        left = [line for line in stream.getvalue().splitlines() if "left" in line]
+        assert left and all(" min" not in line for line in left)
+        assert all("1000 steps/s" in line for line in left)
+
+    def test_slow_steps_are_no_stall(self, monkeypatch) -> None:
+        from mesokit.report import progress
+
+        now = [0.0]
+        monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+        stream = io.StringIO()
+        reporter = progress.Reporter(stream=stream)
+        reporter.start(20, particles=500)
+        for step in range(1, 21):
+            now[0] += 3.0
+            reporter.update(step)
+        assert "0.3333 steps/s" in stream.getvalue()
+
     def test_a_terminal_gets_a_bar(self) -> None:
         from mesokit.report.progress import Reporter
 

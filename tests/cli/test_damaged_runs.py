@@ -334,3 +334,15 @@ def test_overwrite_spares_other_files(folder: Path, capsys: pytest.CaptureFixtur
     message = refusal(capsys, "run", "case.toml", "--output", "run", "--overwrite")
     assert "notes.txt" in message
     assert contents(folder) == before
+
+
+def test_a_run_that_had_ended_is_not_said_to_run(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "run" / "conservation.png").unlink()
+    with pytest.raises(SystemExit) as end:
+        main(["resume", "run"])
+    said = capsys.readouterr().err
+    assert not end.value.code and "running" not in said
+    assert "run: had ended at step 20; drawing its figures again" in said
+    assert (folder / "run" / "conservation.png").exists()

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from mesokit import Case
+from mesokit.method.protocol import method_of
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = ["README.md", "docs/guide.md", "docs/methods/brownian.md"]
@@ -32,7 +33,10 @@ CASES = [(page, i) for page in PAGES for i in range(len(blocks(page, "toml")))]
 def test_every_case_is_valid(page: str, number: int, tmp_path: Path) -> None:
     file = tmp_path / "case.toml"
     file.write_text(blocks(page, "toml")[number])
-    assert Case.from_toml(file).run.steps > 0
+    case = Case.from_toml(file)
+    assert case.run.steps > 0
+    warned = method_of(case).summary(case, 1).warnings
+    assert not [text for text in warned if "average over the start" in text]
 
 
 @pytest.fixture(scope="session")

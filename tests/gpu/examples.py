@@ -26,6 +26,7 @@ from mesokit.geometry.solids.none import Nothing
 from mesokit.method.mpcd import collision, thermostat
 from mesokit.method.mpcd.collision import protocol as rules
 from mesokit.method.mpcd.field import protocol as fields
+from mesokit.method.mpcd.field.sampled import Nodes
 from mesokit.method.mpcd.streaming import fall, halfway, vector
 from mesokit.method.mpcd.thermostat import protocol as thermostats
 from mesokit.potential import ANGLES, BONDS, PAIRS
@@ -139,6 +140,7 @@ def parts(d: int) -> Iterator[Any]:
     yield NoForce().kernel(size)
     yield Uniform(vec(d)).kernel(size)
     yield Sinusoidal(amplitude=1.0).kernel(size)
+    yield Nodes(1, vec(d), vec(d), vec(d), (1,) * d)
     yield from (kind(**NEEDED.get(kind, {})).kernel() for kind in (*BONDS, *PAIRS, *ANGLES))
     yield Box(size).kernel(shut)
     yield Box(size, shear_rate=0.1).kernel(shut)

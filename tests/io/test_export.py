@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import warnings
 
 import gsd.hoomd
@@ -9,11 +10,11 @@ import numpy as np
 import pytest
 
 import mesokit
-from mesokit import Harmonic, MaxwellBoltzmann, Plates, Uniform
+from mesokit import WCA, Harmonic, MaxwellBoltzmann, Plates, Uniform
 from mesokit.case.box import Box
 from mesokit.case.case import Case
 from mesokit.case.run import Run
-from mesokit.case.trajectory import Trajectory
+from mesokit.case.trajectory import Trajectory, names_and_diameters
 from mesokit.cli import main
 from mesokit.errors import CaseError, RunError
 from mesokit.method.mpcd.fluid import Fluid
@@ -25,6 +26,7 @@ from mesokit.simulation import Simulation
 
 TRIMERS = Molecule(length=3, bond=Harmonic(K=2.0))
 ALL = ("position", "velocity", "image")
+EVERYONE = np.arange(79)  # in the mixed run
 
 
 @pytest.fixture(autouse=True)
@@ -81,8 +83,8 @@ def test_gsd_has_all_that_the_run_has(size, tmp_path):
     frames = read(mesokit.open(tmp_path / "run").export(tmp_path / "run.gsd"))
     d, n = len(size), simulation.engine.n
     deep = [1.0] * (3 - d)
-    assert [frame.configuration.step for frame in frames] == [10, 20, 30, 40]
-    assert [frame.log["time"][0] for frame in frames] == pytest.approx([1, 2, 3, 4])
+    assert [frame.configuration.step for frame in frames] == [0, 10, 20, 30, 40]
+    assert [frame.log["time"][0] for frame in frames] == pytest.approx([0, 1, 2, 3, 4])
     for frame, (r, v, image, bonds) in zip(frames, simulation.seen.values(), strict=True):
         frame.validate()
         assert frame.configuration.dimensions == d
@@ -133,7 +135,7 @@ def test_mdanalysis_reads_all_three(whole, tmp_path):
             universe = MDAnalysis.Universe(
                 path, **({"format": "LAMMPSDUMP"} if ending == ".lammpstrj" else {})
             )
-            assert universe.trajectory.n_frames == 4
+            assert universe.trajectory.n_frames == 5
             for now, (r, *_) in zip(universe.trajectory, whole.seen.values(), strict=True):
                 np.testing.assert_allclose(now.positions + shift, r, atol=1e-5)
                 if ending != ".xyz":
@@ -142,13 +144,108 @@ def test_mdanalysis_reads_all_three(whole, tmp_path):
                 np.testing.assert_array_equal(universe.bonds.to_indices(), whole.engine.bonds())
 
 
+@pytest.fixture(scope="module")
+def mixed(tmp_path_factory):
+    """A run of a fluid with polymers and a monomer."""
+    solutes = Solutes((Polymer(2, length=3), Polymer()), mass=5.0, bond=Harmonic(K=2.0))
+    case = Case(
+        run=Run(steps=20), box=Box([6, 6]), fluid=Fluid(density=2), solutes=solutes,
+        trajectory=Trajectory(every=10, fields=ALL),
+    )  # fmt: skip
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("mesokit.report.save_all", lambda results, folder, case=None: [])
+        folder = tmp_path_factory.mktemp("runs") / "mixed"
+        simulation = Simulation(case, output=folder, threads=1)
+        simulation.run()
+    return simulation
+
+
+def test_kinds_have_names_sizes_and_molecules(mixed, tmp_path, monkeypatch):
+    """No kind is called as a chemical element, and no file has other rights than those of runs."""
+    names = ("fluid", "polymer-1", "polymer-2")
+    sizes = (names, np.array([0.5, 0.5, 1.5]))
+    assert names_and_diameters(mixed.case.groups)[0] == names
+    solutes = dataclasses.replace(mixed.case.solutes, pair=WCA(sigma=1.5))
+    sized = dataclasses.replace(mixed.case, solutes=solutes)
+    assert names_and_diameters(sized.groups)[1].tolist() == [0.5, 1.5, 1.5]
+    monkeypatch.setattr("mesokit.io.export.names_and_diameters", lambda groups: sizes)
+    files = mesokit.open(mixed.directory.path)
+    particles = read(files.export(tmp_path / "a.gsd"))[-1].particles
+    assert particles.types == ["fluid", "polymer-1", "polymer-2"]
+    assert particles.type_shapes == [{"type": "Sphere", "diameter": 0.5}] * 2 + [
+        {"type": "Sphere", "diameter": 1.5}
+    ]
+    assert particles.diameter.tolist() == [0.5] * 78 + [1.5]
+    assert particles.body.tolist() == [-1] * 72 + [-2] * 3 + [-3] * 3 + [-1]
+    text = files.export(tmp_path / "a.xyz").read_text().splitlines()
+    assert "species:S:1:pos:R:3:id:I:1:molecule:I:1:radius:R:1" in text[1]
+    rows = [line.split() for line in text[2:81]]
+    assert [row[0] for row in rows] == ["fluid"] * 72 + ["polymer-1"] * 6 + ["polymer-2"]
+    assert [row[5:7] for row in rows[71:76]] == [["0", "0.25"], *[["1", "0.25"]] * 3, ["2", "0.25"]]
+    rights = (mixed.directory.data_file.stat().st_mode, tmp_path.stat().st_mode)
+    assert {path.stat().st_mode for path in tmp_path.iterdir()} == {rights[0]}
+
+
+def test_a_universe_has_all_that_the_run_has(mixed):
+    universe = mesokit.open(mixed.directory.path).universe()
+    assert [universe.trajectory.n_frames, *(now.time for now in universe.trajectory)] == [
+        3,
+        0,
+        1,
+        2,
+    ]
+    assert universe.dimensions.tolist() == [6, 6, 1, 90, 90, 90]
+    assert universe.residues.resnames.tolist() == ["fluid", "polymer-1", "polymer-1", "polymer-2"]
+    assert [len(residue.atoms) for residue in universe.residues] == [72, 3, 3, 1]
+    beads = universe.select_atoms("name polymer-1")
+    assert beads.masses.tolist() == [5.0] * 6 and beads.radii.tolist() == [0.25] * 6
+    assert universe.bonds.to_indices().tolist() == [[72, 73], [73, 74], [75, 76], [76, 77]]
+    universe.trajectory[-1]
+    np.testing.assert_allclose(
+        universe.atoms.positions[:, :2], mixed.engine.positions(EVERYONE), atol=1e-5
+    )
+    found = universe.atoms.velocities[:, :2]
+    np.testing.assert_allclose(found, mixed.engine.velocities(EVERYONE), atol=1e-5)
+
+
+@pytest.mark.parametrize("ending", ["h5md", "dcd", "xtc", "trr", "data"])
+def test_files_of_mdanalysis(ending, mixed, tmp_path):
+    """Read again by themselves, or beside a GSD file that says what the particles are."""
+    import MDAnalysis
+
+    files = mesokit.open(mixed.directory.path)
+    path = str(files.export(tmp_path / f"run.{ending}"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        if ending in ("h5md", "data"):
+            universe = MDAnalysis.Universe(path)
+        else:
+            top = str(files.export(tmp_path / "run.gsd"))
+            universe = MDAnalysis.Universe(top, path)
+        times = [float(now.time) for now in universe.trajectory]
+        universe.trajectory[-1]
+    assert times == ([0.0] if ending == "data" else pytest.approx([0.0, 1.0, 2.0]))
+    near = 0.0051 if ending == "xtc" else 1e-5
+    found = universe.atoms.positions[:, :2]
+    np.testing.assert_allclose(found, mixed.engine.positions(EVERYONE), atol=near)
+    assert universe.dimensions.tolist() == [6, 6, 1, 90, 90, 90]
+    if ending == "data":
+        assert universe.bonds.to_indices().tolist() == [[72, 73], [73, 74], [75, 76], [76, 77]]
+        assert universe.atoms.masses.tolist() == [1.0] * 72 + [5.0] * 7
+    if ending in ("h5md", "trr", "data"):
+        found = universe.atoms.velocities[:, :2]
+        np.testing.assert_allclose(found, mixed.engine.velocities(EVERYONE), atol=1e-5)
+
+
 def test_a_dump_says_box_images_and_velocities(whole, tmp_path):
     path = mesokit.open(whole.directory.path).export(tmp_path / "run.lammpstrj")
     lines = path.read_text().splitlines()
     assert lines[4] == "ITEM: BOX BOUNDS pp pp pp" and lines[5:8] == ["0 6", "0 5", "0 7"]
-    assert lines[8] == "ITEM: ATOMS id type mass x y z ix iy iz vx vy vz"
-    n, (r, v, image, _) = whole.engine.n, whole.seen[10]
-    rows = np.array([line.split() for line in lines[9 : 9 + n]], float)
+    assert lines[8] == "ITEM: ATOMS id type element mol diameter mass x y z ix iy iz vx vy vz"
+    n, (r, v, image, _) = whole.engine.n, whole.seen[0]
+    words = [line.split() for line in lines[9 : 9 + n]]
+    assert [word[2:5] for word in words] == [["fluid", str(i // 3 + 1), "0.5"] for i in range(n)]
+    rows = np.array([word[:2] + word[5:] for word in words], float)
     np.testing.assert_allclose(rows[:, 3:6], r, atol=1e-5)
     np.testing.assert_array_equal(rows[:, 6:9], image)
     np.testing.assert_allclose(rows[:, 9:], v, atol=1e-5)
@@ -171,6 +268,7 @@ def test_a_sheared_dump_leans(tmp_path):
     run_of(tmp_path / "run", (6, 6, 6), shear_rate=0.4)
     path = mesokit.open(tmp_path / "run").export(tmp_path / "run.lammpstrj")
     lines = path.read_text().splitlines()
+    lines = lines[lines.index("10") - 1 :]
     assert lines[4:8] == ["ITEM: BOX BOUNDS xy xz yz pp pp pp", "0 8.4 2.4", "0 6 0", "0 6 0"]
 
 
@@ -180,6 +278,7 @@ def test_a_run_that_goes_on_gives_what_it_has_so_far(whole, tmp_path):
     with pytest.raises(RunError, match="has not ended"):
         mesokit.open(tmp_path / "run").export(tmp_path / "a.gsd")
     assert not (tmp_path / "a.gsd").exists()
+    simulation._observe()
     while simulation.step < 20:
         simulation.engine.advance(10)
         simulation._observe()
@@ -188,7 +287,7 @@ def test_a_run_that_goes_on_gives_what_it_has_so_far(whole, tmp_path):
     simulation.run()
     late = mesokit.open(tmp_path / "run").export(tmp_path / "a.gsd").read_bytes()
     assert late == mesokit.open(whole.directory.path).export(tmp_path / "b.gsd").read_bytes()
-    assert len(early) == 2
+    assert len(early) == 3
     for frame, other in zip(early, read(tmp_path / "b.gsd"), strict=False):
         np.testing.assert_array_equal(frame.particles.position, other.particles.position)
         np.testing.assert_array_equal(frame.bonds.group, other.bonds.group)
@@ -211,7 +310,7 @@ def test_kinds_and_subsets(tmp_path):
     kinds = (Species(mass=4.0, density=1.0), Species(mass=1.0, density=8.0))
     run_of(tmp_path / "run", (6, 6), fields=("position",), subset=50, molecule=None, species=kinds)
     frame = read(mesokit.open(tmp_path / "run").export(tmp_path / "a.gsd"))[0]
-    assert frame.particles.types == ["A", "B"]
+    assert frame.particles.types == ["fluid-1", "fluid-2"]
     np.testing.assert_array_equal(frame.particles.typeid, np.repeat([0, 1], [36, 14]))
     np.testing.assert_array_equal(frame.particles.mass, np.repeat([4, 1], [36, 14]))
     assert (frame.particles.velocity == 0).all() and frame.bonds.N == 0
@@ -236,7 +335,10 @@ def test_solutes_come_after_the_fluid(tmp_path):
     simulation.run()
     seen.append(read(mesokit.open(tmp_path / "run").export(tmp_path / "a.gsd"))[0])
     for frame in seen:
-        assert frame.particles.types == ["A", "B", "C"] and frame.particles.N == 2167
+        assert (
+            frame.particles.types == ["fluid", "polymer-1", "polymer-2"]
+            and frame.particles.N == 2167
+        )
         assert frame.particles.typeid[2160:].tolist() == [1, 2, 2, 2, 2, 2, 2]
         assert frame.particles.mass[2159:].tolist() == [1, 7, 7, 7, 7, 7, 7, 7]
         assert frame.bonds.group.tolist() == [
@@ -284,20 +386,17 @@ def test_the_command(whole, tmp_path, capsys):
     with pytest.raises(SystemExit) as end:
         main(["export", str(whole.directory.path), "--to", str(tmp_path / "film.gsd")])
     assert end.value.code == 0 and capsys.readouterr().out.strip() == str(tmp_path / "film.gsd")
-    assert len(read(tmp_path / "film.gsd")) == 4
+    assert len(read(tmp_path / "film.gsd")) == 5
 
 
 def test_what_cannot_be_exported_is_one_line(whole, tmp_path):
     files = mesokit.open(whole.directory.path)
-    with pytest.raises(CaseError, match=r"^[^\n]*ending '\.dcd': expected '\.gsd', '\.lammpstrj'"):
-        files.export(tmp_path / "run.dcd")
+    with pytest.raises(CaseError, match=r"^[^\n]*ending '\.vtk': expected '\.gsd', .*'\.dcd'"):
+        files.export(tmp_path / "run.vtk")
     with pytest.raises(RunError, match="cannot write"):
         files.export(tmp_path / "nowhere" / "run.gsd")
     case = Case(run=Run(steps=5), box=Box([4, 4]))
     Simulation(case, output=tmp_path / "bare", threads=1).run()
     with pytest.raises(RunError, match="keeps no trajectory"):
         mesokit.open(tmp_path / "bare").export(tmp_path / "a.gsd")
-    run_of(tmp_path / "short", (6, 6), steps=5)
-    with pytest.raises(RunError, match="has no frame; the run ended"):
-        mesokit.open(tmp_path / "short").export(tmp_path / "a.gsd")
     assert not list(tmp_path.glob("*.gsd"))

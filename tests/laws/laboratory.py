@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
+import tempfile
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,9 +26,22 @@ def example(component: type, dimension: int) -> Any:
     for field in dataclasses.fields(component):
         # pydantic keeps the default of a field in its own place
         if component.__pydantic_fields__[field.name].is_required():
+            if field.name == "file":
+                required[field.name] = file_of_a_wave(dimension)
+                continue
             vector = "tuple" in str(component.__pydantic_fields__[field.name].annotation)
             required[field.name] = (SMALL,) + (0.0,) * (dimension - 1) if vector else SMALL
     return component(**required)
+
+
+@functools.cache
+def file_of_a_wave(dimension: int) -> str:
+    """A small force along x that varies along y, at nodes."""
+    values = np.zeros((dimension, *(3, 9, 2)[:dimension]))
+    values[0] = SMALL * np.sin(np.linspace(0, 2 * np.pi, 9)).reshape((1, 9, 1)[:dimension])
+    file = Path(tempfile.mkdtemp()) / "wave.npy"
+    np.save(file, values)
+    return str(file)
 
 
 def make_case(

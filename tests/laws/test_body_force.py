@@ -14,10 +14,11 @@ from mesokit.method.mpcd.field.protocol import acceleration
 def test_momentum_grows_by_the_force(force):
     """Exactly, collisions or not: what one step adds is the sum of m a at half of the flights."""
     size, dt = (6, 7, 5), 0.2
-    fluid = make_fluid(size, collision=AT(), force=example(force, 3), timestep=dt, mass=2.0)
+    given = example(force, 3)  # which keeps the table of its kernel alive
+    fluid = make_fluid(size, collision=AT(), force=given, timestep=dt, mass=2.0)
     fluid.advance(3)
     middle = fluid.positions() + 0.5 * dt * fluid.velocities()
-    field = example(force, 3).kernel(size)
+    field = given.kernel(size)
     pull = njit(lambda field, r: acceleration(field, r))
     a = np.array([pull(field, tuple(r)) for r in middle])  # (n, 0) without a force
     expected = 2.0 * dt * a.sum(axis=0) if a.size else 0.0

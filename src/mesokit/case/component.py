@@ -48,6 +48,31 @@ def _located(name: str, info: ValidationInfo) -> str:
 
 
 FileName = Annotated[str, AfterValidator(_located)]
+
+
+class FromContents:
+    """What components share that are given by the contents of a `file`, a FileName.
+
+    The file is read once: the component is then what it held, whatever becomes of it.
+    """
+
+    file: str
+
+    @functools.cached_property
+    def contents(self) -> bytes:
+        """What the file held when it was first needed. Raises CaseError."""
+        try:
+            return Path(self.file).read_bytes()
+        except FileNotFoundError:
+            raise self.wrong("no such file") from None
+        except OSError as error:
+            raise self.wrong(f"cannot be read: {(error.strerror or str(error)).lower()}") from None
+
+    def wrong(self, reason: str) -> CaseError:
+        """The error that says what is wrong with the file."""
+        return CaseError(f"file = {show(self.file, 500)}: {reason}")
+
+
 TAGS = ("rule", "shape", "quantity", "substance")
 
 

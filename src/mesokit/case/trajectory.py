@@ -17,10 +17,11 @@ COMPRESSED = 0.9  # thermal noise hardly compresses
 
 
 class Kind(NamedTuple):
-    """Equal particles: mass of each, and how many there are."""
+    """Equal particles: mass of each, how many there are, and what files for others call them."""
 
     mass: float
     number: int
+    name: str = ""
 
 
 class Group(NamedTuple):
@@ -79,6 +80,25 @@ def masses_and_kinds(groups: Sequence[Group]) -> tuple[NDArray[np.float64], NDAr
         np.array([kind.mass for kind in kinds], float),
         np.repeat(np.arange(len(kinds)), [kind.number for kind in kinds]),
     )
+
+
+def names_and_diameters(groups: Sequence[Group]) -> tuple[tuple[str, ...], NDArray[np.float64]]:
+    """What other programs are told of each kind of particles: a name, and how large it is drawn.
+
+    Names are never single letters, which stand for chemical elements.
+
+    >>> beads = Group("solutes", (Kind(5.0, 2, "polymer-1"),), diameter=1.0)
+    >>> names_and_diameters([Group("fluid", (Kind(1.0, 3),)), beads])
+    (('fluid', 'polymer-1'), array([0.5, 1. ]))
+    >>> names_and_diameters([Group("fluid", (Kind(1.0, 3), Kind(2.0, 3)))])[0]
+    ('fluid-1', 'fluid-2')
+    """
+    names = [
+        kind.name or (f"{group.name}-{i}" if len(group.kinds) > 1 else group.name)
+        for group in groups
+        for i, kind in enumerate(group.kinds, start=1)
+    ]
+    return tuple(names), np.array([group.diameter for group in groups for _ in group.kinds])
 
 
 def stored_bytes(

@@ -52,6 +52,11 @@ JSON = click.option("--json", "as_json", is_flag=True, help="All of it as JSON, 
 THREADS = click.option("--threads", type=click.IntRange(1), help="Threads (all cores unless said).")
 
 
+def axes_of(context: click.Context, option: click.Parameter, text: str | None) -> Any:
+    """'x,z' as two names."""
+    return None if text is None else tuple(text.split(","))
+
+
 def read(path: Path, settings: dict[str, str]) -> Case:
     """The case in a file, with values replaced."""
     from mesokit.case.case import Case

@@ -14,6 +14,7 @@ from mesokit.cli import (  # noqa: F401  they register their commands
     pictures,
     reference,
     runs,
+    studies,
     theory,
 )
 from mesokit.cli.commands import cli

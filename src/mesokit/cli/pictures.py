@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from mesokit.cli.commands import RUN, cli, require_run
+from mesokit.cli.commands import RUN, axes_of, cli, require_run
 from mesokit.cli.words import say
 from mesokit.errors import CaseError
 
@@ -37,10 +37,6 @@ def _window(context: click.Context, option: click.Parameter, text: str | None) -
     return ranges and ranges[0]
 
 
-def _axes(context: click.Context, option: click.Parameter, text: str | None) -> Any:
-    return None if text is None else tuple(text.split(","))
-
-
 CHOICES: Sequence[Callable[[Any], Any]] = (
     click.option(
         "--region",
@@ -56,7 +52,7 @@ CHOICES: Sequence[Callable[[Any], Any]] = (
     ),
     click.option(
         "--axes",
-        callback=_axes,
+        callback=axes_of,
         metavar="A,B",
         help="The two axes of the picture in 3D, such as x,z.",
     ),

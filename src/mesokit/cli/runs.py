@@ -31,6 +31,7 @@ from mesokit.running.signals import Stopped
 @SET
 @THREADS
 @click.option("--seed", type=click.IntRange(0), help="Replace run.seed.")
+@click.option("--seeds", type=click.IntRange(1), help="So many runs, and their pooled results.")
 @click.option("--output", type=RUN, help="Folder of the run (the name of CASE unless said).")
 @click.option("--overwrite", is_flag=True, help="Replace an earlier run in that folder.")
 @click.option("--quiet", is_flag=True, help="No progress, no summary; errors only.")
@@ -39,20 +40,30 @@ def run(
     settings: dict[str, str],
     threads: int | None,
     seed: int | None,
+    seeds: int | None,
     output: Path | None,
     overwrite: bool,
     quiet: bool,
 ) -> None:
     """Run CASE. Ctrl-C (or SIGTERM, SIGHUP, SIGUSR1) stops it at a checkpoint; mesokit resume goes
-    on."""
+    on.
+
+    With --seeds, runs with so many seeds lie in OUTPUT/runs, and their pooled results in
+    OUTPUT/runs/merged; the same command goes on with what was stopped.
+    """
     from mesokit.method.protocol import method_of
     from mesokit.report.progress import Reporter
 
     if seed is not None:
         settings = {**settings, "run.seed": str(seed)}
+    output = output or Path(case.stem)
+    if seeds is not None:
+        from mesokit.cli.studies import run_seeds
+
+        given = {"settings": settings, "threads": threads, "quiet": quiet}
+        return run_seeds(case, seeds, output, given)
     with patience("looking at the solids (the first time, what looks at them is compiled)"):
         full = read(case, settings)
-    output = output or Path(case.stem)
     _claim(output, overwrite)
     if not quiet:
         for warning in method_of(full).summary(full, threads).warnings:
@@ -63,10 +74,10 @@ def run(
         simulation = Simulation(full, threads=threads)
     _clear(output)  # only now: a case that cannot start must not cost an earlier run
     simulation.write_to(output)
-    with _run_errors(output):
+    with stopping(f"mesokit resume {output}"):
         simulation.run(progress=Reporter(quiet))
     if not quiet:
-        _show_results(output)
+        show_results(output)
 
 
 @cli.command()
@@ -95,16 +106,19 @@ def resume(
     from mesokit.simulation import Simulation
 
     longer = None if until_error else steps
-    with _run_errors(run), _warnings_said():
+    with stopping(f"mesokit resume {run}"), _warnings_said():
         simulation = Simulation.resume(run, threads=threads, steps=longer)
         if not (quiet or RunDirectory(run).checkpoint_file.exists()):
             say(f"{run}: no checkpoint yet; starting from step 0")
         limit = None
         if until_error and steps is not None:
             limit = max(simulation.case.run.warmup + steps - simulation.step, 0)
-        simulation.run(limit, until=until_error, progress=Reporter(quiet))
+        ended = simulation.step == simulation.last_step and not until_error
+        if ended and not quiet:
+            say(f"{run}: had ended at step {simulation.step}; drawing its figures again")
+        simulation.run(limit, until=until_error, progress=Reporter(quiet or ended))
     if not quiet:
-        _show_results(run)
+        show_results(run)
 
 
 @cli.command()
@@ -126,7 +140,7 @@ def info(run: Path, as_json: bool) -> None:
     "path",
     type=click.Path(dir_okay=False, path_type=Path),
     required=True,
-    help="The file: .gsd, .lammpstrj or .xyz.",
+    help="The file: .gsd, .lammpstrj, .xyz, .h5md, .dcd, .xtc, .trr or .data.",
 )
 def export(run: Path, path: Path) -> None:
     """Write the trajectory of RUN as a file for OVITO, HOOMD-blue, VMD or LAMMPS."""
@@ -170,10 +184,9 @@ def _files_of_run(output: Path) -> list[Path]:
     figures += [run.flow_file(kind, end) for kind in KINDS for end in (".png", ".mp4")]
     files = [run.data_file, run.checkpoint_file, run.log_file, run.report_file]
     files += [run.provenance_file]
-    solids = output.glob(run.wall_file("*").name)
     files += [run.trajectory_folder, run.trajectory_remains, run.trajectory_coming]
     files += [run.progress_file, run.case_file]
-    return [*figures, *output.glob(".*.tmp"), *solids, *files]
+    return [*figures, *output.glob(".*.tmp"), *run.files_of_parts(), *files]
 
 
 def _clear(output: Path) -> None:
@@ -199,20 +212,21 @@ def _warnings_said() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _run_errors(output: Path) -> Iterator[None]:
-    """A full disk while running is a failure of the run, not of the command."""
+def stopping(again: str) -> Iterator[None]:
+    """What was stopped can go on, by a command; a full disk is a failure of what runs."""
     try:
         yield
     except Stopped as stop:
         if not str(stop):  # stopped so hard that nothing is known
             raise
-        say(f"mesokit: {stop}; go on with: mesokit resume {output}")
+        say(f"mesokit: {stop}; go on with: {again}")
         raise SystemExit(stop.status) from None
     except OSError as error:
         raise RunError(reason(error)) from None
 
 
-def _show_results(output: Path) -> None:
+def show_results(output: Path) -> None:
+    """What is compared in a run, and its pictures."""
     import mesokit
 
     done = mesokit.open(output)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.component import one_of, show
-from mesokit.case.trajectory import masses_and_kinds, written
+from mesokit.case.component import nearest, one_of, show
+from mesokit.case.trajectory import masses_and_kinds, names_and_diameters, written
 from mesokit.errors import CaseError, RunError
 from mesokit.io.atomic import replacing
 from mesokit.io.moments import Moment, Particles
@@ -26,6 +26,7 @@ Array = NDArray[Any]
 
 
 Reader = Callable[[], "TrajectoryReader | None"]
+Writer = Callable[[Path, Particles, Iterator[Moment]], None]
 
 
 def export(directory: RunDirectory, case: Case, trajectory: Reader, path: str | Path) -> Path:
@@ -36,6 +37,17 @@ def export(directory: RunDirectory, case: Case, trajectory: Reader, path: str | 
     """
     path = Path(path)
     write = _writer(path)
+    particles, moments = contents(directory, case, trajectory)
+    with replacing(path) as temporary:
+        temporary.touch()  # with the rights of all other files; gsd would give it fewer
+        write(temporary, particles, moments)
+    return path
+
+
+def contents(
+    directory: RunDirectory, case: Case, trajectory: Reader
+) -> tuple[Particles, Iterator[Moment]]:
+    """The particles of a run and all its frames. Raises RunError where there are none."""
     if case.trajectory is None:
         raise RunError(
             f"{directory.path}: it keeps no trajectory; run it with a section [trajectory]"
@@ -44,19 +56,29 @@ def export(directory: RunDirectory, case: Case, trajectory: Reader, path: str | 
         key = f"trajectory.fields = {show(case.trajectory.fields)}"
         raise RunError(f"{directory.path}: {key}: exports need 'position'")
     particles, frames = _contents(directory, case, trajectory)
-    with replacing(path) as temporary:
-        write(temporary, particles, (_moment(case, frame) for frame in frames))
-    return path
+    return particles, (_moment(case, frame) for frame in frames)
 
 
-def _writer(path: Path) -> Callable[[Path, Particles, Iterator[Moment]], None]:
-    from mesokit.io import gsd_file, text_frames
+def _writer(path: Path) -> Writer:
+    from mesokit.io import gsd_file, h5md_file, mdanalysis, text_frames
 
-    known = {".gsd": gsd_file.write, ".lammpstrj": text_frames.dump, ".xyz": text_frames.xyz}
+    known: dict[str, Writer] = {
+        ".gsd": gsd_file.write,
+        ".lammpstrj": text_frames.dump,
+        ".xyz": text_frames.xyz,
+        ".h5md": h5md_file.write,
+        **dict.fromkeys(mdanalysis.FRAMES, mdanalysis.write_frames),
+        ".data": mdanalysis.write_last,
+    }
     if path.suffix not in known:
-        raise CaseError(f"{path}: ending {show(path.suffix)}: expected {one_of(list(known))}")
+        raise CaseError(
+            f"{path}: ending {show(path.suffix)}: expected {one_of(list(known))}"
+            f"{nearest(path.suffix, known)}"
+        )
     if path.suffix == ".gsd":
         gsd_file.require()
+    elif path.suffix in (*mdanalysis.FRAMES, ".data"):
+        mdanalysis.require()
     return known[path.suffix]
 
 
@@ -88,8 +110,33 @@ def _particles(case: Case, number: Array, kind: Array, mass: Array) -> Particles
     size = np.ones(3)
     size[: case.box.dimension] = case.box.size
     shut = method_of(case).closed_axes(case)
-    closed = (0 in shut, 1 in shut, 2 in shut)
-    return Particles(number, kind, mass, bonds, case.box.dimension, size, closed)
+    names, diameter = names_and_diameters(case.groups)
+    return Particles(
+        number=number,
+        kind=kind,
+        mass=mass,
+        names=names,
+        diameter=diameter,
+        molecule=_molecules(len(number), bonds),
+        bonds=bonds,
+        dimension=case.box.dimension,
+        size=size,
+        closed=(0 in shut, 1 in shut, 2 in shut),
+    )
+
+
+def _molecules(n: int, bonds: Array) -> NDArray[np.int64]:
+    """The molecule of each particle, in the order of their first ones; -1 without bonds."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    molecule = np.full(n, -1)
+    if len(bonds):
+        linked = np.unique(bonds)
+        rows = np.searchsorted(linked, bonds)
+        links = coo_array((np.ones(len(rows)), rows.T), shape=(len(linked),) * 2)
+        molecule[linked] = connected_components(links, directed=False)[1]
+    return molecule
 
 
 def _moment(case: Case, frame: dict[str, Array]) -> Moment:

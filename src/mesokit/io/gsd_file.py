@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from string import ascii_uppercase
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -68,16 +67,22 @@ def _snapshot(frame: Any, file: Any, index: int) -> Snapshot:
 def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
     """All frames, with box, kinds, masses, bonds and, where they are known, velocities and images.
 
-    In 2D the box is one cell deep, which HOOMD-blue makes flat. `log/time` is the time.
+    In 2D the box is one cell deep, which HOOMD-blue makes flat. `log/time` is the time. Molecules
+    are bodies with numbers below -1. That an axis is closed has no place in such files.
     """
     hoomd = require()
     kinds, size = particles.kind, particles.size
     frame = hoomd.Frame()
     frame.configuration.dimensions = particles.dimension
     frame.particles.N = len(kinds)
-    names = range(int(kinds.max(initial=0)) + 1)
-    frame.particles.types = [ascii_uppercase[i % 26] * (i // 26 + 1) for i in names]
+    frame.particles.types = list(particles.names)
+    frame.particles.type_shapes = [
+        {"type": "Sphere", "diameter": float(diameter)} for diameter in particles.diameter
+    ]
     frame.particles.typeid, frame.particles.mass = kinds, particles.mass
+    frame.particles.diameter = particles.diameter[kinds]
+    # -1: in no body; 0 and above: rigid ones, which molecules are not
+    frame.particles.body = np.where(particles.molecule < 0, -1, -2 - particles.molecule)
     if len(particles.bonds):
         frame.bonds.N, frame.bonds.types = len(particles.bonds), ["bond"]
         frame.bonds.typeid, frame.bonds.group = np.zeros(len(particles.bonds)), particles.bonds

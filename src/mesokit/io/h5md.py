@@ -31,7 +31,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.trajectory import masses_and_kinds
+from mesokit.case.trajectory import masses_and_kinds, names_and_diameters
 from mesokit.errors import RunError
 from mesokit.io.atomic import replacing
 from mesokit.method.protocol import method_of
@@ -175,6 +175,7 @@ def _particles(
     group.attrs["dimension"] = case.box.dimension
     group["id"] = trajectory.ids
     group["mass"], group["species"] = mass[kind], kind
+    group["species"].attrs["names"] = names_and_diameters(case.groups)[0]
     bonds = method_of(case).bonds(case)
     if len(bonds):
         _bonds(file, group, bonds, trajectory.ids)

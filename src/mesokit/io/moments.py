@@ -13,12 +13,16 @@ Array = NDArray[Any]
 class Particles(NamedTuple):
     """What does not change from frame to frame: (n,) numbers from 0, kinds from 0, masses.
 
-    `bonds` (b, 2) of rows; `size` (3,) of the box, one cell deep in 2D; `closed` axes.
+    `names` and `diameter` of the kinds; `molecule` (n,) from 0, -1 for single particles; `bonds`
+    (b, 2) of rows; `size` (3,) of the box, one cell deep in 2D; `closed` axes.
     """
 
     number: NDArray[np.int64]
     kind: NDArray[np.int64]
     mass: Array
+    names: tuple[str, ...]
+    diameter: Array
+    molecule: NDArray[np.int64]
     bonds: NDArray[np.int64]
     dimension: int
     size: Array

@@ -200,10 +200,24 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         require_known(choices, [*CHOICES, "fps", "progress"])
         return animate(self.case, self.results, self.trajectory, path, kind, **choices)
 
-    def export(self, path: str | Path) -> Path:
-        """Write the trajectory as GSD, LAMMPS dump or extended XYZ: see `mesokit.io.export`.
+    def universe(self) -> Any:
+        """The trajectory as an MDAnalysis `Universe`, with kinds, masses, molecules and bonds.
 
-        `files.export("film.gsd")` is for OVITO and HOOMD-blue; `.lammpstrj` and `.xyz` are text.
+        All frames are in memory; a cell is an angstrom there, and a unit of time a picosecond.
+        Raises CaseError where MDAnalysis is not installed, RunError where there are no frames.
+        """
+        from mesokit.io.export import contents
+        from mesokit.io.mdanalysis import require, universe
+
+        require()
+        return universe(*contents(self.directory, self.case, lambda: self.trajectory))
+
+    def export(self, path: str | Path) -> Path:
+        """Write the trajectory for another program; the ending says the format.
+
+        `.gsd` is for OVITO, HOOMD-blue and MDAnalysis; `.lammpstrj` and `.xyz` are text; `.h5md`,
+        `.dcd`, `.xtc` and `.trr` have all frames, `.data` (LAMMPS) the last. Raises CaseError for
+        any other, RunError where there are no frames with positions.
         """
         from mesokit.io.export import export
 

@@ -66,6 +66,10 @@ class RunDirectory:
         """Distances from a solid that was read from a file, by the number of its wall."""
         return self.path / f"wall-{number}.npy"
 
+    def part_file(self, name: str) -> Path:
+        """What another part was read from, such as `force.npy`."""
+        return self.path / f"part-{name}"
+
     @property
     def progress_file(self) -> Path:
         """How many steps are done, while another process runs it."""
@@ -94,6 +98,11 @@ class RunDirectory:
         """Picture or film of the flow, where users name no other."""
         return self.path / f"flow-{kind}{ending}"
 
+    def files_of_parts(self) -> list[Path]:
+        """All that is kept of files from which parts of the case were read."""
+        kept = self.wall_file("*"), self.part_file("*")
+        return [path for file in kept for path in self.path.glob(file.name)]
+
     @classmethod
     def create(cls, path: str | Path, case: Case) -> RunDirectory:
         """Make the folder and write the resolved case, and what it is made from.
@@ -114,7 +123,7 @@ class RunDirectory:
             kept = method_of(case).keep_files(case, run.path)
             write_text(run.case_file, kept.to_toml(run.path))
         except BaseException:  # a folder without a case holds no run, and would be in the way
-            for left in run.path.glob(run.wall_file("*").name):
+            for left in run.files_of_parts():
                 left.unlink(missing_ok=True)
             if made:
                 with contextlib.suppress(OSError):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from string import ascii_uppercase
 from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
@@ -31,6 +30,9 @@ def dump(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
                 file.write(f"{low:.9g} {high:.9g}{tilt}\n")
             columns: list[tuple[str, str, Any]] = [
                 ("id", "%d", particles.number + 1), ("type", "%d", particles.kind + 1),
+                ("element", "%s", np.array(particles.names)[particles.kind]),
+                ("mol", "%d", particles.molecule + 1),
+                ("diameter", FIGURES, particles.diameter[particles.kind]),
                 ("mass", FIGURES, particles.mass), *_vector("x y z", FIGURES, now.position),
                 *_vector("ix iy iz", "%d", now.image), *_vector("vx vy vz", FIGURES, now.velocity),
             ]  # fmt: skip
@@ -39,8 +41,8 @@ def dump(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
 
 
 def xyz(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
-    """Extended XYZ: kinds are A, B, ...; velocities if known; images have no place."""
-    kinds = np.array(list(ascii_uppercase))[particles.kind % 26]
+    """Extended XYZ: kinds by name, molecules from 1; velocities if known; images have no place."""
+    kinds = np.array(particles.names)[particles.kind]
     open_axes = " ".join("F" if shut else "T" for shut in particles.closed)
     with path.open("w", encoding="utf-8", newline="\n") as file:
         for now in moments:
@@ -49,7 +51,8 @@ def xyz(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
             lattice = " ".join(f"{number:.9g}" for number in edges.ravel())
             velocity = "" if now.velocity is None else ":velo:R:3"
             file.write(
-                f'{len(kinds)}\nLattice="{lattice}" Properties=species:S:1:pos:R:3:id:I:1{velocity}'
+                f'{len(kinds)}\nLattice="{lattice}" '
+                f"Properties=species:S:1:pos:R:3:id:I:1:molecule:I:1:radius:R:1{velocity}"
                 f' Time={now.time:.9g} Step={now.step} pbc="{open_axes}"\n'
             )
             _table(
@@ -58,6 +61,8 @@ def xyz(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
                     ("species", "%s", kinds),
                     *_vector("x y z", FIGURES, now.position),
                     ("id", "%d", particles.number + 1),
+                    ("molecule", "%d", particles.molecule + 1),
+                    ("radius", FIGURES, 0.5 * particles.diameter[particles.kind]),
                     *_vector("vx vy vz", FIGURES, now.velocity),
                 ],
             )

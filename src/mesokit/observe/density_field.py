@@ -46,7 +46,7 @@ class DensityFieldAccumulator(FieldAccumulator):
             pressed = setting.driven(self.case)
         else:
             expected = np.full(self.bins, self.case.fluid.density)
-            pressed = any(
+            pressed = setting.gathered(self.case) or any(
                 setting.acceleration(self.case)[axis] for axis in setting.closed_axes(self.case)
             )
         return Result(

@@ -129,7 +129,7 @@ class DensityProfileAccumulator(ProfileAccumulator):
         """Uniform where nothing is in the way; else that of a gas or of ideal molecules."""
         case, group = self.case, self.group
         density = group.number * group.length / float(np.prod(case.box.size))
-        if setting.obstructed(case):
+        if setting.obstructed(case) or setting.gathered(case):
             return None
         weight = 0.0 if self.periodic else float(setting.acceleration(case)[self.axis])
         solutes = case.solutes if self.of != "particles" else None

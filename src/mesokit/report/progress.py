@@ -17,6 +17,8 @@ WINDOW = 10.0  # seconds of the recent past that the rate and the ETA come from
 REDRAW = 0.2  # seconds between two states of the bar
 FIRST = 1.0  # seconds to measure before the first word about speed
 WARM = 0.5  # of them, the last that count: kernels are loaded in the others
+STALL = 4.0  # times as long for a step as before: something was compiled, or written
+NOTED = 1.0  # seconds without a word from the run, from which on that is looked at
 
 
 class Rate:
@@ -66,6 +68,8 @@ class Reporter:
         self.started = self.began = 0.0  # time of the start, and of the first measured step
         self.next = 0.0  # time of the next line
         self.rate = Rate()
+        self.pace: float | None = None  # seconds for a step, between the last two updates
+        self.told = 0.0  # time of the last update
         self.bar: Progress | None = None
         self.task: TaskID | None = None
 
@@ -103,13 +107,16 @@ class Reporter:
 
     def update(self, step: int) -> None:
         """`step` steps are done. Cheap: call it as often as you like."""
-        self.last = step
+        steps, self.last = step - self.last, step
         if self.quiet:
             return
         if self.fresh:
             self._measure_anew(step)
             return
         now = time.monotonic()
+        if self._stalled(now, steps):
+            self._measure_anew(step)
+            return
         if now < self.next:
             if now < self.began + FIRST:
                 self.rate.add(now, step, WARM)
@@ -160,9 +167,17 @@ class Reporter:
         """So many steps per second, in the units that users compare."""
         return f"{rate:.4g} steps/s, {rate * self.particles / 1e6:.3g} M particle-steps/s"
 
+    def _stalled(self, now: float, steps: int) -> bool:
+        """Whether the last steps took so long for another reason: observables are compiled in their
+        first sample. What they took says nothing about the rest of the run.
+        """
+        took, before = now - self.told, self.pace
+        self.told, self.pace = now, took / max(steps, 1)
+        return took > NOTED and before is not None and self.pace > STALL * before
+
     def _measure_anew(self, step: int) -> None:
         self.fresh, self.rate = False, Rate()
-        self.began = time.monotonic()
+        self.began = self.told = time.monotonic()
         self.rate.add(self.began, step)
         self.next = self.began + FIRST
 

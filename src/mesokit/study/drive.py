@@ -98,6 +98,9 @@ def drive(
     works = [_work(run) for run in runs]
     waiting = [work for work in works if not work.run.ended]
     progress.runs, progress.ended = len(works), len(works) - len(waiting)
+    if not waiting:
+        workers.close()
+        return []
     done = sum(work.total for work in works if work.run.ended)
     stopped: list[signal.Signals] = []
     failed: list[tuple[Planned, str]] = []

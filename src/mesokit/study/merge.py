@@ -121,8 +121,7 @@ def different_key(
 ) -> str | None:
     """The first key path in which two cases differ, but for those that begin so; None if none does.
 
-    >>> here, there = flat("[run]\\nseed = 1\\n[box]\\nsize = [8, 8]"), flat("[box]\\nsize = [8, 9]")
-    >>> different_key(here, there, ("run.seed",))
+    >>> different_key({"run.seed": 1, "box.size": [8, 8]}, {"box.size": [8, 9]}, ("run.seed",))
     'box.size'
     """
     for key in [*one, *(key for key in other if key not in one)]:

@@ -103,17 +103,19 @@ class Base:
     Raises CaseError for a file that is not there or not TOML.
     """
 
-    def __init__(self, text: str, folder: Path) -> None:
-        self.text, self.folder = text, folder
+    def __init__(self, text: str, folder: Path, settings: Mapping[str, Any] | None = None) -> None:
+        self.text, self.folder, self.settings = text, folder, dict(settings or {})
         self.data = toml.parse(text)
+        for key, value in self.settings.items():
+            toml.override(self.data, key, value)
 
     @classmethod
-    def of(cls, given: Case | str | Path) -> Base:
-        """Of a case, or of the file of one."""
+    def of(cls, given: Case | str | Path, settings: Mapping[str, Any] | None = None) -> Base:
+        """Of a case, or of the file of one, with values that are replaced in it."""
         if isinstance(given, Case):
-            return cls(given.to_toml(), Path.cwd())
+            return cls(given.to_toml(), Path.cwd(), settings)
         try:
-            return cls(toml.read(Path(given)), Path(given).resolve().parent)
+            return cls(toml.read(Path(given)), Path(given).resolve().parent, settings)
         except CaseError as error:
             raise CaseError(f"{given}: {error}") from None
 

@@ -22,7 +22,7 @@ def plot(study: Study, x: str, y: str, fit: str | None = None, log: bool | None 
     Raises CaseError for a key or number that is not there, or values that are no numbers.
     """
     key = study.key(x)
-    rows = _rows(study.table(), y)
+    rows = find_rows(study.table(), y)
     linked = next(axis.keys for axis in study.axes if key in axis.keys)
     others = [other for other in study.keys if other not in linked]
     names = dict(zip(study.keys, short_names(study.keys), strict=True))
@@ -37,7 +37,7 @@ def plot(study: Study, x: str, y: str, fit: str | None = None, log: bool | None 
     return draw(drawn, x=key, y=(title, number.unit), fit=fit, log=log, note=seeds)
 
 
-def _rows(rows: list[Pooled], name: str) -> list[Pooled]:
+def find_rows(rows: list[Pooled], name: str) -> list[Pooled]:
     """The rows of one number: by its name, or by its beginning if only one begins so."""
     names = list(dict.fromkeys(row.name for row in rows))
     if not names:
@@ -56,13 +56,9 @@ def _curve(label: str, key: str, rows: list[Pooled]) -> Curve:
         raise CaseError(f"{key} = {show(values[0])}: only numbers can be drawn against")
     order = np.argsort(values)
     numbers = [rows[i].number for i in order]
-    return Curve(
-        label,
-        np.array(values, float)[order],
-        *(np.array([getattr(n, part) for n in numbers]) for part in ("measured", "error")),
-        np.array([n.expected for n in numbers]),
-        any(n.approximate for n in numbers),
-    )
+    value, error, expected = np.array([(n.measured, n.error, n.expected) for n in numbers]).T
+    approximate = any(n.approximate for n in numbers)
+    return Curve(label, np.array(values, float)[order], value, error, expected, approximate)
 
 
 def _word(value: Any) -> str:

@@ -23,6 +23,7 @@ from mesokit.study.here import Here
 from mesokit.study.local import Processes
 from mesokit.study.merge import merge
 from mesokit.study.plan import Base, Planned, by_point, make, planned, short_names
+from mesokit.study.plot import find_rows, plot
 
 if TYPE_CHECKING:
     from mesokit.io.open import RunFiles
@@ -44,6 +45,8 @@ class Study:
         of values that belong together. Runs are made for every combination.
     seeds : int or sequence of int, optional
         So many seeds, from that of the case on, or which.
+    settings : mapping, optional
+        Values that replace those of the case in all runs, by key path.
     output : path
         Folder of the study. Runs that are in it already are kept, so that a study can be made
         larger, or go on after a stop.
@@ -76,11 +79,9 @@ class Study:
         seeds: int | Sequence[int] = 1,
         *,
         output: str | Path,
-        settings: Mapping[str, str] | None = None,
+        settings: Mapping[str, Any] | None = None,
     ) -> None:
-        base = Base.of(case)
-        for key, value in (settings or {}).items():
-            toml.override(base.data, key, value)
+        base = Base.of(case, settings)
         self.path = Path(output)
         axes = Axis.from_mapping(vary) if isinstance(vary, Mapping) else list(vary or ())
         self._set(base, axes, _seeds(seeds, base))
@@ -100,8 +101,8 @@ class Study:
         try:
             data = toml.parse(toml.read(file))
             for key in data:
-                if key not in ("case", "seeds", "vary", "folder"):
-                    known = ["case", "seeds", "vary"]
+                if key not in ("case", "seeds", "vary", "folder", "set"):
+                    known = ["case", "seeds", "vary", "set"]
                     raise CaseError(
                         f"{key}: unknown key{nearest(key, known)} (expected {one_of(known)})"
                     )
@@ -112,7 +113,7 @@ class Study:
             if not isinstance(vary, list):
                 raise CaseError("vary: expected [[vary]], in double brackets")
             axes = [Axis.from_table(each) for each in vary]
-            base = Base.of(file.parent / given)
+            base = Base.of(file.parent / given, data.get("set"))
         except CaseError as error:
             raise CaseError(f"{file}: {error}") from None
         if "folder" in data:
@@ -135,9 +136,12 @@ class Study:
         lines = [HEAD, f"case = {json.dumps(CASE)}\n"]
         lines += [f"folder = {json.dumps(str(self.base.folder))}  # of files that the case names\n"]
         lines += [f"seeds = {json.dumps(self.seeds)}\n"]
-        for axis in self.axes:
-            rows = axis.table().items()
-            lines += ["\n[[vary]]\n", *(f"{json.dumps(k)} = {json.dumps(v)}\n" for k, v in rows)]
+        tables = [("[[vary]]", axis.table()) for axis in self.axes]
+        if self.base.settings:
+            tables.insert(0, ("[set]", self.base.settings))
+        for head, rows in tables:
+            entries = (f"{json.dumps(k)} = {json.dumps(v)}\n" for k, v in rows.items())
+            lines += [f"\n{head}\n", *entries]
         write_text(self.path / CASE, self.base.text)
         write_text(self.path / FILE, "".join(lines))
 
@@ -230,9 +234,42 @@ class Study:
 
         Raises CaseError for a key or number that is not there, with the nearest one.
         """
-        from mesokit.study.plot import plot
-
         return plot(self, x, y, fit, **look)
+
+    def lines(self) -> list[str]:
+        """The table in words, point after point."""
+        names = dict(zip(self.keys, short_names(self.keys), strict=True))
+        found, last = [], None
+        for row in self.table():
+            if row.point != last:
+                point = [f"{names[key]} = {value}" for key, value in row.point.items()]
+                runs = f"{row.runs} runs" if row.runs > 1 else "1 run"
+                found.append(f"{', '.join(point) or 'all'} ({runs})")
+                last = row.point
+            agree = ""
+            if row.seeds is not None:
+                agree = f"; seeds: chi-square {row.seeds.chi2:.2g} of {row.seeds.dof}"
+            found.append(f"  {row.observable}: {row.number}{agree}")
+        return found
+
+    def save_pictures(self) -> list[Path]:
+        """Draw every number that has an error bar against the first key that is varied."""
+        rows = self.table()
+        names = dict.fromkeys(row.name for row in rows if row.number.error > 0)
+        if not self.keys or len(self.axes[0].values) < 2:
+            return []
+        if not all(isinstance(row.point[self.keys[0]], int | float) for row in rows):
+            return []
+        return [self.save_picture(self.keys[0], name) for name in names]
+
+    def save_picture(self, x: str, y: str, fit: str | None = None) -> Path:
+        """Draw one number against one varied value into a file of the folder."""
+        from mesokit.report import save_figure
+
+        figure, names = self.plot(x, y, fit), short_names(self.keys)
+        number = next(row.name for row in find_rows(self.table(), y))
+        file = self.path / f"{number}-against-{names[self.keys.index(self.key(x))]}.png"
+        return save_figure(figure, file)
 
     def merged(self, point: int = 0) -> RunFiles:
         """The runs of one point as one, with pooled observables, in a folder `merged` beside them.

@@ -35,7 +35,7 @@ MANY_DEVIATIONS = 12.0  # of a Poisson number: no more will ever come
 
 def with_clearance(case: Case, solids: Solids) -> tuple[Bodies, Any]:
     """The solids with the distances that are clear around each place; the tables that keep them."""
-    bend = 0.125 * case.fluid.force.largest * case.fluid.timestep**2
+    bend = 0.125 * case.fluid.force.largest_in(case.box.size) * case.fluid.timestep**2
     clear, parts = clear_squares(solids, bend)
     lightest = min(kind.mass for kind in case.fluid.kinds)
     stride = MANY_SIGMA * math.sqrt(case.fluid.kT / lightest) * case.fluid.timestep + bend

@@ -11,10 +11,9 @@ import hashlib
 import math
 from abc import abstractmethod
 from collections.abc import Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mesokit.case.component import FileName, component, param, show
+from mesokit.case.component import FileName, FromContents, component, param
 from mesokit.errors import CaseError
 from mesokit.geometry.region import Region
 from mesokit.geometry.samples.distances import Floats, Grid, fitted, slope
@@ -25,20 +24,10 @@ if TYPE_CHECKING:
 
 
 @component
-class FromFile(Shape):
+class FromFile(FromContents, Shape):
     """A shape given by samples of its signed distance, which are made from a file."""
 
     file: FileName = param(doc="file, relative to that of the case")
-
-    @functools.cached_property
-    def contents(self) -> bytes:
-        """What the file held when it was first needed. Raises CaseError."""
-        try:
-            return Path(self.file).read_bytes()
-        except FileNotFoundError:
-            raise self.wrong("no such file") from None
-        except OSError as error:
-            raise self.wrong(f"cannot be read: {(error.strerror or str(error)).lower()}") from None
 
     @functools.cached_property
     def digest(self) -> str:
@@ -47,10 +36,6 @@ class FromFile(Shape):
             return hashlib.sha256(self.contents).hexdigest()
         except CaseError:
             return ""
-
-    def wrong(self, reason: str) -> CaseError:
-        """The error that says what is wrong with the file."""
-        return CaseError(f"file = {show(self.file, 500)}: {reason}")
 
     @abstractmethod
     def grid(self, room: Room) -> Grid:

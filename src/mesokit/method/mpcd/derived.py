@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mesokit import theory
 from mesokit.case.trajectory import stored_bytes
 from mesokit.geometry.shape.plates import Plates
-from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected import recognise, setting
 from mesokit.method.mpcd.numbers import Derived
 from mesokit.method.mpcd.warnings import cautions
 from mesokit.running.cores import usable_cores
@@ -18,6 +19,8 @@ from mesokit.running.cores import usable_cores
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
+WITHOUT = ", as without obstacles"  # said of a flow
+FIRST_ZERO = 2.404825557695773  # of the Bessel function J_0: the slowest mode of a pipe
 # factors of time, rate
 COSTS = {"thermostat": 1.15, "walls": 1.25, "solids": 1.3, "shear": 1.2, "thread": 0.85}
 # seconds more for each particle-step of a molecule, and for each of its sub-steps
@@ -50,8 +53,12 @@ def derive(case: Case, threads: int | None = None) -> Derived:
     steps = case.run.warmup + case.run.steps
     transport = setting.transport(case)
     flow, across, speed = _flow(case)
+    bound = None  # on a speed that is not known
+    if setting.obstructed(case) and flow.endswith(WITHOUT):
+        bound, speed = speed, None
+    round_pipe = recognise.pipe(case)
     nu = transport.viscosity if transport else None
-    length = _length(case, across)
+    length = 2 * round_pipe.radius if round_pipe else _length(case, across)
     builds_up = flow != "lees-edwards"  # that one starts with its linear profile
     rate = fluid.collision.rates[dimension] * 1e6 * (1 + (threads - 1) * COSTS["thread"])
     for cost, applies in (
@@ -80,10 +87,13 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         transport=transport,
         flow=flow,
         flow_speed=speed,
+        flow_bound=bound,
         flow_size=length,
         reynolds=speed * length / nu if speed is not None and nu else None,
         mach=speed / transport.sound_speed if speed is not None and transport else None,
-        steady_time=_steady_time(case, across, nu) if nu and speed and builds_up else None,
+        steady_time=_steady_time(case, across, nu)
+        if nu and (speed or bound) and builds_up
+        else None,
         heating=_heating(case, across, nu) if nu else None,
         seconds=case.particles * steps / rate + bead_seconds + _observe_seconds(case),
         memory=round(memory + BYTES["program"] + bool(case.observe) * BYTES["figures"]),
@@ -117,6 +127,9 @@ def _flow(case: Case) -> tuple[str, int, float | None]:
 
     For a channel with obstacles these are what they would be without: an upper bound.
     """
+    driven = _pipe_speed(case)
+    if driven is not None:
+        return "Hagen-Poiseuille", 1, driven
     if setting.obstructed(case):
         plates = tuple(wall for wall in case.walls if isinstance(wall, Plates))
         if len(plates) == 1 and not plates[0].diffuse:
@@ -124,7 +137,7 @@ def _flow(case: Case) -> tuple[str, int, float | None]:
             kind, across, speed = _flow(bare)
             if speed is not None and setting.surface_speed(case) > speed:
                 return "of moving surfaces", across, setting.surface_speed(case)
-            return kind if kind == "rest" else f"{kind}, as without obstacles", across, speed
+            return kind if kind == "rest" else kind + WITHOUT, across, speed
         if setting.surface_speed(case) and not case.fluid.force.acts:
             return "of moving surfaces", 1, setting.surface_speed(case)
     kinds, across, squares = [], 1, np.zeros(201)
@@ -138,6 +151,16 @@ def _flow(case: Case) -> tuple[str, int, float | None]:
             across = flow.across
         squares = squares + speeds**2
     return (kinds or ["rest"])[0], across, float(np.sqrt(squares.max()))
+
+
+def _pipe_speed(case: Case) -> float | None:
+    """Of the flow on the axis of a round pipe at rest, None for another case."""
+    pipe, coefficients = recognise.pipe(case), setting.transport(case)
+    if pipe is None or coefficients is None or setting.push_axis(case) != pipe.axis:
+        return None
+    push = float(abs(setting.acceleration(case)[pipe.axis]))
+    middle = theory.hagen_poiseuille_velocity(0.0, pipe.radius, push, coefficients.viscosity)
+    return float(middle)
 
 
 def _length(case: Case, across: int) -> float:
@@ -158,6 +181,9 @@ def _wavenumber(case: Case, across: int) -> float:
 
 
 def _steady_time(case: Case, across: int, viscosity: float) -> float:
+    pipe = recognise.pipe(case)
+    if pipe is not None:
+        return (pipe.radius / FIRST_ZERO) ** 2 / viscosity
     return 1 / (viscosity * _wavenumber(case, across) ** 2)
 
 

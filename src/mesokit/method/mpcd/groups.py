@@ -23,7 +23,10 @@ def groups(case: Case) -> tuple[Group, ...]:
     solutes = case.solutes
     if solutes is None:
         return Group("fluid", _fluid(case)), Group("solutes", ())
-    kinds = tuple(Kind(solutes.mass, kind.number * kind.length) for kind in solutes.polymers)
+    kinds = tuple(
+        Kind(solutes.mass, kind.number * kind.length, f"polymer-{i}")
+        for i, kind in enumerate(solutes.polymers, start=1)
+    )
     bead = (solutes.pair.diameter,) if solutes.pair is not None else ()
     return Group("fluid", _fluid(case)), Group("solutes", kinds, *bead)
 

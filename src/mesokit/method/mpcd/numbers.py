@@ -17,11 +17,12 @@ Row = tuple[str, str, str]  # what, its value, and a word on it
 class Derived(Shown):
     """What follows from a case. Lengths in cells; None where there is no formula.
 
-    `flow_speed` is the largest velocity that theory expects of the steady flow, `flow_size` the
-    size across it, `reynolds` both over the viscosity, `mach` the speed over that of sound;
-    `steady_time` is the time in which the flow comes within 1/e of its steady state. `substeps` are
-    those of molecules. `seconds` and `memory` (bytes) of the run are estimates, `assumed` says of
-    what.
+    `flow_speed` is the largest velocity that theory expects of the steady flow, `flow_bound` that
+    of the empty channel where obstacles stand in the flow and nobody knows its speed beforehand,
+    `flow_size` the size across it, `reynolds` both over the viscosity, `mach` the speed over that
+    of sound; `steady_time` is the time in which the flow comes within 1/e of its steady state.
+    `substeps` are those of molecules. `seconds` and `memory` (bytes) of the run are estimates,
+    `assumed` says of what.
     """
 
     particles: int
@@ -29,6 +30,7 @@ class Derived(Shown):
     transport: theory.Transport | None
     flow: str
     flow_speed: float | None
+    flow_bound: float | None
     flow_size: float
     reynolds: float | None
     mach: float | None
@@ -59,15 +61,20 @@ class Derived(Shown):
 
     def flow_rows(self, timestep: float | None = None) -> list[Row]:
         """The steady flow in words, none where there is no flow or no theory of it."""
-        if not self.flow_speed:
+        if self.flow_bound:
+            said = f"obstacles slow it down; {number(self.flow_bound, 'a/time')} without them"
+            rows = [("flow speed", "not known", said)]
+        elif self.flow_speed:
+            rows = [
+                ("flow speed", number(self.flow_speed, "a/time"), self.flow),
+                ("Reynolds number", number(self.reynolds), ""),
+                ("Mach number", number(self.mach), ""),
+            ]
+        else:
             return []
-        rows = [
-            ("flow speed", number(self.flow_speed, "a/time"), self.flow),
-            ("Reynolds number", number(self.reynolds), ""),
-            ("Mach number", number(self.mach), ""),
-        ]
         if self.steady_time is not None:
             steps = "" if timestep is None else f"{round(self.steady_time / timestep)} steps to 1/e"
+            steps += ", without obstacles" if self.flow_bound else ""
             rows.append(("time to build up", number(self.steady_time), steps))
         return rows
 

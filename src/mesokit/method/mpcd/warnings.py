@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.method.mpcd.numbers import Derived
 
+STRONG = 0.3  # thermal velocities that a force may add in a timestep
+
 
 def cautions(case: Case, numbers: Derived, across: int) -> Iterator[str]:
     """What one should know before a run; `across` is the number of the axis across the flow."""
@@ -78,7 +80,7 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
         )
     if transport is None:
         reason = setting.caveat(case) or "no formula for this fluid"
-        yield f"transport coefficients: {reason}; plots will lack theory"
+        yield f"transport coefficients: {reason}; plots of what needs them lack theory"
     elif case.box.dimension == 2 and _above(7, transport.dynamic_viscosity, 3):
         yield (
             f"in 2D fluctuations raise a dynamic viscosity of {transport.dynamic_viscosity:.3g} "
@@ -135,6 +137,14 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
                 f"box.shear_rate = {case.box.shear_rate:g}: velocities differ by {cell:.2g} of the "
                 "speed of sound across a cell; keep it below 0.2"
             )
+    for note in force.notes(case.box.size):
+        yield f"fluid.force.{note}"
+    kick = force.largest_in(case.box.size) * fluid.timestep / math.sqrt(fluid.kT / fluid.mass)
+    if _above(kick, STRONG):
+        yield (
+            f"fluid.force: in a timestep it changes velocities by up to {kick:.2g} thermal "
+            f"velocities; above {STRONG:g} its steps are coarse: a shorter timestep, or less force"
+        )
     random = case.solutes is not None and case.solutes.solvent == "random"
     for axis, push in zip(AXES, setting.acceleration(case).tolist(), strict=False):
         if push and not case.walls and not random:
@@ -155,21 +165,27 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
     if numbers.flow == "plug" and numbers.flow_speed is None:
         yield "fluid.force.acceleration: slip plates hold nothing: the fluid speeds up for ever"
     if numbers.heating is not None and numbers.heating > 0.01:
+        cooled = any(
+            surface.rule == "no-slip" for wall in case.walls for surface in wall.surfaces().values()
+        )
         yield (
-            f"no thermostat: friction raises the temperature by {100 * numbers.heating:.2g} % "
-            "over the run"
+            f"no thermostat: friction raises the temperature by {'at most ' * cooled}"
+            f"{100 * numbers.heating:.2g} % over the run" + "; walls at kT cool the fluid" * cooled
         )
     if numbers.reynolds is not None:
         # as it is shown: 1.4 is not above 1.4
         shown = float(f"{numbers.reynolds:.2g}")
         if unstable := force.instability(shown, case.box.size, across):
             yield unstable
-    if numbers.steady_time is not None and numbers.flow_speed:
-        wait = math.ceil(3 * numbers.steady_time / fluid.timestep)
+    if numbers.steady_time is not None and (numbers.flow_speed or numbers.flow_bound):
+        # obstacles make it shorter, nobody knows how much
+        times, need = (1, "up to") if numbers.flow_bound else (3, "about")
+        wait = math.ceil(times * numbers.steady_time / fluid.timestep)
         if case.run.warmup < wait and case.run.steps and fluid.start.run is None:
             yield (
-                f"run.warmup = {case.run.warmup}: the flow needs about {wait} steps from rest to "
-                "its steady state; observables will average over the start"
+                f"run.warmup = {case.run.warmup}: the flow needs {need} "
+                f"{math.ceil(3 * numbers.steady_time / fluid.timestep)} steps from rest to its "
+                "steady state; observables will average over the start"
             )
 
 

@@ -15,6 +15,7 @@ from mesokit.report.style import COLOURS
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.io.trajectory_reader import TrajectoryReader
+    from mesokit.report.flow.state import State
 
 SMALLEST = 1.6  # diameter, in points
 EDGE, BOND = 0.2, 0.45  # widths of the edge and of bonds, of the diameter
@@ -24,7 +25,7 @@ ABOVE = 6  # the solids
 class BeadFrames:
     """The beads that a trajectory has."""
 
-    def __init__(self, case: Case, reader: TrajectoryReader, axes: tuple[str, str]) -> None:
+    def __init__(self, case: Case, reader: TrajectoryReader | State, axes: tuple[str, str]) -> None:
         method, (first, *others) = method_of(case), case.groups
         self.case, self.reader = case, reader
         self.columns = [case.box.axes.index(axis) for axis in axes]
@@ -82,7 +83,7 @@ class BeadFrames:
 
 
 def frames_of(
-    case: Case, trajectory: TrajectoryReader | None, axes: tuple[str, str]
+    case: Case, trajectory: TrajectoryReader | State | None, axes: tuple[str, str]
 ) -> BeadFrames | None:
     """The beads of a run, None if it kept none of them."""
     if trajectory is None or len(case.groups) == 1 or not len(trajectory):

@@ -54,12 +54,12 @@ class Section:
                 f"at = {show(at)}: expected a place along {AXES[self.third]}, from 0 to {length}"
             )
 
-    def note(self) -> str:
+    def note(self, how: str = "mean") -> str:
         """What a 3D picture shows: a mean along the third axis, but a cut of the solids."""
         if self.third is None:
             return ""
         axis = AXES[self.third]
-        return f"mean along {axis}" + f"; solids at {axis} = {self.at:g}" * bool(self.solids)
+        return f"{how} along {axis}" + f"; solids at {axis} = {self.at:g}" * bool(self.solids)
 
     def distance(self, x: Array, y: Array) -> Array:
         """Signed distance from the nearest surface at points of the plane, negative in a solid."""

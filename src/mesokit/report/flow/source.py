@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.io.trajectory_reader import TrajectoryReader
     from mesokit.observe.shared.result import Result
+    from mesokit.report.flow.state import State
 
 Axes = tuple[str, str]
 WORDS = {"velocity": "velocities", "density": "densities", "particles": "positions of particles"}
@@ -65,7 +66,7 @@ class Source(Protocol):
 def sources(
     case: Case,
     results: Mapping[str, Result],
-    trajectory: TrajectoryReader | None,
+    trajectory: TrajectoryReader | State | None,
     axes: Axes | None = None,
 ) -> Found:
     """What there is to draw over two axes (those of the first map unless said), best first.

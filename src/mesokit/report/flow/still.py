@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from mesokit.report.flow.beads import frames_of
-from mesokit.report.flow.kinds import panels_of, quieted
+from mesokit.report.flow.data import Flow
+from mesokit.report.flow.kinds import Panel, panels_of, quieted
 from mesokit.report.flow.region import Ranges, frames_in, region_of
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import choose, sources
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.io.trajectory_reader import TrajectoryReader
     from mesokit.observe.shared.result import Result
+    from mesokit.report.flow.state import State
 
 CHOICES = ("region", "window", "axes", "at")  # what a user may say of a picture, and of a film
 
@@ -23,7 +25,7 @@ CHOICES = ("region", "window", "axes", "at")  # what a user may say of a picture
 def picture(
     case: Case,
     results: Mapping[str, Result],
-    trajectory: TrajectoryReader | None = None,
+    trajectory: TrajectoryReader | State | None = None,
     kind: str = "four",
     region: Ranges | None = None,
     window: tuple[float, float] | None = None,
@@ -34,7 +36,7 @@ def picture(
 
     Parameters
     ----------
-    case, results, trajectory: of the run.
+    case, results, trajectory: of the run; a `State` of its engine is a trajectory of one frame.
     kind: "quiver", "streamlines", "particles", "density", "speed", "vorticity" or "four".
     region: ((x0, x1), (y0, y1)) in cells, the whole box unless said.
     window: (t0, t1), the times averaged over, all unless said.
@@ -65,7 +67,17 @@ def picture(
     flows = [replace(flow, smoothing=width, beads=beads) for flow in flows]
     reaches = [panel.reach(flow, shown) for panel, flow in zip(panels, flows, strict=True)]
     when = f"solutes at t = {beads.time:.4g}" if beads else ""
-    notes = [section.note(), note(flows[0]), when]
+    how = "projection" if all(panel.NEEDS == "particles" for panel in panels) else "mean"
+    notes = [section.note(how), note(flows[0]), _few(case, panels, flows), when]
     drawn = Canvas(panels, flows, reaches, shown, section, notes=notes)
     drawn.show(flows)
     return drawn.figure
+
+
+def _few(case: Case, panels: Sequence[Panel], flows: Sequence[Flow]) -> str:
+    """How many particles are shown, if not all."""
+    for panel, flow in zip(panels, flows, strict=True):
+        if panel.NEEDS == "particles" and flow.particles is not None:
+            shown = len(flow.particles)
+            return f"{shown} of {case.particles} particles" if 0 < shown < case.particles else ""
+    return ""

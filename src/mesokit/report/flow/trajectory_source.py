@@ -14,12 +14,13 @@ from mesokit.report.flow.setting import Setting
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.io.trajectory_reader import TrajectoryReader
+    from mesokit.report.flow.state import State
 
 
 class TrajectorySource:
     """The frames of the first group of particles; their density is known if all of them are in."""
 
-    def __init__(self, case: Case, reader: TrajectoryReader, axes: tuple[str, str]) -> None:
+    def __init__(self, case: Case, reader: TrajectoryReader | State, axes: tuple[str, str]) -> None:
         self.reader, self.axes, self.time = reader, axes, reader.time
         thermal = method_of(case).kT
         self.setting, self.kT = Setting.of(case, axes), thermal(case) if thermal else 0.0

@@ -100,7 +100,9 @@ def collision(case: Case) -> Iterator[str]:
 
 
 def force(case: Case) -> Iterator[str]:
-    """A body force that fits the walls."""
+    """A body force that fits the box and its walls."""
+    for problem in case.fluid.force.misfits(case.box.size):
+        yield f"fluid.force.{problem}"
     for problem in case.fluid.force.problems(closed_axes(case.walls)):
         yield f"fluid.force.{problem}"
 

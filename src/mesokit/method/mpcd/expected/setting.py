@@ -151,6 +151,12 @@ def acceleration(case: Case) -> Array:
     return np.array(case.fluid.force.uniform(dimension) or (0.0,) * dimension, float)
 
 
+def gathered(case: Case) -> bool:
+    """Whether a force that is not uniform may make the density uneven."""
+    force = case.fluid.force
+    return force.gathers and force.uniform(case.box.dimension) is None
+
+
 def push_axis(case: Case) -> int | None:
     """Number of the only axis along which a uniform force drives the fluid, None for another."""
     axes = np.flatnonzero(acceleration(case))

@@ -36,11 +36,16 @@ class Force(ABC):
     """What accelerates the fluid and all solutes."""
 
     acts: ClassVar[bool] = True
+    gathers: ClassVar[bool] = True  # whether the density may be uneven for it, if it is not uniform
 
     @property
     @abstractmethod
     def largest(self) -> float:
         """Largest size of the acceleration."""
+
+    def largest_in(self, size: tuple[int, ...]) -> float:
+        """The same in a box of this size, if it depends on that."""
+        return self.largest
 
     @abstractmethod
     def kernel(self, size: tuple[int, ...]) -> Any:
@@ -64,6 +69,14 @@ class Force(ABC):
 
     def problems(self, closed: Collection[str]) -> Iterator[str]:
         """What is wrong with it where walls close these axes, key first."""
+        yield from ()
+
+    def misfits(self, size: tuple[int, ...]) -> Iterator[str]:
+        """What is wrong with it in a box of this size, key first."""
+        yield from ()
+
+    def notes(self, size: tuple[int, ...]) -> Iterator[str]:
+        """What one should know of it in a box of this size, key first."""
         yield from ()
 
     def steady_flow(self, component: int, size: tuple[int, ...], viscosity: float | None) -> Driven:

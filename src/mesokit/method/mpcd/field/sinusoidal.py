@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from typing import Literal, NamedTuple
+from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 
@@ -25,6 +25,8 @@ class Sinusoidal(Force):
     flow: Axis = param("x", doc="axis of the acceleration")
     gradient: Axis = param("y", doc="axis along which it varies")
     waves: int = param(1, doc="number of waves in the box", ge=1)
+
+    gathers: ClassVar[bool] = False  # it is the same all along itself
 
     @property
     def largest(self) -> float:

@@ -1,0 +1,202 @@
+"""Commands on several runs of a case: study, merge."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+
+from mesokit.cli.commands import RUN, SET, cli, require_run
+from mesokit.cli.runs import stopping
+from mesokit.cli.words import say, show_table
+from mesokit.errors import CaseError, RunError
+
+FITS = click.Choice(["line", "power"])
+
+
+def _options(context: click.Context, option: click.Parameter, values: Sequence[str]) -> Any:
+    for text in values:
+        if "=" not in text:
+            raise CaseError(f"--{option.name} {text}: expected name=value, such as queue=long")
+    return {name.strip(): value.strip() for name, _, value in (t.partition("=") for t in values)}
+
+
+def _axes(context: click.Context, option: click.Parameter, values: Sequence[str]) -> Any:
+    from mesokit.study.axes import Axis
+
+    return [Axis.parse(text) for text in values]
+
+
+@cli.command()
+@click.argument("what", type=click.Path(path_type=Path), metavar="CASE|STUDY")
+@click.option(
+    "--vary",
+    "axes",
+    multiple=True,
+    callback=_axes,
+    metavar="KEY=VALUES",
+    help="A list (fluid.density=5,10), a range (fluid.timestep=0.05:0.2:4, or 0.001:1:4:log), or "
+    "keys that change together (fluid.timestep=0.1,0.05; run.steps=1000,2000). May be repeated: "
+    "every combination is run.",
+)
+@click.option("--seeds", type=click.IntRange(1), help="So many seeds of each.  [1]")
+@SET
+@click.option("--output", type=RUN, help="Folder of the study (CASE-study unless said).")
+@click.option("--jobs", type=click.IntRange(1), help="Runs at once (one a core unless said).")
+@click.option("--threads", type=click.IntRange(1), default=1, help="Threads of each run.  [1]")
+@click.option(
+    "--cluster",
+    metavar="KIND",
+    help="Carry the runs by Dask: slurm, pbs, sge, lsf, htcondor, local, or tcp://SCHEDULER.",
+)
+@click.option(
+    "--cluster-option",
+    "options",
+    multiple=True,
+    callback=_options,
+    metavar="NAME=VALUE",
+    help="Of the jobs of a cluster, such as walltime=10:00:00. May be repeated.",
+)
+@click.option("--list", "listing", is_flag=True, help="Show the runs, and carry none.")
+@click.option("--job-array", is_flag=True, help="Write a Slurm script with a job for each run.")
+@click.option("--only", type=click.IntRange(1), help="Carry the run of this number alone.")
+@click.option("--x", metavar="KEY", help="Draw against this key (the first varied unless said).")
+@click.option("--y", metavar="NUMBER", help="Draw this number, such as flow-rate.permeability.")
+@click.option("--fit", type=FITS, help="Fit a straight line or a power law to it.")
+@click.option("--quiet", is_flag=True, help="No progress, no table; errors only.")
+def study(what: Path, **given: Any) -> None:
+    """Run CASE for several values and seeds, or go on with a STUDY (its folder, or a study file).
+
+    Runs that have ended are not repeated. At the end there are a table (table.csv) and a picture of
+    every number against the first key that is varied.
+    """
+    from mesokit.study.job_array import write_job_array
+    from mesokit.study.study import Study
+
+    made = _made(Study, what, given)
+    if given["listing"]:
+        return show_table([(str(i + 1), _state(run), str(run.path)) for i, run in _numbered(made)])
+    if given["job_array"]:
+        script = write_job_array(made, given["threads"])
+        return click.echo(f"wrote {script}; next: sbatch {script}")
+    if given["only"] is not None:
+        return _only(made, given["only"], given["threads"])
+    with stopping(f"mesokit study {made.path}"):
+        _run(made, given)
+    _show(made, given)
+
+
+def _made(Study: Any, what: Path, given: dict[str, Any]) -> Any:
+    """The study of a case file, of a study file or in a folder."""
+    new = {name: given[name] for name in ("axes", "seeds", "settings", "output") if given[name]}
+    if what.is_dir() or _is_study_file(what):
+        for name in new:
+            option = {"axes": "vary", "settings": "set"}.get(name, name)
+            raise CaseError(f"--{option}: only with a case file; {what} says it already")
+        return Study.open(what)
+    output = given["output"] or Path(f"{what.stem}-study")
+    return Study(
+        what, given["axes"], given["seeds"] or 1, output=output, settings=given["settings"]
+    )
+
+
+def _is_study_file(path: Path) -> bool:
+    from mesokit.case import toml
+
+    data = toml.parse(toml.read(path)) if path.is_file() else {}
+    return isinstance(data.get("case"), str)
+
+
+def _run(made: Any, given: dict[str, Any]) -> None:
+    from mesokit.study.drive import StudyReporter
+
+    options = given["options"]
+    if options and not given["cluster"]:
+        raise CaseError("--cluster-option: only with --cluster")
+    made.run(
+        given["jobs"],
+        threads=given["threads"],
+        cluster=given["cluster"],
+        options=options,
+        progress=StudyReporter(given["quiet"]),
+    )
+
+
+def _only(made: Any, number: int, threads: int) -> None:
+    """Carry one run, as a job of an array does."""
+    from mesokit.study.work import carry
+
+    if number > len(made.runs):
+        raise CaseError(f"--only {number}: the study has {len(made.runs)} runs")
+    run = made.runs[number - 1]
+    if not run.ended and (why := carry(str(run.path), threads)):
+        raise RunError(f"{run.path}: {why}")
+
+
+def _show(made: Any, given: dict[str, Any]) -> None:
+    """The table, and the pictures."""
+    table = made.to_csv()
+    if not given["quiet"]:
+        for line in made.lines():
+            click.echo(line)
+    click.echo(f"table: {table}")
+    if given["y"]:
+        picture = made.save_picture(given["x"] or _first(made), given["y"], given["fit"])
+        return click.echo(f"picture: {picture}")
+    for option in ("x", "fit"):
+        if given[option]:
+            raise CaseError(f"--{option}: of which number? add --y")
+    for path in made.save_pictures():
+        click.echo(f"picture: {path}")
+
+
+def _first(made: Any) -> str:
+    if not made.keys:
+        raise CaseError("--y: nothing is varied that it could be drawn against")
+    return str(made.keys[0])
+
+
+def _numbered(made: Any) -> Any:
+    return list(enumerate(made.runs))
+
+
+def _state(run: Any) -> str:
+    if run.ended:
+        return "ended"
+    if run.failed:
+        return f"failed: {run.failed}"
+    return f"at step {run.step}" if run.step else "not begun"
+
+
+@cli.command()
+@click.argument("runs", type=RUN, nargs=-1, required=True, metavar="RUN...")
+@click.option("--output", type=RUN, required=True, help="Folder of the pooled results.")
+@click.option("--quiet", is_flag=True, help="No summary; errors only.")
+def merge(runs: tuple[Path, ...], output: Path, quiet: bool) -> None:
+    """Pool the observables of RUNs of one case with different seeds, as if they were one run."""
+    from mesokit.cli.runs import show_results
+    from mesokit.study.merge import merge as merged
+
+    for run in runs:
+        require_run(run)
+    merged(runs, output)
+    if not quiet:
+        show_results(output)
+
+
+def run_seeds(case: Path, seeds: int, output: Path, given: dict[str, Any]) -> None:
+    """The command `run --seeds N`: a study of nothing but seeds, and what its runs say as one."""
+    from mesokit.cli.runs import show_results
+    from mesokit.study.drive import StudyReporter
+    from mesokit.study.study import Study
+
+    made = Study(case, None, seeds, output=output, settings=given["settings"])
+    with stopping(f"mesokit study {output}"):
+        made.run(threads=given["threads"] or 1, progress=StudyReporter(given["quiet"]))
+    if len(made.runs) > 1:
+        files = made.merged()
+        if not given["quiet"]:
+            say(f"{len(made.runs)} runs are in {made.runs[0].path.parent}; pooled:")
+            show_results(files.path)

@@ -1,0 +1,80 @@
+"""Trajectories as H5MD for other programs: what they ask for beside what the standard does.
+
+MDAnalysis wants the group to be called `trajectory`, and units that it knows: a cell is an angstrom
+here and a unit of time a picosecond, as all files are read that name no units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import h5py
+import numpy as np
+
+if TYPE_CHECKING:
+    from mesokit.io.moments import Moment, Particles
+
+UNITS = {
+    "position": "Angstrom",
+    "velocity": "Angstrom ps-1",
+    "edges": "Angstrom",
+    "image": None,
+}
+
+
+def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
+    """All frames, with box, masses, kinds, molecules, bonds and what is known of them."""
+    from mesokit import __version__
+
+    with h5py.File(path, "w") as file:
+        head = file.create_group("h5md")
+        head.attrs["version"] = np.array([1, 1], np.int32)
+        head.create_group("author").attrs["name"] = "unknown"
+        creator = head.create_group("creator")
+        creator.attrs["name"], creator.attrs["version"] = "mesokit", __version__
+        group = file.create_group("particles/trajectory")
+        group.attrs["dimension"] = particles.dimension
+        group["id"], group["mass"] = particles.number, particles.mass
+        group["molecule"], group["species"] = particles.molecule, particles.kind
+        group["species"].attrs["names"] = particles.names
+        box = group.create_group("box")
+        boundary = ["none" if shut else "periodic" for shut in particles.closed]
+        box.attrs["dimension"] = 3
+        box.attrs["boundary"] = np.array(boundary, dtype=h5py.string_dtype("ascii"))
+        bonds = file.create_dataset("connectivity/bonds", data=particles.bonds)
+        bonds.attrs["particles_group"] = group.ref
+        for now in moments:
+            edges = np.diag(particles.size)
+            edges[1, 0] = now.tilt
+            _append(box, "edges", edges, now)
+            _append(group, "position", now.position, now)
+            _append(group, "velocity", now.velocity, now)
+            _append(group, "image", now.image, now)
+
+
+def _append(parent: Any, name: str, value: Any, now: Moment) -> None:
+    """One frame more of an element; none of what is not known."""
+    if value is None:
+        return
+    if name not in parent:
+        element = parent.create_group(name)
+        element.create_dataset("step", (0,), np.int64, maxshape=(None,))
+        time = element.create_dataset("time", (0,), float, maxshape=(None,))
+        time.attrs["unit"] = "ps"
+        data = element.create_dataset(
+            "value",
+            (0, *value.shape),
+            np.int32 if name == "image" else np.float32,
+            maxshape=(None, *value.shape),
+            chunks=(1, *(max(length, 1) for length in value.shape)),
+            compression=4,
+            shuffle=True,
+        )
+        if UNITS[name]:
+            data.attrs["unit"] = UNITS[name]
+    for part, entry in (("step", now.step), ("time", now.time), ("value", value)):
+        data = parent[name][part]
+        data.resize(len(data) + 1, axis=0)
+        data[-1] = entry

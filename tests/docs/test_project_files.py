@@ -1,0 +1,42 @@
+"""What the project says of itself agrees: versions, folders, links."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import mesokit
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = ["CONTRIBUTING.md", "CODE_OF_CONDUCT.md", "docs/releasing.md"]
+
+
+def text(name: str) -> str:
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def test_versions_agree() -> None:
+    project = tomllib.loads(text("pyproject.toml"))["project"]
+    assert mesokit.__version__ == project["version"]
+    assert f"\nversion: {project['version']}\n" in text("CITATION.cff")
+    assert f"\nlicense: {project['license']}\n" in text("CITATION.cff")
+
+
+def test_oldest_python_is_tested() -> None:
+    oldest = tomllib.loads(text("pyproject.toml"))["project"]["requires-python"].removeprefix(">=")
+    assert f'python: ["{oldest}", ' in text(".github/workflows/ci.yml")
+
+
+def test_every_folder_of_tests_is_described() -> None:
+    described = set(re.findall(r"`tests/(\w+)`", text("CONTRIBUTING.md").split("## Tests")[1]))
+    there = {folder.name for folder in (ROOT / "tests").iterdir() if any(folder.glob("test_*.py"))}
+    assert described == there
+
+
+def test_files_and_commands_that_are_named_exist() -> None:
+    for page in PAGES:
+        for name in re.findall(r"`((?:src|tests|docs|\.github)/[\w./-]*)`", text(page)):
+            assert (ROOT / name).exists(), f"{page}: {name}"
+        for link in re.findall(r"\]\(([^)#]+)\)", text(page)):
+            assert "://" in link or (ROOT / page).parent.joinpath(link).exists(), f"{page}: {link}"
+        for target in re.findall(r"`?make ([a-z-]+)[ `]", text(page)):
+            assert f"\n{target}:" in text("Makefile"), f"{page}: make {target}"

@@ -1,0 +1,5 @@
+"""The compiler for GPUs is not on every system; without it there is nothing to ask."""
+
+from importlib.util import find_spec
+
+collect_ignore = [] if find_spec("numba_cuda") else ["ptx.py", "test_gpu.py"]
