@@ -74,7 +74,7 @@ def _named(text: str, label: str, single: bool) -> str:
 def _paint(artist: Any, colour: str) -> None:
     """Give an artist a colour, unless it is black or grey, as theory and frames are."""
     from matplotlib.collections import LineCollection
-    from matplotlib.colors import to_rgb
+    from matplotlib.colors import to_rgb, to_rgba_array
     from matplotlib.lines import Line2D
 
     def grey(value: Any) -> bool:
@@ -86,7 +86,9 @@ def _paint(artist: Any, colour: str) -> None:
         if not grey(artist.get_markerfacecolor()):
             artist.set_markerfacecolor(colour)
         artist.set_markeredgecolor(colour)
-    elif isinstance(artist, LineCollection) and not any(grey(c[:3]) for c in artist.get_colors()):
+    elif isinstance(artist, LineCollection) and not any(
+        grey(colour) for colour in to_rgba_array(artist.get_colors())
+    ):
         artist.set_color(colour)
 
 
@@ -105,5 +107,9 @@ def _renew_legend(ax: Any) -> None:
     if old is None:
         return
     place, anchor = old._loc, old.get_bbox_to_anchor().transformed(ax.transAxes.inverted())
-    ax.legend(loc=place, bbox_to_anchor=(anchor.x0, anchor.y0), ncols=old._ncols,
-              borderaxespad=old.borderaxespad)  # fmt: skip
+    ax.legend(
+        loc=place,
+        bbox_to_anchor=(anchor.x0, anchor.y0),
+        ncols=old._ncols,
+        borderaxespad=old.borderaxespad,
+    )
