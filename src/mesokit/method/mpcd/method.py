@@ -52,15 +52,23 @@ def _solids(case: Case) -> Solids | None:
     return solids_of(case) if case.walls else None
 
 
-def _missing_files(case: Case) -> list[str]:
+def _starts(case: Case) -> dict[str, Path]:
     starts = {"fluid.start": case.fluid.start}
     if case.solutes is not None:
         starts["solutes.start"] = case.solutes.start
-    return [
-        f"{where}.{key} = {show(name, 500)}: no such {'folder' if key == 'run' else 'file'}"
+    return {
+        f"{where}.{key}": Path(name)
         for where, start in starts.items()
         for key, name in dataclasses.asdict(start).items()
-        if name is not None and not Path(name).exists()
+        if name is not None
+    }
+
+
+def _missing_files(case: Case) -> list[str]:
+    return [
+        f"{key} = {show(str(path), 500)}: no such {'folder' if key.endswith('run') else 'file'}"
+        for key, path in _starts(case).items()
+        if not path.exists()
     ]
 
 
@@ -96,6 +104,7 @@ METHOD = Method(
     timestep=lambda case: float(case.fluid.timestep),
     kT=lambda case: float(case.fluid.kT),
     summary=summary,
+    starts=_starts,
     missing_files=_missing_files,
     arrays=("positions", "velocities", "beads", "bead_velocities"),
     first_state=_first_state,
