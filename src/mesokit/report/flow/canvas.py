@@ -84,6 +84,8 @@ class Canvas:
         box = self.place.panels[number]
         for axis, room in (("x", box.width / 0.45), ("y", box.height / 0.3)):
             ax.locator_params(axis=axis, nbins=min(6, max(1, int(room))), steps=[1, 2, 5, 10])
+        if (number + 1) % self.place.columns:  # the last number would touch the first of the next
+            ax.xaxis.get_major_locator().set_params(prune="upper")
         if number + self.place.columns >= len(self.panels):
             ax.set_xlabel(labelled(f"${names[0]}$", "a"))
         else:
