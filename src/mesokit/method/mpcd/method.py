@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mesokit.case.component import FromContents, show
+from mesokit.case.component import show
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.checks import combinations
@@ -76,9 +76,10 @@ def _keep_files(case: Case, folder: Path) -> Case:
     from mesokit.io.part_files import kept_part
     from mesokit.io.solid_files import kept
 
-    if isinstance(case.fluid.force, FromContents):
-        force = kept_part(case.fluid.force, "force", folder)
-        case = dataclasses.replace(case, fluid=dataclasses.replace(case.fluid, force=force))
+    case = kept_part(case, "fluid.force", folder)
+    case = kept_part(case, "fluid.molecule.pair", folder)
+    case = kept_part(case, "solutes.pair", folder)
+    case = kept_part(case, "solutes.wall", folder)
     if not any(isinstance(wall, FromFile) for wall in case.walls):
         return case
     return dataclasses.replace(case, walls=kept(case.walls, solids_of(case), folder))
