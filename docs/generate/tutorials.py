@@ -1,4 +1,4 @@
-"""Pages from notebooks, with the outputs that they were stored with; the notebooks to take along."""
+"""Pages from notebooks with the outputs that they were stored with, and the notebooks."""
 
 from __future__ import annotations
 
