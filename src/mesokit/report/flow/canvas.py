@@ -8,6 +8,7 @@ from typing import Any
 
 import matplotlib as mpl
 
+from mesokit.report.caption import unbroken
 from mesokit.report.flow import beads
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.kinds import Panel
@@ -58,8 +59,11 @@ class Canvas:
         self.view = section.view(region)
         bars = [scale is not None for scale in scales]
         width = layout(self.view.extent, bars, stamp).size[0] - 2 * MARGIN
-        note = "; ".join(filter(None, notes))
+        note = unbroken("; ".join(filter(None, notes)))
         lines = textwrap.wrap(note, max(12, int(width * LETTERS)), break_long_words=False)
+        self.first = next((flow.beads for flow in flows if flow.beads is not None), None)
+        if self.first is not None and self.first.names:
+            lines.append("")  # room for the legend of the kinds
         self.place = layout(self.view.extent, bars, stamp, len(lines))
         with mpl.rc_context(LOOK):
             self.figure = ShownFigure(figsize=self.place.size)
@@ -73,6 +77,8 @@ class Canvas:
             across, down = self.place.size
             for number, line in enumerate(reversed(lines)):
                 self.figure.text(MARGIN / across, (0.06 + LINE * number) / down, line, size=8)
+            if self.first is not None and self.first.names:
+                beads.key(self.figure, self.first)
             self.stamp = self.figure.text(0.5, top, "", ha="center", va="top")
         self.still = [set(ax.get_children()) for ax in self.axes]
 
