@@ -9,7 +9,7 @@ BIN := .venv/bin
 endif
 READY := .venv/ready
 
-.PHONY: help demo test test-long test-all quick lint check site bench validate clean
+.PHONY: help demo test test-long test-all quick lint check site tutorials bench validate clean
 help:
 	@echo "make demo      run a channel flow and draw it with the theory"
 	@echo "make test      run the tests but the long ones: some minutes"
@@ -18,6 +18,7 @@ help:
 	@echo "make lint      lint and types"
 	@echo "make check     the same, import rules, and that the physics compiles for a GPU"
 	@echo "make site      write the documentation as a site: build/site/index.html"
+	@echo "make tutorials run the notebooks of docs/tutorials and store what they show"
 	@echo "make bench     measure the speed, side by side with LAMMPS"
 	@echo "make validate  write docs/validation: measured against theory, law by law"
 	@echo "make clean     remove what these made"
@@ -59,6 +60,9 @@ site: export NO_MKDOCS_2_WARNING = 1
 site: $(READY)
 	@$(BIN)/python -m mkdocs build --strict --quiet
 	@echo "look at build/site/index.html"
+
+tutorials: $(READY)
+	@$(BIN)/python docs/generate/run_tutorials.py
 
 bench: $(READY)
 	@$(BIN)/python -m benchmarks

@@ -71,4 +71,4 @@ def _page(source: str) -> str:
         return PAGES["examples/README.md"]
     if source.startswith("examples/"):
         return re.sub(r"\.toml$", ".md", source)
-    return source.removeprefix("docs/")
+    return re.sub(r"\.ipynb$", ".md", source.removeprefix("docs/"))

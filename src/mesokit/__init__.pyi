@@ -104,6 +104,7 @@ from mesokit.potential.lennard_jones import LennardJones as LennardJones
 from mesokit.potential.protocol import Angle as Angle
 from mesokit.potential.protocol import Bond as Bond
 from mesokit.potential.protocol import Pair as Pair
+from mesokit.potential.table import Table as Table
 from mesokit.potential.wca import WCA as WCA
 from mesokit.running.callbacks import Callback as Callback
 from mesokit.running.callbacks import StopRun as StopRun

@@ -28,6 +28,7 @@ from mesokit.io.measured import fitting, restore
 from mesokit.io.run_directory import RunDirectory, now, provenance, recorded_case
 from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.method.protocol import method_of
+from mesokit.report.document.progress import reporter_for
 from mesokit.report.progress import Reporter
 from mesokit.running.callbacks import Callback, Callbacks
 from mesokit.running.cores import usable_cores
@@ -247,7 +248,7 @@ class Simulation(Shown):
         steps: int | None = None,
         *,
         until: str | None = None,
-        progress: Reporter | None = None,
+        progress: Reporter | bool | None = None,
     ) -> None:
         """Run to the end of the case, or so many steps on; at the end write results and figures.
 
@@ -256,6 +257,10 @@ class Simulation(Shown):
         "velocity-profile.viscosity=1%", it becomes longer until the standard error of that number
         is so small, by `steps` at most (100 times its length unless said); if that is not enough,
         there is a warning.
+
+        `progress=True` tells how it goes: a bar in a notebook or a terminal, else a line every few
+        seconds; False says nothing. Unless said, notebooks alone show a bar. A
+        `mesokit.report.progress.Reporter` of one's own may write to another stream.
 
         A callback that raises `StopRun` ends it early, with a checkpoint where there is a folder.
         Ctrl-C, SIGTERM, SIGHUP or SIGUSR1 raises KeyboardInterrupt after the steps in hand, with a
@@ -270,7 +275,7 @@ class Simulation(Shown):
             last = limit + self.case.run.warmup
             if last > self.last_step:
                 self.lengthen(limit)
-        progress = progress or Reporter(quiet=True)
+        progress = reporter_for(progress)
         self.log.tell = progress.tell
         particles = sum(group.number for group in self.case.groups)
         progress.start(last, particles, "running", self.step)

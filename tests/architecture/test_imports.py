@@ -43,7 +43,7 @@ ROWS = {
     "statistics/": ("statistics",),
     "case/": ("case", "errors", "=method", "scalar", "theory"),
     "geometry/": ("case", "errors", "geometry", "scalar"),
-    "potential/": ("case", "potential", "scalar", "theory"),
+    "potential/": ("case", "errors", "potential", "scalar", "theory"),
     "method/__init__.py": (),
     "method/protocol.py": ("case", "engine", "=method"),
     "method/mpcd/": MPCD,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -34,6 +35,7 @@ from mesokit.potential import protocol as potentials
 from mesokit.potential.angle import bend
 from mesokit.potential.bending import Bending
 from mesokit.potential.harmonic import Harmonic, Spring
+from mesokit.potential.table import Table
 from mesokit.potential.wca import WCA
 from mesokit.scalar import elementary, gamma, poisson, random
 from mesokit.scalar.jit import scalar
@@ -47,7 +49,15 @@ MOST_SUMS, MOST_COEFFICIENTS = 18, 12
 ENERGIES = (cell_energy.NotAsked(), cell_energy.Column(), cell_energy.WithCount(1.0))
 
 
-NEEDED = {Harmonic: {"K": 1.0}, Spring: {"k": 1.0}, Bending: {"kappa": 1.0}}
+TABLE = tempfile.NamedTemporaryFile("w", suffix=".txt")  # noqa: SIM115  as long as the tests
+TABLE.write("1 9\n2 4\n3 1\n4 0\n")
+TABLE.flush()
+NEEDED = {
+    Harmonic: {"K": 1.0},
+    Spring: {"k": 1.0},
+    Bending: {"kappa": 1.0},
+    Table: {"file": TABLE.name},
+}
 
 
 def vec(d: int) -> tuple[float, ...]:

@@ -16,6 +16,15 @@ PARAMETERS = {"K": 0.7, "k": 3.0, "length": 1.2, "R0": 1.5, "kappa": 4.0, "epsil
 STEP = 1e-5
 
 
+@pytest.fixture(scope="module", autouse=True)
+def table(tmp_path_factory):
+    """What a potential of a file is given."""
+    file = tmp_path_factory.mktemp("tables") / "pair.txt"
+    r = np.linspace(0.8, 3.2, 50)
+    np.savetxt(file, np.column_stack([r, np.cos(r) + r**-6]))
+    PARAMETERS["file"] = str(file)
+
+
 def example(component):
     names = component.__pydantic_fields__
     return component(**{key: value for key, value in PARAMETERS.items() if key in names})

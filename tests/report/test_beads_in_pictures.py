@@ -104,7 +104,8 @@ def test_they_are_drawn_over_every_panel(kind):
         chain = sorted(places[COLOURS[2]])
         np.testing.assert_allclose(chain, [(0.3, 0.2), (1.0, 0.8), (11.5, 9.5)])
         assert len(places[COLOURS[1]]) == 2 and len(places[COLOURS[3]]) == 4
-    assert any("solutes at t = 0" in text.get_text() for text in figure.texts)
+    said = " ".join(text.get_text() for text in reversed(figure.texts))
+    assert r"solutes at $t=0\,\tau$" in said
 
 
 def test_beads_alone_are_no_flow():
@@ -115,3 +116,33 @@ def test_beads_alone_are_no_flow():
     for kind in ("speed", "density"):
         with pytest.raises(RunError, match="the run kept none of them"):
             picture(case, {}, frames, kind)
+
+
+def test_kinds_have_a_legend_and_marks_of_their_own():
+    """In grey colours look alike."""
+    case = make_case(SIZE, density=2, solutes=SOLUTES)
+    figure = picture(case, {}, trajectory(case, WHOLE), "particles")
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["kind 1", "kind 2", "kind 3"]
+    marks = {line.get_color(): line.get_marker() for line in figure.axes[0].lines}
+    assert len({marks[colour] for colour in COLOURS[1:4]}) == 3
+    figure.canvas.draw()
+    assert legend.get_window_extent().y1 < figure.axes[0].get_window_extent().y0
+
+
+def test_chains_of_one_kind_are_told_apart_and_those_behind_are_paler():
+    chains = Solutes((Polymer(2, length=3),), bond=Harmonic(K=2.0))
+    case = make_case((12, 10, 8), density=2, solutes=chains)
+    places = [[2, 2, 1], [3, 2, 1], [4, 2, 1], [2, 6, 7], [3, 6, 7], [4, 6, 7]]
+    frames = trajectory(make_case(SIZE, density=2, solutes=SOLUTES), WHOLE)
+    frames.frames, frames.species = [np.array(places, float)], np.ones(6, int)
+    frames.id, frames.mass = case.particles + np.arange(6), np.ones(6)
+    beads = BeadFrames(case, frames, ("x", "y")).at()
+    assert beads.molecules.tolist() == [0, 0, 0, 1, 1, 1] and beads.names == []
+    figure = picture(case, {}, frames, "particles", axes=("x", "y"))
+    back, front = (
+        line for line in figure.axes[0].lines if len(line.get_xdata()) == 3
+    )  # in the order in which they are drawn
+    assert set(back.get_ydata()) == {2.0} and set(front.get_ydata()) == {6.0}
+    assert front.get_color() == COLOURS[2] and back.get_color() not in COLOURS
+    assert figure.legends == []

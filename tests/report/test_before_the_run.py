@@ -49,7 +49,7 @@ def test_particles_are_drawn_where_they_are(in_solution):
     found = np.concatenate([line.get_xydata() for line in ax.lines]) % 20
     for bead in beads:
         assert np.abs(found - bead).max(axis=1).min() < 1e-9
-    assert any("solutes at t = 0" in text.get_text() for text in figure.texts)
+    assert r"solutes at $t=0\,\tau$" in " ".join(text.get_text() for text in reversed(figure.texts))
 
 
 def test_of_many_particles_some_are_drawn_and_that_is_said(in_solution, monkeypatch):

@@ -9,7 +9,7 @@ import pytest
 from fake_fluid import FakeFluid, case_for, taken
 from rich.console import Console
 
-from mesokit import Comparison
+from mesokit import Comparison, DynamicModuli, Forces, Stress, VelocityAutocorrelation, Wake
 from mesokit.errors import RunError
 from mesokit.observe import OBSERVABLES, Result
 from mesokit.report import plot, print_comparisons, save, save_all
@@ -54,8 +54,42 @@ def test_it_draws_into_given_axes(kind, make_case):
 
     figure = Figure()
     ax = figure.subplots()
-    assert result_of(kind, make_case, 5).plot(ax) is figure
+    assert result_of(kind, make_case, 5).plot(ax) is ax
     assert ax.has_data()
+
+
+@pytest.mark.parametrize("kind", (Stress, DynamicModuli, Forces, VelocityAutocorrelation, Wake))
+def test_two_results_in_the_same_axes_can_be_told_apart(kind, make_case):
+    from matplotlib.figure import Figure
+
+    ax, result = Figure().subplots(), result_of(kind, make_case, 5)
+    for name in ("first", "second"):
+        result.plot(ax, label=name)
+    texts = ax.get_legend_handles_labels()[1]
+    assert any(t.startswith("first") for t in texts)
+    assert any(t.startswith("second") for t in texts)
+    assert len(texts) == len(set(texts)) and "measured" not in " ".join(texts)
+
+
+def test_colours_of_results_in_the_same_axes(make_case):
+    from matplotlib.colors import to_hex
+    from matplotlib.figure import Figure
+
+    from mesokit import VelocityProfile
+
+    result, ax = result_of(VelocityProfile, make_case, 5), Figure().subplots()
+    result.plot(ax)
+    seen = ax.get_ylim()
+    result.plot(ax, label="other")
+    result.plot(ax, label="mine", colour="#123456")
+    colours = [to_hex(c.lines[0].get_color()) for c in ax.containers]
+    assert len(set(colours)) == 3 and colours[2] == "#123456"
+    assert ax.get_ylim()[0] <= seen[0] and ax.get_ylim()[1] >= seen[1]
+    texts = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert "mine" in texts and "other" in texts
+    assert sum(text.startswith("theory") for text in texts) <= 1
+    with pytest.raises(ValueError, match="give ax"):
+        result.plot(label="alone")
 
 
 def test_runs_without_samples_have_no_figure(make_case, tmp_path):

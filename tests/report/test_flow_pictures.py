@@ -305,7 +305,7 @@ class TestLooks:
     def test_in_3d_it_says_what_is_a_mean_and_what_a_cut(self, make_case):
         case = make_case((8, 8, 8), observe=[FRAMES], walls=[Plates(axis="y")])
         texts = [t.get_text() for t in picture(case, results_of(case, 5), kind="speed").texts]
-        assert "mean along z; solids at z = 4" in texts
+        assert r"mean along $z$; solids at $z=4\,a$; mean of the run" in " ".join(texts)
 
     def test_maps_over_the_axes_in_the_other_order_are_turned(self, rotation):
         case, results = rotation

@@ -39,6 +39,12 @@ def digest_of_motion(text: str) -> str:
     return digest(re.sub(r"^steps = \d+$", "", text, count=1, flags=re.MULTILINE))
 
 
+def digest_of_file(path: str | Path) -> str:
+    """Fingerprint of a file, of any size. Raises OSError."""
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
 def write(
     path: str | Path, arrays: Mapping[str, NDArray[Any]], meta: Mapping[str, Any], case: str = ""
 ) -> None:

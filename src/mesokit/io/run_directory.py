@@ -18,6 +18,7 @@ from mesokit.case.outside import outside_parts, require_parts
 from mesokit.errors import CaseError, RunError
 from mesokit.io import checkpoint
 from mesokit.io.atomic import write_text
+from mesokit.io.sources import parents, sources
 from mesokit.method.protocol import method_of
 
 if TYPE_CHECKING:
@@ -178,6 +179,7 @@ class RunDirectory:
 def provenance(case: Case, threads: int) -> dict[str, Any]:
     """Where the numbers of a run come from, as it starts: case, versions, host, time.
 
+    `sources` tells the state of mesokit, `starts_from` that of files and runs it starts from.
     `units` says what a reduced unit is in SI, None if the case does not; `parts` which classes come
     from outside mesokit, and from where.
     `ended` and `failed` (why) are None and `timings` empty until someone fills them in.
@@ -186,6 +188,8 @@ def provenance(case: Case, threads: int) -> dict[str, Any]:
         **recorded_case(case),
         "units": _units(case),
         "seed": case.run.seed,
+        "sources": sources(),
+        "starts_from": parents(method_of(case).starts(case)),
         "parts": outside_parts(case),
         "versions": {"python": platform.python_version()} | _versions(),
         "host": platform.node(),
@@ -193,6 +197,7 @@ def provenance(case: Case, threads: int) -> dict[str, Any]:
         "processor": _processor(),
         "cores": os.cpu_count(),
         "threads": threads,
+        "device": "cpu",
         "command": sys.argv,
         "started": now(),
         "resumed": [],

@@ -98,6 +98,8 @@ class Method:
         Thermal energy, where particles have velocities.
     start_from_run : str, optional
         The key by which a case starts from where another run ended.
+    starts : function of a case, optional
+        The files and folders of runs that a case starts from, by their keys.
     missing_files : function of a case, optional
         A line for each file that a case needs and that is not there.
     keep_files : function of a case and the folder of its run, optional
@@ -126,6 +128,7 @@ class Method:
     solids: Callable[[Case], Any] = lambda case: None
     kT: Callable[[Case], float] | None = None
     start_from_run: str = ""
+    starts: Callable[[Case], Mapping[str, Path]] = lambda case: {}
     missing_files: Callable[[Case], list[str]] = lambda case: []
     keep_files: Callable[[Case, Path], Case] = lambda case, folder: case
     log: Callable[[Case], Columns] = lambda case: NO_COLUMNS

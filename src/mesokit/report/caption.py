@@ -72,6 +72,15 @@ def mathematics(text: str) -> str:
     return "".join(parts)
 
 
+def unbroken(text: str) -> str:
+    """The same without spaces in formulas, so that no line of a note ends in one.
+
+    >>> print(unbroken(r"solutes at $t = 7\\,\\tau$ of the run"))
+    solutes at $t=7\\,\\tau$ of the run
+    """
+    return re.sub(r"\$[^$]*\$", lambda found: found[0].replace(" ", ""), text)
+
+
 def compared(comparisons: Iterable[Comparison], width: float) -> str:
     """Lines that fit into so many inches: measured with error, theory, deviation, and cautions.
 
@@ -101,7 +110,7 @@ def _caution(c: Comparison) -> str:
 
 def _line(c: Comparison, shared: Sequence[str]) -> str:
     unit = symbols(c.unit)
-    unit = unit.replace(" ", "") if unit.startswith("$") else unit  # no line ends in a formula
+    unit = unbroken(unit)
     text, note = f"{c.what}: {with_error(c.measured, c.error)} {unit}".rstrip(), _caution(c)
     note = "" if note in shared and not c.approximate else note
     note = "approximate" if note in shared else note

@@ -6,6 +6,7 @@ Matplotlib is imported when a figure is made, and drawn without a display.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ from mesokit.io.atomic import replacing
 from mesokit.observe.shared.result import Result
 from mesokit.report import correlation, curve, field, forces, probe, profile, series, tensor, wake
 from mesokit.report.caption import LINE, below, compared
+from mesokit.report.finish.several import add
 from mesokit.report.style import HEIGHT, STYLE, WIDTH
 
 if TYPE_CHECKING:
@@ -39,28 +41,44 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
 MAPS = ("map", "frames")
 
 
-def plot(result: Result, ax: Any = None, case: Case | None = None) -> Any:
-    """Draw a result into a new figure, or into the axes `ax`; returns the figure.
+def plot(
+    result: Result,
+    ax: Any = None,
+    case: Case | None = None,
+    *,
+    label: str = "",
+    colour: str = "",
+) -> Any:
+    """Draw a result into a new figure, which is returned, or into the axes `ax`, which are then.
 
-    In given axes the main panel alone is drawn, without the comparisons. The case of the run adds
-    its solids to a map.
+    In given axes the main panel alone is drawn, without the comparisons; a second result in the
+    same axes has another colour. `label` is its name in the legend, `colour` that of its data. The
+    case of the run adds its solids to a map.
     """
     import matplotlib as mpl
 
     from mesokit.report.notebook import ShownFigure
 
     with mpl.rc_context(STYLE):
-        if result.drawing in MAPS:
-            return field.draw(result, ax, case)
         if ax is not None:
-            DRAW[result.drawing](result, ax.figure, ax)
-            return ax.figure
+            into = partial(_draw_into, result, ax, case)
+            into() if result.drawing in MAPS else add(ax, into, label, colour)
+            return ax
+        if result.drawing in MAPS:
+            return field.draw(result, None, case)
         text = compared(result.comparisons, WIDTH)
         lines = LINE * len(text.splitlines())
         figure = ShownFigure(figsize=(WIDTH, HEIGHT + lines), layout="constrained")
         DRAW[result.drawing](result, figure, None)
         below(figure, text)
         return figure
+
+
+def _draw_into(result: Result, ax: Any, case: Case | None) -> None:
+    if result.drawing in MAPS:
+        field.draw(result, ax, case)
+    else:
+        DRAW[result.drawing](result, ax.figure, ax)
 
 
 def save(result: Result, path: str | Path, case: Case | None = None) -> Path:

@@ -6,7 +6,7 @@ import contextlib
 import sys
 import time
 from collections import deque
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 from mesokit.case.amounts import duration_text
 
@@ -70,8 +70,8 @@ class Reporter:
         self.rate = Rate()
         self.pace: float | None = None  # seconds for a step, between the last two updates
         self.told = 0.0  # time of the last update
-        self.bar: Progress | None = None
-        self.task: TaskID | None = None
+        self.bar: Progress | Any = None
+        self.task: TaskID | Any = None
 
     def start(
         self, total_steps: int, particles: int, phase: str = "running", step: int = 0
@@ -83,10 +83,14 @@ class Reporter:
         self._measure_anew(step)
         if self.quiet:
             return
-        if self.stream.isatty():
+        if self.has_bar():
             self._open_bar()
         else:
             self._say(f"{phase}: {self.amount(total_steps - step)}")
+
+    def has_bar(self) -> bool:
+        """Whether a bar can be redrawn where this tells it."""
+        return self.stream.isatty()
 
     def lengthen(self, total_steps: int) -> None:
         """There is more to do than was thought."""

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mesokit.case.component import FromContents, show
+from mesokit.case.component import show
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.checks import combinations
@@ -52,15 +52,23 @@ def _solids(case: Case) -> Solids | None:
     return solids_of(case) if case.walls else None
 
 
-def _missing_files(case: Case) -> list[str]:
+def _starts(case: Case) -> dict[str, Path]:
     starts = {"fluid.start": case.fluid.start}
     if case.solutes is not None:
         starts["solutes.start"] = case.solutes.start
-    return [
-        f"{where}.{key} = {show(name, 500)}: no such {'folder' if key == 'run' else 'file'}"
+    return {
+        f"{where}.{key}": Path(name)
         for where, start in starts.items()
         for key, name in dataclasses.asdict(start).items()
-        if name is not None and not Path(name).exists()
+        if name is not None
+    }
+
+
+def _missing_files(case: Case) -> list[str]:
+    return [
+        f"{key} = {show(str(path), 500)}: no such {'folder' if key.endswith('run') else 'file'}"
+        for key, path in _starts(case).items()
+        if not path.exists()
     ]
 
 
@@ -68,9 +76,10 @@ def _keep_files(case: Case, folder: Path) -> Case:
     from mesokit.io.part_files import kept_part
     from mesokit.io.solid_files import kept
 
-    if isinstance(case.fluid.force, FromContents):
-        force = kept_part(case.fluid.force, "force", folder)
-        case = dataclasses.replace(case, fluid=dataclasses.replace(case.fluid, force=force))
+    case = kept_part(case, "fluid.force", folder)
+    case = kept_part(case, "fluid.molecule.pair", folder)
+    case = kept_part(case, "solutes.pair", folder)
+    case = kept_part(case, "solutes.wall", folder)
     if not any(isinstance(wall, FromFile) for wall in case.walls):
         return case
     return dataclasses.replace(case, walls=kept(case.walls, solids_of(case), folder))
@@ -96,6 +105,7 @@ METHOD = Method(
     timestep=lambda case: float(case.fluid.timestep),
     kT=lambda case: float(case.fluid.kT),
     summary=summary,
+    starts=_starts,
     missing_files=_missing_files,
     arrays=("positions", "velocities", "beads", "bead_velocities"),
     first_state=_first_state,

@@ -224,12 +224,19 @@ class Result(Shown):
             raise KeyError(f"{self.name}: no coordinate {sorted(unknown)}; there is {list(self.x)}")
         return float(self.value[tuple(index)]), float(self.error[tuple(index)])
 
-    def plot(self, ax: Any = None, case: Case | None = None) -> Any:
+    def plot(
+        self, ax: Any = None, case: Case | None = None, *, label: str = "", colour: str = ""
+    ) -> Any:
         """Draw it with error bars, theory and the comparisons; returns the Matplotlib figure.
 
-        The `case` of the run adds its solids to a map.
+        Into axes `ax`, which are returned then, the main panel alone is drawn; `label` is its name
+        in their legend, `colour` that of its data (another for each result unless said). The
+        `case` of the run adds its solids to a map. Raises ValueError for a label or a colour
+        without axes.
         """
-        return importlib.import_module(FIGURES).plot(self, ax, case)
+        if ax is None and (label or colour):
+            raise ValueError("label and colour are for several results in the same axes: give ax")
+        return importlib.import_module(FIGURES).plot(self, ax, case, label=label, colour=colour)
 
     def to_dataframe(self) -> Any:
         """A pandas.DataFrame: a row for each value, with its coordinates, error and theory.

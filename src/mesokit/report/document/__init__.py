@@ -1,4 +1,4 @@
-"""Pages in HTML: the report of a run, and the cards that notebooks show.
+"""Pages in HTML: the report of a run, the cards and the bar that notebooks show.
 
 Markup is in the templates beside the code, `base.html` of all pages, `parts.html` their tables.
 """

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import itertools
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit.method.protocol import method_of
 from mesokit.report.flow.data import Array, Beads
@@ -20,6 +22,8 @@ if TYPE_CHECKING:
 SMALLEST = 1.6  # diameter, in points
 EDGE, BOND = 0.2, 0.45  # widths of the edge and of bonds, of the diameter
 ABOVE = 6  # the solids
+MARKERS = "osD^vP"  # of kinds: in grey they look alike otherwise
+LAYERS, PALE = 6, 0.65  # of depth in 3D; how much of the colour the rearmost lacks
 
 
 class BeadFrames:
@@ -51,7 +55,23 @@ class BeadFrames:
         edges[1, 0] = slid
         repeats = self._repeats(whole, edges)
         places = whole[:, self.columns]
-        return Beads(places, self.kinds, self.bonds, self.diameter, repeats, now)
+        third = [k for k in range(len(self.case.box.size)) if k not in self.columns]
+        near = np.ones(len(whole))
+        if third:
+            near = position[:, third[0]] / float(self.case.box.size[third[0]])
+        return Beads(
+            places, self.kinds, self.bonds, self.diameter, repeats, now, self.molecules, near
+        )
+
+    @cached_property
+    def molecules(self) -> NDArray[np.int64]:
+        """Number of the molecule of each bead: those that bonds join."""
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+
+        n, links = len(self.rows), self.bonds
+        joined = coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(n, n))
+        return np.asarray(connected_components(joined, directed=False)[1], np.int64)
 
     def _whole(self, r: Array, slid: float) -> Array:
         """Each bead next to the one before that it hangs on."""
@@ -94,31 +114,65 @@ def frames_of(
     return found if len(found.rows) else None
 
 
+def look(kind: int, molecule: int, only: bool) -> tuple[str, str]:
+    """Colour and marker of a kind; of the molecules, where there is one kind only."""
+    number = molecule if only else kind
+    return COLOURS[(number + 1) % len(COLOURS)], MARKERS[kind % len(MARKERS)]
+
+
+def key(figure: Any, beads: Beads) -> None:
+    """A legend of the kinds, at the lower right of the figure."""
+    from matplotlib.lines import Line2D
+
+    marks = []
+    for kind in np.unique(beads.kinds):
+        colour, marker = look(int(kind), 0, False)
+        marks.append(Line2D([], [], color=colour, marker=marker, ls="", ms=5))
+    where = {"loc": "lower right", "bbox_to_anchor": (1.0, 0.0), "ncols": len(marks)}
+    figure.legend(marks, beads.names, fontsize=8, borderaxespad=0.1, frameon=False, **where)
+
+
 def draw(ax: Any, beads: Beads, region: Region) -> None:
-    """Draw those in the region, kinds in colours of their own."""
+    """Draw those in the region, kinds (or the molecules of one kind) in colours of their own.
+
+    In 3D those at the back come first, and are paler.
+    """
     from matplotlib.collections import LineCollection
 
     box = ax.get_position()
     points = 72.0 * box.width * ax.figure.get_size_inches()[0] / np.ptp(ax.get_xlim())
     size = max(SMALLEST, beads.diameter * points)
+    only = not beads.names
+    layers = np.minimum((beads.nearness * LAYERS).astype(int), LAYERS - 1)
+    groups = np.stack([layers, beads.kinds, beads.molecules % len(COLOURS) * only], axis=1)
     for shift in beads.repeats:
         places = beads.places + shift
         inside = region.holds(places)
         ends = beads.bonds[inside[beads.bonds].any(axis=1)]
-        for kind in np.unique(beads.kinds):
-            colour = COLOURS[(kind + 1) % len(COLOURS)]
-            own = inside & (beads.kinds == kind)
-            bonds = places[ends[beads.kinds[ends[:, 0]] == kind]]
+        for group in np.unique(groups, axis=0):  # from the back to the front
+            layer, kind, molecule = (int(number) for number in group)
+            colour, marker = look(kind, molecule, only)
+            colour = _paler(colour, PALE * (1 - (layer + 1) / LAYERS))
+            chosen = (groups == group).all(axis=1)
+            own = inside & chosen
+            bonds = places[ends[chosen[ends[:, 0]]]]
             ax.add_collection(
                 LineCollection(list(bonds), colors=colour, linewidths=BOND * size, zorder=ABOVE),
                 autolim=False,
             )
             ax.plot(
                 *places[own].T,
-                "o",
+                marker,
                 color=colour,
                 markersize=size,
                 markeredgewidth=EDGE * size / 2,
                 markeredgecolor="white",
                 zorder=ABOVE,
             )
+
+
+def _paler(colour: str, part: float) -> Any:
+    """The colour with a part of it replaced by white."""
+    from matplotlib.colors import to_rgb
+
+    return colour if part <= 0 else tuple(x + (1 - x) * part for x in to_rgb(colour))

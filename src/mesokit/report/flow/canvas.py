@@ -8,6 +8,7 @@ from typing import Any
 
 import matplotlib as mpl
 
+from mesokit.report.caption import unbroken
 from mesokit.report.flow import beads
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.kinds import Panel
@@ -58,8 +59,11 @@ class Canvas:
         self.view = section.view(region)
         bars = [scale is not None for scale in scales]
         width = layout(self.view.extent, bars, stamp).size[0] - 2 * MARGIN
-        note = "; ".join(filter(None, notes))
+        note = unbroken("; ".join(filter(None, notes)))
         lines = textwrap.wrap(note, max(12, int(width * LETTERS)), break_long_words=False)
+        self.first = next((flow.beads for flow in flows if flow.beads is not None), None)
+        if self.first is not None and self.first.names:
+            lines.append("")  # room for the legend of the kinds
         self.place = layout(self.view.extent, bars, stamp, len(lines))
         with mpl.rc_context(LOOK):
             self.figure = ShownFigure(figsize=self.place.size)
@@ -73,6 +77,8 @@ class Canvas:
             across, down = self.place.size
             for number, line in enumerate(reversed(lines)):
                 self.figure.text(MARGIN / across, (0.06 + LINE * number) / down, line, size=8)
+            if self.first is not None and self.first.names:
+                beads.key(self.figure, self.first)
             self.stamp = self.figure.text(0.5, top, "", ha="center", va="top")
         self.still = [set(ax.get_children()) for ax in self.axes]
 
@@ -84,6 +90,8 @@ class Canvas:
         box = self.place.panels[number]
         for axis, room in (("x", box.width / 0.45), ("y", box.height / 0.3)):
             ax.locator_params(axis=axis, nbins=min(6, max(1, int(room))), steps=[1, 2, 5, 10])
+        if (number + 1) % self.place.columns:  # the last number would touch the first of the next
+            ax.xaxis.get_major_locator().set_params(prune="upper")
         if number + self.place.columns >= len(self.panels):
             ax.set_xlabel(labelled(f"${names[0]}$", "a"))
         else:

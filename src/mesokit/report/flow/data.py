@@ -23,6 +23,8 @@ class Beads:
     diameter: in cells.
     repeats: vectors (2,) by which all of it repeats.
     time: of the frame.
+    molecules: (n,) numbers of the molecules, from 0.
+    nearness: (n,) from 0 (at the back of the box) to 1 along the third axis; all 1 in 2D.
     """
 
     places: Array
@@ -31,6 +33,14 @@ class Beads:
     diameter: float
     repeats: tuple[tuple[float, float], ...]
     time: float
+    molecules: NDArray[np.int64]
+    nearness: Array
+
+    @property
+    def names(self) -> list[str]:
+        """What to call the kinds in a legend; none where there is one kind only."""
+        kinds = np.unique(self.kinds)
+        return [f"kind {kind + 1}" for kind in kinds] if len(kinds) > 1 else []
 
 
 @dataclass(frozen=True)

@@ -117,12 +117,15 @@ def animate(
     width, note = quieted(panels, flows, shown)
     flows = [replace(flow, smoothing=width) for flow in flows]
     reaches = [max(panel.reach(flow, shown) for flow in flows) for panel in panels]
-    notes = [section.note(), note(flows[0])]
+    how = "projection" if all(panel.NEEDS == "particles" for panel in panels) else "mean"
+    notes = [section.note(how), note(flows[0])]
+    solutes = frames_of(case, trajectory, source.axes)
+    if solutes:
+        first = replace(first, beads=solutes.at(source.time[frames[0]]))
     drawn = Canvas(panels, [first] * len(panels), reaches, shown, section, True, notes)
     drawn.figure.set_dpi(DPI[ending])
     progress = progress or FilmReporter(quiet=True)
     progress.start(len(frames), case.particles, "drawing")
-    solutes = frames_of(case, trajectory, source.axes)
     pictures = _pictures(drawn, source, frames, progress, width, solutes)
     try:
         with replacing(path) as temporary:

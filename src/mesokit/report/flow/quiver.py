@@ -16,6 +16,7 @@ from mesokit.report.flow.scale import reach_of
 NEEDS = "velocity"
 TITLE = "velocity"
 ARROWS, FEWEST = 32, 8  # at most along the longer side, and about at least along the shorter
+FILLED = 0.8  # of the bins of an arrow that are fluid: one in or at a solid would lie half under it
 THICK, THICKEST = 0.07, 0.013  # of the distance between arrows; inches
 
 
@@ -35,6 +36,7 @@ def arrows(flow: Flow, region: Region) -> tuple[Array, Array, Array]:
     filled = np.isfinite(used)
     with np.errstate(invalid="ignore"):
         mean = np.where(filled, used, 0.0).sum(axis=(1, 3)) / filled.sum(axis=(1, 3))
+    mean[filled.mean(axis=(1, 3)) < FILLED] = np.nan
     dx, dy = spacing(flow, velocity)
     x = (first + side * (np.arange(nx) + 0.5)) * dx
     y = (below + height * (np.arange(ny) + 0.5)) * dy

@@ -10,6 +10,7 @@ import numpy as np
 
 from mesokit.method.protocol import method_of
 from mesokit.report.flow.data import Array, Flow
+from mesokit.report.flow.smooth import rim_filled
 from mesokit.report.flow.solids import Section
 
 if TYPE_CHECKING:
@@ -74,6 +75,8 @@ class Setting:
             largest = np.nan_to_num(error, nan=np.inf).max(axis=-1)
             usual = largest <= UNUSUAL * np.nanmedian(error)
             sure = usual if sure is None else usual & sure
+        if velocity is not None and share is not None:
+            velocity = rim_filled(velocity, share, self.periodic)
         if density is not None and share is not None:
             density = np.where(share > LEAST, density / np.maximum(share, LEAST), np.nan)
         return Flow(

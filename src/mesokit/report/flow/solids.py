@@ -59,7 +59,8 @@ class Section:
         if self.third is None:
             return ""
         axis = AXES[self.third]
-        return f"{how} along {axis}" + f"; solids at {axis} = {self.at:g}" * bool(self.solids)
+        at = rf"; solids at ${axis} = {self.at:g}\,a$"
+        return f"{how} along ${axis}$" + at * bool(self.solids)
 
     def distance(self, x: Array, y: Array) -> Array:
         """Signed distance from the nearest surface at points of the plane, negative in a solid."""

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from mesokit.report.flow.beads import frames_of
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.kinds import Panel, panels_of, quieted
@@ -66,12 +68,26 @@ def picture(
     beads = solutes.at(window and window[1]) if solutes else None
     flows = [replace(flow, smoothing=width, beads=beads) for flow in flows]
     reaches = [panel.reach(flow, shown) for panel, flow in zip(panels, flows, strict=True)]
-    when = f"solutes at t = {beads.time:.4g}" if beads else ""
+    averaged = [f for f, panel in zip(flows, panels, strict=True) if panel.NEEDS != "particles"]
+    mean = _mean(averaged[0], window) if averaged else ""
+    when = rf"solutes at $t = {beads.time:.4g}\,\tau$" if beads else ""
     how = "projection" if all(panel.NEEDS == "particles" for panel in panels) else "mean"
-    notes = [section.note(how), note(flows[0]), _few(case, panels, flows), when]
+    notes = [section.note(how), mean, note(flows[0]), _few(case, panels, flows), when]
     drawn = Canvas(panels, flows, reaches, shown, section, notes=notes)
     drawn.show(flows)
     return drawn.figure
+
+
+def _mean(flow: Flow, window: tuple[float, float] | None) -> str:
+    """What velocities and densities are means of, and how sure they are."""
+    text = "mean of the run"
+    if window is not None:
+        text = rf"mean of $t = {window[0]:g}$ to ${window[1]:g}\,\tau$"
+    error = flow.error if flow.error is None or flow.sure is None else flow.error[flow.sure]
+    if error is not None and (error > 0).any():
+        size = float(np.nanmedian(error[error > 0]))
+        text += rf"; median standard error of the velocity {size:.2g} $a/\tau$"
+    return text
 
 
 def _few(case: Case, panels: Sequence[Panel], flows: Sequence[Flow]) -> str:

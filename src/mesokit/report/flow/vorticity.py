@@ -12,6 +12,7 @@ from mesokit.report.flow.data import Array, Flow, spacing
 from mesokit.report.flow.heat_map import heat_map
 from mesokit.report.flow.region import Region
 from mesokit.report.flow.scale import Scale, reach_of
+from mesokit.report.flow.smooth import smoothed
 from mesokit.report.style import labelled
 
 NEEDS = "velocity"
@@ -31,7 +32,7 @@ def vorticity(flow: Flow) -> Array:
     velocity = flow.velocity
     assert velocity is not None
     if flow.smoothing:
-        parts = (_smooth(velocity[..., k], flow.periodic, flow.smoothing) for k in range(2))
+        parts = (smoothed(velocity[..., k], flow.periodic, flow.smoothing) for k in range(2))
         velocity = np.stack(list(parts), axis=-1)
     h = spacing(flow, velocity)
     turning = _slope(velocity[..., 1], 0, h[0], flow.periodic[0])
@@ -79,6 +80,7 @@ def note(flow: Flow, clear: bool) -> str:
     if flow.smoothing:
         width = flow.smoothing * max(spacing(flow, flow.velocity))
         said.append(f"velocity smoothed over {width:.3g} a before its slopes are taken")
+    said.append(f"lines at {LEVEL:g} of the largest, dashed where it is negative")
     if not clear:
         fine = " and bins_per_cell = 1" * (min(spacing(flow, flow.velocity)) < 1)
         said.append(
@@ -105,17 +107,7 @@ def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
     heat_map(ax, flow, values, region, scale(flow, reach))
     dx, dy = spacing(flow, values)
     x, y = (np.arange(values.shape[0]) + 0.5) * dx, (np.arange(values.shape[1]) + 0.5) * dy
-    level, smooth = LEVEL * reach, _smooth(values, flow.periodic)
+    level, smooth = LEVEL * reach, smoothed(values, flow.periodic, SMOOTH)
     if (abs(smooth) > level).any():
         lines = {"colors": "black", "linewidths": 0.8, "linestyles": ["--", "-"]}
         ax.contour(x, y, smooth.T, [-level, level], **lines)
-
-
-def _smooth(values: Array, periodic: tuple[bool, bool], width: float = SMOOTH) -> Array:
-    from scipy.ndimage import gaussian_filter
-
-    filled = np.isfinite(values)
-    mode = ["wrap" if goes_on else "nearest" for goes_on in periodic]
-    weight = gaussian_filter(filled.astype(float), width, mode=mode)
-    sums = gaussian_filter(np.where(filled, values, 0.0), width, mode=mode)
-    return np.where(filled, sums / np.maximum(weight, 1e-9), np.nan)

@@ -1,0 +1,115 @@
+"""Several results in one plot, so that they can be told apart: a colour and a name for each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from mesokit.report.style import COLOURS
+
+MEASURED, THEORY = "measured", "theory"  # how the labels of a drawing begin
+PALETTE = [COLOURS[k] for k in (0, 2, 3, 4, 5, 1)]  # last what fits are drawn in
+_NUMBER: WeakKeyDictionary[Any, int] = WeakKeyDictionary()  # of results that axes hold
+
+
+def add(ax: Any, draw: Callable[[], None], label: str = "", colour: str = "") -> None:
+    """Draw one more result into axes.
+
+    Parameters
+    ----------
+    ax: the axes.
+    draw: draws the result into them, in the first colour.
+    label: what its data are called in the legend, instead of "measured".
+    colour: of its data; the next of the palette unless said. A drawing of several data sets keeps
+        its colours unless one is said.
+    """
+    number = _NUMBER.get(ax, 0)
+    _NUMBER[ax] = number + 1
+    before, earlier = set(ax.get_children()), set(ax.get_legend_handles_labels()[1])
+    limits = (ax.get_xlim(), ax.get_ylim()) if number else None
+    draw()
+    if limits is not None:
+        _reach(ax, *limits)
+    entries = zip(*ax.get_legend_handles_labels(), strict=True)
+    new = [(handle, text) for handle, text in entries if not _known(handle, before)]
+    single = any(text.startswith(MEASURED) for _, text in new)
+    if label:
+        given: set[str] = set()
+        for handle, text in new:
+            name = _named(text, label, single)
+            handle.set_label("_again" if name in given else name)
+            given.add(name)
+    elif number:
+        for handle, text in new:
+            if text in earlier and not text.startswith(MEASURED):
+                handle.set_label("_again")
+    for handle, text in new:
+        if text.startswith(THEORY) and text in earlier:
+            handle.set_label("_again")
+    next_one = PALETTE[number % len(PALETTE)] if single and (number or label) else ""
+    chosen = colour or next_one
+    if chosen:
+        for artist in set(ax.get_children()) - before:
+            _paint(artist, chosen)
+    _renew_legend(ax)
+
+
+def _known(handle: Any, before: set[Any]) -> bool:
+    """Whether an entry of the legend was there before; of error bars, by their parts."""
+    parts = [part for part in getattr(handle, "lines", ()) or () if part is not None]
+    flat = [p for part in parts for p in (part if isinstance(part, tuple | list) else [part])]
+    return any(part in before for part in flat or [handle])
+
+
+def _named(text: str, label: str, single: bool) -> str:
+    """The label of an entry of a drawing that is called `label`."""
+    if text.startswith(MEASURED):
+        return label
+    if text.startswith(THEORY) and single:
+        return text
+    return f"{label}: {text}"
+
+
+def _paint(artist: Any, colour: str) -> None:
+    """Give an artist a colour, unless it is black or grey, as theory and frames are."""
+    from matplotlib.collections import LineCollection
+    from matplotlib.colors import to_rgb, to_rgba_array
+    from matplotlib.lines import Line2D
+
+    def grey(value: Any) -> bool:
+        red, green, blue = to_rgb(value)
+        return max(red, green, blue) - min(red, green, blue) < 0.02
+
+    if isinstance(artist, Line2D) and not grey(artist.get_color()):
+        artist.set_color(colour)
+        if not grey(artist.get_markerfacecolor()):
+            artist.set_markerfacecolor(colour)
+        artist.set_markeredgecolor(colour)
+    elif isinstance(artist, LineCollection) and not any(
+        grey(colour) for colour in to_rgba_array(artist.get_colors())
+    ):
+        artist.set_color(colour)
+
+
+def _reach(ax: Any, x: tuple[float, float], y: tuple[float, float]) -> None:
+    """Let axes show what they showed, and what they show now."""
+    for (low, high), (least, most), put in (
+        (x, ax.get_xlim(), ax.set_xlim),
+        (y, ax.get_ylim(), ax.set_ylim),
+    ):
+        put(min(low, least), max(high, most))
+
+
+def _renew_legend(ax: Any) -> None:
+    """The legend again, where it was, with the names that there are now."""
+    old = ax.get_legend()
+    if old is None:
+        return
+    place, anchor = old._loc, old.get_bbox_to_anchor().transformed(ax.transAxes.inverted())
+    ax.legend(
+        loc=place,
+        bbox_to_anchor=(anchor.x0, anchor.y0),
+        ncols=old._ncols,
+        borderaxespad=old.borderaxespad,
+    )
