@@ -64,6 +64,11 @@ def draw(
             ax.set_xscale("log")
         if log or (log is None and fit == "power"):
             ax.set_yscale("log")
+        for axis in (ax.xaxis, ax.yaxis):
+            low, high = axis.get_view_interval()
+            if axis.get_scale() == "log" and high < 10 * low:  # plain numbers within a decade
+                axis.set_major_formatter("{x:g}")
+                axis.set_minor_formatter("{x:g}")
         ax.set_xlabel(x)
         ax.set_ylabel(labelled(y[0], y[1]))
         ax.legend(loc="best")

@@ -253,18 +253,17 @@ class MultipleTau:
         """
         series = [self, *self._others]
         for depth in range(max(len(one._levels) for one in series)):
-            found = [
-                one._level_products(depth)
-                for one in series
-                if depth < len(one._levels)
-                and not (within_blocks and self.averages**depth > one.block_length)
-            ]
-            if not (found := [products for products in found if len(products.lag)]):
-                return
-            yield _joined(found)
+            found = [one._level_products(depth, within_blocks) for one in series]
+            if any(len(products.lag) for products in found):
+                yield found[0] if len(found) == 1 else _joined(found)
 
-    def _level_products(self, depth: int) -> Products:
+    def _level_products(self, depth: int, within_blocks: bool) -> Products:
+        """What one level holds: no lags where it has not been reached, or is left out."""
         step = self.averages**depth
+        if depth >= len(self._levels) or (within_blocks and step > self.block_length):
+            used = -(-self._count // self.block_length)
+            none: NDArray[np.int64] = np.zeros(0, np.int64)
+            return Products(none, np.zeros((used, 0, *self.kept)), np.zeros((used, 0)))
         sums = self._levels[depth].sums[:, ::-1]  # shortest lag first
         offsets = np.arange(self.points - sums.shape[1], self.points)
         used = -(-self._count // self.block_length)

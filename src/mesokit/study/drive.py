@@ -120,8 +120,7 @@ def drive(
                         other.compiled = other.compiled or other.kind == work.kind
                     if why:
                         failed.append((work.run, why))
-                    else:
-                        progress.ended += 1
+                    progress.ended += work.run.ended
                 if (now := time.monotonic()) >= looked + LOOK_SECONDS:
                     looked = now
                     for work in in_hand:

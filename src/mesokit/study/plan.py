@@ -86,7 +86,7 @@ def short_names(keys: Sequence[str]) -> list[str]:
     """
     last = [key.rpartition(".")[2] for key in keys]
     return [
-        key if last.count(end) > 1 or len(end) < 2 else end
+        key if last.count(end) > 1 or end.isdecimal() else end
         for key, end in zip(keys, last, strict=True)
     ]
 

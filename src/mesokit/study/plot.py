@@ -33,8 +33,7 @@ def plot(study: Study, x: str, y: str, fit: str | None = None, log: bool | None 
     drawn = [_curve(label, key, group) for label, group in curves.items()]
     number = rows[0].number
     seeds = f"mean of {rows[0].runs} runs" if rows[0].runs > 1 else "one run each"
-    title = f"{rows[0].observable}: {number.what}"
-    return draw(drawn, x=key, y=(title, number.unit), fit=fit, log=log, note=seeds)
+    return draw(drawn, x=key, y=(number.what, number.unit), fit=fit, log=log, note=seeds)
 
 
 def find_rows(rows: list[Pooled], name: str) -> list[Pooled]:

@@ -102,7 +102,7 @@ def pooled(
     >>> number, scatter, seeds = pooled(runs, [100, 100])
     >>> print(number), scatter, round(seeds.chi2, 3)
     slip: 1.50(25), expected 0.9000: +2.4 standard errors, +66.7 %
-    (None, 0.5, 2.889)
+    (None, 0.5, 4.34)
     """
     share = np.array(weights) / np.sum(weights)
     values, errors = (np.array([getattr(c, n) for c in each]) for n in ("measured", "error"))

@@ -1,0 +1,40 @@
+"""A small case whose numbers have error bars, and studies of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+CASE = """
+title = "a channel"
+[run]
+steps = 120
+warmup = 10
+seed = 5
+[box]
+size = [12, 9]
+[fluid]
+density = 9.52
+collision = { rule = "srd", angle = 90 }
+thermostat = { rule = "maxwell-boltzmann" }
+force = { rule = "uniform", acceleration = [0.02, 0] }
+[[wall]]
+axis = "y"
+shape = "plates"
+[[observe]]
+quantity = "velocity-profile"
+axis = "y"
+every = 3
+[[observe]]
+quantity = "flow-rate"
+every = 10
+"""
+
+
+@pytest.fixture(scope="session")
+def case_file(tmp_path_factory) -> Path:
+    """The case, as a file."""
+    path = tmp_path_factory.mktemp("study") / "channel.toml"
+    path.write_text(CASE)
+    return path
