@@ -84,3 +84,13 @@ def require_run(run: Path) -> None:
         RunDirectory.existing(run)
     except RunError as error:
         raise CaseError(str(error)) from None
+
+
+def result_named(files: Any, name: str) -> Any:
+    """The result of a run that --result names; CaseError says which there are."""
+    if name in files:
+        return files[name]
+    from mesokit.case.component import nearest
+
+    known = f"{', '.join(files) or 'none'}{nearest(name, files)}"
+    raise CaseError(f"--result {name}: no such result; there are {known}")

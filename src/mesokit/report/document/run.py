@@ -52,9 +52,8 @@ class Files(Protocol):
     def state(self) -> str:
         """How far it has come, if it has not ended."""
 
-    @property
-    def results(self) -> Mapping[str, Result]:
-        """Results by name."""
+    def so_far(self) -> Mapping[str, Result]:
+        """Results by name, those so far of a run that has not ended."""
 
 
 def write_report(files: Files, path: str | Path | None = None, films: bool = False) -> Path:
@@ -92,7 +91,7 @@ def write_report(files: Files, path: str | Path | None = None, films: bool = Fal
 def page(files: Files, path: Path, films: bool = False) -> str:
     """The report of a run as HTML, for a file `path`."""
     case, record = files.case, files.provenance
-    results = list(files.results.values()) if files.ended else []
+    results = list(files.so_far().values())
     names = [result.name for result in results]
     rows, warnings = _derived(case)
     sections: dict[str, Any] = {
