@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from mesokit import __version__
+from mesokit.cli.completion import keys
 from mesokit.errors import CaseError, RunError
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ SET = click.option(
     "settings",
     multiple=True,
     callback=_settings,
+    shell_complete=keys,
     metavar="KEY=VALUE",
     help="Replace a value of the case, such as fluid.density=5. May be repeated.",
 )

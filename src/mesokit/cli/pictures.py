@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from mesokit.cli.commands import RUN, axes_of, cli, require_run, result_named
+from mesokit.cli.completion import kinds
 from mesokit.cli.words import say
 from mesokit.errors import CaseError
 
@@ -69,7 +70,7 @@ def _choices(command: Any) -> Any:
 
 @cli.command()
 @click.argument("run", type=RUN)
-@click.option("--kind", help=f"Draw the flow: {KIND}.")
+@click.option("--kind", shell_complete=kinds, help=f"Draw the flow: {KIND}.")
 @_choices
 @click.option("--result", metavar="NAME", help="Draw this result alone.")
 @click.option("--format", "kind_of_file", type=click.Choice(["png", "pdf", "svg"]), help="[png]")
@@ -119,7 +120,9 @@ def _require_one(kind: str | None, name: str | None, output: Path | None, given:
 
 @cli.command()
 @click.argument("run", type=RUN)
-@click.option("--kind", default="speed", help=f"What is drawn: {KIND}.  [speed]")
+@click.option(
+    "--kind", default="speed", shell_complete=kinds, help=f"What is drawn: {KIND}.  [speed]"
+)
 @_choices
 @click.option("--fps", default=15.0, help="Frames shown per second.  [15]")
 @click.option("--output", type=FILE, help="MP4 or GIF (RUN/flow-KIND.mp4 unless said).")
