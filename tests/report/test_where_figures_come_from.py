@@ -9,6 +9,7 @@ from PIL import Image
 import mesokit
 from mesokit import RunError, __version__
 from mesokit.cli import main
+from mesokit.cli.runs import _files_of_run
 from mesokit.io.checkpoint import digest
 
 
@@ -70,6 +71,7 @@ def test_the_format_of_all_results(files):
     assert command("plot", files.path, "--format", "svg") == 0
     written = {path.stem for path in files.path.glob("*.svg")}
     assert written == set(files)
+    assert set(files.path.glob("*.svg")) <= set(_files_of_run(files.path))  # --overwrite may go on
 
 
 @pytest.mark.parametrize(

@@ -31,6 +31,7 @@ def cli() -> None:
 
 
 CASE = click.Path(dir_okay=False, path_type=Path)
+FORMATS = ("png", "pdf", "svg")  # of figures
 RUN = click.Path(file_okay=False, path_type=Path)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from mesokit.cli.commands import RUN, axes_of, cli, require_run, result_named
+from mesokit.cli.commands import FORMATS, RUN, axes_of, cli, require_run, result_named
 from mesokit.cli.completion import kinds
 from mesokit.cli.words import say
 from mesokit.errors import CaseError
@@ -73,7 +73,7 @@ def _choices(command: Any) -> Any:
 @click.option("--kind", shell_complete=kinds, help=f"Draw the flow: {KIND}.")
 @_choices
 @click.option("--result", metavar="NAME", help="Draw this result alone.")
-@click.option("--format", "kind_of_file", type=click.Choice(["png", "pdf", "svg"]), help="[png]")
+@click.option("--format", "kind_of_file", type=click.Choice(FORMATS), help="[png]")
 @click.option("--width", type=click.FloatRange(2, 20), help="Inches; a column has 3.4.  [6.4]")
 @click.option("--output", type=FILE, help="The file of one picture: PNG, PDF or SVG.")
 def plot(run: Path, output: Path | None, width: float | None, **given: Any) -> None:
