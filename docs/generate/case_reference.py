@@ -17,7 +17,7 @@ HEAD = """# Case file
 
 Every key of a case file: what it takes, its unit, its default and what it means. On the command
 line, `mesokit explain wall.disk` shows the same; editors show it while you type
-([how](../../guide.md#find-the-right-key)).
+([how](../../guide/find-the-right-key.md)).
 
 | section | what it is |
 |---|---|

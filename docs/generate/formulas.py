@@ -10,6 +10,10 @@ from latex2mathml.converter import convert
 
 FORMULA = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
 
+FUNCTION = re.compile(
+    r"(?<!<msu[bp]>)(<mi>(?:cos|sin|exp|ln)</mi>)(?=<m[ino]>[^(&])"
+)  # of what has no brackets
+
 
 def on_page_content(content: str, **_: Any) -> str:
     """Formulas of a page."""
@@ -19,4 +23,5 @@ def on_page_content(content: str, **_: Any) -> str:
 def _typeset(found: re.Match[str]) -> str:
     block = found[2] == "["
     made = convert(html.unescape(found[3]), display="block" if block else "inline")
+    made = FUNCTION.sub(r'\1<mspace width="0.17em" />', made)
     return f'<div class="formula">{made}</div>' if block else made

@@ -228,11 +228,15 @@ class Simulation(Shown):
         `simulation.flow("particles")` works before the first step, too: it shows the solids, the
         molecules and where the particles are.
         """
+        from mesokit.report.finish.origin import origin_of
         from mesokit.report.flow import CHOICES, State, picture
 
         require_known(choices, CHOICES)
         now = State(self.case, self.engine)
-        return picture(self.case, self.results, now, kind, **choices)
+        figure = picture(self.case, self.results, now, kind, **choices)
+        run = "" if self.directory is None else self.directory.path.resolve().name
+        figure.origin = origin_of(self.case, run)
+        return figure
 
     def animate(self, path: str | Path, kind: str = "speed", **choices: Any) -> Film:
         """Write a film of the flow so far (MP4 or GIF by its ending)."""

@@ -12,7 +12,7 @@ from mesokit import Case
 from mesokit.method.protocol import method_of
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = ["README.md", "docs/guide.md", "docs/methods/brownian.md"]
+PAGES = ["README.md", "docs/guide.md", "docs/own.md", "docs/methods/brownian.md"]
 SHORT = ["--set", "run.steps=40", "--set", "run.warmup=10"]
 
 

@@ -40,3 +40,9 @@ def test_files_and_commands_that_are_named_exist() -> None:
             assert "://" in link or (ROOT / page).parent.joinpath(link).exists(), f"{page}: {link}"
         for target in re.findall(r"`?make ([a-z-]+)[ `]", text(page)):
             assert f"\n{target}:" in text("Makefile"), f"{page}: make {target}"
+
+
+def test_every_document_is_on_the_site() -> None:
+    pages = text("mkdocs.yml")
+    for page in (ROOT / "docs").glob("*.md"):
+        assert page.name == "guide.md" or f": {page.name}" in pages or f"- {page.name}" in pages

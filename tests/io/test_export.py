@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import re
+import shutil
 import warnings
+from pathlib import Path
 
 import gsd.hoomd
 import numpy as np
@@ -235,6 +238,38 @@ def test_files_of_mdanalysis(ending, mixed, tmp_path):
     if ending in ("h5md", "trr", "data"):
         found = universe.atoms.velocities[:, :2]
         np.testing.assert_allclose(found, mixed.engine.velocities(EVERYONE), atol=1e-5)
+
+
+def recipe(word):
+    """The block of the guide that has the word."""
+    guide = (Path(__file__).parents[2] / "docs" / "guide.md").read_text("utf-8")
+    blocks = re.findall(r"^```text\n(.*?)^```", guide, re.DOTALL | re.MULTILINE)
+    (found,) = [block for block in blocks if word in block]
+    return found
+
+
+@pytest.fixture
+def melt(mixed, tmp_path, monkeypatch):
+    """A working directory with the run that the guide speaks of."""
+    shutil.copytree(mixed.directory.path, tmp_path / "melt")
+    monkeypatch.chdir(tmp_path)
+    mesokit.open("melt").export("melt.gsd")
+
+
+def test_the_recipe_for_mdanalysis(mixed, melt, capsys):
+    exec(recipe(".universe()"), {"mesokit": mesokit})
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert [float(time) for time, _ in rows] == [0.0, 1.0, 2.0]
+    beads = mixed.engine.positions(EVERYONE[72:78])
+    spread = np.sqrt(((beads - beads.mean(axis=0)) ** 2).sum(axis=1).mean())
+    assert float(rows[-1][1]) == pytest.approx(spread, rel=1e-5)
+
+
+def test_the_recipe_for_freud(melt):
+    pytest.importorskip("freud")
+    space = {}
+    exec(recipe("freud"), space)
+    assert space["rdf"].rdf.max() > 0
 
 
 def test_a_dump_says_box_images_and_velocities(whole, tmp_path):

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from mesokit import Box, Case, CaseError, Conservation, Fluid, Polymer, Run, Solutes
+
 PARTS = '''
 from typing import Literal, NamedTuple
 from mesokit import CollisionRule, component, tag
@@ -127,3 +129,26 @@ def test_what_is_wrong_is_said_in_one_line(
     lines = done.stderr.strip().splitlines()
     assert len(lines) == 1, done.stderr
     assert all(word in lines[0] for word in words), lines[0]
+
+
+@pytest.mark.parametrize(
+    ("parts", "words"),
+    [
+        (
+            {"observe": [len]},
+            r"observe\[#1\] = <built.*no function; Simulation\(\.\.\., callbacks=",
+        ),
+        ({"observe": [Conservation]}, r"expected an object, as Conservation\(\.\.\.\) is one$"),
+        ({"observe": [3]}, r"observe\[#1\] = 3: expected a table$"),
+    ],
+)
+def test_functions_and_classes_are_told_what_to_do_instead(parts, words):
+    with pytest.raises(CaseError, match=words):
+        Case(run=Run(1), box=Box([8, 8]), **parts)
+
+
+def test_functions_are_no_forces_and_no_potentials():
+    with pytest.raises(CaseError, match=r"force = .*SampledForce.from_function makes a force"):
+        Fluid(force=lambda x, y: (0.0, 0.0))
+    with pytest.raises(CaseError, match=r"pair = .*Table.from_function makes a potential"):
+        Solutes((Polymer(2),), pair=lambda r: 1 / r)

@@ -70,7 +70,7 @@ def test_a_flow_is_not_drawn_from_one_moment(in_solution):
 def test_a_projection_is_called_one():
     simulation = Simulation(run=Run(10), box=Box([6, 6, 6]), fluid=Fluid(density=2))
     figure = simulation.flow("particles", axes=("x", "z"))
-    assert any("projection along y" in text.get_text() for text in figure.texts)
+    assert any("projection along $y$" in text.get_text() for text in figure.texts)
 
 
 def test_no_particle_is_drawn_in_a_solid():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import types
 
 import pytest
 from html_page import Page
@@ -11,6 +12,7 @@ import mesokit
 from mesokit import RunError
 from mesokit.cli import main
 from mesokit.report.document.pictures import drawn
+from mesokit.report.document.run import page
 
 
 @pytest.fixture(scope="module")
@@ -60,6 +62,24 @@ def test_a_run_that_has_not_ended_says_so(run_folder, capsys):
     text = (folder.parent / "early.html").read_text(encoding="utf-8")
     Page(text)
     assert "This run has not ended" in text and "Measured and expected" not in text
+
+
+def test_results_so_far_are_in_the_report_of_a_run_that_goes_on(ended):
+    folder, _ = ended
+    files = mesokit.open(folder)
+    record = files.provenance | {
+        "sources": {"digest": "d1" * 32, "commit": "c0" * 20, "changed": "true"},
+        "starts_from": {"fluid.start.run": {"path": "before", "sha256": "ab" * 32}},
+    }
+    running = types.SimpleNamespace(path=folder, case=files.case, provenance=record, ended=False)
+    running.state = "has not ended: step 3 of 60"
+    running.so_far = lambda: {"velocity-profile": files["velocity-profile"]}
+    read = Page(page(running, folder / "report.html"))
+    assert "This run has not ended: step 3 of 60" in read.texts
+    assert "What is below is what it had measured by then." in read.texts
+    assert "figure-velocity-profile" in read.ids and "slip at the walls" in read.texts
+    for words in ("c0" * 20, "changed since", f"sha256 {'d1' * 32}", "fluid.start.run", "before"):
+        assert words in read.texts, words
 
 
 def test_small_films_go_into_the_page_and_others_are_linked(ended):

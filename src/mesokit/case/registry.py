@@ -26,11 +26,13 @@ class Family:
     """All parts of one sort, by the value of their tag.
 
     `title` is what messages call one of them, `tag` the key that names it in a case file, `group`
-    that of the entry points by which packages bring more.
+    that of the entry points by which packages bring more; `functions` says what is to be done with
+    a function.
     """
 
-    def __init__(self, base: type, title: str, tag: str, group: str) -> None:
+    def __init__(self, base: type, title: str, tag: str, group: str, functions: str = "") -> None:
         self.base, self.title, self.tag, self.group = base, title, tag, group
+        self.functions = functions
         self.parts: dict[str, type[Any]] = {}
 
     def add(self, name: str, part: type) -> None:
@@ -123,6 +125,12 @@ class Family:
                     "part", f"{address(type(value))} lacks @component, or was defined anew"
                 )
             return value
+        if isinstance(value, type):
+            raise PydanticCustomError(
+                "part", f"expected an object, as {value.__name__}(...) is one"
+            )
+        if callable(value) and self.functions:
+            raise PydanticCustomError("part", f"expected no function; {self.functions}")
         if not isinstance(value, Mapping):
             raise PydanticCustomError("dataclass_type", "expected a table")
         if self.tag in value:
@@ -149,11 +157,11 @@ class Family:
 FAMILIES: dict[type, Family] = {}
 
 
-def family(title: str, tag: str, group: str) -> Callable[[T], T]:
+def family(title: str, tag: str, group: str, functions: str = "") -> Callable[[T], T]:
     """Make a class the base of a family of parts."""
 
     def decorate(base: T) -> T:
-        FAMILIES[base] = Family(base, title, tag, group)
+        FAMILIES[base] = Family(base, title, tag, group, functions)
         return base
 
     return decorate

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,6 +11,7 @@ import click
 
 from mesokit import method as methods
 from mesokit.cli.commands import CASE, JSON, SET, THREADS, axes_of, cli, naming, read
+from mesokit.cli.completion import beginning
 from mesokit.cli.words import in_json, patience, show_table
 from mesokit.errors import CaseError
 
@@ -16,29 +19,47 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 TEMPLATES = methods.templates()
+EXAMPLES = methods.examples()
+KNOWN = TEMPLATES | EXAMPLES
+
+
+def _listed(names: Iterable[str]) -> str:
+    """Names in words; of those in a folder, which are many, the first stands for all."""
+    folders: dict[str, str] = {}
+    for name in names:
+        folders.setdefault(name.partition("/")[0], name)
+    return ", ".join(f"{name} ..." if "/" in name else name for name in folders.values())
+
+
 SCHEMA = "case.schema.json"
 
 
 @cli.command(
     help="Write a commented case NAME.toml: "
-    f"{', '.join(TEMPLATES)}.\n\nWith another NAME, say which --template. Beside it comes "
+    f"{', '.join(TEMPLATES)}, or one of the examples: {_listed(EXAMPLES)}.\n\n"
+    "With another NAME, say which --template. Beside it comes "
     f"{SCHEMA}, by which editors complete and check all cases of the folder."
 )
-@click.argument("name")
-@click.option("--template", type=click.Choice(list(TEMPLATES)), help="What to start from.")
+@click.argument("name", shell_complete=lambda context, parameter, text: beginning(text, KNOWN))
+@click.option(
+    "--template", type=click.Choice(list(KNOWN)), metavar="NAME", help="What to start from."
+)
 def new(name: str, template: str | None) -> None:
     """Write a commented case."""
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
-    template = template or (path.stem if path.stem in TEMPLATES else None)
+    if template is None and name.removesuffix(".toml") in KNOWN:
+        template, path = name.removesuffix(".toml"), Path(path.name)
     if template is None:
-        from mesokit.case.component import nearest, one_of
+        from mesokit.case.component import nearest
 
         raise CaseError(
-            f"{name}: no such template{nearest(path.stem, TEMPLATES)} (give one of them, "
-            f"or --template: {one_of(list(TEMPLATES))})"
+            f"{name}: no such template{nearest(path.stem, KNOWN)} (give one of them, "
+            f"or --template: {_listed(KNOWN)})"
         )
-    text = TEMPLATES[template].read_text(encoding="utf-8")
-    text = text.replace(f"{template}.toml", path.name).replace(f"{template}/", f"{path.stem}/")
+    source = KNOWN[template]
+    text = source.read_text(encoding="utf-8")
+    said = rf"(^# .*?\bmesokit .*?\b){template.rpartition('/')[2]}(?=\.toml|/| |$)"
+    text = re.sub(said, rf"\g<1>{path.stem}", text, flags=re.M)
     try:
         with open(path, "x", encoding="utf-8") as file:
             file.write(f"#:schema ./{SCHEMA}\n{text}")
@@ -48,6 +69,12 @@ def new(name: str, template: str | None) -> None:
     from mesokit.io.atomic import write_text
 
     write_text(path.with_name(SCHEMA), schema_text())  # for the parts that are installed now
+    for other in re.findall(
+        r'^file = "([\w.-]+)"', text, flags=re.M
+    ):  # such as a picture of solids
+        beside = path.with_name(other)
+        if not beside.exists():
+            beside.write_bytes((source.parent / other).read_bytes())
     click.echo(
         f"wrote {path} (and {SCHEMA}, for editors); next: mesokit check {path}, mesokit run {path}"
     )

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from mesokit import __version__
+from mesokit.cli.completion import keys
 from mesokit.errors import CaseError, RunError
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ def cli() -> None:
 
 
 CASE = click.Path(dir_okay=False, path_type=Path)
+FORMATS = ("png", "pdf", "svg")  # of figures
 RUN = click.Path(file_okay=False, path_type=Path)
 
 
@@ -45,6 +47,7 @@ SET = click.option(
     "settings",
     multiple=True,
     callback=_settings,
+    shell_complete=keys,
     metavar="KEY=VALUE",
     help="Replace a value of the case, such as fluid.density=5. May be repeated.",
 )
@@ -84,3 +87,13 @@ def require_run(run: Path) -> None:
         RunDirectory.existing(run)
     except RunError as error:
         raise CaseError(str(error)) from None
+
+
+def result_named(files: Any, name: str) -> Any:
+    """The result of a run that --result names; CaseError says which there are."""
+    if name in files:
+        return files[name]
+    from mesokit.case.component import nearest
+
+    known = f"{', '.join(files) or 'none'}{nearest(name, files)}"
+    raise CaseError(f"--result {name}: no such result; there are {known}")

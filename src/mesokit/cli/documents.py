@@ -6,8 +6,7 @@ from pathlib import Path
 
 import click
 
-from mesokit.cli.commands import RUN, cli, require_run
-from mesokit.errors import CaseError
+from mesokit.cli.commands import RUN, cli, require_run, result_named
 
 FILE = click.Path(dir_okay=False, path_type=Path)
 
@@ -37,11 +36,4 @@ def table(run: Path, result: str | None, output: Path) -> None:
     if result is None:
         click.echo(files.to_csv(output))
         return
-    if result not in files:
-        from mesokit.case.component import nearest
-
-        known = ", ".join(files) or "none"
-        raise CaseError(
-            f"--result {result}: no such result; there are {known}{nearest(result, files)}"
-        )
-    click.echo(files[result].to_csv(output))
+    click.echo(result_named(files, result).to_csv(output))

@@ -8,7 +8,8 @@ from typing import Any
 
 import click
 
-from mesokit.cli.commands import RUN, axes_of, cli, require_run
+from mesokit.cli.commands import FORMATS, RUN, axes_of, cli, require_run, result_named
+from mesokit.cli.completion import kinds
 from mesokit.cli.words import say
 from mesokit.errors import CaseError
 
@@ -69,33 +70,59 @@ def _choices(command: Any) -> Any:
 
 @cli.command()
 @click.argument("run", type=RUN)
-@click.option("--kind", help=f"Draw the flow: {KIND}.")
+@click.option("--kind", shell_complete=kinds, help=f"Draw the flow: {KIND}.")
 @_choices
-@click.option("--output", type=FILE, help="PNG, PDF or SVG (RUN/flow-KIND.png unless said).")
-def plot(run: Path, kind: str | None, output: Path | None, **choices: Any) -> None:
-    """Draw the pictures of RUN again, or with --kind one of the flow."""
+@click.option("--result", metavar="NAME", help="Draw this result alone.")
+@click.option("--format", "kind_of_file", type=click.Choice(FORMATS), help="[png]")
+@click.option("--width", type=click.FloatRange(2, 20), help="Inches; a column has 3.4.  [6.4]")
+@click.option("--output", type=FILE, help="The file of one picture: PNG, PDF or SVG.")
+def plot(run: Path, output: Path | None, width: float | None, **given: Any) -> None:
+    """Draw the results of RUN again, one of them, or with --kind a picture of the flow."""
     import mesokit
 
-    given = {"output": output} | choices
-    for option in () if kind else [name for name, value in given.items() if value is not None]:
-        raise CaseError(f"--{option}: only for a picture of the flow; add --kind ({KIND})")
+    kind, name = given.pop("kind"), given.pop("result")
+    ending = f".{given.pop('kind_of_file') or 'png'}"
+    _require_one(kind, name, output, given)
     require_run(run)
     files = mesokit.open(run)
     if not files.ended and files.results:
         say(f"{run}: the run {files.state}; what is drawn is so far")
-    if kind is None:
-        for picture in files.plot():
-            click.echo(picture)
-        return
-    from mesokit.report import save_figure
+    if kind is not None:
+        from mesokit.report import save_figure
 
-    figure = files.flow(kind, **choices)
-    click.echo(save_figure(figure, output or files.directory.flow_file(kind, ".png")))
+        figure = files.flow(kind, width=width, **given)
+        click.echo(save_figure(figure, output or files.directory.flow_file(kind, ending)))
+    elif name is not None:
+        from mesokit.report import save
+
+        result = result_named(files, name)
+        path = output or files.path / f"{name}{ending}"
+        origin = files.path.resolve().name
+        click.echo(save(result, path, files.case, width=width, run=origin))
+    else:
+        for picture in files.plot(ending=ending, width=width):
+            click.echo(picture)
+
+
+def _require_one(kind: str | None, name: str | None, output: Path | None, given: Any) -> None:
+    """Raise CaseError for options that have no meaning together."""
+    if kind and name:
+        raise CaseError(f"--result {name}: not with --kind; draw one of them")
+    for option, value in given.items():
+        if value is not None and not kind:
+            raise CaseError(f"--{option}: only for a picture of the flow; add --kind ({KIND})")
+    if output is not None and not (kind or name):
+        raise CaseError(
+            f"--output {output}: there are many pictures; add --result NAME or --kind ({KIND}), "
+            "or draw all in another --format"
+        )
 
 
 @cli.command()
 @click.argument("run", type=RUN)
-@click.option("--kind", default="speed", help=f"What is drawn: {KIND}.  [speed]")
+@click.option(
+    "--kind", default="speed", shell_complete=kinds, help=f"What is drawn: {KIND}.  [speed]"
+)
 @_choices
 @click.option("--fps", default=15.0, help="Frames shown per second.  [15]")
 @click.option("--output", type=FILE, help="MP4 or GIF (RUN/flow-KIND.mp4 unless said).")

@@ -12,6 +12,7 @@ import click
 
 from mesokit.cli.commands import (
     CASE,
+    FORMATS,
     JSON,
     RUN,
     SET,
@@ -181,7 +182,9 @@ def _files_of_run(output: Path) -> list[Path]:
     figures: list[Path] = []
     with contextlib.suppress(CaseError):
         figures = [run.figure_file(o.label) for o in Case.from_toml(run.case_file).observe]
-    figures += [run.flow_file(kind, end) for kind in KINDS for end in (".png", ".mp4")]
+    figures += [run.flow_file(kind, ".png") for kind in KINDS]
+    figures = [figure.with_suffix(f".{end}") for figure in figures for end in FORMATS]
+    figures += [run.flow_file(kind, end) for kind in KINDS for end in (".mp4", ".gif")]
     files = [run.data_file, run.checkpoint_file, run.log_file, run.report_file]
     files += [run.provenance_file]
     files += [run.trajectory_folder, run.trajectory_remains, run.trajectory_coming]

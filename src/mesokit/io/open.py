@@ -138,7 +138,7 @@ class RunFiles(Shown, Mapping[str, "Result"]):
 
     def record(self) -> dict[str, Any]:
         """What `mesokit info --json` prints: plain numbers and texts."""
-        results = self.results if self.ended else {}
+        results = self.so_far()
         return {
             "run": str(self.path),
             "title": self.case.title,
@@ -174,21 +174,37 @@ class RunFiles(Shown, Mapping[str, "Result"]):
 
         return write_report(self, path, films)
 
-    def plot(self, folder: str | Path | None = None) -> list[Path]:
-        """Draw every result into the folder (that of the run unless said)."""
+    def plot(
+        self,
+        folder: str | Path | None = None,
+        *,
+        ending: str = ".png",
+        width: float | None = None,
+    ) -> list[Path]:
+        """Draw every result into the folder (that of the run unless said).
+
+        `ending` is ".png", ".pdf" or ".svg", `width` that of the figures, in inches.
+        """
         from mesokit.report import save_all
 
-        return save_all(self.results.values(), folder or self.path, self.case)
+        name = self.path.resolve().name
+        where, results = folder or self.path, self.results.values()
+        return save_all(results, where, self.case, ending=ending, width=width, run=name)
 
     def flow(self, kind: str = "four", **choices: Any) -> Any:
         """A picture of the flow; `mesokit.report.flow.picture` says what may be chosen.
 
-        `files.flow("speed", region=((0, 20), (0, 10)), window=(50, 90))` is a Matplotlib figure.
+        `files.flow("speed", region=((0, 20), (0, 10)), window=(50, 90))` is a Matplotlib figure;
+        `width` is that of the figure, in inches.
         """
-        from mesokit.report.flow import CHOICES, picture
+        from mesokit.report.finish.origin import origin_of
+        from mesokit.report.flow import CHOICES, page_width, picture
 
-        require_known(choices, CHOICES)
-        return picture(self.case, self.results, self.trajectory, kind, **choices)
+        with page_width(choices.pop("width", None)):
+            require_known(choices, CHOICES)
+            figure = picture(self.case, self.results, self.trajectory, kind, **choices)
+        figure.origin = origin_of(self.case, self.path.resolve().name)
+        return figure
 
     def animate(self, path: str | Path, kind: str = "speed", **choices: Any) -> Film:
         """Write a film of the flow, MP4 or GIF by its ending; see `mesokit.report.flow.animate`.
@@ -268,7 +284,7 @@ class RunFiles(Shown, Mapping[str, "Result"]):
             f"mesokit resume {self.path}"
         )
 
-    def _there(self) -> dict[str, Result]:
+    def so_far(self) -> dict[str, Result]:
         """The results, none if there are none yet or what they were in is lost."""
         with contextlib.suppress(RunError) if not self.ended else contextlib.nullcontext():
             return self.results
@@ -276,7 +292,7 @@ class RunFiles(Shown, Mapping[str, "Result"]):
 
     def _card(self) -> dict[str, Any]:
         words = self.case.title if self.ended else f"{self.case.title}: {self.state}"
-        found = self._there().values()
+        found = self.so_far().values()
         text = self.case.to_toml()
         return {
             "title": f"mesokit run {self.path}",
@@ -292,7 +308,7 @@ class RunFiles(Shown, Mapping[str, "Result"]):
             lines.append("  " + str(self.si).replace("\n", "\n  "))
         if not self.ended:
             lines.append(f"  {self.state}")
-        lines += ["  " + repr(result).replace("\n", "\n  ") for result in self._there().values()]
+        lines += ["  " + repr(result).replace("\n", "\n  ") for result in self.so_far().values()]
         if self.ended and self.trajectory is not None:
             lines.append(f"  {self.trajectory!r}")
         return "\n".join(lines)

@@ -29,8 +29,11 @@ def sources() -> dict[str, str | None]:
     64
     """
     code = hashlib.sha256()
-    for path in sorted(PACKAGE.rglob("*.py")):
-        code.update(path.relative_to(PACKAGE).as_posix().encode() + b"\0")
+    files = {path.relative_to(PACKAGE).as_posix(): path for path in PACKAGE.rglob("*.py")}
+    for name, path in sorted(files.items()):
+        if name.startswith("examples/"):  # in a wheel alone
+            continue
+        code.update(name.encode() + b"\0")
         code.update(path.read_bytes().replace(b"\r\n", b"\n") + b"\0")
     return {"digest": code.hexdigest(), **(_checked_out() or _installed())}
 
@@ -50,8 +53,11 @@ def _git(root: Path, *words: str) -> str | None:
     try:
         done = subprocess.run(
             ["git", "-C", str(root), "--no-optional-locks", *words],
-            capture_output=True, text=True, timeout=SECONDS, stdin=subprocess.DEVNULL,
-        )  # fmt: skip
+            capture_output=True,
+            text=True,
+            timeout=SECONDS,
+            stdin=subprocess.DEVNULL,
+        )
     except (OSError, subprocess.SubprocessError, ValueError):
         return None
     return done.stdout.strip() if done.returncode == 0 else None

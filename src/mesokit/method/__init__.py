@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib
 import importlib.metadata
 import importlib.resources
+import pathlib
 from typing import Any
 
 METHODS = {  # what `run.method` says: the module that holds the METHOD
@@ -36,3 +37,21 @@ def templates() -> dict[str, Any]:
     folders = [package / "templates" for package in packages if (package / "templates").is_dir()]
     files = [file for folder in folders for file in folder.iterdir()]
     return {file.name.removesuffix(".toml"): file for file in sorted(files, key=lambda f: f.name)}
+
+
+def examples() -> dict[str, Any]:
+    """Commented cases from a channel with a cylinder to thinning dumbbells, by name.
+
+    Wheels carry them inside the package; in a clone they lie beside `src`.
+    """
+    package = importlib.resources.files("mesokit")
+    folder = package / "examples"
+    if not folder.is_dir():
+        folder = pathlib.Path(str(package)).parents[1] / "examples"
+    found = {}
+    for place, start in ((folder, ""), (folder / "viscoelastic", "viscoelastic/")):
+        files = place.iterdir() if place.is_dir() else ()
+        for file in sorted(files, key=lambda f: f.name):
+            if file.name.endswith(".toml"):
+                found[start + file.name.removesuffix(".toml")] = file
+    return found

@@ -33,7 +33,9 @@ class Bond(ABC):
         return None
 
 
-@family("pair potential", "rule", "mesokit.potential")
+@family(
+    "pair potential", "rule", "mesokit.potential", "Table.from_function makes a potential of one"
+)
 @component
 class Pair(ABC):
     """What acts between any two beads, or a bead and a wall: `central` below."""

@@ -10,12 +10,13 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mesokit.errors import RunError
-from mesokit.io.atomic import replacing
 from mesokit.observe.shared.result import Result
 from mesokit.report import correlation, curve, field, forces, probe, profile, series, tensor, wake
 from mesokit.report.caption import LINE, below, compared
+from mesokit.report.finish.origin import origin_of
+from mesokit.report.finish.saving import save_figure
 from mesokit.report.finish.several import add
+from mesokit.report.flow.layout import page_width
 from mesokit.report.style import HEIGHT, STYLE, WIDTH
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "signal": probe.draw,
 }
 MAPS = ("map", "frames")
+LEAST_HEIGHT, LEAST_FONT = 0.7, 0.75  # of the usual, however narrow a figure is
 
 
 def plot(
@@ -48,12 +50,13 @@ def plot(
     *,
     label: str = "",
     colour: str = "",
+    width: float | None = None,
 ) -> Any:
     """Draw a result into a new figure, which is returned, or into the axes `ax`, which are then.
 
     In given axes the main panel alone is drawn, without the comparisons; a second result in the
     same axes has another colour. `label` is its name in the legend, `colour` that of its data. The
-    case of the run adds its solids to a map.
+    case of the run adds its solids to a map; `width` is that of a new figure, in inches.
     """
     import matplotlib as mpl
 
@@ -64,14 +67,29 @@ def plot(
             into = partial(_draw_into, result, ax, case)
             into() if result.drawing in MAPS else add(ax, into, label, colour)
             return ax
+    wide = WIDTH if width is None else width
+    with mpl.rc_context(STYLE | fonts(wide)), page_width(width):
         if result.drawing in MAPS:
             return field.draw(result, None, case)
-        text = compared(result.comparisons, WIDTH)
-        lines = LINE * len(text.splitlines())
-        figure = ShownFigure(figsize=(WIDTH, HEIGHT + lines), layout="constrained")
+        text = compared(result.comparisons, wide)
+        height = HEIGHT * max(wide / WIDTH, LEAST_HEIGHT) + LINE * len(text.splitlines())
+        figure = ShownFigure(figsize=(wide, height), layout="constrained")
         DRAW[result.drawing](result, figure, None)
         below(figure, text)
         return figure
+
+
+def fonts(width: float) -> dict[str, float]:
+    """Sizes of letters in a figure that is narrower than usual: no smaller than can be read.
+
+    >>> fonts(6.4), fonts(3.2)["font.size"]
+    ({}, 7.5)
+    """
+    if width >= WIDTH:
+        return {}
+    names = ("font.size", "axes.labelsize", "legend.fontsize")
+    factor = max(width / WIDTH, LEAST_FONT)
+    return {name: STYLE[name] * factor for name in names} | {"axes.titlesize": 10 * factor}
 
 
 def _draw_into(result: Result, ax: Any, case: Case | None) -> None:
@@ -81,25 +99,41 @@ def _draw_into(result: Result, ax: Any, case: Case | None) -> None:
         DRAW[result.drawing](result, ax.figure, ax)
 
 
-def save(result: Result, path: str | Path, case: Case | None = None) -> Path:
-    """Draw a result into a file (PNG, PDF, SVG by its ending). Raises RunError."""
-    return save_figure(plot(result, case=case), path)
+def save(
+    result: Result,
+    path: str | Path,
+    case: Case | None = None,
+    *,
+    width: float | None = None,
+    run: str = "",
+) -> Path:
+    """Draw a result into a file (PNG, PDF, SVG by its ending). Raises RunError.
+
+    The case, and the name of the `run`, stand below the figure and in the metadata of the file.
+    """
+    figure = plot(result, case=case, width=width)
+    if case is not None:
+        figure.origin = origin_of(case, run)
+    return save_figure(figure, path)
 
 
-def save_figure(figure: Any, path: str | Path) -> Path:
-    """Write a figure into a file (PNG, PDF, SVG by its ending). Raises RunError."""
-    import matplotlib as mpl
+def save_all(
+    results: Iterable[Result],
+    folder: str | Path,
+    case: Case | None = None,
+    *,
+    ending: str = ".png",
+    width: float | None = None,
+    run: str = "",
+) -> list[Path]:
+    """Draw each result that has samples into `folder`/name.png; returns the files.
 
-    path = Path(path)
-    kind = path.suffix[1:].lower() or "png"
-    if kind not in figure.canvas.get_supported_filetypes():
-        known = ", ".join(sorted(figure.canvas.get_supported_filetypes()))
-        raise RunError(f"{path}: no figure of that kind; choose one of {known}")
-    with mpl.rc_context(STYLE), replacing(path) as temporary:
-        figure.savefig(temporary, format=kind)
-    return path
-
-
-def save_all(results: Iterable[Result], folder: str | Path, case: Case | None = None) -> list[Path]:
-    """Draw each result that has samples into `folder`/name.png; returns the files."""
-    return [save(r, Path(folder) / f"{r.name}.png", case) for r in results if r.samples]
+    `run` is the name of the run, that of the folder unless said.
+    """
+    folder = Path(folder)
+    name = run or folder.resolve().name
+    return [
+        save(r, folder / f"{r.name}{ending}", case, width=width, run=name)
+        for r in results
+        if r.samples
+    ]

@@ -14,6 +14,7 @@ SHOWN = 12  # bodies in one figure
 MORE = 1.7  # inches for each further row
 PIECES = 120  # means that a force in time is drawn with
 BAR = r"$\pm$ one standard error"
+ROW = 1.2  # entries of the legend in an inch
 
 Places = NDArray[np.intp]
 
@@ -61,7 +62,13 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     theory = handles.pop("theory", None)
     handles |= {"theory": theory} if theory is not None else {}
     number = len(handles)
-    figure.legend(handles.values(), handles, loc="outside upper center", ncols=number, title=BAR)
+    figure.legend(
+        handles.values(),
+        handles,
+        loc="outside upper center",
+        ncols=min(number, int(ROW * figure.get_figwidth())),
+        title=BAR,
+    )
 
 
 def _about(result: Result, bodies: Places, name: str) -> str:

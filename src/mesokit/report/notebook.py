@@ -10,7 +10,12 @@ from matplotlib.figure import Figure
 
 
 class ShownFigure(Figure):
-    """A figure made without pyplot, which draws itself where a notebook asks for a picture."""
+    """A figure made without pyplot, which draws itself where a notebook asks for a picture.
+
+    `origin` says where it comes from (`mesokit.report.finish.origin`), None if nobody knows.
+    """
+
+    origin: Any = None
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)

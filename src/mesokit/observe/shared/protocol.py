@@ -40,7 +40,12 @@ class Accumulator(Protocol):
         """What the samples so far say."""
 
 
-@family("observable", "quantity", "mesokit.observable")
+@family(
+    "observable",
+    "quantity",
+    "mesokit.observable",
+    "Simulation(..., callbacks=[every(10, function)]) calls one, a class makes an observable",
+)
 @component
 class Observable(ABC):
     """Something measured while the fluid runs."""

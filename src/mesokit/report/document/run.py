@@ -52,9 +52,8 @@ class Files(Protocol):
     def state(self) -> str:
         """How far it has come, if it has not ended."""
 
-    @property
-    def results(self) -> Mapping[str, Result]:
-        """Results by name."""
+    def so_far(self) -> Mapping[str, Result]:
+        """Results by name, those so far of a run that has not ended."""
 
 
 def write_report(files: Files, path: str | Path | None = None, films: bool = False) -> Path:
@@ -92,7 +91,7 @@ def write_report(files: Files, path: str | Path | None = None, films: bool = Fal
 def page(files: Files, path: Path, films: bool = False) -> str:
     """The report of a run as HTML, for a file `path`."""
     case, record = files.case, files.provenance
-    results = list(files.results.values()) if files.ended else []
+    results = list(files.so_far().values())
     names = [result.name for result in results]
     rows, warnings = _derived(case)
     sections: dict[str, Any] = {
@@ -162,17 +161,30 @@ def _origin(record: Mapping[str, Any]) -> list[Row]:
     """Versions, machine and times, so far as they are on record."""
     versions = ", ".join(f"{name} {v}" for name, v in record.get("versions", {}).items())
     rows = [("versions", versions, "")] if versions else []
-    for key in ("commit", "sources", "seed", "case_digest", "host", "system", "processor", "cores",
+    rows += _sources(record.get("sources") or {})
+    for key in ("seed", "case_digest", "host", "system", "processor", "cores",
                 "threads", "started", "ended", "failed"):  # fmt: skip
         if record.get(key) is not None:
             rows.append((key.replace("_", " "), str(record[key]), ""))
     for key in ("resumed", "parts"):
         if record.get(key):
             rows.append((key, ", ".join(map(str, record[key])), ""))
+    for key, parent in (record.get("starts_from") or {}).items():
+        rows.append((key, str(parent.get("path", "")), f"sha256 {parent.get('sha256', 'unknown')}"))
     if record.get("command"):
         program, *words = map(str, record["command"])
         name = "mesokit" if Path(program).name in PROGRAMS else Path(program).name
         rows.append(("command", shlex.join([name, *words]), ""))
+    return rows
+
+
+def _sources(record: Mapping[str, Any]) -> list[Row]:
+    """Which state of mesokit made the numbers."""
+    rows = []
+    if record.get("commit"):
+        rows.append(("commit", record["commit"], "changed since" * (record["changed"] == "true")))
+    if record.get("digest"):
+        rows.append(("sources", f"sha256 {record['digest']}", ""))
     return rows
 
 
@@ -198,5 +210,8 @@ def _repeat(record: Mapping[str, Any]) -> str:
 
 
 def _cite(record: Mapping[str, Any]) -> str:
+    """The program as a reference, with the version that made the numbers."""
     version = record.get("versions", {}).get("mesokit", "")
-    return f"The mesokit developers, mesokit, version {version}." if version else "mesokit."
+    commit = (record.get("sources") or {}).get("commit")
+    of_it = f", version {version}" * bool(version) + f", commit {commit}" * bool(commit)
+    return f"The mesokit developers, mesokit: mesoscale particle simulation in Python{of_it}."

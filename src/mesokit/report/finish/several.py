@@ -87,7 +87,7 @@ def _paint(artist: Any, colour: str) -> None:
             artist.set_markerfacecolor(colour)
         artist.set_markeredgecolor(colour)
     elif isinstance(artist, LineCollection) and not any(
-        grey(colour) for colour in to_rgba_array(artist.get_colors())
+        grey(one) for one in to_rgba_array(artist.get_colors())
     ):
         artist.set_color(colour)
 

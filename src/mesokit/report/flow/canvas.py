@@ -27,6 +27,7 @@ LOOK = STYLE | {
     "axes.labelsize": 10,
     "hatch.linewidth": 0.4,
 }
+NAMED = 3.0  # inches of a flat panel that has its name beside the colour bar
 MARGIN, LETTERS = 0.12, 15.0  # of the note: inches at its sides, letters in an inch
 
 
@@ -101,7 +102,8 @@ class Canvas:
         else:
             ax.tick_params(labelleft=False)
         if len(self.panels) > 1:
-            title = f"({'abcd'[number]}) {self.panels[number].TITLE}"
+            named = not self.place.flat or box.width > NAMED
+            title = f"({'abcd'[number]}) {self.panels[number].TITLE * named}".rstrip()
             ax.set_title(title, loc="left", fontsize=10)
 
     def _add(self, box: Box) -> Any:

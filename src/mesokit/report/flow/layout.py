@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import contextlib
+from collections.abc import Iterator, Sequence
+from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -12,6 +14,7 @@ LOWEST = 0.35  # panel with room for its label
 LEFT, BOTTOM, TOP = 0.72, 0.56, 0.34
 GAP = 0.3  # on the right of a panel without a colour bar
 BAR, BAR_ROOM = 0.14, 0.98  # colour bar on the right, with its numbers and label
+APART = 0.2  # more of it where another panel follows, whose ticks would stand at the label
 SLENDER = 2.2  # ratio of the sides beyond which panels stand in one row or column
 FLAT_BAR, FLAT_ROOM = 0.09, 0.48  # colour bar above a flat panel
 KEY_BESIDE, KEY_ROOM = 1.9, 0.22  # width of a panel that has title and key above it in one line
@@ -42,6 +45,19 @@ class Layout:
     columns: int
 
 
+_WIDTH: ContextVar[float | None] = ContextVar("width of the page", default=None)
+
+
+@contextlib.contextmanager
+def page_width(width: float | None) -> Iterator[None]:
+    """Pictures that are made within are so wide, in inches, with one panel in a row if narrow."""
+    before = _WIDTH.set(width)
+    try:
+        yield
+    finally:
+        _WIDTH.reset(before)
+
+
 def layout(
     extent: tuple[float, float], bars: Sequence[bool], stamp: bool, lines: int = 0
 ) -> Layout:
@@ -58,12 +74,16 @@ def layout(
     bottom = BOTTOM + LINE * lines
     count, flat = len(bars), extent[0] > SLENDER * extent[1]
     narrow = extent[1] > SLENDER * extent[0]
-    columns = 1 if flat else count if narrow else min(count, 2)
+    page = _WIDTH.get()
+    columns = 1 if flat or (page or PAGE) < PAGE else count if narrow else min(count, 2)
     rows = -(-count // columns)
     rights = [
-        BAR_ROOM if not flat and any(bars[column::columns]) else GAP for column in range(columns)
+        BAR_ROOM + APART * (column + 1 < columns)
+        if not flat and any(bars[column::columns])
+        else GAP
+        for column in range(columns)
     ]
-    room = (PAGE if columns == 1 else WIDE_PAGE) - LEFT - sum(rights)
+    room = (page or (PAGE if columns == 1 else WIDE_PAGE)) - LEFT - sum(rights)
     scale = min(room / columns / extent[0], TALLEST / min(rows, 2) / extent[1])
     width, height = scale * extent[0], max(LOWEST, scale * extent[1])
     top = FLAT_ROOM if flat and (any(bars) or count > 1) else TOP

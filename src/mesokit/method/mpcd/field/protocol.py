@@ -30,7 +30,7 @@ class Driven(NamedTuple):
     profile: Callable[[Array], Array] | None
 
 
-@family("body force", "rule", "mesokit.field")
+@family("body force", "rule", "mesokit.field", "SampledForce.from_function makes a force of one")
 @component
 class Force(ABC):
     """What accelerates the fluid and all solutes."""

@@ -1,0 +1,45 @@
+"""Where a figure comes from, written into its file: below it, and in its metadata."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from mesokit import __version__
+from mesokit.io.checkpoint import digest
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+
+class Origin(NamedTuple):
+    """The title and digest of a case, its seed, and the name of the folder of the run, if any."""
+
+    title: str
+    run: str
+    seed: int
+    digest: str
+
+    def line(self) -> str:
+        """What is written below a figure.
+
+        >>> Origin("Channel", "run-3", 7, "0a" * 32).line().startswith("Channel, run run-3, seed 7")
+        True
+        """
+        words = [self.title, f"run {self.run}" * bool(self.run), f"seed {self.seed}"]
+        return ", ".join([*filter(None, words), f"mesokit {__version__}"])
+
+    def metadata(self, kind: str) -> dict[str, str]:
+        """Entries of a PNG, PDF or SVG file, none for other kinds."""
+        program, title = f"mesokit {__version__}", self.title or self.run
+        about = f"{self.line()}; case sha256 {self.digest}"
+        known = {
+            "png": {"Title": title, "Software": program, "Description": about},
+            "pdf": {"Title": title, "Creator": program, "Subject": about},
+            "svg": {"Title": title, "Creator": program, "Description": about},
+        }
+        return {key: text for key, text in known.get(kind, {}).items() if text}
+
+
+def origin_of(case: Case, run: str = "") -> Origin:
+    """Where figures of a case come from, and of which run."""
+    return Origin(case.title, run, case.run.seed, digest(case.to_toml()))

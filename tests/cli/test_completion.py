@@ -1,0 +1,99 @@
+"""What the shell offers, and what `mesokit new` starts from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from click.shell_completion import ShellComplete
+
+from mesokit import Case
+from mesokit.cli import (
+    end,  # noqa: F401  it registers the commands
+    main,
+)
+from mesokit.cli.cases import EXAMPLES, KNOWN
+from mesokit.cli.commands import cli
+
+ROOT = Path(__file__).parents[2]
+CASE = """
+[run]
+steps = 10
+[box]
+size = [9, 9]
+[fluid]
+collision = { rule = "srd" }
+[[wall]]
+shape = "plates"
+axis = "y"
+[[observe]]
+quantity = "velocity-profile"
+"""
+
+
+def offered(*words: str) -> list[str]:
+    *before, begun = words
+    shell = ShellComplete(cli, {}, "mesokit", "_MESOKIT_COMPLETE")
+    return [item.value for item in shell.get_completions(before, begun)]
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def new(*words: str) -> None:
+    with pytest.raises(SystemExit) as finish:
+        main(["new", *words])
+    assert not finish.value.code
+
+
+def test_pictures_and_templates() -> None:
+    assert offered("plot", "run", "--kind", "s") == ["streamlines", "speed"]
+    assert offered("animate", "run", "--kind", "vo") == ["vorticity"]
+    names = ["poiseuille", "polymer_channel", "polymer_diffusion", "post_array"]
+    assert offered("new", "p") == offered("new", "x", "--template", "p") == names
+
+
+def test_keys_of_a_case(here: Path) -> None:
+    (here / "a.toml").write_text(CASE)
+    assert offered("run", "a.toml", "--set", "fluid.de") == ["fluid.density="]
+    assert "fluid.collision.angle=" in offered("check", "a.toml", "--set", "fluid.collision.")
+    walls = offered("run", "a.toml", "--set", "wall.1.")
+    assert "wall.1.axis=" in walls and not any("observe" in key for key in walls)
+    assert "observe.velocity-profile.every=" in offered("run", "a.toml", "--set", "observe.vel")
+    assert offered("run", "a.toml", "--set", "fluid.density=") == []
+    assert offered("run", "nowhere.toml", "--set", "fluid.") == []
+    assert offered("run", "--set", "fluid.") == []
+
+
+def test_what_is_offered_can_be_set(here: Path) -> None:
+    """Every key is one of the case: what is refused is the value."""
+    (here / "a.toml").write_text(CASE)
+    found = [key for start in ("fluid.", "run.", "box.", "wall.1.", "observe.velocity-profile.")
+             for key in offered("run", "a.toml", "--set", start)]  # fmt: skip
+    assert len(found) > 20
+    for key in found:
+        with pytest.raises(Exception, match=r"\S") as refused:
+            Case.from_toml(here / "a.toml", {key.rstrip("="): "{ no = 'value' }"})
+        last = key.rstrip("=").rpartition(".")[2]
+        assert f"{last}: unknown key" not in str(refused.value)
+
+
+@pytest.mark.parametrize("name", [*EXAMPLES][::6])
+def test_examples_are_templates(name: str, here: Path) -> None:
+    new("mine", "--template", name)
+    made = Case.from_toml(here / "mine.toml")
+    assert not made.missing_files()
+    text = (here / "mine.toml").read_text("utf-8")
+    stem = name.rpartition("/")[2]
+    assert "mesokit run mine.toml" in text and f"mesokit run {stem}" not in text
+    assert made.title == Case.from_toml(ROOT / "examples" / f"{name}.toml").title
+
+
+def test_a_picture_of_solids_comes_along(here: Path) -> None:
+    new("junction")
+    assert (here / "junction.png").read_bytes() == (ROOT / "examples/junction.png").read_bytes()
+    new("viscoelastic/fig_4_1")
+    assert (here / "fig_4_1.toml").exists() and "viscoelastic/fig_4_1" in KNOWN

@@ -1,0 +1,76 @@
+"""The wheel and the source distribution are whole, and work away from the sources."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from mesokit.io.sources import sources
+
+pytest.importorskip("hatchling")
+pytestmark = pytest.mark.long
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def python(*words: str | Path, cwd: Path, **environment: str) -> str:
+    done = subprocess.run(
+        [sys.executable, *map(str, words)], cwd=cwd, env=os.environ | environment,
+        capture_output=True, text=True,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory) -> Path:
+    """A folder with both distributions, and what is in them."""
+    folder = tmp_path_factory.mktemp("dist")
+    python("-m", "hatchling", "build", "-d", folder, cwd=ROOT)
+    (wheel,), (source,) = folder.glob("*.whl"), folder.glob("*.tar.gz")
+    shutil.unpack_archive(wheel, folder / "wheel", "zip")
+    shutil.unpack_archive(source, folder / "source")
+    return folder
+
+
+def files(folder: Path) -> set[str]:
+    return {p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()}
+
+
+def test_a_wheel_works_by_itself(built: Path, tmp_path: Path) -> None:
+    """Its code is that of the clone, to the digest; its templates and examples are there."""
+    there = files(built / "wheel")
+    assert {"mesokit/py.typed", "mesokit/__init__.pyi", "mesokit/examples/junction.png"} <= there
+    assert not [name for name in there if "__pycache__" in name or name.startswith("tests")]
+    code = (
+        "import mesokit; from mesokit.io.sources import sources\n"
+        "print(mesokit.__file__); print(sources()['digest']); print(sources()['commit'])"
+    )
+    place = {"PYTHONPATH": str(built / "wheel") + os.pathsep + os.environ.get("PYTHONPATH", "")}
+    file, digest, commit = python("-c", code, cwd=tmp_path, **place).splitlines()
+    assert Path(file).is_relative_to(built / "wheel")
+    assert (digest, commit) == (sources()["digest"], "None")
+    for name in ("bulk", "junction", "viscoelastic/fig_4_1"):
+        python("-m", "mesokit", "new", name, cwd=tmp_path, **place)
+    assert (tmp_path / "junction.png").exists()
+    told = python("-m", "mesokit", "check", "bulk.toml", cwd=tmp_path, **place)
+    assert "kinematic viscosity" in told
+
+
+def test_a_source_distribution_has_all_and_makes_the_same_wheel(built: Path) -> None:
+    (folder,) = (built / "source").iterdir()
+    there = files(folder)
+    for name in ("CHANGELOG.md", "docs/guide.md", "examples/sphere.toml", "benchmarks/__main__.py",
+                 "tests/conftest.py", "LICENSE", "pyproject.toml", "mkdocs.yml"):  # fmt: skip
+        assert name in there, name
+    left = (".pyc", ".npz", ".h5", ".log", ".nbi", ".tmp")
+    assert not [name for name in there if name.endswith(left) or "__pycache__" in name]
+    python("-m", "hatchling", "build", "-t", "wheel", "-d", built / "again", cwd=folder)
+    (wheel,) = (built / "again").glob("*.whl")
+    assert set(zipfile.ZipFile(wheel).namelist()) == files(built / "wheel")
