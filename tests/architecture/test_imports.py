@@ -75,6 +75,9 @@ ROWS = {
         "case", "errors", "io", "method.protocol", "observe.shared", "report", "running", "study",
         "simulation",
     ),
+    "report/dependence.py": (
+        "case", "errors", "observe.shared.result", "report", "statistics",
+    ),
     "cli/": (
         "case", "cli", "errors", "io", "=method", "method.protocol", "report", "running",
         "simulation", "study",
