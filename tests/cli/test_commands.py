@@ -216,6 +216,31 @@ def test_theory_refuses(options: list[str], words: str, capsys: Captured) -> Non
     assert words in refusal(capsys, "theory", *options)
 
 
+def test_theory_knows_fluids_of_chains(capsys: Captured) -> None:
+    """Beside the functions of theory, which have tests of their own."""
+    from mesokit import theory
+
+    chain = ["--length", "10", "--K", "0.5"]
+    assert ends("theory", "--thermostat", "maxwell-boltzmann", *chain) == 0
+    said = {line[:20].strip(): line[20:] for line in capsys.readouterr().out.splitlines()}
+    free = theory.transport(
+        dimension=3, density=10, timestep=0.1, angle=130, rule="srd",
+        thermostat="maxwell-boltzmann",
+    )  # fmt: skip
+    times = theory.rouse_times(theory.linear_modes(10), 1 / free.diffusion, K=0.5)
+    assert float(said["slowest mode time"].split()[0]) == pytest.approx(times.mode[0], rel=1e-3)
+    bonds = times.stress.sum() / 10  # kT per molecule, over the mass density
+    assert float(said["viscosity of bonds"].split()[0]) == pytest.approx(bonds, rel=1e-3)
+    assert "--K: only with --length" in refusal(capsys, "theory", "--K", "1")
+    assert "--K = -1" in refusal(capsys, "theory", "--length", "2", "--K", "-1")
+
+
+def test_theory_says_what_a_thermostat_changes(capsys: Captured) -> None:
+    ends("theory", "--dimension", "2", "--density", "16", "--timestep", "1", "--angle", "90")
+    said = " ".join(line[44:].strip() for line in capsys.readouterr().out.splitlines()[:3])
+    assert "which most cases have: viscosity +1" in said
+
+
 def test_theory_prints_coefficients_and_sources(capsys: Captured) -> None:
     assert ends("theory", "--angle", "130.06") == 0
     out = capsys.readouterr().out

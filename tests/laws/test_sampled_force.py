@@ -42,6 +42,23 @@ def test_a_sampled_sine_is_the_sinusoidal_force(folder, size):
     assert force.largest_in(size) == pytest.approx(0.3, rel=1e-9)
 
 
+def test_a_sampled_sine_drives_kolmogorov_flow(folder):
+    """As the sinusoidal force does, while both fluids still meet the same chances."""
+    size, k = (6, 12, 6), 2 * np.pi / 12
+    sine = SampledForce.from_function(
+        lambda x, y, z: (0.3 * np.sin(k * y), 0.0, 0.0), Box(size), folder / "k.npy", per_cell=8
+    )
+    waves = []
+    for force in (Sinusoidal(amplitude=0.0), Sinusoidal(amplitude=0.3), sine):
+        fluid = make_fluid(size, collision=AT(), force=force)
+        fluid.advance(10)
+        _, momentum = fluid.modes(np.array([[0.0, k, 0.0]]))
+        waves.append(momentum[0, 0] / fluid.n)
+    rest, driven, sampled = waves
+    assert abs(driven - rest) > 0.05
+    assert abs(sampled - driven) < 0.02 * abs(driven - rest), waves
+
+
 @pytest.mark.parametrize("d", [2, 3])
 def test_a_linear_potential_is_a_uniform_force(folder, d):
     """To rounding, also beyond plates; so is the same acceleration at all nodes."""

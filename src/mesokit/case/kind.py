@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 NUMBER = re.compile(r"-?\d+(\.\d+)?(e[-+]?\d+)?")
+FILE = re.compile(r'file = "[^"]*"')
 NOT_COMPILED = ("[[observe]]", "[trajectory]", "[log]", "[units]", "[run]", "title")
 
 
@@ -39,5 +40,6 @@ def kind_of(case: Case) -> str:
     """A name for the kind of a case."""
     tables = re.split(r"^(?=\[)", case.to_toml(), flags=re.MULTILINE)
     text = "".join(table.strip() for table in tables if not table.startswith(NOT_COMPILED))
+    text = FILE.sub("file", text)
     kind = case.run.method + NUMBER.sub(lambda n: "0" if float(n[0]) == 0 else "#", text)
     return hashlib.sha256(kind.encode(errors="surrogatepass")).hexdigest()[:16]

@@ -47,7 +47,9 @@ SCHEMA = "case.schema.json"
 def new(name: str, template: str | None) -> None:
     """Write a commented case."""
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
-    if template is None and name.removesuffix(".toml") in KNOWN:
+    if template is None and path.stem in KNOWN:
+        template = path.stem
+    elif template is None and name.removesuffix(".toml") in KNOWN:  # one in a folder of examples
         template, path = name.removesuffix(".toml"), Path(path.name)
     if template is None:
         from mesokit.case.component import nearest

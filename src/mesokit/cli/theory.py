@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import click
@@ -27,6 +28,8 @@ from mesokit.errors import CaseError
 )
 @click.option("--kT", "kT", default=1.0, help="Thermal energy.  [1]")
 @click.option("--mass", default=1.0, help="Mass of a particle.  [1]")
+@click.option("--length", type=click.IntRange(2), help="Beads of a chain, for a fluid of chains.")
+@click.option("--K", "K", type=float, help="Springs between beads: U = K r^2.")
 def theory(**given: Any) -> None:
     """Transport coefficients of a fluid, without running it."""
     _show_theory(given)
@@ -38,6 +41,12 @@ def _show_theory(given: dict[str, Any]) -> None:
     from mesokit.theory import origins, transport
     from mesokit.theory.transport import takes_angle
 
+    length, stiffness = given.pop("length"), given.pop("K")
+    if (length is None) != (stiffness is None):
+        alone, missing = ("--length", "--K") if stiffness is None else ("--K", "--length")
+        raise CaseError(f"{alone}: only with {missing}; give both for a fluid of chains")
+    if stiffness is not None and not 0 < stiffness < math.inf:
+        raise CaseError(f"--K = {stiffness:g}: expected a finite number above 0")
     try:
         build(Fluid, {key: given[key] for key in ("density", "timestep", "kT", "mass")})
     except CaseError as error:
@@ -70,4 +79,47 @@ def _show_theory(given: dict[str, Any]) -> None:
     ):
         rows.append((name, number(getattr(found, field), unit), known[field].source))
         rows.append(("", "", f"holds: {known[field].holds}"))
-    show_table(rows)
+    if length is not None:
+        rows += _chain_rows(found, given, length, stiffness)
+    show_table([("thermostat", given["thermostat"], _thermostat_word(given, found)), *rows])
+
+
+def _thermostat_word(given: dict[str, Any], found: Any) -> str:
+    """What the usual thermostat would make of the viscosity, where none was given."""
+    from mesokit.theory import transport
+
+    if given["thermostat"] != "none" or given["rule"] not in ("srd", "srd+a"):
+        return ""
+    try:
+        held = transport(**{**given, "thermostat": "maxwell-boltzmann"})
+    except ValueError:
+        return ""
+    percent = 100 * (held.viscosity / found.viscosity - 1)
+    return (
+        f"--thermostat maxwell-boltzmann, which most cases have: viscosity {percent:+.2g} %"
+        if abs(percent) >= 0.05
+        else ""
+    )
+
+
+def _chain_rows(
+    found: Any, given: dict[str, Any], length: int, stiffness: float
+) -> list[tuple[str, str, str]]:
+    """What Rouse makes of the fluid where its particles are beads of chains."""
+    from mesokit.theory import linear_modes, mean_square_bond, rouse_times
+
+    kT, density = given["kT"], given["density"]
+    times = rouse_times(linear_modes(length), kT / found.diffusion, K=stiffness)
+    bonds = density / length * kT * float(times.stress.sum())
+    eta = found.dynamic_viscosity + bonds
+    mass_density = density * given["mass"]
+    square = mean_square_bond(K=stiffness, dimension=given["dimension"], kT=kT)
+    note = "Rouse: beads with the friction of free particles; approximate"
+    return [
+        (f"chains of {length}", "", "the numbers above are those of the same fluid without bonds"),
+        ("mean square bond", number(square, "a^2"), "Boltzmann"),
+        ("slowest mode time", number(float(times.mode[0]), "time"), note),
+        ("slowest stress time", number(float(times.stress[0]), "time"), "half of it"),
+        ("viscosity of bonds", number(bonds / mass_density, "a^2/time"), "slow flow"),
+        ("kinematic viscosity", number(eta / mass_density, "a^2/time"), "with the bonds"),
+    ]

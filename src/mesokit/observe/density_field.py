@@ -10,10 +10,14 @@ from mesokit.case.component import component, tag
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.expected import setting
 from mesokit.observe.shared.field import Array, Field, FieldAccumulator
-from mesokit.observe.shared.result import Result
+from mesokit.observe.shared.result import Comparison, Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+
+
+OPEN = 0.5  # part of a bin that is fluid, for it to count
+SPREAD = "root mean square over the map, less what noise adds"
 
 
 @component
@@ -60,9 +64,26 @@ class DensityFieldAccumulator(FieldAccumulator):
             units={"value": self.case.box.density_unit} | dict.fromkeys(self.coordinates, "a"),
             expected=None if pressed else expected,
             theory="uniform",
+            comparisons=self.comparisons(),
             samples=self.blocks.count,
             extra={
                 "bins_per_cell": self.observable.bins_per_cell,
                 "dimension": self.case.box.dimension,
             },
         )
+
+    def comparisons(self) -> tuple[Comparison, ...]:
+        """How far the density differs from its mean, less what noise adds."""
+        if not setting.driven(self.case) or self.blocks.count < 4:
+            return ()
+        share = np.ones(self.bins)
+        if setting.obstructed(self.case):
+            share = solids_of(self.case).open_share(self.axes, self.bins)
+        open_bins = share > OPEN
+        density, error = (
+            a[0][open_bins] / share[open_bins] for a in (self.blocks.mean(), self.blocks.error())
+        )
+        mean = float(density.mean())
+        variance = float(((density - mean) ** 2 - error**2).mean())
+        spread = 100 * np.sqrt(max(variance, 0.0)) / mean
+        return (Comparison("density spread", spread, np.nan, unit="%", note=SPREAD),)

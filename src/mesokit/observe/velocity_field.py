@@ -9,12 +9,16 @@ import numpy as np
 from mesokit.case.box import AXES
 from mesokit.case.component import component, tag
 from mesokit.method.mpcd.expected import setting
-from mesokit.observe.shared.estimate import of_ratio
+from mesokit.observe.shared.estimate import Estimate, of_ratio
 from mesokit.observe.shared.field import Array, Field, FieldAccumulator
-from mesokit.observe.shared.result import Result
+from mesokit.observe.shared.result import Comparison, Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+
+
+FASTEST = 99.5  # percent of the bins; the few beyond are noise
+ABOVE = "of the mean flow; above 0.2 the fluid is compressible"
 
 
 @component
@@ -55,9 +59,28 @@ class VelocityFieldAccumulator(FieldAccumulator):
             units={"value": "a/tau"} | dict.fromkeys(self.coordinates, "a"),
             expected=self.expected(),
             theory="steady flow",
+            comparisons=self.comparisons(velocity),
             samples=self.blocks.count,
             extra={"bins_per_cell": self.observable.bins_per_cell},
         )
+
+    def comparisons(self, velocity: Estimate) -> tuple[Comparison, ...]:
+        """The Mach number where the flow is fastest, less what noise adds to the speed."""
+        coefficients = setting.transport(self.case)
+        if coefficients is None or not setting.driven(self.case) or self.case.box.shear_rate:
+            return ()
+        square = (velocity.value**2 - velocity.error**2).sum(axis=0)  # of bins
+        known = np.isfinite(square)
+        if not known.any():
+            return ()
+        place = np.nanargmin(abs(square - np.percentile(square[known], FASTEST)))
+        value, error = (a.reshape(len(a), -1)[:, place] for a in (velocity.value, velocity.error))
+        speed = float(np.sqrt(max(square.ravel()[place], 0.0)))
+        if speed == 0:
+            return ()
+        spread = float(np.sqrt(((value * error) ** 2).sum()) / speed)
+        sound = coefficients.sound_speed
+        return (Comparison("largest Mach number", speed / sound, spread / sound, note=ABOVE),)
 
     def expected(self) -> Array | None:
         """The flow where it varies along an axis of the map, else nan."""
