@@ -72,11 +72,8 @@ ROWS = {
     "report/": ("case", "errors", "geometry", "io", "method.protocol", "observe", "report"),
     "report/flow/state.py": ("case", "engine"),
     "study/": (
-        "case", "errors", "io", "method.protocol", "observe.shared", "report", "running", "study",
-        "simulation",
-    ),
-    "report/dependence.py": (
-        "case", "errors", "observe.shared.result", "report", "statistics",
+        "case", "errors", "io", "method.protocol", "observe.shared", "report", "running",
+        "simulation", "statistics", "study",
     ),
     "cli/": (
         "case", "cli", "errors", "io", "=method", "method.protocol", "report", "running",
@@ -87,7 +84,7 @@ ROWS = {
 # what loads modules by names that are data: public names, methods, parts, figures, options
 BY_NAME = {
     "__init__.py", "method/__init__.py", "case/registry.py", "case/outside.py",
-    "case/describe/shown.py", "observe/shared/result.py", "io/optional.py",
+    "case/describe/shown.py", "observe/shared/result.py", "io/optional.py", "study/work.py",
     "geometry/shape/mesh.py",
 }  # fmt: skip
 MOST_FILES = 16  # in a folder of machinery; of laws, quantities and pictures there may be more

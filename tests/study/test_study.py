@@ -93,7 +93,7 @@ def test_table_pools_the_seeds(study, tmp_path):
 
 def test_pictures(study):
     """Points with error bars, theory, and a fit that finds what the data say."""
-    from mesokit.report.dependence import Curve, fitted
+    from mesokit.study.dependence import Curve, fitted
 
     figure = study.plot("acceleration", "flow-rate.mean", fit="line")
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]

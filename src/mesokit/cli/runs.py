@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import shutil
-import warnings
-from collections.abc import Iterator
 from pathlib import Path
 
 import click
@@ -22,9 +20,9 @@ from mesokit.cli.commands import (
     read,
     require_run,
 )
-from mesokit.cli.words import in_json, patience, reason, say
-from mesokit.errors import CaseError, RunError
-from mesokit.running.signals import Stopped
+from mesokit.cli.outcome import show_results, stopping, warnings_said
+from mesokit.cli.words import in_json, patience, say
+from mesokit.errors import CaseError
 
 
 @cli.command()
@@ -107,7 +105,7 @@ def resume(
     from mesokit.simulation import Simulation
 
     longer = None if until_error else steps
-    with stopping(f"mesokit resume {run}"), _warnings_said():
+    with stopping(f"mesokit resume {run}"), warnings_said():
         simulation = Simulation.resume(run, threads=threads, steps=longer)
         if not (quiet or RunDirectory(run).checkpoint_file.exists()):
             say(f"{run}: no checkpoint yet; starting from step 0")
@@ -199,42 +197,3 @@ def _clear(output: Path) -> None:
             shutil.rmtree(path)
         else:
             path.unlink(missing_ok=True)
-
-
-@contextlib.contextmanager
-def _warnings_said() -> Iterator[None]:
-    """Warnings of the Python API as lines on standard error."""
-
-    def show(message: Warning | str, *where: object) -> None:
-        say(f"warning: {message}")
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("always", UserWarning)
-        warnings.showwarning = show  # type: ignore[assignment]
-        yield
-
-
-@contextlib.contextmanager
-def stopping(again: str) -> Iterator[None]:
-    """What was stopped can go on, by a command; a full disk is a failure of what runs."""
-    try:
-        yield
-    except Stopped as stop:
-        if not str(stop):  # stopped so hard that nothing is known
-            raise
-        say(f"mesokit: {stop}; go on with: {again}")
-        raise SystemExit(stop.status) from None
-    except OSError as error:
-        raise RunError(reason(error)) from None
-
-
-def show_results(output: Path) -> None:
-    """What is compared in a run, and its pictures."""
-    import mesokit
-
-    done = mesokit.open(output)
-    for result in done.results.values():
-        for comparison in result.comparisons:
-            click.echo(f"{result.name}: {comparison}")
-    for picture in sorted(output.glob("*.png")):
-        click.echo(f"picture: {picture}")

@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from mesokit.cli.commands import RUN, SET, cli, require_run
-from mesokit.cli.runs import stopping
+from mesokit.cli.outcome import show_results, stopping
 from mesokit.cli.words import say, show_table
 from mesokit.errors import CaseError, RunError
 
@@ -176,7 +176,6 @@ def _state(run: Any) -> str:
 @click.option("--quiet", is_flag=True, help="No summary; errors only.")
 def merge(runs: tuple[Path, ...], output: Path, quiet: bool) -> None:
     """Pool the observables of RUNs of one case with different seeds, as if they were one run."""
-    from mesokit.cli.runs import show_results
     from mesokit.study.merge import merge as merged
 
     for run in runs:
@@ -188,7 +187,6 @@ def merge(runs: tuple[Path, ...], output: Path, quiet: bool) -> None:
 
 def run_seeds(case: Path, seeds: int, output: Path, given: dict[str, Any]) -> None:
     """The command `run --seeds N`: a study of nothing but seeds, and what its runs say as one."""
-    from mesokit.cli.runs import show_results
     from mesokit.study.drive import StudyReporter
     from mesokit.study.study import Study
 

@@ -87,8 +87,9 @@ def _show_theory(given: dict[str, Any]) -> None:
 def _thermostat_word(given: dict[str, Any], found: Any) -> str:
     """What the usual thermostat would make of the viscosity, where none was given."""
     from mesokit.theory import transport
+    from mesokit.theory.transport import takes_angle
 
-    if given["thermostat"] != "none" or given["rule"] not in ("srd", "srd+a"):
+    if given["thermostat"] != "none" or not takes_angle(given["rule"]):
         return ""
     try:
         held = transport(**{**given, "thermostat": "maxwell-boltzmann"})

@@ -66,10 +66,8 @@ class Processes:
         command = [sys.executable, "-m", "mesokit.study.work", *self.arguments]
         pipes: Any = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
         paths = os.pathsep.join(["", *filter(None, sys.path)]).lstrip(os.pathsep)
-        return subprocess.Popen(
-            command, text=True, encoding="utf-8", env=os.environ | {"PYTHONPATH": paths},
-            **pipes, **apart,
-        )  # fmt: skip
+        environment = os.environ | {"PYTHONPATH": paths}
+        return subprocess.Popen(command, env=environment, encoding="utf-8", **pipes, **apart)
 
     @property
     def places(self) -> int:

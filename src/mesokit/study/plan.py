@@ -51,7 +51,7 @@ class Planned:
         """Steps done, by what the run says of itself while it goes on, or its last checkpoint."""
         run = RunDirectory(self.path)
         with contextlib.suppress(OSError, ValueError):
-            return int(run.progress_file.read_text())
+            return int(run.progress_file.read_text(encoding="utf-8"))
         with contextlib.suppress(RunError):
             return int(checkpoint.read_meta(run.checkpoint_file)["step"])
         return 0

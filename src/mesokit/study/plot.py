@@ -2,41 +2,49 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError
-from mesokit.report.dependence import Curve, draw
+from mesokit.study.axes import Axis
+from mesokit.study.dependence import Curve, draw
 from mesokit.study.plan import short_names
-
-if TYPE_CHECKING:
-    from mesokit.study.study import Study
-    from mesokit.study.table import Pooled
+from mesokit.study.table import Pooled
 
 
-def plot(study: Study, x: str, y: str, fit: str | None = None, log: bool | None = None) -> Any:
+def plot(
+    rows: Sequence[Pooled],
+    axes: Sequence[Axis],
+    key: str,
+    number: str,
+    fit: str | None = None,
+    log: bool | None = None,
+) -> Any:
     """A figure with error bars, what is expected, and a fit; a curve for each other value.
 
-    Raises CaseError for a key or number that is not there, or values that are no numbers.
+    `rows` are the table of a study, `axes` what it varies, `key` what the number is drawn against.
+    Raises CaseError for a number that is not there, or values that are no numbers.
     """
-    key = study.key(x)
-    rows = find_rows(study.table(), y)
-    linked = next(axis.keys for axis in study.axes if key in axis.keys)
-    others = [other for other in study.keys if other not in linked]
-    names = dict(zip(study.keys, short_names(study.keys), strict=True))
+    rows = find_rows(rows, number)
+    keys = [other for axis in axes for other in axis.keys]
+    linked = next(axis.keys for axis in axes if key in axis.keys)
+    names = dict(zip(keys, short_names(keys), strict=True))
     curves: dict[str, list[Pooled]] = {}
     for row in rows:
-        label = ", ".join(f"{names[other]} = {_word(row.point[other])}" for other in others)
+        others = [(names[other], row.point[other]) for other in keys if other not in linked]
+        label = ", ".join(f"{name} = {_word(value)}" for name, value in others)
         curves.setdefault(label, []).append(row)
     drawn = [_curve(label, key, group) for label, group in curves.items()]
-    number = rows[0].number
-    seeds = f"mean of {rows[0].runs} runs" if rows[0].runs > 1 else "one run each"
-    return draw(drawn, x=key, y=(number.what, number.unit), fit=fit, log=log, note=seeds)
+    first = rows[0]
+    note = f"mean of {first.runs} runs" if first.runs > 1 else "one run each"
+    axis_of = first.number.what, first.number.unit
+    return draw(drawn, x=key, y=axis_of, fit=fit, log=log, note=note)
 
 
-def find_rows(rows: list[Pooled], name: str) -> list[Pooled]:
+def find_rows(rows: Sequence[Pooled], name: str) -> list[Pooled]:
     """The rows of one number: by its name, or by its beginning if only one begins so."""
     names = list(dict.fromkeys(row.name for row in rows))
     if not names:

@@ -234,7 +234,7 @@ class Study:
 
         Raises CaseError for a key or number that is not there, with the nearest one.
         """
-        return plot(self, x, y, fit, **look)
+        return plot(self.table(), self.axes, self.key(x), y, fit, **look)
 
     def lines(self) -> list[str]:
         """The table in words, point after point."""

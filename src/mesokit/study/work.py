@@ -36,7 +36,7 @@ class Note(Reporter):
             self.noted = now
             beside = self.file.with_name(f"{self.file.name}.tmp")
             with contextlib.suppress(OSError):  # a run does not end because nobody can be told
-                beside.write_text(str(step))
+                beside.write_text(str(step), encoding="utf-8")
                 os.replace(beside, self.file)
 
     def finish(self) -> None:

@@ -78,20 +78,18 @@ def draw(
 def _draw(ax: Any, curve: Curve, number: int, note: str, fit: str | None) -> None:
     colour = COLOURS[number % len(COLOURS)]
     words = ", ".join(filter(None, [curve.label, note]))
-    ax.errorbar(
-        curve.x, curve.value, curve.error, fmt=MARKERS[number % len(MARKERS)], mfc="white",
-        color=colour, ms=5, capsize=2, label=f"{words}, $\\pm$ one standard error", zorder=3,
-    )  # fmt: skip
+    look = {"mfc": "white", "color": colour, "ms": 5, "capsize": 2, "zorder": 3}
+    label = f"{words}, $\\pm$ one standard error"
+    marker = MARKERS[number % len(MARKERS)]
+    ax.errorbar(curve.x, curve.value, curve.error, fmt=marker, label=label, **look)
     known = np.isfinite(curve.expected)
     if known.any():
         words = "theory, approximate" if curve.approximate else "theory"
         label = f"{words}, {curve.label}" if curve.label else words
-        line = LINES[number % len(LINES)]
-        lone = {"marker": "_", "ms": 14} if known.sum() == 1 else {}
-        ax.plot(
-            curve.x[known], curve.expected[known], ls=line, color="black", lw=1.3, label=label,
-            zorder=2, **lone,
-        )  # fmt: skip
+        look = {"ls": LINES[number % len(LINES)], "color": "black", "lw": 1.3, "zorder": 2}
+        if known.sum() == 1:  # of one point there is no line
+            look |= {"marker": "_", "ms": 14}
+        ax.plot(curve.x[known], curve.expected[known], label=label, **look)
     if fit is not None:
         found, words = fitted(curve, fit)
         at = np.linspace(curve.x.min(), curve.x.max(), 200)

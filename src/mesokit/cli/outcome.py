@@ -1,0 +1,53 @@
+"""What a run or a study says when it is stopped, fails or has come to its end."""
+
+from __future__ import annotations
+
+import contextlib
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+
+from mesokit.cli.words import reason, say
+from mesokit.errors import RunError
+from mesokit.running.signals import Stopped
+
+
+@contextlib.contextmanager
+def warnings_said() -> Iterator[None]:
+    """Warnings of the Python API as lines on standard error."""
+
+    def show(message: Warning | str, *where: object) -> None:
+        say(f"warning: {message}")
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", UserWarning)
+        warnings.showwarning = show  # type: ignore[assignment]
+        yield
+
+
+@contextlib.contextmanager
+def stopping(again: str) -> Iterator[None]:
+    """What was stopped can go on, by a command; a full disk is a failure of what runs."""
+    try:
+        yield
+    except Stopped as stop:
+        if not str(stop):  # stopped so hard that nothing is known
+            raise
+        say(f"mesokit: {stop}; go on with: {again}")
+        raise SystemExit(stop.status) from None
+    except OSError as error:
+        raise RunError(reason(error)) from None
+
+
+def show_results(output: Path) -> None:
+    """What is compared in a run, and its pictures."""
+    import mesokit
+
+    done = mesokit.open(output)
+    for result in done.results.values():
+        for comparison in result.comparisons:
+            click.echo(f"{result.name}: {comparison}")
+    for picture in sorted(output.glob("*.png")):
+        click.echo(f"picture: {picture}")
