@@ -30,6 +30,18 @@ SHORT = "--short" in sys.argv  # a quick try: a fiftieth of the steps, nothing i
 ANGLE = math.degrees(2.27)  # the angle at which the 3D viscosity is quoted in the literature
 BLUE, RED, GREEN, PURPLE, GREY = "#1b4f8a", "#c1491d", "#2a7f4f", "#7a3b8f", "#444444"
 
+UNITS = {  # of labels that are only words
+    ("time",): r"\tau",
+    ("x", "y", "r", "place within the cell", "distance from the surface", "slip length"): "a",
+    ("bond length, K = 1",): "a",
+    ("velocity", "velocity along the pipe", "azimuthal velocity"): r"a/\tau",
+    ("velocity - linear", "velocity - line"): r"a/\tau",
+    ("shear rate",): r"\tau^{-1}",
+    ("viscosity",): r"a^2/\tau",
+    ("temperature",): r"kT",
+    ("K for a bond length of 2", "K"): "kT/a^2",
+}
+
 plt.rcParams.update(
     {
         "font.size": 10, "legend.frameon": False, "legend.fontsize": 9, "xtick.direction": "in",
@@ -96,6 +108,7 @@ class Page:
         """Save a figure beside the page, and show it there."""
         folder = place()
         file = f"{self.name}{suffix}.png"
+        finish(fig)
         fig.tight_layout()
         fig.savefig(folder / file)
         plt.close(fig)
@@ -156,6 +169,21 @@ class Page:
             head.append("\n".join(marks) + "\n")
         (place() / f"{self.name}.md").write_text("\n".join(head + self.parts), encoding="utf-8")
         return sum(not met for _, met in self.checks)
+
+
+def finish(fig: Any) -> None:
+    """Letters for panels, and units for labels."""
+    panels = [ax for ax in fig.axes if ax.axison and not hasattr(ax, "_colorbar")]
+    for ax, letter in zip(panels, "abcdefghijkl", strict=False):
+        if len(panels) > 1:
+            title = ax.get_title()
+            ax.set_title("")
+            ax.set_title(" ".join(filter(None, (f"({letter})", title))), loc="left", fontsize=10)
+        for axis in (ax.xaxis, ax.yaxis):
+            label = axis.get_label().get_text()
+            unit = next((u for words, u in UNITS.items() if label in words), "")
+            if unit:
+                axis.set_label_text(f"{label}  [${unit}$]")
 
 
 def place() -> Path:

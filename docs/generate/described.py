@@ -3,13 +3,27 @@
 from __future__ import annotations
 
 import importlib
+import inspect
+import re
 from typing import Any
 
 import griffe
 
+from mesokit.case.describe.docstring import Documented
+from mesokit.case.describe.keys import Key
+
+DOCTEST = re.compile(r"^>>> .*(?:\n.+)*", re.MULTILINE)
+
 
 class Described(griffe.Extension):
-    """Fields of components are shown once, as a table, instead of as attributes."""
+    """Fields of components are shown once, as a table, instead of as attributes; examples that
+    stand by themselves are code."""
+
+    def on_object(self, *, obj: griffe.Object, **_: Any) -> None:
+        """Whatever has a docstring."""
+        if obj.docstring and "Examples" not in obj.docstring.value:
+            text = inspect.cleandoc(obj.docstring.value)
+            obj.docstring.value = DOCTEST.sub(r"```pycon\n\g<0>\n```", text)
 
     def on_class(self, *, cls: griffe.Class, **_: Any) -> None:
         """A class whose fields are made by `param`."""
@@ -19,9 +33,32 @@ class Described(griffe.Extension):
         for name in cls.path.removeprefix(f"{cls.module.path}.").split("."):
             found = getattr(found, name, None)
         fields = getattr(found, "__pydantic_fields__", None)
-        if fields is None:
+        described = vars(found).get("__doc__") if fields is not None else None
+        if not isinstance(described, Documented):
             return
-        cls.docstring.value = found.__doc__
+        summary, end, examples = described.text.partition("\nExamples:")
+        table = _table(described.keys(found))
+        cls.docstring.value = f"{summary.rstrip()}\n\n{table}\n{end}{examples}"
         for name in list(cls.members):
             if name in fields or name == "__init__":
                 cls.del_member(name)
+
+
+def _default(key: Key) -> str:
+    return f"`{key.default}`" if key.default not in ("", "required") else key.default
+
+
+def _table(keys: list[Key]) -> str:
+    """The fields, as in the reference of the case file."""
+    rows = [
+        (
+            f"`{key.name}`",
+            f"{key.takes} [{key.unit}]".removesuffix(" []"),
+            _default(key),
+            key.meaning,
+        )
+        for key in keys
+    ]
+    head = ["| field | takes | default | meaning |", "|---|---|---|---|"] if rows else []
+    cells = [[cell.replace("|", "\\|") for cell in row] for row in rows]
+    return "\n".join([*head, *(f"| {' | '.join(row)} |" for row in cells)]) + "\n"

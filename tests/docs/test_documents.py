@@ -17,8 +17,10 @@ SHORT = ["--set", "run.steps=40", "--set", "run.warmup=10"]
 
 
 def blocks(page: str, language: str) -> list[str]:
+    """Fences one after the other: the end of one must not pass for the start of another."""
     text = (ROOT / page).read_text()
-    return re.findall(rf"^```{language}\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
+    fences = re.findall(r"^```([^\n]*)\n(.*?)^```[ \t]*$", text, re.DOTALL | re.MULTILINE)
+    return [block for name, block in fences if name.strip() == language]
 
 
 def commands(page: str) -> list[str]:

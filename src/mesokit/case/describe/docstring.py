@@ -22,9 +22,13 @@ class Documented:
         self.whole = self.whole or self._described(owner)
         return self.whole
 
-    def _described(self, owner: type) -> str:
+    def keys(self, owner: type) -> list[Key]:
+        """The keys of the component but its tag."""
         found, definitions = plain_schemas({"": owner})
-        keys = [key for key in keys_of(found[""], definitions) if not key.tag]
+        return [key for key in keys_of(found[""], definitions) if not key.tag]
+
+    def _described(self, owner: type) -> str:
+        keys = self.keys(owner)
         if not keys or "Parameters" in self.text:
             return self.text
         summary, end, examples = self.text.partition("\nExamples:")
