@@ -12,7 +12,7 @@ from mesokit import Case
 from mesokit.method.protocol import method_of
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = ["README.md", "docs/guide.md", "docs/own.md", "docs/methods/brownian.md"]
+PAGES = ["README.md", "docs/guide.md", "docs/studies.md", "docs/own.md", "docs/methods/brownian.md"]
 SHORT = ["--set", "run.steps=40", "--set", "run.warmup=10"]
 
 
@@ -85,7 +85,7 @@ def test_links_lead_somewhere() -> None:
 def run(command: str, folder: Path) -> None:
     words = shlex.split(command)
     words = [sys.executable, "-m", "mesokit", *words[1:]]
-    if words[3] == "run":
+    if words[3] == "run" or (words[3] == "study" and words[4].endswith(".toml")):
         words += SHORT
     done = subprocess.run(words, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, f"{command}: {done.stderr}"

@@ -43,7 +43,9 @@ def _axes(context: click.Context, option: click.Parameter, values: Sequence[str]
 )
 @click.option("--seeds", type=click.IntRange(1), help="So many seeds of each.  [1]")
 @SET
-@click.option("--output", type=RUN, help="Folder of the study (CASE-study unless said).")
+@click.option(
+    "--output", type=RUN, help="Folder of the study (CASE-study, or the name of the study file)."
+)
 @click.option("--jobs", type=click.IntRange(1), help="Runs at once (one a core unless said).")
 @click.option("--threads", type=click.IntRange(1), default=1, help="Threads of each run.  [1]")
 @click.option(
@@ -90,12 +92,14 @@ def study(what: Path, **given: Any) -> None:
 
 def _made(Study: Any, what: Path, given: dict[str, Any]) -> Any:
     """The study of a case file, of a study file or in a folder."""
-    new = {name: given[name] for name in ("axes", "seeds", "settings", "output") if given[name]}
     if what.is_dir() or _is_study_file(what):
-        for name in new:
-            option = {"axes": "vary", "settings": "set"}.get(name, name)
-            raise CaseError(f"--{option}: only with a case file; {what} says it already")
-        return Study.open(what)
+        options = {"axes": "vary", "seeds": "seeds", "settings": "set"}
+        if what.is_dir():
+            options["output"] = "output"
+        for name, option in options.items():
+            if given[name]:
+                raise CaseError(f"--{option}: only with a case file; {what} says it already")
+        return Study.open(what, given["output"])
     output = given["output"] or Path(f"{what.stem}-study")
     return Study(
         what, given["axes"], given["seeds"] or 1, output=output, settings=given["settings"]

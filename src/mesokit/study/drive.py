@@ -44,6 +44,11 @@ class StudyReporter(Reporter):
         super().__init__(quiet, **options)
         self.runs = self.ended = 0
 
+    def update(self, step: int) -> None:
+        """So much is done; while nothing is, runs compile, and there is no rate."""
+        self.fresh = self.fresh or step == self.first
+        super().update(step)
+
     def amount(self, steps: int) -> str:
         """How much there is to do."""
         return f"{self.runs - self.ended} of {self.runs} runs"

@@ -88,10 +88,11 @@ class Study:
         self._make()
 
     @classmethod
-    def open(cls, path: str | Path) -> Study:
+    def open(cls, path: str | Path, output: str | Path | None = None) -> Study:
         """The study in a folder, or of a study file. Raises RunError or CaseError if there is none.
 
-        A study file names a `case`, `seeds` and [[vary]] tables; its folder is named after it.
+        A study file names a `case`, `seeds` and [[vary]] tables; its runs go to `output`, a folder
+        of the name of the file in the working directory unless said.
         """
         path = Path(path)
         file = path / FILE if path.is_dir() else path
@@ -118,7 +119,7 @@ class Study:
             raise CaseError(f"{file}: {error}") from None
         if "folder" in data:
             base.folder = Path(data["folder"])
-        self.path = path if path.is_dir() else path.with_suffix("")
+        self.path = path if path.is_dir() else Path(output or path.stem)
         self._set(base, axes, _seeds(data.get("seeds", 1), base))
         if not path.is_dir():
             self._make()
