@@ -53,7 +53,7 @@ def test_a_package_brings_a_method():
     assert case.brownian.density == 3
     simulation = Simulation(case, threads=2)
     simulation.run()
-    assert simulation["mean-square-displacement"].samples == 10
+    assert simulation["mean-square-displacement"].samples == 11  # the start included
 
 
 @pytest.mark.parametrize("name", methods.METHODS)

@@ -81,3 +81,12 @@ def test_what_it_remembers_goes_on_after_a_stop():
 def test_part_of_the_variance_that_a_mean_keeps():
     assert kept(1e-4) == pytest.approx(1.0) and kept(100.0) == pytest.approx(0.0198)
     assert kept(0.9e-3) == pytest.approx(kept(1.1e-3), rel=1e-3)
+
+
+def test_pooled_short_runs_have_the_error_bar_of_all_of_them():
+    runs = [measured(BondLength, 40, seed) for seed in range(9)]
+    alone = runs[0].comparisons()[0].error
+    for other in runs[1:]:
+        runs[0].pool(other)
+    assert runs[0].comparisons()[0].error == pytest.approx(alone / 3, rel=0.3)
+    assert runs[0].relaxations() == pytest.approx(runs[1].relaxations())

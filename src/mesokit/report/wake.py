@@ -40,7 +40,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     ax.set_xlim(*(result.extra["edges"][[0, -1]] / size))
     ax.set_xlabel(f"distance from the rear of the body over its size $D = {size:.4g}\\,a$")
     ax.set_ylabel(labelled(result.label, result.units["value"]))
-    legend_above(ax)
+    legend_above(ax, columns=2)
     speed = result.extra.get("speed", np.nan)
     if np.isfinite(speed) and speed:
         right = ax.secondary_yaxis("right", functions=(lambda v: v / speed, lambda v: v * speed))

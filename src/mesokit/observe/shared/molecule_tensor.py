@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.method.mpcd.expected.molecules import mode_times_of
-from mesokit.observe.shared.protocol import Observable, State, pack, unpack
+from mesokit.observe.shared.protocol import BlockAccumulator, Observable, State, pack, unpack
 from mesokit.observe.shared.result import Array
 from mesokit.observe.shared.tensor import TensorAccumulator
 from mesokit.statistics import Blocks
@@ -47,6 +47,7 @@ class MoleculeTensorAccumulator(TensorAccumulator):
         super().__init__(observable, case, parts)
         self.every, self.kind = observable.every, kind
         self.number = 1  # molecules, or bonds, in a sample
+        self.runs = 1  # that were pooled
         self.scatter = Blocks((len(parts), case.box.dimension**2 + 1))  # elements, and the trace
         self.times = mode_times_of(case, kind)[0]
 
@@ -66,19 +67,26 @@ class MoleculeTensorAccumulator(TensorAccumulator):
         self.scatter = Blocks.from_state(unpack(state, "scatter"))
         self.number = int(state["number"])
 
+    def pool(self, other: BlockAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        assert isinstance(other, MoleculeTensorAccumulator)
+        super().pool(other)
+        self.scatter.pool(other.scatter)
+        self.number, self.runs = max(self.number, other.number), self.runs + other.runs
+
     def weights(self, part: int) -> Array:
         """Part of the size that each normal mode has: the same of the bonds."""
         assert self.times is not None
         return np.ones(len(self.times.mode))
 
     def relaxations(self) -> float:
-        """How many relaxation times of the slowest mode the run has, nan where they are not known.
+        """How many relaxation times of the slowest mode a run has, nan where they are not known.
 
         Those of molecules at rest: a flow makes them shorter.
         """
         if self.times is None:
             return np.nan
-        length = self.blocks.count * self.every * self.case.fluid.timestep
+        length = self.blocks.count / self.runs * self.every * self.case.fluid.timestep
         return float(length / self.times.mode[0])
 
     def short_run(self) -> str:
@@ -99,7 +107,8 @@ class MoleculeTensorAccumulator(TensorAccumulator):
         length = self.relaxations() * float(self.times.mode[0])
         mean, square = self.blocks.mean()[part], self.scatter.mean()[part]
         means = np.append(mean.ravel(), np.trace(mean))
-        variance = np.maximum(square - means**2, 0.0) * kept(length / slow) / self.number
+        independent = self.number * self.runs
+        variance = np.maximum(square - means**2, 0.0) * kept(length / slow) / independent
         bound = np.sqrt(variance)
         return bound[:-1].reshape(d, d), float(bound[-1])
 
