@@ -97,7 +97,11 @@ def test_pictures(study):
 
     figure = study.plot("acceleration", "flow-rate.mean", fit="line")
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
-    assert labels[0] == "theory" and labels[1].startswith("fit: $y = ") and "3 runs" in labels[2]
+    assert (
+        labels[0] == "theory: poiseuille"
+        and labels[1].startswith("fit: $y = ")
+        and "3 runs" in labels[2]
+    )
     x = np.array([1.0, 2.0, 4.0, 8.0])
     curve = Curve("", x, 3 * x**-0.5, 0.01 * x, np.full(4, np.nan))
     found, words = fitted(curve, "power")

@@ -10,7 +10,16 @@ import numpy as np
 from mesokit.case.component import one_of, show
 from mesokit.errors import CaseError
 from mesokit.observe.shared.result import Array, with_error
-from mesokit.report.style import COLOURS, HEIGHT, LINES, MARKERS, STYLE, WIDTH, labelled
+from mesokit.report.style import (
+    COLOURS,
+    HEIGHT,
+    LINES,
+    MARKERS,
+    STYLE,
+    WIDTH,
+    labelled,
+    sparse_logarithm,
+)
 from mesokit.statistics import Fit, weighted_line
 
 FITS = ("line", "power")
@@ -18,19 +27,22 @@ DECADE = 8.0  # last over first value beyond which an axis is logarithmic
 
 
 class Curve(NamedTuple):
-    """Points (n,) of one curve, what is expected there (nan where nothing is), and its name."""
+    """Points (n,) of one curve, what is expected there (nan where nothing is), and its name.
+
+    `theory` is what the expectation is, in a few words.
+    """
 
     label: str
     x: Array
     value: Array
     error: Array
     expected: Array
-    approximate: bool = False
+    theory: str = "theory"
 
 
 def draw(
     curves: Sequence[Curve],
-    x: str,
+    x: tuple[str, str],
     y: tuple[str, str],
     fit: str | None = None,
     log: bool | None = None,
@@ -41,7 +53,7 @@ def draw(
     Parameters
     ----------
     curves: what is drawn.
-    x, y: name of the axis; name and unit of the other.
+    x, y: name and unit of each axis.
     fit: "line" or "power", fitted to each curve.
     log: whether axes are logarithmic; where values span a decade or a power is fitted unless said.
     note: what the points are, for the legend.
@@ -65,11 +77,9 @@ def draw(
         if log or (log is None and fit == "power"):
             ax.set_yscale("log")
         for axis in (ax.xaxis, ax.yaxis):
-            low, high = axis.get_view_interval()
-            if axis.get_scale() == "log" and high < 10 * low:  # plain numbers within a decade
-                axis.set_major_formatter("{x:g}")
-                axis.set_minor_formatter("{x:g}")
-        ax.set_xlabel(x)
+            if axis.get_scale() == "log":
+                sparse_logarithm(axis, *axis.get_view_interval())
+        ax.set_xlabel(labelled(*x))
         ax.set_ylabel(labelled(y[0], y[1]))
         ax.legend(loc="best")
         return figure
@@ -84,8 +94,7 @@ def _draw(ax: Any, curve: Curve, number: int, note: str, fit: str | None) -> Non
     ax.errorbar(curve.x, curve.value, curve.error, fmt=marker, label=label, **look)
     known = np.isfinite(curve.expected)
     if known.any():
-        words = "theory, approximate" if curve.approximate else "theory"
-        label = f"{words}, {curve.label}" if curve.label else words
+        label = f"{curve.theory}, {curve.label}" if curve.label else curve.theory
         look = {"ls": LINES[number % len(LINES)], "color": "black", "lw": 1.3, "zorder": 2}
         if known.sum() == 1:  # of one point there is no line
             look |= {"marker": "_", "ms": 14}
@@ -106,7 +115,7 @@ def fitted(curve: Curve, kind: str) -> tuple[Fit, str]:
 
     >>> x = np.array([1.0, 2.0, 4.0])
     >>> fitted(Curve("", x, 3 * x**2, 0.01 * x**2, x), "power")[1]
-    'fit: $y = 3.0000(91)\\\\,x^{2.0000(24)}$, $p$ = 1'
+    'fit: $y = 3.0000(91)\\\\,x^{2.0000(34)}$, $p$ = 1'
     """
     use = np.isfinite(curve.value) & (curve.error > 0)
     if kind == "power":
@@ -122,11 +131,10 @@ def fitted(curve: Curve, kind: str) -> tuple[Fit, str]:
         formula = f"y = {first}\\,x^{{{second}}}"
     else:
         found = weighted_line(x, value, error)
-        first, second = (
-            with_error(float(c), float(e))
-            for c, e in zip(found.coefficients, found.errors, strict=True)
-        )
-        formula = f"y = {first} + {second}\\,x"
+        start, slope = (float(c) for c in found.coefficients)
+        first = with_error(start, float(found.errors[0]))
+        second = with_error(abs(slope), float(found.errors[1]))
+        formula = f"y = {first} {'-' if slope < 0 else '+'} {second}\\,x"
     quality = "" if np.isnan(found.p) else f", $p$ = {found.p:.2g}"
     return found, f"fit: ${formula}${quality}"
 

@@ -9,10 +9,13 @@ import numpy as np
 
 from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError
+from mesokit.observe.shared.result import Comparison
 from mesokit.study.axes import Axis
 from mesokit.study.dependence import Curve, draw
 from mesokit.study.plan import short_names
 from mesokit.study.table import Pooled
+
+SHORT = 45  # letters of what a theory is called in a legend
 
 
 def plot(
@@ -20,12 +23,14 @@ def plot(
     axes: Sequence[Axis],
     key: str,
     number: str,
+    unit: str = "",
     fit: str | None = None,
     log: bool | None = None,
 ) -> Any:
     """A figure with error bars, what is expected, and a fit; a curve for each other value.
 
-    `rows` are the table of a study, `axes` what it varies, `key` what the number is drawn against.
+    `rows` are the table of a study, `axes` what it varies, `key` what the
+    number is drawn against, in a `unit`.
     Raises CaseError for a number that is not there, or values that are no numbers.
     """
     rows = find_rows(rows, number)
@@ -40,8 +45,8 @@ def plot(
     drawn = [_curve(label, key, group) for label, group in curves.items()]
     first = rows[0]
     note = f"mean of {first.runs} runs" if first.runs > 1 else "one run each"
-    axis_of = first.number.what, first.number.unit
-    return draw(drawn, x=key, y=axis_of, fit=fit, log=log, note=note)
+    named = first.number.what, first.number.unit
+    return draw(drawn, x=(key, unit), y=named, fit=fit, log=log, note=note)
 
 
 def find_rows(rows: Sequence[Pooled], name: str) -> list[Pooled]:
@@ -64,9 +69,38 @@ def _curve(label: str, key: str, rows: list[Pooled]) -> Curve:
     order = np.argsort(values)
     numbers = [rows[i].number for i in order]
     value, error, expected = np.array([(n.measured, n.error, n.expected) for n in numbers]).T
-    approximate = any(n.approximate for n in numbers)
-    return Curve(label, np.array(values, float)[order], value, error, expected, approximate)
+    return Curve(label, np.array(values, float)[order], value, error, expected, _theory(numbers))
+
+
+def _theory(numbers: Sequence[Comparison]) -> str:
+    """What is expected, in a few words."""
+    if any(number.approximate for number in numbers):
+        return "theory, approximate"
+    note = numbers[0].note
+    name = note if note and len(note) < SHORT and "lower bound" not in note else ""
+    return f"theory: {name}" if name else "theory"
 
 
 def _word(value: Any) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def unit_of(case: Any, key: str) -> str:
+    """The unit of a key of a case, nothing if it has none.
+
+    >>> from mesokit import Box, Case, Run
+    >>> unit_of(Case(run=Run(steps=1), box=Box([8, 8])), "run.checkpoint_minutes")
+    'minutes'
+    """
+    *parents, last = key.split(".")
+    here = case
+    for part in parents:
+        if isinstance(here, tuple):
+            named = [item for item in here if part == getattr(item, "label", None)]
+            here = here[int(part) - 1] if part.isdecimal() else next(iter(named), None)
+        else:
+            fields = {key: field for field, key in case._method.keys.items()}
+            here = getattr(here, fields.get(part, part), None)
+    field = getattr(type(here), "__pydantic_fields__", {}).get(last)
+    unit = str((field.json_schema_extra or {}).get("unit", "")) if field else ""
+    return unit.replace("time", "tau")

@@ -23,7 +23,7 @@ from mesokit.study.here import Here
 from mesokit.study.local import Processes
 from mesokit.study.merge import merge
 from mesokit.study.plan import Base, Planned, by_point, make, planned, short_names
-from mesokit.study.plot import find_rows, plot
+from mesokit.study.plot import find_rows, plot, unit_of
 
 if TYPE_CHECKING:
     from mesokit.io.open import RunFiles
@@ -235,7 +235,9 @@ class Study:
 
         Raises CaseError for a key or number that is not there, with the nearest one.
         """
-        return plot(self.table(), self.axes, self.key(x), y, fit, **look)
+        key = self.key(x)
+        unit = unit_of(self.base.case(self.runs[0].point, self.runs[0].seed), key)
+        return plot(self.table(), self.axes, key, y, unit, fit, **look)
 
     def lines(self) -> list[str]:
         """The table in words, point after point."""
