@@ -165,7 +165,6 @@ def test_study_files_and_the_command(case_file, tmp_path, capsys, monkeypatch):
         (["forces", "--seeds", 2], "--seeds: only with a case file"),
         (["forces", "--only", 3], "--only 3: the study has 2 runs"),
         (["forces", "--fit", "line"], "--fit: of which number?"),
-        (["forces", "--cluster", "slrum"], "did you mean 'slurm'"),
         ([tmp_path / "nowhere"], "no such file"),
     ):
         code, _, err = said(capsys, "study", *arguments)
