@@ -43,9 +43,9 @@ def make() -> int:
     """Write the page."""
     page = Page("pooled_runs", "Runs of one case as one")
     page.text(
-        f"A channel of 12 x 9 cells with {SEEDS} seeds. `mesokit merge` pools the blocks of time of "
-        "all runs, and its error bars follow from these blocks; the scatter of the runs about their "
-        "mean, over the root of their number, is what they should be. The table of a study takes "
+        f"A channel of 12 x 9 cells with {SEEDS} seeds. `mesokit merge` pools the blocks of time "
+        "of all runs, and its error bars follow from these blocks; the scatter of the runs about "
+        "their mean, over the root of their number, is what they should be. The table of a study takes "
         "the error bars of the single runs instead, each of which is a little too small, as a run "
         "is not many times longer than its flow remembers: chi-square of the seeds says so."
     )
@@ -91,8 +91,8 @@ def make() -> int:
     ax.legend()
     page.figure(
         fig,
-        "Standard error of the mean velocity in each bin: that of the pooled runs, with the band in "
-        "which two thirds of the points should lie, and the scatter of the runs.",
+        "Standard error of the mean velocity in each bin: that of the pooled runs, with the band "
+        "in which two thirds of the points should lie, and the scatter of the runs.",
     )
     return page.write()
 

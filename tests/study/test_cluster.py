@@ -48,7 +48,7 @@ def test_jobs_of_slurm(slurm, case_file, tmp_path):
 
 
 def test_clusters_that_are_not_there():
-    with pytest.raises(CaseError, match="cluster = 'slrum': .*did you mean 'slurm'"):
+    with pytest.raises(CaseError, match=r"cluster = 'slrum': .*did you mean 'slurm'"):
         Cluster("slrum", 1)
-    with pytest.raises(CaseError, match="cluster = 'slurm': .*walltim"):
+    with pytest.raises(CaseError, match=r"cluster = 'slurm': .*walltim"):
         Cluster("slurm", 1, options={"walltim": "1"})
