@@ -45,8 +45,8 @@ def make() -> int:
     page.text(
         f"A channel of 12 x 9 cells with {SEEDS} seeds. `mesokit merge` pools the blocks of time "
         "of all runs, and its error bars follow from these blocks; the scatter of the runs about "
-        "their mean, over the root of their number, is what they should be. The table of a study takes "
-        "the error bars of the single runs instead, each of which is a little too small, as a run "
+        "their mean, over the root of their number, is what they should be. The table of a study "
+        "takes the error bars of the single runs instead, each a little too small, as a run "
         "is not many times longer than its flow remembers: chi-square of the seeds says so."
     )
     folder = RUNS / ("short" if SHORT else "") / "pooled_runs"

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import numbers
-import os
 import signal
 import threading
 import warnings
@@ -13,15 +11,14 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from mesokit import method as methods
 from mesokit.case import toml
-from mesokit.case.case import Case, method_named
-from mesokit.case.component import nearest, require_known, show
+from mesokit.case.case import Case
+from mesokit.case.component import require_known, show
 from mesokit.case.describe.shown import Shown
 from mesokit.case.kind import note_run
 from mesokit.case.outside import blaming
 from mesokit.case.trajectory import written
-from mesokit.errors import CaseError, CheckpointError, RunError
+from mesokit.errors import CheckpointError, RunError
 from mesokit.io import checkpoint, h5md
 from mesokit.io.frames import NONE_YET, require_frames
 from mesokit.io.measured import fitting, restore
@@ -31,7 +28,7 @@ from mesokit.method.protocol import method_of
 from mesokit.report.document.progress import reporter_for
 from mesokit.report.progress import Reporter
 from mesokit.running.callbacks import Callback, Callbacks
-from mesokit.running.cores import usable_cores
+from mesokit.running.given import case_and_arrays, next_chunk, threads_of
 from mesokit.running.log import RunLog
 from mesokit.running.longer import longer, require_steps
 from mesokit.running.schedule import Schedule
@@ -43,8 +40,6 @@ if TYPE_CHECKING:
     from mesokit.observe.shared.result import Result
     from mesokit.report.flow import Film
 
-CALL_SECONDS = 0.2  # of compiled code at a time, so that Ctrl-C and the progress bar are prompt
-MOST_THREADS = 1024
 COMPILE_SECONDS = 0.7  # a first call that takes longer is compiling, not loading
 
 
@@ -92,8 +87,8 @@ class Simulation(Shown):
         **parts: Any,
     ) -> None:
         self.callbacks = Callbacks(callbacks)
-        self.case, arrays = _case_and_arrays(case, parts)
-        self.threads = _threads(threads)
+        self.case, arrays = case_and_arrays(case, parts)
+        self.threads = threads_of(threads)
         method = method_of(self.case)
         state = method.first_state(self.case, arrays)
         with blaming(self.case):
@@ -140,7 +135,7 @@ class Simulation(Shown):
             )
         self = cls.__new__(cls)
         self.case = Case.from_toml(directory.case_file)
-        self.threads = _threads(threads)
+        self.threads = threads_of(threads)
         self.callbacks = Callbacks(callbacks)
         self._build()
         self._attach(directory)
@@ -380,7 +375,7 @@ class Simulation(Shown):
             steps, due = target - self.step, self.schedule.due(target)
             stress = any("stress" in observable.measures for observable in due)
             self.engine.advance(steps, measure_stress=stress)
-            chunk = _next_chunk(steps, perf_counter() - began)
+            chunk = next_chunk(steps, perf_counter() - began)
             self._observe()
             self.callbacks.call(self)
             if self._checkpoint_due(perf_counter() - saved):
@@ -486,37 +481,3 @@ class Simulation(Shown):
         self._stopped_by = by
         if self._compiling:
             raise self._stopped
-
-
-def _case_and_arrays(given: Any, parts: dict[str, Any]) -> tuple[Case, dict[str, Any]]:
-    """The case, made of its parts if none is given, and the arrays among these to start from."""
-    if isinstance(given, str | os.PathLike):
-        given = Case.from_toml(Path(given))
-    if given is not None and not isinstance(given, Case):
-        raise CaseError(
-            f"Simulation: case = {show(given)}: expected a case, or the path of its file"
-        )
-    name = method_named(parts.get("run")) if given is None else given.run.method
-    known = methods.load(name).arrays
-    arrays = {name: parts.pop(name) for name in known if name in parts}
-    if (given is None) == (not parts):
-        key = next(iter(parts), None)
-        hint = f", not {key}{nearest(key, known)}" if key else ""
-        raise CaseError(f"Simulation: expected a case, or its parts by name{hint}")
-    arrays = {name: array for name, array in arrays.items() if array is not None}
-    return given or Case(**parts), arrays
-
-
-def _threads(given: Any) -> int:
-    """So many as said, or one for each core."""
-    if given is None:
-        return usable_cores()
-    whole = isinstance(given, numbers.Integral) and not isinstance(given, bool)
-    if whole and 1 <= int(given) <= MOST_THREADS:
-        return int(given)
-    raise CaseError(f"threads = {show(given)}: expected a whole number from 1 to {MOST_THREADS}")
-
-
-def _next_chunk(steps: int, seconds: float) -> int:
-    """So many steps that the next call takes CALL_SECONDS, growing at most fourfold at a time."""
-    return max(1, min(4 * steps, int(steps * CALL_SECONDS / max(seconds, 1e-9))))

@@ -36,7 +36,7 @@ ROWS = {
     "running/cores.py": (),
     "running/signals.py": (),
     "running/": (
-        "case", "errors", "io", "method.protocol", "observe.shared", "report", "running",
+        "case", "errors", "io", "=method", "method.protocol", "observe.shared", "report", "running",
     ),
     "scalar/": ("scalar",),
     "theory/": ("theory",),
