@@ -222,7 +222,8 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         from mesokit.report.flow import CHOICES, animate
 
         require_known(choices, [*CHOICES, "fps", "progress"])
-        return animate(self.case, self.results, self.trajectory, path, kind, **choices)
+        name = self.path.resolve().name
+        return animate(self.case, self.results, self.trajectory, path, kind, run=name, **choices)
 
     def universe(self) -> Any:
         """The trajectory as an MDAnalysis `Universe`, with kinds, masses, molecules and bonds.
