@@ -229,16 +229,20 @@ class Simulation(Shown):
         require_known(choices, CHOICES)
         now = State(self.case, self.engine)
         figure = picture(self.case, self.results, now, kind, **choices)
-        run = "" if self.directory is None else self.directory.path.resolve().name
-        figure.origin = origin_of(self.case, run)
+        figure.origin = origin_of(self.case, self._name)
         return figure
+
+    @property
+    def _name(self) -> str:
+        """What pictures call it: the folder, if there is one."""
+        return "" if self.directory is None else self.directory.path.resolve().name
 
     def animate(self, path: str | Path, kind: str = "speed", **choices: Any) -> Film:
         """Write a film of the flow so far (MP4 or GIF by its ending)."""
         from mesokit.report.flow import CHOICES, animate
 
         require_known(choices, [*CHOICES, "fps", "progress"])
-        return animate(self.case, self.results, None, path, kind, **choices)
+        return animate(self.case, self.results, None, path, kind, run=self._name, **choices)
 
     # --- running --------------------------------------------------------------------------------
 

@@ -8,11 +8,14 @@ import numpy as np
 import pytest
 from flows import FRAMES, MAPS, results_of
 from imageio_ffmpeg import count_frames_and_secs, read_frames
-from PIL import Image
+from PIL import Image, ImageChops
 
-from mesokit import FlowFrames
+from mesokit import FlowFrames, __version__
 from mesokit.errors import CaseError, RunError
+from mesokit.io.checkpoint import digest
+from mesokit.report.finish.saving import FOOT
 from mesokit.report.flow import animate, encode
+from mesokit.report.flow.film import DPI
 from mesokit.report.progress import FilmReporter
 
 
@@ -43,6 +46,24 @@ def test_a_gif_starts_again(run, tmp_path):
         assert (image.format, image.n_frames) == ("GIF", 4)
         assert image.info["duration"] == 100 and image.info["loop"] == 0
         assert image.size[0] > 500
+
+
+def test_films_say_where_they_come_from(run, tmp_path):
+    """In a line below every frame, beside the picture, and in the file."""
+    about = f"seed 1, mesokit {__version__}; case sha256 {digest(run[0].to_toml())}"
+    one = animate(*run, tmp_path / "one.gif", "speed", run="slit")
+    other = animate(*run, tmp_path / "other.gif", "speed", run="pipe")
+    with Image.open(one.path) as first, Image.open(other.path) as second:
+        assert f"run slit, {about}" in first.info["comment"].decode()
+        foot = first.size[1] - int(FOOT * DPI[".gif"])
+        for frame in (0, 3):
+            first.seek(frame)
+            second.seek(frame)
+            difference = ImageChops.difference(first.convert("L"), second.convert("L"))
+            written = difference.point(lambda grey: 255 * (grey > 60)).getbbox()  # not the palette
+            assert written is not None and written[1] >= foot
+    film = animate(*run, tmp_path / "film.mp4", "speed", run="slit")
+    assert f"run slit, {about}".encode() in film.path.read_bytes()
 
 
 def test_a_window_and_a_region_of_it(run, tmp_path):

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import sys
-import types
-
 import pytest
-from html_page import Page
+from notebook_display import in_a_notebook
 
 from mesokit import Box, Run, Simulation
 from mesokit.report.document import progress
@@ -14,31 +11,9 @@ from mesokit.report.document.progress import NotebookReporter, reporter_for
 from mesokit.report.progress import Reporter
 
 
-class Display:
-    """What a notebook shows, as IPython's display does."""
-
-    def __init__(self):
-        self.pages = []
-
-    def __call__(self, shown, display_id):
-        assert display_id
-        self.update(shown)
-        return self
-
-    def update(self, shown):
-        self.pages.append(Page(shown._repr_html_()))
-
-
 @pytest.fixture
 def notebook(monkeypatch):
-    display, shell = Display(), types.SimpleNamespace(kernel=object())
-    ipython = types.ModuleType("IPython")
-    ipython.get_ipython = lambda: shell
-    shown = types.ModuleType("IPython.display")
-    shown.display = display
-    monkeypatch.setitem(sys.modules, "IPython", ipython)
-    monkeypatch.setitem(sys.modules, "IPython.display", shown)
-    return display
+    return in_a_notebook(monkeypatch)
 
 
 def run(**options):

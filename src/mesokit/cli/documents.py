@@ -7,20 +7,27 @@ from pathlib import Path
 import click
 
 from mesokit.cli.commands import RUN, cli, require_run, result_named
+from mesokit.errors import CaseError
 
 FILE = click.Path(dir_okay=False, path_type=Path)
 
 
 @cli.command()
-@click.argument("run", type=RUN)
-@click.option("--output", type=FILE, help="The file (RUN/report.html unless said).")
+@click.argument("what", type=RUN, metavar="RUN|STUDY")
+@click.option("--output", type=FILE, help="The file (report.html in the folder unless said).")
 @click.option("--films", is_flag=True, help="Put small films into the file; else they are linked.")
-def report(run: Path, output: Path | None, films: bool) -> None:
-    """Write one HTML file with the case, all numbers and all figures of RUN."""
+def report(what: Path, output: Path | None, films: bool) -> None:
+    """Write one HTML file with the case, all numbers and all figures of RUN or STUDY."""
     import mesokit
+    from mesokit.io.run_directory import RunDirectory
 
-    require_run(run)
-    click.echo(mesokit.open(run).report(output, films))
+    if RunDirectory(what).study_file.exists():
+        if films:
+            raise CaseError(f"--films: only of a run; {what} holds a study")
+        click.echo(mesokit.Study.open(what).report(output))
+        return
+    require_run(what)
+    click.echo(mesokit.open(what).report(output, films))
 
 
 @cli.command()

@@ -79,7 +79,7 @@ def study(what: Path, **given: Any) -> None:
 
     made = _made(Study, what, given)
     if given["listing"]:
-        return show_table([(str(i + 1), _state(run), str(run.path)) for i, run in _numbered(made)])
+        return show_table([(str(i + 1), run.state, str(run.path)) for i, run in _numbered(made)])
     if given["job_array"]:
         script = write_job_array(made, given["threads"])
         return click.echo(f"wrote {script}; next: sbatch {script}")
@@ -164,14 +164,6 @@ def _first(made: Any) -> str:
 
 def _numbered(made: Any) -> Any:
     return list(enumerate(made.runs))
-
-
-def _state(run: Any) -> str:
-    if run.ended:
-        return "ended"
-    if run.failed:
-        return f"failed: {run.failed}"
-    return f"at step {run.step}" if run.step else "not begun"
 
 
 @cli.command()

@@ -17,6 +17,7 @@ from mesokit.errors import CaseError, RunError
 from mesokit.io import checkpoint, h5md, log_file, tables
 from mesokit.io.frames import require_frames, seen_until
 from mesokit.io.measured import measured
+from mesokit.io.pooled import merge_again, pooled_words
 from mesokit.io.run_directory import RunDirectory
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.method.protocol import method_of
@@ -51,6 +52,13 @@ class RunFiles(Shown, Mapping[str, "Result"]):
     def provenance(self) -> dict[str, Any]:
         """Versions, seed, host, times."""
         return self.directory.read_provenance()
+
+    @property
+    def pooled(self) -> str:
+        """From how many runs and which seeds it was merged, nothing if it is a run itself."""
+        with contextlib.suppress(RunError):  # results can be read without the record
+            return pooled_words(self.provenance)
+        return ""
 
     @property
     def results(self) -> dict[str, Result]:
@@ -143,7 +151,7 @@ class RunFiles(Shown, Mapping[str, "Result"]):
             "run": str(self.path),
             "title": self.case.title,
             "ended": self.ended,
-            "state": "has ended" if self.ended else self.state,
+            "state": (self.pooled or "has ended") if self.ended else self.state,
             "case": toml.parse(self.case.to_toml()),
             "provenance": self.provenance,
             "results": [
@@ -214,7 +222,8 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         from mesokit.report.flow import CHOICES, animate
 
         require_known(choices, [*CHOICES, "fps", "progress"])
-        return animate(self.case, self.results, self.trajectory, path, kind, **choices)
+        name = self.path.resolve().name
+        return animate(self.case, self.results, self.trajectory, path, kind, run=name, **choices)
 
     def universe(self) -> Any:
         """The trajectory as an MDAnalysis `Universe`, with kinds, masses, molecules and bonds.
@@ -255,6 +264,8 @@ class RunFiles(Shown, Mapping[str, "Result"]):
             raise RunError(f"{error}; {self._advice()}") from None
 
     def _advice(self) -> str:
+        if self.pooled:
+            return f"merge its runs again: {merge_again(self.provenance, self.path)}"
         try:
             _, meta = checkpoint.read(self.directory.checkpoint_file)
             require_frames(self.directory, self.case, seen_until(meta))
@@ -268,6 +279,8 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         failed, file = None, self.directory.checkpoint_file
         with contextlib.suppress(RunError):  # to go on, a damaged record does not matter
             failed = self.provenance.get("failed")
+        if self.pooled:
+            return f"was {self.pooled}, but has no results; {self._advice()}"
         last = self.case.run.warmup + self.case.run.steps
         reached = "it has no checkpoint yet"
         if file.exists():
@@ -291,7 +304,8 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         return {}
 
     def _card(self) -> dict[str, Any]:
-        words = self.case.title if self.ended else f"{self.case.title}: {self.state}"
+        how = self.pooled if self.ended else self.state
+        words = ": ".join(filter(None, [self.case.title, how]))
         found = self.so_far().values()
         text = self.case.to_toml()
         return {
@@ -308,6 +322,8 @@ class RunFiles(Shown, Mapping[str, "Result"]):
             lines.append("  " + str(self.si).replace("\n", "\n  "))
         if not self.ended:
             lines.append(f"  {self.state}")
+        elif self.pooled:
+            lines.append(f"  {self.pooled}")
         lines += ["  " + repr(result).replace("\n", "\n  ") for result in self.so_far().values()]
         if self.ended and self.trajectory is not None:
             lines.append(f"  {self.trajectory!r}")

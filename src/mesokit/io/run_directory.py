@@ -59,6 +59,11 @@ class RunDirectory:
         return self.path / "log.csv"
 
     @property
+    def study_file(self) -> Path:
+        """What a study varies; there if the folder holds one, and no run."""
+        return self.path / "study.toml"
+
+    @property
     def report_file(self) -> Path:
         """All of the run for people, where they name no other."""
         return self.path / "report.html"
@@ -147,6 +152,11 @@ class RunDirectory:
         run = cls(Path(path))
         if not run.path.is_dir():
             raise RunError(f"{path}: no such folder")
+        if run.study_file.exists():
+            raise RunError(
+                f"{path}: holds a study, not a run; mesokit study {path} goes on with it and shows "
+                "its numbers, mesokit report writes them down, mesokit.Study.open reads them"
+            )
         if not run.case_file.exists():
             raise RunError(f"{path}: holds no run; expected a file case.toml in it")
         run.require_parts()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import json
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
@@ -100,6 +101,15 @@ class Axis:
     def table(self) -> dict[str, list[Any]]:
         """By key its values, as a [[vary]] table holds them."""
         return {key: [row[i] for row in self.values] for i, key in enumerate(self.keys)}
+
+    def text(self) -> str:
+        """As the command line has it.
+
+        >>> Axis(("fluid.kT", "run.steps"), ((1.0, 10), (2.0, 20))).text()
+        'fluid.kT=1.0,2.0; run.steps=10,20'
+        """
+        columns = self.table().items()
+        return "; ".join(f"{key}={','.join(map(json.dumps, values))}" for key, values in columns)
 
     @classmethod
     def _of(cls, columns: dict[str, list[Any]]) -> Axis:

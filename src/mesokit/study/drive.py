@@ -12,6 +12,8 @@ from typing import Any, Protocol
 
 from mesokit.case.amounts import duration_text
 from mesokit.case.kind import has_run, kind_of
+from mesokit.errors import CaseError
+from mesokit.report.document.progress import NotebookReporter, in_notebook
 from mesokit.report.progress import Reporter
 from mesokit.running.signals import Stopped, catching
 from mesokit.study.plan import Planned
@@ -74,6 +76,27 @@ class StudyReporter(Reporter):
         else:
             self._say(text)
         self.phase = ""
+
+
+class NotebookStudyReporter(NotebookReporter, StudyReporter):
+    """Tells it by a bar below the cell of a notebook."""
+
+
+def reporter_for(progress: StudyReporter | bool | None) -> StudyReporter:
+    """Who tells how a study goes, as `mesokit.report.document.progress.reporter_for` of a run.
+
+    Raises CaseError for a reporter that knows of no runs.
+    """
+    if isinstance(progress, StudyReporter):
+        return progress
+    if not isinstance(progress, bool | None):
+        raise CaseError(
+            f"progress = {type(progress).__name__}: expected True, False or a StudyReporter "
+            "(mesokit.study.drive)"
+        )
+    if progress is not False and in_notebook():
+        return NotebookStudyReporter()
+    return StudyReporter(quiet=not progress)
 
 
 @dataclass

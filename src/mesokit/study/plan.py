@@ -47,6 +47,15 @@ class Planned:
         return ""
 
     @property
+    def state(self) -> str:
+        """How far it has come, in words."""
+        if self.ended:
+            return "ended"
+        if why := self.failed:
+            return f"failed: {why}"
+        return f"at step {step}" if (step := self.step) else "not begun"
+
+    @property
     def step(self) -> int:
         """Steps done, by what the run says of itself while it goes on, or its last checkpoint."""
         run = RunDirectory(self.path)

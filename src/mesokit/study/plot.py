@@ -49,6 +49,17 @@ def plot(
     return draw(drawn, x=(key, unit), y=named, fit=fit, log=log, note=note)
 
 
+def drawable(rows: Sequence[Pooled], axes: Sequence[Axis]) -> list[str]:
+    """The numbers that have error bars at several, numeric, values of the first key."""
+    found: dict[str, set[Any]] = {}
+    for row in rows:
+        if axes and row.number.error > 0:
+            found.setdefault(row.name, set()).add(row.point[axes[0].keys[0]])
+    if not axes or not all(isinstance(each[0], int | float) for each in axes[0].values):
+        return []
+    return [name for name, values in found.items() if len(values) > 1]
+
+
 def find_rows(rows: Sequence[Pooled], name: str) -> list[Pooled]:
     """The rows of one number: by its name, or by its beginning if only one begins so."""
     names = list(dict.fromkeys(row.name for row in rows))

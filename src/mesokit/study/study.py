@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from mesokit.case import toml
 from mesokit.case.case import Case
 from mesokit.case.component import nearest, one_of, show
+from mesokit.case.describe.shown import Shown
 from mesokit.case.outside import outside_parts
 from mesokit.errors import CaseError, RunError
 from mesokit.io.atomic import write_text
@@ -18,12 +19,13 @@ from mesokit.running.cores import usable_cores
 from mesokit.study import table as tables
 from mesokit.study.axes import Axis
 from mesokit.study.cluster import Cluster
-from mesokit.study.drive import StudyReporter, Workers, drive
+from mesokit.study.drive import StudyReporter, Workers, drive, reporter_for
 from mesokit.study.here import Here
 from mesokit.study.local import Processes
 from mesokit.study.merge import merge
+from mesokit.study.numbers import numbers, words_of
 from mesokit.study.plan import Base, Planned, by_point, make, planned, short_names
-from mesokit.study.plot import find_rows, plot, unit_of
+from mesokit.study.plot import drawable, find_rows, plot, unit_of
 
 if TYPE_CHECKING:
     from mesokit.io.open import RunFiles
@@ -33,7 +35,7 @@ FILE, CASE = "study.toml", "case.toml"
 HEAD = "# A study of mesokit: what it varies; its case is beside it, its runs are in runs/.\n"
 
 
-class Study:
+class Study(Shown):
     """The same case for several values and seeds: a folder of runs, and what they say together.
 
     Parameters
@@ -163,7 +165,7 @@ class Study:
         threads: int = 1,
         cluster: str | None = None,
         options: Mapping[str, Any] | None = None,
-        progress: StudyReporter | None = None,
+        progress: StudyReporter | bool | None = None,
     ) -> None:
         """Carry all runs that have not ended to their ends.
 
@@ -177,14 +179,15 @@ class Study:
             "slurm", "pbs", "sge", "lsf", "htcondor", "local" or the address of a Dask scheduler.
         options : mapping, optional
             Of the jobs of a cluster, such as {"queue": "long", "walltime": "10:00:00"}.
-        progress : StudyReporter, optional
-            Tells how it goes; nothing is said without.
+        progress : bool or StudyReporter, optional
+            True tells how it goes, False says nothing; in a notebook there is a bar unless False.
 
         Raises RunError when all others have ended, if runs have failed. A signal raises
         KeyboardInterrupt when the runs in hand have come to a checkpoint; `run` again goes on.
         """
+        reporter = reporter_for(progress)
         workers = self._workers(jobs, threads, cluster, options)
-        failed = drive(self.runs, workers, progress or StudyReporter(quiet=True))
+        failed = drive(self.runs, workers, reporter)
         if failed:
             run, why = failed[0]
             more = f" (and {len(failed) - 1} more)" if len(failed) > 1 else ""
@@ -257,12 +260,7 @@ class Study:
 
     def save_pictures(self) -> list[Path]:
         """Draw every number that has an error bar against the first key that is varied."""
-        rows = self.table()
-        names = dict.fromkeys(row.name for row in rows if row.number.error > 0)
-        if not self.keys or len(self.axes[0].values) < 2:
-            return []
-        if not all(isinstance(row.point[self.keys[0]], int | float) for row in rows):
-            return []
+        names = drawable(self.table(), self.axes)
         return [self.save_picture(self.keys[0], name) for name in names]
 
     def save_picture(self, x: str, y: str, fit: str | None = None) -> Path:
@@ -273,6 +271,17 @@ class Study:
         number = next(row.name for row in find_rows(self.table(), y))
         file = self.path / f"{number}-against-{names[self.keys.index(self.key(x))]}.png"
         return save_figure(figure, file)
+
+    def report(self, path: str | Path | None = None) -> Path:
+        """Write one HTML file with all of the study, also of one that has not ended.
+
+        It holds the numbers and pictures of all points, what is varied, the case, a list of the
+        runs, and how to repeat it; `report.html` in the folder of the study unless said. Raises
+        RunError.
+        """
+        from mesokit.study.document import write_report
+
+        return write_report(self, path)
 
     def merged(self, point: int = 0) -> RunFiles:
         """The runs of one point as one, with pooled observables, in a folder `merged` beside them.
@@ -297,9 +306,24 @@ class Study:
     def __len__(self) -> int:
         return len(self.runs)
 
+    def _card(self) -> dict[str, Any]:
+        axes = (item for axis in self.axes for item in axis.table().items())
+        varied = [(key, ", ".join(words_of(values)), "") for key, values in axes]
+        rows = self.table()
+        return {
+            "title": f"mesokit study {self.path}",
+            "words": self._state(),
+            "rows": [*varied, ("run.seed", ", ".join(map(str, self.seeds)), "")],
+            "numbers": numbers(rows, self.keys) if rows else None,
+            "text": self.base.text,
+            "fold": "the case",
+        }
+
+    def _state(self) -> str:
+        return f"{sum(run.ended for run in self.runs)} of {len(self)} runs have ended"
+
     def __repr__(self) -> str:
-        done = sum(run.ended for run in self.runs)
-        lines = [f"mesokit study {self.path}: {done} of {len(self.runs)} runs have ended"]
+        lines = [f"mesokit study {self.path}: {self._state()}"]
         lines += [f"  {axis.keys[0]}: {len(axis.values)} values" for axis in self.axes]
         lines += [f"  {len(self.seeds)} seeds"]
         return "\n".join(lines)

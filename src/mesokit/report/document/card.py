@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 from mesokit.observe.shared.result import Result
 from mesokit.report.document.comparisons import lines_of
@@ -17,10 +18,11 @@ def card(
     text: str = "",
     fold: str = "all of it",
     pretty: bool = False,
+    numbers: Any = None,
 ) -> str:
     """A title with some words, facts, comparisons of results, and a text that can be unfolded.
 
-    `pretty` sets powers and indices of the facts as such.
+    `pretty` sets powers and indices of the facts as such; `numbers` is the table of a study.
 
     >>> "<b>box</b> empty" in card("box", "empty")
     True
@@ -36,4 +38,5 @@ def card(
         text=text,
         fold=fold,
         pretty=pretty,
+        numbers=numbers,
     )

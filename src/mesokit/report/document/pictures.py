@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import base64
 import io
-import os
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from mesokit.case.amounts import size_text
 from mesokit.observe.shared.result import Result
+from mesokit.report.document.links import link_to
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -102,6 +102,6 @@ def films_of(folder: Path, page: Path, inline: bool) -> list[Reel]:
         size = path.stat().st_size
         inside = inline and size <= LARGEST_FILM
         source = embedded(path.read_bytes(), path.suffix) if inside else ""
-        link = Path(os.path.relpath(path, page.parent)).as_posix()
-        found.append(Reel(path.name, size_text(size), link, source, path.suffix == ".mp4"))
+        moving = path.suffix == ".mp4"
+        found.append(Reel(path.name, size_text(size), link_to(path, page), source, moving))
     return found

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from mesokit.case.amounts import duration_text
 from mesokit.errors import MesokitError
 from mesokit.io.atomic import write_text
+from mesokit.io.pooled import pooled_words
 from mesokit.io.run_directory import RunDirectory
 from mesokit.method.protocol import Row, method_of
 from mesokit.observe.shared.result import Result
 from mesokit.report.document.comparisons import lines_of
 from mesokit.report.document.conservation import changes
 from mesokit.report.document.pictures import figures, films_of, pictures_of_flow
+from mesokit.report.document.record import citation, install, origin_rows, timing_rows, when
 from mesokit.report.document.template import render
 from mesokit.report.table import SUSPICIOUS
 
@@ -27,7 +27,6 @@ HEADINGS = {  # of the sections that a run may have, in the order of the page
     "films": "Films", "conservation": "Conservation", "derived": "What follows from the case",
     "si": "In SI units",
 }  # fmt: skip
-PROGRAMS = ("mesokit", "__main__.py")  # by which the command line is called
 ALWAYS = {"case": "Case", "origin": "Where it comes from", "repeat": "To repeat it"}
 
 
@@ -114,10 +113,10 @@ def page(files: Files, path: Path, films: bool = False) -> str:
         contents=[*contents, *ALWAYS.items()],
         far=f"{SUSPICIOUS:g}",
         case=case.to_toml(files.path),
-        origin=_origin(record),
-        timings=_timings(record.get("timings") or {}),
-        repeat=_repeat(record),
-        cite=_cite(record),
+        origin=origin_rows(record),
+        timings=timing_rows(record.get("timings") or {}),
+        repeat=_repeat(case, record),
+        cite=citation(record),
         version=record.get("versions", {}).get("mesokit", ""),
         **sections,
     )
@@ -127,20 +126,17 @@ def _lead(case: Case, record: Mapping[str, Any]) -> str:
     """What was simulated, in a line."""
     size = " x ".join(f"{length:g}" for length in case.box.size)
     particles = sum(group.number for group in case.groups)
+    merged, warmup = record.get("merged") or (), case.run.warmup
+    steps = sum(run["step"] - warmup for run in merged) or case.run.steps
     words = [
         f"{case.run.method}, box of {size} cells",
         f"{particles:,} particles".replace(",", " "),
-        f"{case.run.steps} steps" + f" after {case.run.warmup} of warm-up" * bool(case.run.warmup),
-        f"seed {case.run.seed}",
+        f"{steps} steps" + " in all" * bool(merged) + f" after {warmup} of warm-up" * bool(warmup),
+        pooled_words(record) or f"seed {case.run.seed}",
     ]
     if record.get("ended"):
-        words.append(f"ended {_time(record['ended'])}")
+        words.append(f"ended {when(record['ended'])}")
     return ", ".join(words)
-
-
-def _time(text: str) -> str:
-    """A time of the record for people, who need no seconds."""
-    return text[:16].replace("T", " ") + " UTC" * text.endswith("+00:00")
 
 
 def _derived(case: Case) -> tuple[list[Row], tuple[str, ...]]:
@@ -157,61 +153,18 @@ def _si(case: Case) -> str:
     return str(convert(case)) if case.units is not None and convert is not None else ""
 
 
-def _origin(record: Mapping[str, Any]) -> list[Row]:
-    """Versions, machine and times, so far as they are on record."""
-    versions = ", ".join(f"{name} {v}" for name, v in record.get("versions", {}).items())
-    rows = [("versions", versions, "")] if versions else []
-    rows += _sources(record.get("sources") or {})
-    for key in ("seed", "case_digest", "host", "system", "processor", "cores",
-                "threads", "started", "ended", "failed"):  # fmt: skip
-        if record.get(key) is not None:
-            rows.append((key.replace("_", " "), str(record[key]), ""))
-    for key in ("resumed", "parts"):
-        if record.get(key):
-            rows.append((key, ", ".join(map(str, record[key])), ""))
-    for key, parent in (record.get("starts_from") or {}).items():
-        rows.append((key, str(parent.get("path", "")), f"sha256 {parent.get('sha256', 'unknown')}"))
-    if record.get("command"):
-        program, *words = map(str, record["command"])
-        name = "mesokit" if Path(program).name in PROGRAMS else Path(program).name
-        rows.append(("command", shlex.join([name, *words]), ""))
-    return rows
-
-
-def _sources(record: Mapping[str, Any]) -> list[Row]:
-    """Which state of mesokit made the numbers."""
-    rows = []
-    if record.get("commit"):
-        rows.append(("commit", record["commit"], "changed since" * (record["changed"] == "true")))
-    if record.get("digest"):
-        rows.append(("sources", f"sha256 {record['digest']}", ""))
-    return rows
-
-
-def _timings(seconds: Mapping[str, float]) -> list[tuple[str, str, str]]:
-    """Stages of the run, longest first, with their share."""
-    total = sum(seconds.values())
-    if not total > 0:
-        return []
-    longest = sorted(seconds.items(), key=lambda item: -item[1])
-    rows = [(name, f"{s:.2f}", f"{100 * s / total:.1f} %") for name, s in longest]
-    return [*rows, ("together", f"{total:.2f}", duration_text(total))]
-
-
-def _repeat(record: Mapping[str, Any]) -> str:
+def _repeat(case: Case, record: Mapping[str, Any]) -> str:
     """Commands that run the case again, and write this page of them."""
-    version = record.get("versions", {}).get("mesokit", "")
-    commands = [
-        f"pip install mesokit=={version}" if version[:1].isdigit() else "pip install mesokit",
-        "mesokit run case.toml --output again",
-        "mesokit report again",
-    ]
-    return "\n".join(commands)
-
-
-def _cite(record: Mapping[str, Any]) -> str:
-    """The program as a reference, with the version that made the numbers."""
-    version = record.get("versions", {}).get("mesokit", "")
-    commit = (record.get("sources") or {}).get("commit")
-    of_it = f", version {version}" * bool(version) + f", commit {commit}" * bool(commit)
-    return f"The mesokit developers, mesokit: mesoscale particle simulation in Python{of_it}."
+    commands = [install(record)]
+    folders = []
+    for run in record.get("merged") or ():
+        folders.append(f"again-{run['seed']}")
+        longer = run["step"] - case.run.warmup
+        steps = f" --set run.steps={longer}" * (longer != case.run.steps)
+        seed = f"--set run.seed={run['seed']}{steps}"
+        commands.append(f"mesokit run case.toml {seed} --output {folders[-1]}")
+    if folders:
+        commands.append(f"mesokit merge {' '.join(folders)} --output again")
+    else:
+        commands.append("mesokit run case.toml --output again")
+    return "\n".join([*commands, "mesokit report again"])

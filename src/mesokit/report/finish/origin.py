@@ -29,13 +29,15 @@ class Origin(NamedTuple):
         return ", ".join([*filter(None, words), f"mesokit {__version__}"])
 
     def metadata(self, kind: str) -> dict[str, str]:
-        """Entries of a PNG, PDF or SVG file, none for other kinds."""
+        """Entries of a PNG, PDF, SVG, MP4 or GIF file, none for other kinds."""
         program, title = f"mesokit {__version__}", self.title or self.run
         about = f"{self.line()}; case sha256 {self.digest}"
         known = {
             "png": {"Title": title, "Software": program, "Description": about},
             "pdf": {"Title": title, "Creator": program, "Subject": about},
             "svg": {"Title": title, "Creator": program, "Description": about},
+            "mp4": {"title": title, "comment": about},
+            "gif": {"comment": about},
         }
         return {key: text for key, text in known.get(kind, {}).items() if text}
 

@@ -7,6 +7,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from mesokit.errors import RunError
 from mesokit.io.atomic import replacing
 from mesokit.report.finish.origin import Origin
@@ -47,13 +50,33 @@ def _foot(figure: Any, origin: Origin | None) -> Iterator[dict[str, Any]]:
     from matplotlib.transforms import Bbox
 
     width, height = figure.get_size_inches()
-    text, most = origin.line(), int(LETTERS * width)
-    if len(text) > most:
-        text = f"{text[: most - 3]}..."
-    look: dict[str, Any] = {"fontsize": SIZE, "color": "0.4", "parse_math": False}
-    line = figure.text(1 - 0.06 / width, -0.06 / height, text, ha="right", va="top", **look)
+    line = _line(figure, origin, -0.06 / height)
     line.set_in_layout(False)
     try:
         yield {"bbox_inches": Bbox.from_extents(0, -FOOT, width, height)}
     finally:
         line.remove()
+
+
+def foot_strip(origin: Origin, width: float, dpi: float) -> NDArray[np.uint8]:
+    """The line below a figure `width` inches wide, as pixels (height, width, 3) of its own."""
+    import matplotlib as mpl
+
+    from mesokit.report.notebook import ShownFigure
+
+    with mpl.rc_context(STYLE):
+        strip = ShownFigure(figsize=(width, FOOT), dpi=dpi)
+        _line(strip, origin, 1 - 0.06 / FOOT)
+        canvas: Any = strip.canvas
+        canvas.draw()
+        return np.array(canvas.buffer_rgba())[..., :3]
+
+
+def _line(figure: Any, origin: Origin, top: float) -> Any:
+    """Where a figure comes from, written at its right side; `top` in heights of the figure."""
+    width = figure.get_size_inches()[0]
+    text, most = origin.line(), int(LETTERS * width)
+    if len(text) > most:
+        text = f"{text[: most - 3]}..."
+    look: dict[str, Any] = {"fontsize": SIZE, "color": "0.4", "parse_math": False}
+    return figure.text(1 - 0.06 / width, top, text, ha="right", va="top", **look)

@@ -17,6 +17,8 @@ from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.io.atomic import replacing
 from mesokit.report.caption import symbols
+from mesokit.report.finish.origin import origin_of
+from mesokit.report.finish.saving import foot_strip
 from mesokit.report.flow.beads import BeadFrames, frames_of
 from mesokit.report.flow.encode import ENCODERS, Pixels
 from mesokit.report.flow.kinds import panels_of, quieted
@@ -72,6 +74,7 @@ def animate(
     kind: str = "speed",
     fps: float = 15.0,
     progress: Reporter | None = None,
+    run: str = "",
     **choices: Any,
 ) -> Film:
     """Write a film with a picture for each frame of the observable flow-frames, or a trajectory.
@@ -83,6 +86,7 @@ def animate(
     kind: as for `picture`.
     fps: frames shown per second.
     progress: what tells how it goes (nothing does unless said).
+    run: its name, for the line below the film and the metadata of the file.
     choices: `region`, `window`, `axes` and `at`, as for `picture`.
 
     Raises CaseError for an ending or a choice that there is not, RunError where the run kept no
@@ -126,11 +130,14 @@ def animate(
     drawn.figure.set_dpi(DPI[ending])
     progress = progress or FilmReporter(quiet=True)
     progress.start(len(frames), case.particles, "drawing")
+    origin = origin_of(case, run)
+    foot = foot_strip(origin, drawn.figure.get_size_inches()[0], DPI[ending])
     pictures = _pictures(drawn, source, frames, progress, width, solutes)
+    whole_pictures = (np.concatenate([picture, foot]) for picture in pictures)
     try:
         with replacing(path) as temporary:
             temporary.touch()  # a folder that cannot be written to says so before long work
-            ENCODERS[ending](temporary, pictures, float(fps))
+            ENCODERS[ending](temporary, whole_pictures, float(fps), origin.metadata(ending[1:]))
     finally:
         progress.finish()
     return Film(path, len(frames), float(fps))

@@ -1,0 +1,247 @@
+"""The report of a study: one file that holds everything, to be read, printed or sent."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple, Protocol
+
+from mesokit.case.case import Case
+from mesokit.errors import CaseError, MesokitError, RunError
+from mesokit.io.atomic import write_text
+from mesokit.io.run_directory import RunDirectory
+from mesokit.method.protocol import Row, method_of
+from mesokit.report.document.links import link_to
+from mesokit.report.document.pictures import Picture, drawn
+from mesokit.report.document.record import citation, install, origin_rows, timing_rows, when
+from mesokit.report.document.template import render
+from mesokit.report.table import SUSPICIOUS
+from mesokit.study.axes import Axis
+from mesokit.study.numbers import numbers, point_words, words_of
+from mesokit.study.plan import Base, Planned, by_point, short_names
+from mesokit.study.plot import drawable, find_rows, plot, unit_of
+from mesokit.study.table import Pooled
+
+HEADINGS = {  # of the sections that a study may have, in the order of the page
+    "warnings": "Warnings", "numbers": "Measured and expected", "figures": "Figures",
+}  # fmt: skip
+ALWAYS = {
+    "varied": "What is varied", "runs": "Runs", "case": "Case", "origin": "Where it comes from",
+    "repeat": "To repeat it",
+}  # fmt: skip
+OF_A_RUN = ("seed", "case digest", "started", "ended", "failed", "resumed", "command")
+MOST = 4  # different machines, or whatever, that are named
+
+
+class Studied(Protocol):
+    """What a report asks of a study."""
+
+    path: Path
+    base: Base
+    axes: list[Axis]
+    seeds: list[int]
+    runs: list[Planned]
+
+    @property
+    def keys(self) -> list[str]:
+        """The key paths that are varied."""
+
+    def table(self) -> list[Pooled]:
+        """Every compared number at every point."""
+
+
+class RunRow(NamedTuple):
+    """A run in the list of runs: `report` is a link, nothing if there is no file."""
+
+    point: list[str]
+    seed: int
+    state: str
+    ended: str
+    seconds: str
+    folder: str
+    report: str
+
+
+def write_report(study: Studied, path: str | Path | None = None) -> Path:
+    """Write the report of a study, `report.html` in its folder unless said. Raises RunError."""
+    path = Path(path) if path is not None else RunDirectory(study.path).report_file
+    write_text(path, page(study, path))
+    return path
+
+
+def page(study: Studied, path: Path) -> str:
+    """The report of a study as HTML, for a file `path`."""
+    rows = study.table()
+    records = [RunDirectory(run.path).read_provenance() for run in study.runs]
+    done = [record for run, record in zip(study.runs, records, strict=True) if run.ended]
+    command, file = _again(study)
+    sections: dict[str, Any] = {
+        "warnings": _warnings(study),
+        "numbers": numbers(rows, study.keys) if rows else None,
+        "figures": _figures(study, rows),
+    }
+    contents = [(key, words) for key, words in HEADINGS.items() if sections[key]]
+    name = study.path.resolve().name
+    ended = sum(run.ended for run in study.runs)
+    return render(
+        "study.html",
+        title=study.base.data.get("title") or name,
+        folder=name,
+        lead=_lead(study, done),
+        ended=ended,
+        number=len(study.runs),
+        again=shlex.join(["mesokit", "study", str(study.path)]),
+        failed=[(run.path, run.failed) for run in study.runs if run.failed],
+        contents=[*contents, *ALWAYS.items()],
+        far=f"{SUSPICIOUS:g}",
+        varied=_varied(study),
+        keys=short_names(study.keys),
+        runs=[_run(*each, path) for each in zip(study.runs, records, strict=True)],
+        case=study.base.text,
+        origin=_origin(done),
+        timings=timing_rows(_together(done)),
+        repeat="\n".join([install(done[0] if done else {}), command, "mesokit report again"]),
+        file=file,
+        cite=list(dict.fromkeys(map(citation, done or [{}]))),
+        version=done[0].get("versions", {}).get("mesokit", "") if done else "",
+        **sections,
+    )
+
+
+def _lead(study: Studied, done: Sequence[Mapping[str, Any]]) -> str:
+    """How many runs of what, in a line."""
+    points = len(list(by_point(study.runs)))
+    words = [
+        f"{points} points" if points > 1 else "1 point",
+        f"{len(study.seeds)} seeds each" if len(study.seeds) > 1 else "1 seed",
+        f"{len(study.runs)} runs",
+    ]
+    if any(record.get("ended") for record in done):
+        last = max(record["ended"] for record in done if record.get("ended"))
+        words.append(f"last ended {when(last)}")
+    return ", ".join(words)
+
+
+def _varied(study: Studied) -> list[Row]:
+    """Keys and their values; keys of one axis change together."""
+    rows = []
+    for axis in study.axes:
+        for number, (key, values) in enumerate(axis.table().items()):
+            together = f"together with {axis.keys[0]}" * bool(number)
+            rows.append((key, ", ".join(words_of(values)), together))
+    rows.append(("run.seed", ", ".join(map(str, study.seeds)), ""))
+    rows += [(key, str(value), "in all runs") for key, value in study.base.settings.items()]
+    return rows
+
+
+def _figures(study: Studied, rows: Sequence[Pooled]) -> list[Picture]:
+    """Every number that has an error bar against the first key."""
+    found: list[Picture] = []
+    names = drawable(rows, study.axes)
+    if not names:
+        return found
+    some = next(run for run in study.runs if run.ended)
+    unit = unit_of(some.files.case, study.keys[0])
+    for name in names:
+        each = find_rows(rows, name)
+        runs = f"mean of {each[0].runs} runs" if each[0].runs > 1 else "one run"
+        notes = dict.fromkeys(row.number.note for row in each if row.number.note)
+        words = f"{each[0].number.what} against {study.keys[0]}, {runs} at each point"
+        figure = plot(rows, study.axes, study.keys[0], name, unit)
+        found.append(Picture(name, drawn(figure), "; ".join([words, *list(notes)[:2]]) + "."))
+    return found
+
+
+def _run(run: Planned, record: Mapping[str, Any], page: Path) -> RunRow:
+    seconds, report = sum(_seconds(record).values()), RunDirectory(run.path).report_file
+    return RunRow(
+        point_words(run.point),
+        run.seed,
+        run.state,
+        when(record["ended"]) if record.get("ended") else "",
+        f"{seconds:.2f}" if run.ended and seconds else "",
+        f"{link_to(run.path, page)}/",
+        link_to(report, page) if report.exists() else "",
+    )
+
+
+def _warnings(study: Studied) -> list[str]:
+    """What `mesokit check` warns of, with the points where it does, unless it is all of them."""
+    points = list(by_point(study.runs))
+    found: dict[str, list[str]] = {}
+    for runs in points:
+        try:
+            case = Case.from_toml(RunDirectory(runs[0].path).case_file)
+            warnings = method_of(case).summary(case, None).warnings
+        except (MesokitError, OSError):  # a file that the start was made from may be gone
+            continue
+        names = zip(short_names(study.keys), point_words(runs[0].point), strict=True)
+        for text in warnings:
+            found.setdefault(text, []).append(", ".join(f"{k} = {v}" for k, v in names))
+    return [
+        text if len(where) == len(points) else f"{text} (at {'; '.join(where)})"
+        for text, where in found.items()
+    ]
+
+
+def _origin(records: Iterable[Mapping[str, Any]]) -> list[Row]:
+    """What all runs come from; where they differ, what there is."""
+    found: dict[str, dict[tuple[str, str], None]] = {}
+    for record in records:
+        for name, value, note in origin_rows(record):
+            if name not in OF_A_RUN:
+                found.setdefault(name, {})[value, note] = None
+    rows = []
+    for name, values in found.items():
+        some = list(values)[:MOST]
+        more = f"; and {len(values) - MOST} more" * (len(values) > MOST)
+        rows.append((name, "; ".join(v for v, _ in some) + more, some[0][1]))
+    return rows
+
+
+def _seconds(record: Mapping[str, Any]) -> dict[str, float]:
+    return record.get("timings") or {}
+
+
+def _together(records: Iterable[Mapping[str, Any]]) -> dict[str, float]:
+    """Seconds of each stage, of all runs."""
+    total: dict[str, float] = {}
+    for record in records:
+        for stage, seconds in _seconds(record).items():
+            total[stage] = total.get(stage, 0.0) + seconds
+    return total
+
+
+def _again(study: Studied) -> tuple[str, str]:
+    """The command that makes the study anew, and the study file that it needs, if it does."""
+    with_options = _command(study)
+    if with_options:
+        return with_options, ""
+    try:
+        lines = RunDirectory(study.path).study_file.read_text(encoding="utf-8").splitlines(True)
+    except OSError as error:
+        raise RunError(f"{study.path}: cannot be read: {error}") from None
+    kept = (line for line in lines if not line.startswith(("folder =", "#")))
+    return "mesokit study again.toml", "".join(kept)
+
+
+def _command(study: Studied) -> str:
+    """With options, if these can say it: seeds in a row, and values that are read back alike."""
+    first = study.base.data.get("run", {}).get("seed", 1)
+    if study.seeds != [first + i for i in range(len(study.seeds))]:
+        return ""
+    words = ["mesokit", "study", "case.toml"]
+    for axis in study.axes:
+        try:
+            if Axis.parse(axis.text()) != axis:
+                return ""
+        except CaseError:
+            return ""
+        words += ["--vary", axis.text()]
+    for key, value in study.base.settings.items():
+        if not isinstance(value, str):
+            return ""
+        words += ["--set", f"{key}={value}"]
+    words += ["--seeds", str(len(study.seeds))] if len(study.seeds) > 1 else []
+    return shlex.join([*words, "--output", "again"])
