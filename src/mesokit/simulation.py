@@ -155,7 +155,8 @@ class Simulation(Shown):
         self.log.resume(self.step)
         record = self._earlier_record(directory) or provenance(self.case, self.threads)
         resumed = [*record.get("resumed", []), *([now()] if self._looked or self.step else [])]
-        self._save_provenance(record | {"resumed": resumed, "failed": None})
+        record |= recorded_case(self.case) | {"resumed": resumed, "failed": None}
+        self._save_provenance(record)
         return self
 
     def _build(self) -> None:

@@ -121,6 +121,19 @@ def test_another_case_in_its_place_is_refused(study, case_file, tmp_path):
         Study(other, {FORCE: [0.02]}, seeds=1, output=study.path)
 
 
+def test_runs_become_longer(case_file, tmp_path, study):
+    """A study that is made again with more steps goes on; to fewer it cannot come."""
+    first = Study(case_file, output=tmp_path / "s", settings={"run.steps": 60})
+    first.run()
+    longer = Study(case_file, output=tmp_path / "s")
+    assert not longer.ended and not longer.runs[0].files.ended
+    longer.run()
+    assert longer.runs[0].files.results == study.runs[0].files.results
+    assert "steps = 120" in longer.runs[0].files.provenance["case"]
+    with pytest.raises(RunError, match=r"run\.steps = 120, which cannot be 60"):
+        Study(case_file, output=tmp_path / "s", settings={"run.steps": 60})
+
+
 def test_bad_values_make_no_folder(case_file, tmp_path):
     with pytest.raises(CaseError, match=r"with fluid\.density = -1: fluid\.density = -1"):
         Study(case_file, {"fluid.density": [5, -1]}, output=tmp_path / "s")

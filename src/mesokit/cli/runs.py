@@ -59,6 +59,8 @@ def run(
     if seeds is not None:
         from mesokit.cli.studies import run_seeds
 
+        if overwrite:
+            raise CaseError("--overwrite: not with --seeds, whose runs go on where they are")
         given = {"settings": settings, "threads": threads, "quiet": quiet}
         return run_seeds(case, seeds, output, given)
     with patience("looking at the solids (the first time, what looks at them is compiled)"):

@@ -85,6 +85,9 @@ def study(what: Path, **given: Any) -> None:
         return click.echo(f"wrote {script}; next: sbatch {script}")
     if given["only"] is not None:
         return _only(made, given["only"], given["threads"])
+    if not given["quiet"] and not made.ended:
+        for warning in made.warnings():
+            say(f"warning: {warning}")
     with stopping(f"mesokit study {made.path}"):
         _run(made, given)
     _show(made, given)

@@ -169,8 +169,16 @@ class RunFiles(Shown, Mapping[str, "Result"]):
 
     @property
     def ended(self) -> bool:
-        """Whether the run has come to its end, and has results."""
-        return self.directory.data_file.exists()
+        """Whether the run has come to its end, and has results.
+
+        A case that was made longer since has not.
+        """
+        if not self.directory.data_file.exists():
+            return False
+        with contextlib.suppress(RunError):  # results outlive a checkpoint
+            step = checkpoint.read_meta(self.directory.checkpoint_file)["step"]
+            return bool(step >= self.case.run.warmup + self.case.run.steps)
+        return True
 
     def report(self, path: str | Path | None = None, films: bool = False) -> Path:
         """Write one HTML file with all of the run: see `mesokit.report.document.write_report`.

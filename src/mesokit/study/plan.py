@@ -17,6 +17,7 @@ from mesokit.errors import CaseError, RunError
 from mesokit.io import checkpoint
 from mesokit.io.open import RunFiles
 from mesokit.io.run_directory import RunDirectory
+from mesokit.running.longer import longer
 from mesokit.study.axes import Axis, grid
 from mesokit.study.merge import different_key, flat
 
@@ -37,7 +38,7 @@ class Planned:
     @property
     def ended(self) -> bool:
         """Whether it has its results."""
-        return RunDirectory(self.path).data_file.exists()
+        return RunDirectory(self.path).data_file.exists() and self.files.ended
 
     @property
     def failed(self) -> str:
@@ -142,7 +143,7 @@ class Base:
 
 
 def make(runs: Sequence[Planned], base: Base) -> list[Planned]:
-    """Make the folders of runs that are not there yet; returns all of them.
+    """Make the folders of runs that are not there yet, and longer what is to be; returns all.
 
     Raises CaseError for a case that cannot be, before any folder is made, and RunError where
     another case lies in the place of a run.
@@ -158,7 +159,10 @@ def make(runs: Sequence[Planned], base: Base) -> list[Planned]:
 
 
 def _require_same(run: Planned, case: Case) -> None:
-    """Raise RunError if another case lies there; files lie elsewhere once they are kept."""
+    """Raise RunError if another case lies there; files lie elsewhere once they are kept.
+
+    One that is shorter is made longer: its run goes on.
+    """
     there = flat(RunDirectory(run.path).case_file.read_text(encoding="utf-8"))
     wanted = flat(case.to_toml())
     names = tuple(key for key in wanted if key.rpartition(".")[2] in ("file", "run"))
@@ -168,6 +172,11 @@ def _require_same(run: Planned, case: Case) -> None:
             f"{run.path}: holds a run with {key} = {show(there.get(key))}, not "
             f"{show(wanted.get(key))}; choose another output"
         )
+    steps, done = wanted["run.steps"], there["run.steps"]
+    if steps < done:
+        raise RunError(f"{run.path}: holds a run with run.steps = {done}, which cannot be {steps}")
+    if steps > done:
+        RunDirectory(run.path).write_case(longer(run.files.case, steps, 0))
 
 
 def by_point(runs: Sequence[Planned]) -> Iterator[list[Planned]]:

@@ -15,6 +15,7 @@ from mesokit.case.describe.shown import Shown
 from mesokit.case.outside import outside_parts
 from mesokit.errors import CaseError, RunError
 from mesokit.io.atomic import write_text
+from mesokit.method.protocol import method_of
 from mesokit.running.cores import usable_cores
 from mesokit.study import table as tables
 from mesokit.study.axes import Axis
@@ -152,6 +153,19 @@ class Study(Shown):
     def keys(self) -> list[str]:
         """The key paths that are varied."""
         return [key for axis in self.axes for key in axis.keys]
+
+    def warnings(self) -> list[str]:
+        """What to mind of the cases, each once, and at which point where not at all."""
+        points = [group[0] for group in by_point(self.runs)]
+        found: dict[str, list[Planned]] = {}
+        for run in points:
+            case = run.files.case
+            for text in method_of(case).summary(case, 1).warnings:
+                found.setdefault(text, []).append(run)
+        return [
+            text if len(runs) == len(points) else f"{runs[0].path.parent.name}: {text}"
+            for text, runs in found.items()
+        ]
 
     @property
     def ended(self) -> bool:
