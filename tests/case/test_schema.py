@@ -15,7 +15,9 @@ from mesokit.method import templates
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES = [Path(str(file)) for file in templates().values()]
-CASES += sorted((ROOT / "examples").rglob("*.toml"))
+CASES += sorted(
+    path for path in (ROOT / "examples").rglob("*.toml") if path.parent.name != "studies"
+)
 GOOD = {"run": {"steps": 10}, "box": {"size": [10, 10]}}
 
 

@@ -10,7 +10,7 @@ from mesokit import SRD, BondLength, Harmonic, MaxwellBoltzmann, MoleculeSize
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.observe.shared.molecule_tensor import ENOUGH, kept
 
-MOLECULES, RUNS, INTERVAL = 512, 20, 0.1
+MOLECULES, RUNS, INTERVAL = 512, 80, 0.1
 DIMERS = {
     "density": 2.0,
     "timestep": INTERVAL,
@@ -60,7 +60,7 @@ def test_error_bars_hold(kind, relaxations):
         compared = measured(kind, samples, seed).comparisons()[0]
         deviation.append(compared.deviation)
         assert "lower bound" in str(compared)
-    assert 0.6 < np.std(deviation) < 1.4
+    assert abs(np.std(deviation) - 1) < 3 / np.sqrt(2 * RUNS)
 
 
 def test_a_long_run_has_the_error_bar_of_blocking():

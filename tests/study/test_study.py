@@ -20,6 +20,7 @@ from mesokit.errors import CaseError, RunError
 from mesokit.study import local
 
 FORCE = "fluid.force.acceleration"
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "studies"
 LONG = 300  # seconds after which a test has failed
 
 
@@ -182,6 +183,12 @@ def test_study_files_and_the_command(case_file, tmp_path, capsys, monkeypatch):
     ):
         code, _, err = said(capsys, "study", *arguments)
         assert code == 2 and words in err and "\n" not in err.strip(), err
+
+
+@pytest.mark.parametrize("file", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_examples_can_be_run(file, tmp_path):
+    study = Study.open(file, output=tmp_path / "s")
+    assert len(study) > 1 and not any("average over the start" in w for w in study.warnings())
 
 
 @pytest.mark.parametrize(

@@ -50,7 +50,8 @@ def blaming(case: Any) -> Iterator[None]:
 
 def _gist(error: Exception) -> str:
     """One line of what may be the many of a compiler: the last that says what was wrong."""
-    lines = [f"{type(error).__name__}: {error}".splitlines()[0], *str(error).splitlines()]
+    text = re.sub(r"\x1b\[[0-9;]*m", "", str(error))  # numba's are coloured where it can
+    lines = [f"{type(error).__name__}: {text}".splitlines()[0], *text.splitlines()]
     found = [line for line in lines if re.search(r"\b(?!Typing)[A-Z][a-z]\w*Error: ", line)]
     return " ".join((found or lines)[-1 if found else 0].split())
 
