@@ -85,7 +85,7 @@ ROWS = {
 BY_NAME = {
     "__init__.py", "method/__init__.py", "case/registry.py", "case/outside.py",
     "case/describe/shown.py", "observe/shared/result.py", "io/optional.py", "study/work.py",
-    "geometry/shape/mesh.py",
+    "geometry/shape/mesh.py", "cli/commands.py",
 }  # fmt: skip
 MOST_FILES = 16  # in a folder of machinery; of laws, quantities and pictures there may be more
 LONG = ("theory", "observe", "report/flow", "io")

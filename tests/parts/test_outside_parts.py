@@ -34,7 +34,7 @@ from mesokit import Simulation, open
 simulation = Simulation.resume("run")
 assert simulation.step == 20, simulation.step
 simulation.run()
-assert open("run")["kurtosis"].samples == 20
+assert open("run")["kurtosis"].samples == 21
 assert all(path.exists() for path in open("run").plot())
 """
 
@@ -118,6 +118,8 @@ def test_in_a_script_with_resume_and_plot(module: Path) -> None:
         if part["name"] == "kurtosis"
     ]
     assert kurtosis["class"] == "my_parts:Kurtosis" and "version" not in kurtosis
+    done = python(module, "-m", "mesokit", "--import", "my_parts", "info", "run")
+    assert done.returncode == 0 and "kurtosis along x" in done.stdout, done.stderr
     line = refused(module.parent, "plot", str(module / "run"))
     assert "'reversal'" in line and "my_parts:Reversal" in line and "import" in line
 

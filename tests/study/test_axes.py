@@ -36,7 +36,8 @@ def test_what_the_command_line_says(text, points):
         ("a=1,2;b=1,2,3", "a has 2, b has 3"),
         ("a=-1:1:3:log", "begins above 0"),
         ("a=x:1:3", "expected KEY=VALUE"),
-        ("a=1:2:0", "a value at least"),
+        ("a=1:2:0", "no value; expected KEY=VALUE"),
+        ("a=1:2", "or KEY=FIRST:LAST:NUMBER"),
     ],
 )
 def test_what_cannot_be_varied(text, words):

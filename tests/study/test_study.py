@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import csv
+import shutil
 import signal
 import subprocess
 import sys
@@ -55,6 +56,7 @@ def test_runs_are_those_of_their_cases(study, case_file):
 def test_what_has_ended_is_not_repeated(study, monkeypatch, case_file):
     """Nor when the study is opened, made again, or made larger."""
     before = {path: path.stat().st_mtime_ns for path in study.path.rglob("run.h5")}
+    record = (study.path / "study.toml").read_text()
 
     def nobody(*given):
         raise AssertionError("a run was handed out")
@@ -66,7 +68,11 @@ def test_what_has_ended_is_not_repeated(study, monkeypatch, case_file):
     larger = Study(case_file, {FORCE: [0.02, 0.04, 0.06]}, seeds=3, output=study.path)
     assert [run.ended for run in larger.runs] == [True] * 6 + [False] * 3
     assert {path: path.stat().st_mtime_ns for path in study.path.rglob("run.h5")} == before
-    Study(case_file, {FORCE: [0.02, 0.04]}, seeds=3, output=study.path)  # as it was
+    with pytest.raises(RunError, match=r"holds a study with other runs, such as runs.acc.*=0\.06"):
+        Study(case_file, {FORCE: [0.02, 0.04]}, seeds=3, output=study.path)
+    for path in study.path.glob("runs/*=0.06"):
+        shutil.rmtree(path)
+    (study.path / "study.toml").write_text(record)  # as it was
 
 
 def test_table_pools_the_seeds(study, tmp_path):
@@ -119,7 +125,7 @@ def test_another_case_in_its_place_is_refused(study, case_file, tmp_path):
     other = tmp_path / "other.toml"
     other.write_text(case_file.read_text().replace("density = 9.52", "density = 5"))
     with pytest.raises(RunError, match=r"holds a run with fluid\.density = 9\.52, not 5"):
-        Study(other, {FORCE: [0.02]}, seeds=1, output=study.path)
+        Study(other, {FORCE: [0.02, 0.04]}, seeds=3, output=study.path)
 
 
 def test_runs_become_longer(case_file, tmp_path, study):
@@ -135,6 +141,13 @@ def test_runs_become_longer(case_file, tmp_path, study):
         Study(case_file, output=tmp_path / "s", settings={"run.steps": 60})
 
 
+def test_a_folder_that_was_removed_is_made_again(case_file, tmp_path):
+    made = Study(case_file, output=tmp_path / "s", settings={"run.steps": 30})
+    shutil.rmtree(made.runs[0].path)
+    Study.open(tmp_path / "s").run()
+    assert made.ended
+
+
 def test_bad_values_make_no_folder(case_file, tmp_path):
     with pytest.raises(CaseError, match=r"with fluid\.density = -1: fluid\.density = -1"):
         Study(case_file, {"fluid.density": [5, -1]}, output=tmp_path / "s")
@@ -145,12 +158,15 @@ def test_bad_values_make_no_folder(case_file, tmp_path):
         Study(case_file, seeds=0, output=tmp_path / "s")
 
 
-def test_one_that_fails_does_not_stop_the_others(case_file, tmp_path):
+def test_one_that_fails_does_not_stop_the_others(case_file, tmp_path, capsys):
     vary = {(FORCE, "fluid.thermostat.rule"): [(500.0, "none"), (0.02, "maxwell-boltzmann")]}
     study = Study(case_file, vary, output=tmp_path / "s")
     with pytest.raises(RunError, match=r"acceleration=500,rule=none/seed=5: .*particle moves at"):
         study.run(jobs=1)
     assert [run.ended for run in study.runs] == [False, True]
+    code, out, err = said(capsys, "study", study.path, "--jobs", 1)
+    assert code == 1 and "flow-rate: mean velocity" in out and "table:" in out
+    assert "particle moves at" in err
     assert "particle moves at" in study.runs[0].failed
     assert len(study.table()) > 0
 
@@ -179,6 +195,8 @@ def test_study_files_and_the_command(case_file, tmp_path, capsys, monkeypatch):
         (["forces", "--seeds", 2], "--seeds: only with a case file"),
         (["forces", "--only", 3], "--only 3: the study has 2 runs"),
         (["forces", "--fit", "line"], "--fit: of which number?"),
+        (["forces", "--y", "flow-rat.mean"], "expected 'velocity-profile' or 'flow-rate'"),
+        (["forces", "--x", "nix", "--y", y], "nix: not varied; expected 'acceleration'"),
         ([tmp_path / "nowhere"], "no such file"),
     ):
         code, _, err = said(capsys, "study", *arguments)

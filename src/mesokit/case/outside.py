@@ -64,7 +64,8 @@ def require_parts(record: Any) -> None:
             raise RunError(f"{part['family']} is no family of parts")
         family = FAMILIES[getattr(importlib.import_module(module), base)]
         if family.find(part["name"]) is None:
-            cure = "import the module that defines it first"
+            module = part["class"].partition(":")[0]
+            cure = f"import it first: `import {module}`, or mesokit --import {module} ..."
             if "distribution" in part:
                 cure = f"install {part['distribution']} {part['version']}"
             raise RunError(

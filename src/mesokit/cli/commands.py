@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
+import os
+import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,11 +26,24 @@ if TYPE_CHECKING:
     'eval "$(_MESOKIT_COMPLETE=bash_source mesokit)" into ~/.bashrc (or zsh_source, fish_source).',
 )
 @click.version_option(__version__, message="mesokit %(version)s")
-def cli() -> None:
+@click.option(
+    "--import",
+    "modules",
+    multiple=True,
+    metavar="MODULE",
+    help="A Python module, of this folder or installed, with parts of one's own. May be repeated.",
+)
+def cli(modules: Sequence[str]) -> None:
     """Mesoscale fluid simulation, from a case file to a figure with the theory on it.
 
     Start with: mesokit new poiseuille, then mesokit run poiseuille.toml
     """
+    for module in modules:
+        sys.path[:0] = [os.getcwd()] if os.getcwd() not in sys.path else []
+        try:
+            importlib.import_module(module)
+        except ImportError as error:
+            raise CaseError(f"--import {module}: {error}") from None
 
 
 CASE = click.Path(dir_okay=False, path_type=Path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -82,15 +83,25 @@ def study(what: Path, **given: Any) -> None:
         return show_table([(str(i + 1), run.state, str(run.path)) for i, run in _numbered(made)])
     if given["job_array"]:
         script = write_job_array(made, given["threads"])
-        return click.echo(f"wrote {script}; next: sbatch {script}")
+        return click.echo(f"wrote {script}; next: sbatch {shlex.quote(str(script))}")
     if given["only"] is not None:
         return _only(made, given["only"], given["threads"])
     if not given["quiet"] and not made.ended:
         for warning in made.warnings():
             say(f"warning: {warning}")
-    with stopping(f"mesokit study {made.path}"):
-        _run(made, given)
+    if given["y"]:
+        made.require(given["x"] or _first(made), given["y"])
+    failed = None
+    with stopping(f"mesokit study {shlex.quote(str(made.path))}"):
+        try:
+            _run(made, given)
+        except RunError as error:
+            if not any(run.ended for run in made.runs):
+                raise
+            failed = error
     _show(made, given)
+    if failed is not None:  # what has ended is shown all the same
+        raise failed
 
 
 def _made(Study: Any, what: Path, given: dict[str, Any]) -> Any:
@@ -190,6 +201,9 @@ def run_seeds(case: Path, seeds: int, output: Path, given: dict[str, Any]) -> No
     from mesokit.study.study import Study
 
     made = Study(case, None, seeds, output=output, settings=given["settings"])
+    if not given["quiet"] and not made.ended:
+        for warning in made.warnings():
+            say(f"warning: {warning}")
     with stopping(f"mesokit study {output}"):
         made.run(threads=given["threads"] or 1, progress=StudyReporter(given["quiet"]))
     if len(made.runs) > 1:

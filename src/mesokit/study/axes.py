@@ -43,7 +43,7 @@ class Axis:
 
     def __post_init__(self) -> None:
         if not self.keys or not self.values:
-            raise CaseError(f"vary {', '.join(self.keys)}: expected a key and a value at least")
+            raise CaseError(f"vary {', '.join(self.keys)}: no value; {FORM}")
         for row in self.values:
             if len(row) != len(self.keys):
                 raise CaseError(f"vary {', '.join(self.keys)}: {show(row)}: expected a value each")
@@ -148,6 +148,8 @@ def _values(key: str, text: str) -> list[Any]:
         return [int(v) for v in values] if _whole(found, values) else list(values)
     with contextlib.suppress(tomllib.TOMLDecodeError):
         return list(tomllib.loads(f"values = [{text}]")["values"])
+    if re.fullmatch(r"\s*[-+.\deE]+:[-+.\deE:]*\s*", text):
+        raise CaseError(f"vary {key}={text.strip()}: {FORM}")
     return [_value(part.strip()) for part in text.split(",")]  # bare words are texts
 
 

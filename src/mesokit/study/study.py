@@ -133,9 +133,21 @@ class Study(Shown):
         self.runs: list[Planned] = planned(axes, seeds, self.path)
 
     def _make(self) -> None:
-        """The folder with all runs in it; those that are there are kept."""
+        """The folder with all runs in it; those that are there are kept.
+
+        Raises RunError where a study lies that has runs which this one has not.
+        """
         if self.path.is_dir() and any(self.path.iterdir()) and not (self.path / FILE).exists():
             raise RunError(f"{self.path}: folder is not empty, and holds no study")
+        if (self.path / FILE).exists():
+            ours = [run.path for run in self.runs]
+            for run in Study.open(self.path).runs:
+                if run.path not in ours:
+                    raise RunError(
+                        f"{self.path}: holds a study with other runs, such as "
+                        f"{run.path.relative_to(self.path)}; name its values as well, or choose "
+                        "another output"
+                    )
         make(self.runs, self.base)
         lines = [HEAD, f"case = {json.dumps(CASE)}\n"]
         lines += [f"folder = {json.dumps(str(self.base.folder))}  # of files that the case names\n"]
@@ -166,6 +178,18 @@ class Study(Shown):
             text if len(runs) == len(points) else f"{runs[0].path.parent.name}: {text}"
             for text, runs in found.items()
         ]
+
+    def require(self, x: str | None, y: str) -> None:
+        """Raise CaseError if a picture cannot be, as far as that is known before the runs."""
+        self.key(x) if x else None
+        labels = [o.label for o in self.base.case(self.runs[0].point, self.runs[0].seed).observe]
+        if not any(label.startswith(y) or y.startswith(label) for label in labels):
+            name = y.partition(".")[0]
+            raise CaseError(
+                f"{y}: no observable {show(name)}; expected {one_of(labels)}{nearest(name, labels)}"
+                if labels
+                else f"{y}: the case measures nothing"
+            )
 
     @property
     def ended(self) -> bool:
@@ -200,6 +224,8 @@ class Study(Shown):
         KeyboardInterrupt when the runs in hand have come to a checkpoint; `run` again goes on.
         """
         reporter = reporter_for(progress)
+        if not all((run.path / CASE).exists() for run in self.runs):  # somebody removed them
+            make(self.runs, self.base)
         workers = self._workers(jobs, threads, cluster, options)
         failed = drive(self.runs, workers, reporter)
         if failed:
@@ -268,7 +294,10 @@ class Study(Shown):
                 last = row.point
             agree = ""
             if row.seeds is not None:
-                agree = f"; seeds: chi-square {row.seeds.chi2:.2g} of {row.seeds.dof}"
+                agree = (
+                    f"; seeds: chi-square {row.seeds.chi2:.2g} of {row.seeds.dof}, "
+                    f"p = {row.seeds.p:.2g}"
+                )
             found.append(f"  {row.observable}: {row.number}{agree}")
         return found
 
