@@ -9,6 +9,7 @@ import warnings
 from pathlib import Path
 
 import gsd.hoomd
+import h5py
 import numpy as np
 import pytest
 
@@ -20,6 +21,7 @@ from mesokit.case.run import Run
 from mesokit.case.trajectory import Trajectory, names_and_diameters
 from mesokit.cli import main
 from mesokit.errors import CaseError, RunError
+from mesokit.io import h5md
 from mesokit.method.mpcd.fluid import Fluid
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.solutes import Polymer, Solutes
@@ -221,7 +223,8 @@ def test_files_of_mdanalysis(ending, mixed, tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         if ending in ("h5md", "data"):
-            universe = MDAnalysis.Universe(path)
+            unit = {"convert_units": False} if ending == "data" else {}  # LAMMPS has fs
+            universe = MDAnalysis.Universe(path, **unit)
         else:
             top = str(files.export(tmp_path / "run.gsd"))
             universe = MDAnalysis.Universe(top, path)
@@ -240,6 +243,20 @@ def test_files_of_mdanalysis(ending, mixed, tmp_path):
         np.testing.assert_allclose(found, mixed.engine.velocities(EVERYONE), atol=1e-5)
 
 
+def test_a_data_file_is_as_lammps_reads_it(mixed, tmp_path):
+    """Numbers as they stand in the file: velocities of the last frame, molecules from 1."""
+    path = mesokit.open(mixed.directory.path).export(tmp_path / "run.data")
+    sections = re.split(r"\n+([A-Z][a-z]+)\n+", path.read_text())
+    rows = {
+        name: np.array([line.split() for line in text.splitlines()], float)
+        for name, text in zip(sections[1::2], sections[2::2], strict=True)
+    }
+    assert rows["Atoms"][:, 1].tolist() == [0] * 72 + [1] * 3 + [2] * 3 + [0]
+    speeds = rows["Velocities"][:, 1:]
+    np.testing.assert_allclose(speeds[:, :2], mixed.engine.velocities(EVERYONE), atol=1e-5)
+    assert (speeds[:, 2] == 0).all()
+
+
 def recipe(word):
     """The block of the guide that has the word."""
     guide = (Path(__file__).parents[2] / "docs" / "guide.md").read_text("utf-8")
@@ -256,13 +273,40 @@ def melt(mixed, tmp_path, monkeypatch):
     mesokit.open("melt").export("melt.gsd")
 
 
-def test_the_recipe_for_mdanalysis(mixed, melt, capsys):
+@pytest.fixture
+def folded(mixed, melt):
+    """The run of the guide, moved until the first chain lies over the edge; where beads are."""
+    whole = mixed.engine.positions(EVERYONE, unwrapped=True)
+    aside = whole[72:74].mean(axis=0)  # the middle of a bond becomes the corner
+    with h5py.File("melt/run.h5", "r+") as file:
+        particles = h5md.particles_of(file)
+        place, image = particles["position/value"], particles["image/value"]
+        moved = place[..., :2] - aside
+        place[..., :2] = moved % 6
+        image[..., :2] += np.floor(moved / 6).astype(int)
+        ends = place[-1, 72:74, :2]
+    assert np.ptp(ends, axis=0).max() > 3
+    return whole - aside
+
+
+def gyration(beads):
+    """The root of the mean squared distance from the middle."""
+    return np.sqrt(((beads - beads.mean(axis=0)) ** 2).sum(axis=1).mean())
+
+
+def test_the_recipe_for_mdanalysis(folded, capsys):
+    """Chains over the edge have their true size."""
     exec(recipe(".universe()"), {"mesokit": mesokit})
     rows = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert [float(time) for time, _ in rows] == [0.0, 1.0, 2.0]
-    beads = mixed.engine.positions(EVERYONE[72:78])
-    spread = np.sqrt(((beads - beads.mean(axis=0)) ** 2).sum(axis=1).mean())
-    assert float(rows[-1][1]) == pytest.approx(spread, rel=1e-5)
+    size = np.mean([gyration(folded[72:75]), gyration(folded[75:78])])
+    assert float(rows[-1][1]) == pytest.approx(size, rel=1e-5)
+
+
+def test_the_recipe_with_images(folded):
+    space = {"mesokit": mesokit}
+    exec(recipe("unfolded ="), space)
+    np.testing.assert_allclose(space["unfolded"][-1], folded, atol=1e-5)
 
 
 def test_the_recipe_for_freud(melt):
@@ -328,9 +372,10 @@ def test_a_run_that_goes_on_gives_what_it_has_so_far(whole, tmp_path):
         np.testing.assert_array_equal(frame.bonds.group, other.bonds.group)
 
 
-def test_an_export_is_a_start(whole, tmp_path):
+@pytest.mark.parametrize("ending", ["gsd", "data"])
+def test_an_export_is_a_start(ending, whole, tmp_path):
     """Out and in again: places to single precision, and whole molecules."""
-    path = mesokit.open(whole.directory.path).export(tmp_path / "melt.gsd")
+    path = mesokit.open(whole.directory.path).export(tmp_path / f"melt.{ending}")
     case = Case(
         run=Run(steps=1), box=whole.case.box,
         fluid=Fluid(density=9, molecule=TRIMERS, start=Start(file=str(path))),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import re
 import types
 
 import pytest
@@ -52,6 +53,14 @@ def test_it_holds_every_number_and_every_figure(ended):
         assert words in text, words
     assert 'quantity = "velocity-profile"' in " ".join(page.texts)
     assert "has not ended" not in text
+
+
+def test_a_long_hash_breaks_on_a_narrow_screen(ended):
+    """The version in the citation is one word: without leave to break it the page scrolls."""
+    text = ended[1].read_text(encoding="utf-8")
+    assert re.search(r'<section id="cite">\s*<h2>To cite it</h2>\s*<p>', text)
+    (rules,) = re.findall(r"#cite p \{([^}]*)\}", text)
+    assert "overflow-wrap: anywhere;" in rules
 
 
 def test_a_run_that_has_not_ended_says_so(run_folder, capsys):

@@ -74,7 +74,10 @@ def write_last(path: Path, particles: Particles, moments: Iterable[Moment]) -> N
     for kind in ("angles", "dihedrals", "impropers"):
         made.add_TopologyAttr(kind, [])
     _set(made, particles, now)
-    with _quiet(), require().coordinates.LAMMPS.DATAWriter(str(path)) as writer:
+    made.trajectory.ts.data["molecule_tag"] = particles.molecule + 1  # 0 is none, as in dumps
+    writes = require().coordinates.LAMMPS.DATAWriter
+    # The unit of time is MDAnalysis' own: by default velocities would be those per femtosecond.
+    with _quiet(), writes(str(path), timeunit="ps") as writer:
         writer.write(made.atoms)
 
 
