@@ -18,6 +18,7 @@ def test_it_runs(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     nbclient = pytest.importorskip("nbclient")
     sources = str(Path(mesokit.__file__).parents[1])  # the kernel is a process of its own
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join([sources, os.environ.get("PYTHONPATH", "")]))
+    monkeypatch.delenv("MPLBACKEND", raising=False)  # which commands in this process have set
     notebook = nbformat.read(path, as_version=4)
     kept = [kinds(cell)[-1:] for cell in notebook.cells]  # before it there may be progress
     place = {"metadata": {"path": str(tmp_path)}}
