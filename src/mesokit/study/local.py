@@ -38,6 +38,10 @@ class Processes:
             return "stopped before the start"
         worker = self._worker()
         self.busy.add(worker)
+        if self.stopping:  # while it was made; `stop` may not have seen it
+            self.busy.discard(worker)
+            self.idle.put(worker)
+            return "stopped before the start"
         try:
             assert worker.stdin is not None and worker.stdout is not None
             worker.stdin.write(f"{path}\n")
