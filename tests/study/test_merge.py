@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import mesokit
-from mesokit import Case, Run, Simulation
+from mesokit import Box, Case, Run, Simulation, TemperatureProfile
 from mesokit.errors import RunError
 from mesokit.statistics import Blocks, MultipleTau, TimeSeries
 from mesokit.study.merge import merge
@@ -200,3 +200,24 @@ def test_pooled_error_bars_are_honest():
             pooled.pool(series)
     scatter = np.std(means, ddof=1) / np.sqrt(40)
     assert pooled.error() / scatter == pytest.approx(1, abs=0.2)  # 11 % is that of the scatter
+
+
+def test_runs_together_know_the_temperature_better_than_their_starts():
+    """Each keeps the energy that it began with; the mean of many scatters less by their root."""
+    observe = [TemperatureProfile(axis="y", every=5)]
+    pooled, means = None, []
+    for seed in range(12):
+        run = Run(steps=60, seed=seed)
+        simulation = Simulation(run=run, box=Box([8, 8]), observe=observe, threads=1)
+        simulation.run()
+        (number,) = simulation["temperature-profile"].comparisons[:1]
+        means.append(number.measured)
+        accumulator = simulation.accumulators["temperature-profile"]
+        pooled = pooled or accumulator
+        if pooled is not accumulator:
+            pooled.pool(accumulator)
+    (together,) = pooled.result().comparisons[:1]
+    assert together.what == number.what == "mean temperature"
+    assert number.error / together.error == pytest.approx(12**0.5, rel=0.15)
+    scatter = np.std(means, ddof=1) / 12**0.5
+    assert abs(np.log(together.error / scatter)) < 3 / np.sqrt(2 * 11)

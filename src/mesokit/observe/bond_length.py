@@ -88,7 +88,7 @@ class BondLengthAccumulator(MoleculeTensorAccumulator):
                 expected, note = flowing, IN_SHEAR
         root = max(mean, 0.0) ** 0.5
         note = "; ".join(filter(None, (note, self.short_run())))
-        error = setting.with_start(case, error, mean)
+        error = setting.with_start(case, error, mean, self.blocks.series)
         return [
             Comparison("mean square bond length", mean, error, expected, "a^2", note),
             Comparison(

@@ -109,8 +109,9 @@ class LongitudinalModesAccumulator(ModesAccumulator):
             value, error = fitted.scalar(total / k, slope)
             expected = coefficients.sound_speed if coefficients else np.nan
             at = f"at k = {k:.4g}/a"
+            runs = self.shells[0].correlator.series
             # c^2 is proportional to the kT that this run started with
-            error = 0.5 * setting.with_start(self.case, 2 * error, value)
+            error = 0.5 * setting.with_start(self.case, 2 * error, value, runs)
             note = setting.caveat(self.case)
             found.append(Comparison(f"sound speed {at}", value, error, expected, "a/tau", note))
             slope = np.array([2 / k**2, 0, 0, 0])

@@ -169,7 +169,7 @@ class RadialProfileAccumulator(ShellAccumulator):
         weight = self.crowd / self.crowd.sum()
         value, error = temperature.scalar(weight @ temperature.value, weight)
         kT = self.case.fluid.kT
-        error = setting.with_start(self.case, error, kT)
+        error = setting.with_start(self.case, error, kT, self.blocks.series)
         note = setting.temperature_note(self.case)
         if setting.driven(self.case):
             note = "approximate: shear in the rings and cells adds to it"

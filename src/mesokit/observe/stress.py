@@ -134,7 +134,7 @@ class StressAccumulator(TensorAccumulator):
             ideal = ideal - bonded.first / case.box.dimension if bonded else np.nan
         d = case.box.dimension
         pressure, spread = self.summed(-1, -np.eye(d) / d)
-        spread = setting.with_start(case, spread, ideal)
+        spread = setting.with_start(case, spread, ideal, self.blocks.series)
         ideal = ideal if known else np.nan
         stretched = rate and self.bonded_beads and self.case.fluid.molecule is not None
         note = rouse_note(case) if stretched else ""

@@ -170,7 +170,7 @@ class SurfaceProfileAccumulator(ShellAccumulator):
         mean, error = value.scalar(weight @ value.value, weight)
         known, of = float(weight @ expected), self.observable.of
         if of == "temperature":
-            error = setting.with_start(self.case, error, known)
+            error = setting.with_start(self.case, error, known, self.blocks.series)
         what = f"{of} in the cell at the surface"
         return [Comparison(what, mean, error, known, self.labels(of)[1], note)]
 

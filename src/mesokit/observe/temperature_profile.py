@@ -87,7 +87,9 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
                 Comparison(
                     "mean temperature",
                     float(everywhere.value),
-                    setting.with_start(self.case, float(everywhere.error), mean),
+                    setting.with_start(
+                        self.case, float(everywhere.error), mean, self.blocks.series
+                    ),
                     mean,
                     "m a^2/tau^2",
                     note,

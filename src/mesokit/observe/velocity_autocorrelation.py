@@ -132,7 +132,7 @@ class VelocityAutocorrelationAccumulator:
         found = []
         if not fluid.mixed:
             equipartition = fluid.kT / fluid.mass
-            error = setting.with_start(self.case, error, equipartition)
+            error = setting.with_start(self.case, error, equipartition, self.origins.series)
             found.append(Comparison("value at lag 0", value, error, equipartition, "a^2/tau^2"))
         if coefficients is None or expected is None or n < 3:
             return found

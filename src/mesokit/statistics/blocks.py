@@ -73,6 +73,11 @@ class Blocks:
         series = [(self._sums[:n].copy(), samples), *self._others]
         return np.concatenate([s for s, _ in series]), np.concatenate([n for _, n in series])
 
+    @property
+    def series(self) -> int:
+        """How many independent series are pooled in it."""
+        return 1 + len(self._others)
+
     def pool(self, other: "Blocks") -> None:
         """Take in the blocks of another, independent series of the same: `sums`, `mean` and `error`
         are then those of both. Raises ValueError for another shape.

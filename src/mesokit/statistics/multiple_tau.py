@@ -151,6 +151,11 @@ class MultipleTau:
         """Samples so far, those pooled included."""
         return self._count + sum(other._count for other in self._others)
 
+    @property
+    def series(self) -> int:
+        """How many independent series are pooled in it."""
+        return 1 + len(self._others)
+
     def pool(self, other: "MultipleTau") -> None:
         """Take in the products of another, independent series of the same signals: only to read.
 

@@ -145,7 +145,7 @@ class ModesAccumulator(ABC):
             values.append(found.value[0])
             variances.append(found.error[0] ** 2)
         mean, error = np.mean(values) / total, np.sqrt(np.sum(variances)) / len(values) / total
-        error = setting.with_start(self.case, float(error), 1.0)
+        error = setting.with_start(self.case, float(error), 1.0, self.shells[0].correlator.series)
         return Comparison("mean square of the modes", float(mean), error, 1.0, "N m kT")
 
     @abstractmethod

@@ -80,6 +80,11 @@ class Origins:
         """Samples so far, those pooled included."""
         return self.added + sum(other.added for other in self.others)
 
+    @property
+    def series(self) -> int:
+        """How many independent series are pooled in it."""
+        return 1 + len(self.others)
+
     def pool(self, other: Origins) -> None:
         """Take in the groups of another, independent system of the same kind: only to read.
 

@@ -163,15 +163,16 @@ def push_axis(case: Case) -> int | None:
     return int(axes[0]) if len(axes) == 1 else None
 
 
-def with_start(case: Case, error: float, expected: float) -> float:
+def with_start(case: Case, error: float, expected: float, runs: int = 1) -> float:
     """The error of a number proportional to kT, in a fluid that keeps the energy it started with.
 
     Drawn velocities have an energy that is off by sqrt(2/(d N)), for ever where nothing heats or
-    cools the fluid: one run cannot average over it.
+    cools the fluid: one run cannot average over it, but several can.
     """
     if isothermal(case) or (case.walls and driven(case)):
         return error
-    return float(np.hypot(error, expected * (2 / (case.box.dimension * case.particles)) ** 0.5))
+    degrees = case.box.dimension * case.particles * runs
+    return float(np.hypot(error, expected * (2 / degrees) ** 0.5))
 
 
 def driven(case: Case) -> bool:
