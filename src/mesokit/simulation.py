@@ -22,11 +22,12 @@ from mesokit.errors import CheckpointError, RunError
 from mesokit.io import checkpoint, h5md
 from mesokit.io.frames import NONE_YET, require_frames
 from mesokit.io.measured import fitting, restore
-from mesokit.io.run_directory import RunDirectory, now, provenance, recorded_case
+from mesokit.io.run_directory import RunDirectory, now, provenance
 from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.method.protocol import method_of
 from mesokit.report.document.progress import reporter_for
 from mesokit.report.progress import Reporter
+from mesokit.running import record
 from mesokit.running.callbacks import Callback, Callbacks
 from mesokit.running.given import case_and_arrays, next_chunk, threads_of
 from mesokit.running.log import RunLog
@@ -105,7 +106,7 @@ class Simulation(Shown):
         directory = RunDirectory.create(output, self.case)
         self.case = Case.from_toml(directory.case_file)  # what `resume` will read
         self._attach(directory)
-        self._save_provenance(provenance(self.case, self.threads))
+        directory.write_provenance(provenance(self.case, self.threads))
 
     @classmethod
     def resume(
@@ -126,7 +127,7 @@ class Simulation(Shown):
         where the run comes from is a warning, and begun anew.
         """
         directory = RunDirectory.existing(output)
-        if not directory.checkpoint_file.exists() and "merged" in cls._earlier_record(directory):
+        if not directory.checkpoint_file.exists() and "merged" in record.earlier(directory):
             raise RunError(f"{output}: holds merged runs; go on with those and merge them again")
         if directory.data_file.exists() and not directory.checkpoint_file.exists():
             raise CheckpointError(
@@ -153,10 +154,8 @@ class Simulation(Shown):
             self._take_back()
         self.callbacks.resume(self.step)
         self.log.resume(self.step)
-        record = self._earlier_record(directory) or provenance(self.case, self.threads)
-        resumed = [*record.get("resumed", []), *([now()] if self._looked or self.step else [])]
-        record |= recorded_case(self.case) | {"resumed": resumed, "failed": None}
-        self._save_provenance(record)
+        begun = self._looked or self.step > 0
+        record.note_resumed(directory, self.case, self.threads, begun)
         return self
 
     def _build(self) -> None:
@@ -294,7 +293,7 @@ class Simulation(Shown):
                 if self.step == self.last_step:
                     self._end()
         except Exception as error:
-            self._note_failure(str(error) or repr(error))
+            record.note_failed(self.directory, str(error) or repr(error))
             raise
         finally:
             progress.finish()
@@ -330,10 +329,7 @@ class Simulation(Shown):
             return
         self._take_back()
         self.directory.write_case(self.case)
-        earlier = self._earlier_record(self.directory)
-        here = {"at": now(), "step": self.step, "steps": steps}
-        record = earlier | recorded_case(self.case) | {"ended": None}
-        self._save_provenance(record | {"lengthened": [*earlier.get("lengthened", []), here]})
+        record.note_longer(self.directory, self.case, self.step)
 
     def _take_back(self) -> None:
         """A run that goes on has no results yet: its frames come back out of the data file."""
@@ -411,11 +407,11 @@ class Simulation(Shown):
         if self.directory is None:  # a checkpoint is checked when it is written
             return self.engine.check()
         self.checkpoint()
-        record = self.directory.read_provenance()
-        record |= {"ended": now(), "timings": self.timings}
+        kept = self.directory.read_provenance()
+        kept |= {"ended": now(), "timings": self.timings}
         results, path = self.results, self.directory.data_file
-        h5md.write(path, self.case, record, results.values(), self.writer)
-        self._save_provenance(record)
+        h5md.write(path, self.case, kept, results.values(), self.writer)
+        self.directory.write_provenance(kept)
         from mesokit.report import save_all
 
         save_all(results.values(), self.directory.path, self.case)
@@ -457,27 +453,10 @@ class Simulation(Shown):
         assert self.directory is not None
         return checkpoint.digest_of_motion(self.case.to_toml(self.directory.path))
 
-    @staticmethod
-    def _earlier_record(directory: RunDirectory) -> dict[str, Any]:
-        try:
-            return directory.read_provenance()
-        except RunError as error:
-            warnings.warn(f"{error}; going on with a fresh record", stacklevel=3)
-            return {}
-
-    def _note_failure(self, reason: str) -> None:
-        if self.directory is not None:
-            with contextlib.suppress(RunError):  # the disk may be what failed
-                self._save_provenance(self.directory.read_provenance() | {"failed": reason})
-
     def _checkpoint_due(self, seconds: float) -> bool:
         if self.directory is None or self._stopping:
             return False
         return self.schedule.checkpoint_due(self.step, seconds)
-
-    def _save_provenance(self, record: dict[str, Any]) -> None:
-        assert self.directory is not None
-        self.directory.write_provenance(record)
 
     def _stop(self, by: signal.Signals) -> None:
         """A signal ends the loop after the steps in hand; a second one stops at once."""
