@@ -9,7 +9,7 @@ BIN := .venv/bin
 endif
 READY := .venv/ready
 
-.PHONY: help demo test test-long test-all quick lint check site tutorials bench validate clean
+.PHONY: help demo test test-long test-all quick lint check site tutorials sketches bench validate clean
 help:
 	@echo "make demo      run a channel flow and draw it with the theory"
 	@echo "make test      run the tests but the long ones: some minutes"
@@ -19,6 +19,7 @@ help:
 	@echo "make check     the same, import rules, and that the physics compiles for a GPU"
 	@echo "make site      write the documentation as a site: build/site/index.html"
 	@echo "make tutorials run the notebooks of docs/tutorials and store what they show"
+	@echo "make sketches  draw the sketches of the guide"
 	@echo "make bench     measure the speed, side by side with LAMMPS"
 	@echo "make validate  write docs/validation: measured against theory, law by law"
 	@echo "make clean     remove what these made"
@@ -63,6 +64,9 @@ site: $(READY)
 
 tutorials: $(READY)
 	@$(BIN)/python docs/generate/run_tutorials.py
+
+sketches: $(READY)
+	@$(BIN)/python docs/generate/sketches.py
 
 bench: $(READY)
 	@$(BIN)/python -m benchmarks

@@ -7,6 +7,9 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+# Workers are started after this: BLAS would take a thread for each core in each of them, and then
+# wait on the one core that each is given, ten times as long.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 worker = os.environ.get("PYTEST_XDIST_WORKER")  # "gw0", "gw1", ...
 if worker and hasattr(os, "sched_setaffinity"):  # not on every system
     # A core each: runs take all cores that they are given, and threads of several runs that wait

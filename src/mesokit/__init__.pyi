@@ -12,6 +12,13 @@ from mesokit.case.describe.explain import explain as explain
 from mesokit.case.describe.schema import schema as schema
 from mesokit.case.log import Log as Log
 from mesokit.case.run import Run as Run
+from mesokit.case.shear.cessation import Cessation as Cessation
+from mesokit.case.shear.oscillating import OscillatingShear as OscillatingShear
+from mesokit.case.shear.protocol import ShearHistory as ShearHistory
+from mesokit.case.shear.shear_ramp import ShearRamp as ShearRamp
+from mesokit.case.shear.start_up import StartUp as StartUp
+from mesokit.case.shear.steady import SteadyShear as SteadyShear
+from mesokit.case.shear.step_strain import StepStrain as StepStrain
 from mesokit.case.trajectory import Trajectory as Trajectory
 from mesokit.case.units import OtherFluid as OtherFluid
 from mesokit.case.units import Units as Units
@@ -43,13 +50,17 @@ from mesokit.io.open import RunFiles as RunFiles
 from mesokit.io.open import open as open
 from mesokit.method.mpcd.collision.at import AT as AT
 from mesokit.method.mpcd.collision.at_plus_a import ATPlusA as ATPlusA
+from mesokit.method.mpcd.collision.demix import Demix as Demix
+from mesokit.method.mpcd.collision.none import NoCollision as NoCollision
 from mesokit.method.mpcd.collision.protocol import CollisionRule as CollisionRule
 from mesokit.method.mpcd.collision.srd import SRD as SRD
 from mesokit.method.mpcd.collision.srd_plus_a import SRDPlusA as SRDPlusA
 from mesokit.method.mpcd.derived import derive as derive
 from mesokit.method.mpcd.field.none import NoForce as NoForce
+from mesokit.method.mpcd.field.oscillating import OscillatingForce as OscillatingForce
 from mesokit.method.mpcd.field.protocol import Force as Force
 from mesokit.method.mpcd.field.sampled import SampledForce as SampledForce
+from mesokit.method.mpcd.field.scheduled import ScheduledForce as ScheduledForce
 from mesokit.method.mpcd.field.sinusoidal import Sinusoidal as Sinusoidal
 from mesokit.method.mpcd.field.uniform import Uniform as Uniform
 from mesokit.method.mpcd.fluid import Fluid as Fluid
@@ -57,7 +68,11 @@ from mesokit.method.mpcd.molecule import Molecule as Molecule
 from mesokit.method.mpcd.numbers import Derived as Derived
 from mesokit.method.mpcd.si import SI as SI
 from mesokit.method.mpcd.si import convert as convert
-from mesokit.method.mpcd.solutes import Polymer as Polymer
+from mesokit.method.mpcd.solute.magnetic import MagneticField as MagneticField
+from mesokit.method.mpcd.solute.polymer import Between as Between
+from mesokit.method.mpcd.solute.polymer import Polymer as Polymer
+from mesokit.method.mpcd.solute.pull import Pull as Pull
+from mesokit.method.mpcd.solute.trap import Trap as Trap
 from mesokit.method.mpcd.solutes import Solutes as Solutes
 from mesokit.method.mpcd.species import Species as Species
 from mesokit.method.mpcd.start.section import Start as Start
@@ -65,9 +80,12 @@ from mesokit.method.mpcd.thermostat.maxwell_boltzmann import MaxwellBoltzmann as
 from mesokit.method.mpcd.thermostat.none import NoThermostat as NoThermostat
 from mesokit.method.mpcd.thermostat.protocol import Thermostat as Thermostat
 from mesokit.method.mpcd.thermostat.rescale import Rescale as Rescale
+from mesokit.observe.bond_correlation import BondCorrelation as BondCorrelation
 from mesokit.observe.bond_length import BondLength as BondLength
+from mesokit.observe.cell_occupancy import CellOccupancy as CellOccupancy
 from mesokit.observe.conservation import Conservation as Conservation
 from mesokit.observe.density_field import DensityField as DensityField
+from mesokit.observe.density_gradient import DensityGradient as DensityGradient
 from mesokit.observe.density_profile import DensityProfile as DensityProfile
 from mesokit.observe.dynamic_moduli import DynamicModuli as DynamicModuli
 from mesokit.observe.flow_frames import FlowFrames as FlowFrames
@@ -77,21 +95,31 @@ from mesokit.observe.longitudinal_modes import LongitudinalModes as Longitudinal
 from mesokit.observe.mean_square_displacement import (
     MeanSquareDisplacement as MeanSquareDisplacement,
 )
+from mesokit.observe.molecule_histogram import MoleculeHistogram as MoleculeHistogram
 from mesokit.observe.molecule_size import MoleculeSize as MoleculeSize
+from mesokit.observe.molecule_tracks import MoleculeTracks as MoleculeTracks
 from mesokit.observe.normal_modes import NormalModes as NormalModes
 from mesokit.observe.probe import Probe as Probe
+from mesokit.observe.radial_distribution import RadialDistribution as RadialDistribution
 from mesokit.observe.radial_profile import RadialProfile as RadialProfile
+from mesokit.observe.residence_time import ResidenceTime as ResidenceTime
 from mesokit.observe.shared.protocol import Observable as Observable
 from mesokit.observe.shared.result import Comparison as Comparison
 from mesokit.observe.shared.result import Result as Result
+from mesokit.observe.snapshots import Snapshots as Snapshots
 from mesokit.observe.stress import Stress as Stress
 from mesokit.observe.stress_autocorrelation import StressAutocorrelation as StressAutocorrelation
+from mesokit.observe.stress_in_time import StressInTime as StressInTime
+from mesokit.observe.structure_factor import StructureFactor as StructureFactor
 from mesokit.observe.surface_profile import SurfaceProfile as SurfaceProfile
 from mesokit.observe.temperature_profile import TemperatureProfile as TemperatureProfile
+from mesokit.observe.transit_time import TransitTime as TransitTime
+from mesokit.observe.translocation_time import TranslocationTime as TranslocationTime
 from mesokit.observe.transverse_modes import TransverseModes as TransverseModes
 from mesokit.observe.velocity_autocorrelation import (
     VelocityAutocorrelation as VelocityAutocorrelation,
 )
+from mesokit.observe.velocity_distribution import VelocityDistribution as VelocityDistribution
 from mesokit.observe.velocity_field import VelocityField as VelocityField
 from mesokit.observe.velocity_profile import VelocityProfile as VelocityProfile
 from mesokit.observe.wake import Wake as Wake

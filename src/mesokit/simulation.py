@@ -4,47 +4,44 @@ from __future__ import annotations
 
 import contextlib
 import signal
-import threading
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from mesokit.case import toml
 from mesokit.case.case import Case
-from mesokit.case.component import require_known, show
-from mesokit.case.describe.shown import Shown
 from mesokit.case.kind import note_run
 from mesokit.case.outside import blaming
 from mesokit.case.trajectory import written
 from mesokit.errors import CheckpointError, RunError
-from mesokit.io import checkpoint, h5md
+from mesokit.io import h5md
 from mesokit.io.frames import NONE_YET, require_frames
-from mesokit.io.measured import fitting, restore
-from mesokit.io.run_directory import RunDirectory, now, provenance
+from mesokit.io.measured import keep, take_up
+from mesokit.io.one_writer import alone
+from mesokit.io.run_directory import RunDirectory, provenance
 from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.method.protocol import method_of
 from mesokit.report.document.progress import reporter_for
 from mesokit.report.progress import Reporter
 from mesokit.running import record
 from mesokit.running.callbacks import Callback, Callbacks
+from mesokit.running.compiling import telling
 from mesokit.running.given import case_and_arrays, next_chunk, threads_of
 from mesokit.running.log import RunLog
 from mesokit.running.longer import longer, require_steps
+from mesokit.running.results import write_results
 from mesokit.running.schedule import Schedule
+from mesokit.running.seen import Seen
 from mesokit.running.signals import Stopped, catching
 from mesokit.running.until import Goal, limit_of, next_length
 
 if TYPE_CHECKING:
     from mesokit.observe.shared.protocol import Accumulator
     from mesokit.observe.shared.result import Result
-    from mesokit.report.flow import Film
-
-COMPILE_SECONDS = 0.7  # a first call that takes longer is compiling, not loading
 
 
-class Simulation(Shown):
+class Simulation(Seen):
     """A case in memory, ready to run.
 
     Parameters
@@ -123,12 +120,25 @@ class Simulation(Shown):
         with a run: name them again.
 
         Raises CaseError if it has done more steps than that.
-        Raises RunError, CheckpointError if there is none or it is damaged. A damaged record of
-        where the run comes from is a warning, and begun anew.
+        Raises RunError, CheckpointError if there is none, it is damaged, or another process is
+        writing there. A damaged record of where the run comes from is a warning, and begun anew.
         """
         directory = RunDirectory.existing(output)
+        with alone(directory):
+            return cls._resumed(directory, threads, steps, callbacks)
+
+    @classmethod
+    def _resumed(
+        cls,
+        directory: RunDirectory,
+        threads: int | None,
+        steps: int | None,
+        callbacks: Sequence[Callback],
+    ) -> Simulation:
         if not directory.checkpoint_file.exists() and "merged" in record.earlier(directory):
-            raise RunError(f"{output}: holds merged runs; go on with those and merge them again")
+            raise RunError(
+                f"{directory.path}: holds merged runs; go on with those and merge them again"
+            )
         if directory.data_file.exists() and not directory.checkpoint_file.exists():
             raise CheckpointError(
                 f"{directory.checkpoint_file}: no such checkpoint, though the run had come to "
@@ -141,7 +151,8 @@ class Simulation(Shown):
         self._build()
         self._attach(directory)
         if directory.checkpoint_file.exists():
-            self._restore()
+            meta = take_up(directory, self.case, self.engine, self.accumulators)
+            self._looked = bool(meta["looked"])
         else:
             method = method_of(self.case)
             method.start(self.engine, method.first_state(self.case, {}))
@@ -198,51 +209,10 @@ class Simulation(Shown):
             raise KeyError(f"no observable {name!r}; there are {known}")
         return self.accumulators[name].result()
 
-    def __repr__(self) -> str:
-        where = f", {self.directory.path}" if self.directory is not None else ""
-        title = f" {show(self.case.title)}" if self.case.title else ""
-        return f"<Simulation{title}: step {self.step} of {self.last_step}{where}>"
-
-    def _card(self) -> dict[str, Any]:
-        rows = [(key, text, "") for key, text in toml.given(self.case, method_of(self.case).keys)]
-        return {
-            "title": self.case.title or "simulation",
-            "words": f"step {self.step} of {self.last_step}",
-            "rows": rows,
-            "results": self.results.values() if self.step > self.case.run.warmup else (),
-        }
-
     @property
     def results(self) -> dict[str, Result]:
         """What all observables say so far, by name."""
         return {name: accumulator.result() for name, accumulator in self.accumulators.items()}
-
-    def flow(self, kind: str = "four", **choices: Any) -> Any:
-        """A picture of the flow so far; `mesokit.report.flow.picture` says what may be chosen.
-
-        `simulation.flow("particles")` works before the first step, too: it shows the solids, the
-        molecules and where the particles are.
-        """
-        from mesokit.report.finish.origin import origin_of
-        from mesokit.report.flow import CHOICES, State, picture
-
-        require_known(choices, CHOICES)
-        now = State(self.case, self.engine)
-        figure = picture(self.case, self.results, now, kind, **choices)
-        figure.origin = origin_of(self.case, self._name)
-        return figure
-
-    @property
-    def _name(self) -> str:
-        """What pictures call it: the folder, if there is one."""
-        return "" if self.directory is None else self.directory.path.resolve().name
-
-    def animate(self, path: str | Path, kind: str = "speed", **choices: Any) -> Film:
-        """Write a film of the flow so far (MP4 or GIF by its ending)."""
-        from mesokit.report.flow import CHOICES, animate
-
-        require_known(choices, [*CHOICES, "fps", "progress"])
-        return animate(self.case, self.results, None, path, kind, run=self._name, **choices)
 
     # --- running --------------------------------------------------------------------------------
 
@@ -269,8 +239,13 @@ class Simulation(Shown):
         Ctrl-C, SIGTERM, SIGHUP or SIGUSR1 raises KeyboardInterrupt after the steps in hand, with a
         checkpoint where there is a folder; `resume`, or `run` again in the same process, goes on.
         """
+        with alone(self.directory):
+            self._carry_on(steps, until, reporter_for(progress))
+
+    def _carry_on(self, steps: int | None, until: str | None, progress: Reporter) -> None:
         goal = None if until is None else Goal.parse(until, self.case)
-        if goal is not None and self._looked and self[goal.observable].comparisons:
+        ended = self._looked and self.step == self.last_step
+        if goal is not None and (ended or (self._looked and self[goal.observable].comparisons)):
             goal.found(self[goal.observable])
         limit = None if steps is None else self.step + require_steps(steps) - self.case.run.warmup
         last = self.last_step
@@ -278,15 +253,15 @@ class Simulation(Shown):
             last = limit + self.case.run.warmup
             if last > self.last_step:
                 self.lengthen(limit)
-        progress = reporter_for(progress)
         self.log.tell = progress.tell
-        particles = sum(group.number for group in self.case.groups)
-        progress.start(last, particles, "running", self.step)
+        if self.step < last or not self._looked:
+            self._tell_start(progress, last)
         self._stopped_by = None
         try:
             with blaming(self.case), catching(self._stop):
-                if self.step < last or not self._looked:
+                if self.step < last:
                     self._compile(progress)
+                if self.step < last or not self._looked:
                     self._loop(progress, last)
                 if goal is not None:
                     self._reach(goal, limit_of(self.case, limit), progress)
@@ -305,16 +280,27 @@ class Simulation(Shown):
         every = next(o.every for o in self.case.observe if o.label == goal.observable)
         while self.step == self.last_step and not self._stopping:
             excess, done = goal.excess(self[goal.observable]), self.case.run.steps
+            said = f"{goal.said(self[goal.observable])} after {done} steps"
             if excess <= 1:
-                return
+                return progress.tell(said)
             if done >= limit:
-                said = goal.said(self[goal.observable])
-                warnings.warn(f"{said} after {done} steps: more is needed", stacklevel=3)
-                return
+                return warnings.warn(f"{said}: more is needed", stacklevel=4)
             self.lengthen(next_length(excess, done, every, limit))
-            progress.lengthen(self.last_step)
+            if progress.phase:
+                progress.lengthen(self.last_step)
+            else:
+                self._tell_start(progress, self.last_step)
             self._compile(progress)
             self._loop(progress, self.last_step)
+
+    def _tell_start(self, progress: Reporter, last: int) -> None:
+        particles = sum(group.number for group in self.case.groups)
+        progress.start(last, particles, "running", self.step)
+
+    def reached(self, until: str) -> bool:
+        """Whether a number is known as well now as `run(until=...)` asks. Raises CaseError."""
+        goal = Goal.parse(until, self.case)
+        return goal.excess(self[goal.observable]) <= 1
 
     def lengthen(self, steps: int) -> None:
         """Let the run last so many steps after its warm-up, also on record.
@@ -352,14 +338,12 @@ class Simulation(Shown):
 
     def _compile(self, progress: Reporter) -> None:
         """Load or compile the kernels; say so if it takes long. A signal ends it at once."""
-        timer = threading.Timer(COMPILE_SECONDS, progress.compiling)
-        timer.start()
         self._compiling = True
         try:
-            self.engine.advance(0)
+            with telling(progress.compiling):
+                self.engine.advance(0)
         finally:
             self._compiling = False
-            timer.cancel()
         with contextlib.suppress(OSError):  # kernels are then not kept either
             note_run(self.case)
 
@@ -407,16 +391,7 @@ class Simulation(Shown):
         if self.directory is None:  # a checkpoint is checked when it is written
             return self.engine.check()
         self.checkpoint()
-        kept = self.directory.read_provenance()
-        kept |= {"ended": now(), "timings": self.timings}
-        results, path = self.results, self.directory.data_file
-        h5md.write(path, self.case, kept, results.values(), self.writer)
-        self.directory.write_provenance(kept)
-        from mesokit.report import save_all
-
-        save_all(results.values(), self.directory.path, self.case)
-        if self.writer is not None:
-            self.writer.remove()
+        write_results(self.directory, self.case, self.results, self.timings, self.writer)
 
     @property
     def timings(self) -> dict[str, float]:
@@ -433,25 +408,8 @@ class Simulation(Shown):
         if self.writer is not None:
             self.writer.flush()
         self.log.sync()
-        arrays = {f"engine/{key}": value for key, value in self.engine.state().items()}
-        for name, accumulator in self.accumulators.items():
-            arrays |= {f"observe/{name}/{key}": v for key, v in accumulator.state().items()}
         meta = {"step": self.step, "looked": self._looked}
-        checkpoint.write(self.directory.checkpoint_file, arrays, meta, self._digest)
-
-    def _restore(self) -> None:
-        assert self.directory is not None
-        path = self.directory.checkpoint_file
-        arrays, meta = checkpoint.read(path, self._digest, method_of(self.case).start_from_run)
-        with fitting(path):
-            self.engine.restore(checkpoint.part(arrays, "engine/"))
-            restore(self.accumulators, arrays)
-        self._looked = bool(meta["looked"])
-
-    @property
-    def _digest(self) -> str:
-        assert self.directory is not None
-        return checkpoint.digest_of_motion(self.case.to_toml(self.directory.path))
+        keep(self.directory, self.case, meta, self.engine, self.accumulators)
 
     def _checkpoint_due(self, seconds: float) -> bool:
         if self.directory is None or self._stopping:

@@ -79,7 +79,9 @@ ROWS = {
         "case", "cli", "errors", "io", "=method", "method.protocol", "report", "running",
         "simulation", "study",
     ),
-    "cli/theory.py": ("case", "cli", "errors", "method.mpcd.fluid", "theory"),
+    "cli/theory.py": ("case", "cli", "errors", "method.mpcd.fluid", "report", "theory"),
+    "cli/chains.py": ("case", "errors", "theory"),
+    "cli/chain_figures.py": ("cli", "errors", "report", "theory"),
 }  # fmt: skip
 # what loads modules by names that are data: public names, methods, parts, figures, options
 BY_NAME = {

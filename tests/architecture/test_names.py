@@ -23,22 +23,25 @@ CASES = [case_class(method) for method in METHODS]
 NAMES = {name for family in FAMILIES.values() for name in family.parts}
 
 
-def options(hint: typing.Any) -> Iterator[str]:
-    """Words that a component takes as an option, such as the end of a bond or a side."""
+def options(hint: typing.Any, within: tuple[Family, ...] = ()) -> Iterator[str]:
+    """Words that a component takes as an option, such as the end of a bond or a side.
+
+    A part may have another of its family in it, such as a force that it changes in time.
+    """
     if isinstance(hint, Family):
-        for part in hint.parts.values():
-            yield from options(part)
+        for part in hint.parts.values() if hint not in within else ():
+            yield from options(part, (*within, hint))
     elif is_component(hint):
         for name, field in hint.__pydantic_fields__.items():
             if name not in TAGS or not names_of(hint):
-                yield from options(field.annotation)
+                yield from options(field.annotation, within)
                 for mark in field.metadata:
-                    yield from options(mark)
+                    yield from options(mark, within)
     elif typing.get_origin(hint) is typing.Literal:
         yield from (word for word in typing.get_args(hint) if isinstance(word, str))
     else:
         for arg in typing.get_args(hint):
-            yield from options(arg)
+            yield from options(arg, within)
 
 
 OPTIONS = {word for case in CASES for word in options(case)}

@@ -39,6 +39,10 @@ SOLUTES = (
     "[solutes]\npolymers = [{ number = 2, length = 4 }, { number = 3 }]\n" + BOND + "\n[fluid]"
 )
 RANDOM = SOLUTES.replace("bond =", 'solvent = "random"\nbond =')
+PUSHED = (
+    '[solutes]\npolymers = [{ number = 2 }]\ncoupling = "potential"\n'
+    'solvent_pair = { rule = "wca", sigma = 2.0 }\n[fluid]'
+)
 PROFILE = 'quantity = "velocity-profile"\naxis = "y"'
 # name: (what is replaced by what in the good case, what the message must say)
 BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
@@ -88,6 +92,30 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "nobody in a random solvent": (
         {"[fluid]": RANDOM, WALL: "", PROFILE: 'quantity = "velocity-autocorrelation"'},
         ("observe[#1].quantity = 'velocity-autocorrelation'", "there is no fluid"),
+    ),
+    "pushed by nothing": (
+        {"[fluid]": PUSHED.replace("solvent_pair", "wall")},
+        ("solutes.solvent_pair: missing", "coupling = 'potential' needs it"),
+    ),
+    "pushed without saying so": (
+        {"[fluid]": PUSHED.replace('coupling = "potential"\n', "")},
+        ("solutes.solvent_pair: only with coupling = 'potential'",),
+    ),
+    "pushed by a stress": (
+        {"[fluid]": PUSHED, WALL: "", PROFILE: 'quantity = "stress"'},
+        ("observe[#1].quantity = 'stress'", "not with solutes.coupling = 'potential'"),
+    ),
+    "pushed in a sheared box": (
+        {"[fluid]": PUSHED, WALL: "", "[box]": "[box]\nshear_rate = 0.1"},
+        ("coupling = 'potential': not in a sheared box",),
+    ),
+    "pushed from both sides": (
+        {"[fluid]": PUSHED.replace("2.0", "12.0"), WALL: ""},
+        ("solutes.solvent_pair: it reaches 13.5, more than half of the box",),
+    ),
+    "no room left": (
+        {"[fluid]": PUSHED.replace("number = 2", "number = 40")},
+        ("solutes.solvent_pair: 40 beads exclude the fluid", "fewer or smaller beads"),
     ),
     # typos
     "unknown key": ({"density = 5": "densty = 5"}, ("fluid.densty: unknown key", "'density'")),

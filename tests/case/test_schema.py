@@ -173,3 +173,11 @@ def test_a_new_case_names_the_schema_beside_it(
     text = Path("bulk.toml").read_text(encoding="utf-8")
     named = text.splitlines()[0].removeprefix("#:schema ./")
     jsonschema.validate(tomllib.loads(text), json.loads(Path(named).read_text(encoding="utf-8")))
+
+
+def test_a_key_of_a_section_is_found_by_its_name_alone() -> None:
+    (found,) = mesokit.explain("pulls")
+    assert found.path == "solutes.pulls"
+    assert "bead" in {key.name for key in found.keys}
+    assert mesokit.explain("open")[0].path == "box.open"
+    assert mesokit.explain("wake")[0].path == "observe.wake"  # parts come first

@@ -210,6 +210,12 @@ def test_commands_on_a_run_need_one(command: str, capsys: Captured) -> None:
         (["--angle-distribution", "uniform"], "--angle-distribution = 'uniform'"),
         (["--rule", "sdr"], "--rule"),
         (["--dimension", "4"], "--dimension"),
+        (["--plot", "a.png"], "--draw velocity-modes: expected --length"),
+        (["--radius", "1"], "--radius: only with --plot"),
+        (["--draw", "bonds"], "--draw: only with --plot"),
+        (["--length", "3", "--draw", "springs", "--plot", "a.png"], "and --bond-length"),
+        (["--length", "3"], "--length: expected --K or --stress-time"),
+        (["--frequency", "1"], "--frequency: only with --length"),
     ],
 )
 def test_theory_refuses(options: list[str], words: str, capsys: Captured) -> None:
@@ -227,12 +233,20 @@ def test_theory_knows_fluids_of_chains(capsys: Captured) -> None:
         dimension=3, density=10, timestep=0.1, angle=130, rule="srd",
         thermostat="maxwell-boltzmann",
     )  # fmt: skip
-    times = theory.rouse_times(theory.linear_modes(10), 1 / free.diffusion, K=0.5)
+    stirring = theory.self_diffusion(3, free.diffusion, free.viscosity, 10)
+    times = theory.rouse_times(theory.linear_modes(10), 1 / stirring, K=0.5)
     assert float(said["slowest mode time"].split()[0]) == pytest.approx(times.mode[0], rel=1e-3)
     bonds = times.stress.sum() / 10  # kT per molecule, over the mass density
     assert float(said["viscosity of bonds"].split()[0]) == pytest.approx(bonds, rel=1e-3)
     assert "--K: only with --length" in refusal(capsys, "theory", "--K", "1")
     assert "--K = -1" in refusal(capsys, "theory", "--length", "2", "--K", "-1")
+    assert ends("theory", "--length", "4", "--stress-time", "30", "--frequency", "0.1") == 0
+    said = {line[:20].strip(): line[20:] for line in capsys.readouterr().out.splitlines()}
+    assert float(said["slowest stress time"].split()[0]) == 30.0
+    rates = theory.linear_modes(4).eigenvalues[1:]
+    turns = 0.1 * 30.0 * rates[0] / rates
+    stored = 10 / 4 * (turns**2 / (1 + turns**2)).sum()
+    assert float(said["storage modulus"].split()[0]) == pytest.approx(stored, rel=1e-3)
 
 
 def test_theory_says_what_a_thermostat_changes(capsys: Captured) -> None:

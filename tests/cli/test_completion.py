@@ -52,7 +52,8 @@ def new(*words: str) -> None:
 def test_pictures_and_templates() -> None:
     assert offered("plot", "run", "--kind", "s") == ["streamlines", "speed"]
     assert offered("animate", "run", "--kind", "vo") == ["vorticity"]
-    names = ["poiseuille", "polymer_channel", "polymer_diffusion", "post_array"]
+    polymers = ["polymer_channel", "polymer_diffusion", "polymers_among_posts"]
+    names = ["poiseuille", "phase_separation", *polymers, "post_array", "pulled_chains"]
     assert offered("new", "p") == offered("new", "x", "--template", "p") == names
 
 

@@ -34,7 +34,7 @@ def test_planes_cut_off_what_is_solid(case, tmp_path):
     assert (terms[live] >= 0).all()
     assert np.allclose((normals[live] ** 2).sum(axis=1), 1.0)
     rng, total, expected = np.random.default_rng(1), 0.0, 0.0
-    for _ in range(8 if len(live) < 200 else 3):
+    for _ in range(6 if len(live) < 200 else 2):
         moved = (rng.random((len(live), d)) - 0.5) / OFFSETS[d]
         share = 1.0 - solids.open_part(middles[live] - moved, 1.0)
         now = heights[live] - (normals[live] * moved).sum(axis=1)

@@ -13,7 +13,7 @@ from test_flights import KINDS, flight
 from mesokit import Cylinder, Disk, Plates, Rectangle, Surface
 
 flights = given(kind=st.sampled_from(KINDS), seed=st.integers(0, 2**32 - 1))
-thorough = settings(deadline=None, derandomize=True, max_examples=80)
+thorough = settings(deadline=None, derandomize=True, max_examples=50)
 REST = {2: (0.0, 0.0), 3: (0.0, 0.0, 0.0)}
 
 

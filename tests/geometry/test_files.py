@@ -126,8 +126,8 @@ def test_a_mesh_of_a_cylinder_has_its_radius(kind, tmp_path):
 
 def test_a_mesh_may_have_caves(tmp_path):
     """A sphere in a sphere: fluid between them and the solid shell is not, and in the middle is."""
-    outer = trimesh.creation.icosphere(subdivisions=4, radius=3)
-    inner = trimesh.creation.icosphere(subdivisions=4, radius=1.5)
+    outer = trimesh.creation.icosphere(subdivisions=3, radius=3)
+    inner = trimesh.creation.icosphere(subdivisions=3, radius=1.5)
     inner.invert()
     trimesh.util.concatenate([outer, inner]).export(tmp_path / "a.stl")
     for side, sign in (("outside", 1), ("inside", -1)):
@@ -140,7 +140,7 @@ def test_a_mesh_may_have_caves(tmp_path):
 @pytest.mark.parametrize("turned", ["outwards", "inwards"])
 def test_bodies_of_a_mesh_may_overlap(turned, tmp_path):
     """What is in any of them is solid, and what is far inside of it is deep inside."""
-    one, two, three = (trimesh.creation.icosphere(subdivisions=4, radius=2) for _ in range(3))
+    one, two, three = (trimesh.creation.icosphere(subdivisions=3, radius=2) for _ in range(3))
     two.apply_translation((1.5, 0, 0))
     three.apply_translation((-4.5, 0, 0))
     both = trimesh.util.concatenate([one, two, three])

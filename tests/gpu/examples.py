@@ -8,9 +8,20 @@ from typing import Any
 
 import numpy as np
 
-from mesokit import SRD, MaxwellBoltzmann, NoForce, Plates, Sinusoidal, Uniform
+from mesokit import (
+    SRD,
+    MaxwellBoltzmann,
+    NoForce,
+    OscillatingShear,
+    Plates,
+    Sinusoidal,
+    SteadyShear,
+    StepStrain,
+    Uniform,
+)
 from mesokit.case import box as boxes
 from mesokit.case.box import Box
+from mesokit.case.shear import protocol as histories
 from mesokit.execute.beads import interactions
 from mesokit.execute.beads.neighbours import nearest_image
 from mesokit.execute.cpu.bounce import bounce
@@ -27,7 +38,10 @@ from mesokit.geometry.solids.none import Nothing
 from mesokit.method.mpcd import collision, thermostat
 from mesokit.method.mpcd.collision import protocol as rules
 from mesokit.method.mpcd.field import protocol as fields
+from mesokit.method.mpcd.field import varying
+from mesokit.method.mpcd.field.oscillating import Cosine
 from mesokit.method.mpcd.field.sampled import Nodes
+from mesokit.method.mpcd.field.scheduled import Points
 from mesokit.method.mpcd.streaming import fall, halfway, vector
 from mesokit.method.mpcd.thermostat import protocol as thermostats
 from mesokit.potential import ANGLES, BONDS, PAIRS
@@ -87,6 +101,8 @@ def total(asked: Any, d: int) -> tuple[float, ...]:
 
 # Of each generic function: the arguments after the first, which is p, in d dimensions.
 ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
+    histories.speed: lambda p, d: (1.0,),
+    histories.slid: lambda p, d: (1.0,),
     boxes.at_time: lambda p, d: (1.0,),
     boxes.fold: lambda p, d: (vec(d), vec(d), vec(d)),
     boxes.unfold: lambda p, d: (vec(d), vec(d), vec(d)),
@@ -112,6 +128,8 @@ ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     thermostats.target: lambda p, d: (1.0, 1.0, 1.0),
     thermostats.stretch: lambda p, d: (1.0, 1.0, 1.0),
     fields.acceleration: lambda p, d: (vec(d),),
+    fields.field_at: lambda p, d: (1.0,),
+    varying.factor: lambda p, d: (1.0,),
     potentials.central: lambda p, d: (1.0,),
     potentials.torn: lambda p, d: (1.0,),
     potentials.angular: lambda p, d: (1.0,),
@@ -150,11 +168,14 @@ def parts(d: int) -> Iterator[Any]:
     yield NoForce().kernel(size)
     yield Uniform(vec(d)).kernel(size)
     yield Sinusoidal(amplitude=1.0).kernel(size)
+    yield varying.Scaled(Uniform(vec(d)).kernel(size), Cosine(1.0, 0.0), 1.0)
+    yield from (Cosine(1.0, 0.0), Points(1, 1))
     yield Nodes(1, vec(d), vec(d), vec(d), (1,) * d)
     yield from (kind(**NEEDED.get(kind, {})).kernel() for kind in (*BONDS, *PAIRS, *ANGLES))
     yield Box(size).kernel(shut)
-    yield Box(size, shear_rate=0.1).kernel(shut)
-    yield Box(size, shear_rate=0.1, shear_frequency=0.1).kernel(shut)
+    for history in (SteadyShear(0.1), OscillatingShear(0.1, 0.1), StepStrain(0.1, 1.0, period=9.0)):
+        yield history.kernel(1.0)
+        yield Box(size, shear=history).kernel(shut)
     yield from (Plates(axis).kernel(size) for axis in Box(size).axes)
     yield Nothing()
     yield bodies(d)
@@ -189,13 +210,19 @@ def physics(d: int, **parts: Any) -> Physics:
 def registered(d: int) -> dict[str, Calls]:
     """Every implementation of every generic function, asked about what is registered."""
     return {
-        f"{kind.__name__} in {d}D": [
+        f"{name} in {d}D": [
             (function, (part, *arguments(part, d)))
             for function, arguments in ASKED.items()
-            if serves(function, kind)
+            if serves(function, type(part))
         ]
-        for kind, part in {type(part): part for part in parts(d)}.items()
+        for name, part in {named(part): part for part in parts(d)}.items()
     }
+
+
+def named(part: Any) -> str:
+    """Its kind, of a sheared box with that of its history."""
+    kinds = [type(part), *([type(part.history)] if isinstance(part, boxes.Sheared) else [])]
+    return " of ".join(kind.__name__ for kind in kinds)
 
 
 def serves(function: Callable, kind: type) -> bool:

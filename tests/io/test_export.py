@@ -82,14 +82,15 @@ def read(path):
         return list(file)
 
 
-@pytest.mark.parametrize("size", [(6, 8), (6, 5, 7)])
-def test_gsd_has_all_that_the_run_has(size, tmp_path):
-    simulation = run_of(tmp_path / "run", size, kT=2.0, mass=3.0)
+@pytest.mark.parametrize("size, steps", [((6, 8), 0), ((6, 5, 7), 40)])
+def test_gsd_has_all_that_the_run_has(size, steps, tmp_path):
+    simulation = run_of(tmp_path / "run", size, steps, kT=2.0, mass=3.0)
     frames = read(mesokit.open(tmp_path / "run").export(tmp_path / "run.gsd"))
     d, n = len(size), simulation.engine.n
     deep = [1.0] * (3 - d)
-    assert [frame.configuration.step for frame in frames] == [0, 10, 20, 30, 40]
-    assert [frame.log["time"][0] for frame in frames] == pytest.approx([0, 1, 2, 3, 4])
+    assert [frame.configuration.step for frame in frames] == list(range(0, steps + 1, 10))
+    times = [frame.log["time"][0] for frame in frames]
+    assert times == pytest.approx(np.arange(0, 0.1 * steps + 0.5))
     for frame, (r, v, image, bonds) in zip(frames, simulation.seen.values(), strict=True):
         frame.validate()
         assert frame.configuration.dimensions == d
@@ -335,7 +336,7 @@ def test_a_dump_says_box_images_and_velocities(whole, tmp_path):
 
 def test_plates_close_an_axis(tmp_path):
     run_of(
-        tmp_path / "run", (6, 5), walls=[Plates(axis="y")], molecule=None, fields=("position",),
+        tmp_path / "run", (6, 5), 0, [Plates(axis="y")], molecule=None, fields=("position",),
         force=Uniform((0.01, 0.0)),
     )  # fmt: skip
     files = mesokit.open(tmp_path / "run")
@@ -388,22 +389,24 @@ def test_an_export_is_a_start(ending, whole, tmp_path):
 
 def test_kinds_and_subsets(tmp_path):
     kinds = (Species(mass=4.0, density=1.0), Species(mass=1.0, density=8.0))
-    run_of(tmp_path / "run", (6, 6), fields=("position",), subset=50, molecule=None, species=kinds)
+    run_of(
+        tmp_path / "run", (6, 6), 0, fields=("position",), subset=50, molecule=None, species=kinds
+    )
     frame = read(mesokit.open(tmp_path / "run").export(tmp_path / "a.gsd"))[0]
     assert frame.particles.types == ["fluid-1", "fluid-2"]
     np.testing.assert_array_equal(frame.particles.typeid, np.repeat([0, 1], [36, 14]))
     np.testing.assert_array_equal(frame.particles.mass, np.repeat([4, 1], [36, 14]))
     assert (frame.particles.velocity == 0).all() and frame.bonds.N == 0
-    run_of(tmp_path / "chains", (6, 6), subset=7)
+    run_of(tmp_path / "chains", (6, 6), 0, subset=7)
     frame = read(mesokit.open(tmp_path / "chains").export(tmp_path / "a.gsd"))[0]
     assert frame.bonds.group.tolist() == [[0, 1], [1, 2], [3, 4], [4, 5]]
 
 
 def test_solutes_come_after_the_fluid(tmp_path):
     """Kinds and masses are the same from the segments of a run as from its data file."""
-    solutes = Solutes(polymers=(Polymer(), Polymer(2, 3)), mass=7.0, bond=Harmonic(K=1.0))
+    solutes = Solutes(polymers=(Polymer(), Polymer(2, 3)), mass=7.0, bond=Harmonic(K=2.0))
     case = Case(
-        run=Run(steps=20), box=Box([6, 6, 6]), fluid=Fluid(), solutes=solutes,
+        run=Run(steps=20), box=Box([6, 6]), fluid=Fluid(), solutes=solutes,
         trajectory=Trajectory(every=10),
     )  # fmt: skip
     simulation = Simulation(case, output=tmp_path / "run", threads=1)
@@ -417,15 +420,15 @@ def test_solutes_come_after_the_fluid(tmp_path):
     for frame in seen:
         assert (
             frame.particles.types == ["fluid", "polymer-1", "polymer-2"]
-            and frame.particles.N == 2167
+            and frame.particles.N == 367
         )
-        assert frame.particles.typeid[2160:].tolist() == [1, 2, 2, 2, 2, 2, 2]
-        assert frame.particles.mass[2159:].tolist() == [1, 7, 7, 7, 7, 7, 7, 7]
+        assert frame.particles.typeid[360:].tolist() == [1, 2, 2, 2, 2, 2, 2]
+        assert frame.particles.mass[359:].tolist() == [1, 7, 7, 7, 7, 7, 7, 7]
         assert frame.bonds.group.tolist() == [
-            [2161, 2162],
-            [2162, 2163],
-            [2164, 2165],
-            [2165, 2166],
+            [361, 362],
+            [362, 363],
+            [364, 365],
+            [365, 366],
         ]
 
 

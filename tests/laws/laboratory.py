@@ -14,9 +14,13 @@ from mesokit.case.box import Box
 from mesokit.case.case import Case
 from mesokit.case.run import Run
 from mesokit.execute.cpu.engine import CPU
+from mesokit.method.mpcd import collision
+from mesokit.method.mpcd.field.uniform import Uniform
 from mesokit.method.mpcd.fluid import Fluid
 from mesokit.method.mpcd.start.fluid import start
 
+COLLIDING = [rule for rule in collision.RULES if rule.acts]
+KNOWN = [rule for rule in COLLIDING if rule().in_theory()]  # whose viscosity there is a theory of
 SMALL = 0.01  # value of a parameter that a component has no default for
 
 
@@ -28,6 +32,12 @@ def example(component: type, dimension: int) -> Any:
         if component.__pydantic_fields__[field.name].is_required():
             if field.name == "file":
                 required[field.name] = file_of_a_wave(dimension)
+                continue
+            if field.name == "of":
+                required["of"] = Uniform((0.0, SMALL, *[0.0] * (dimension - 2)))
+                continue
+            if field.name in ("times", "factors"):  # a ramp over some steps
+                required[field.name] = (0.0, 1.0)
                 continue
             vector = "tuple" in str(component.__pydantic_fields__[field.name].annotation)
             required[field.name] = (SMALL,) + (0.0,) * (dimension - 1) if vector else SMALL

@@ -7,7 +7,7 @@ from numba import njit
 
 from mesokit import AT, Sinusoidal, theory
 from mesokit.method.mpcd.field import RULES
-from mesokit.method.mpcd.field.protocol import acceleration
+from mesokit.method.mpcd.field.protocol import acceleration, field_at
 
 
 @pytest.mark.parametrize("force", RULES, ids=lambda rule: rule.__name__)
@@ -19,8 +19,8 @@ def test_momentum_grows_by_the_force(force):
     fluid.advance(3)
     middle = fluid.positions() + 0.5 * dt * fluid.velocities()
     field = given.kernel(size)
-    pull = njit(lambda field, r: acceleration(field, r))
-    a = np.array([pull(field, tuple(r)) for r in middle])  # (n, 0) without a force
+    pull = njit(lambda field, r, time: acceleration(field_at(field, time), r))
+    a = np.array([pull(field, tuple(r), 3.5 * dt) for r in middle])  # (n, 0) without a force
     expected = 2.0 * dt * a.sum(axis=0) if a.size else 0.0
     before = fluid.totals()[1]
     fluid.advance(1)

@@ -12,7 +12,7 @@ from mesokit import MaxwellBoltzmann, Surface, Uniform
 pytestmark = pytest.mark.long
 
 RULES = ("no-slip", "slip", "diffuse")
-STEPS = {2: 300, 3: 100}
+STEPS = {2: 200, 3: 75}
 LOOK = 25  # steps between looks
 
 

@@ -11,6 +11,7 @@ from scipy import special
 import mesokit
 from mesokit import AT, Box, CaseError, DensityProfile, Plates, SampledForce, Simulation, Uniform
 from mesokit.method.mpcd.field.protocol import acceleration
+from mesokit.method.mpcd.field.sampled import interval
 from mesokit.method.mpcd.field.sinusoidal import Sinusoidal
 
 pull = njit(lambda field, r: acceleration(field, r))
@@ -211,3 +212,14 @@ def test_coarse_grids_and_strong_forces_are_warned_of(folder):
     assert "it changes velocities by up to 0.43 thermal velocities" in text
     plain = make_case((8, 8), force=Uniform((0.01, 0.0)))
     assert "fluid.force: in a timestep" not in "\n".join(plain._method.summary(plain, 1).warnings)
+
+
+def test_no_place_leads_beyond_the_table(tmp_path):
+    """Lanes of a strip in which nobody is hold anything, and are looked up with the others."""
+    force = SampledForce.from_array(np.ones((2, 3, 5)), tmp_path / "a.npy")
+    nodes = force.kernel((4, 8))
+    for x in (np.nan, np.inf, -np.inf, 1e300, -1e300, 4.0):
+        for axis in (0, 1):
+            place, _ = interval(nodes, axis, x)
+            last = nodes.intervals[axis] - 1
+            assert 0 <= place <= last * nodes.strides[axis]

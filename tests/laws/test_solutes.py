@@ -19,6 +19,7 @@ from mesokit import (
     LennardJones,
     MaxwellBoltzmann,
     Plates,
+    ResidenceTime,
     SRDPlusA,
     Surface,
     theory,
@@ -219,6 +220,23 @@ class TestRandomSolvent:
         expected = 3 * 0.2**2 / 4.0 * (n * (1 + kept) / (1 - kept) - 2 * decayed)
         # a bead is not alone in its cell once in 500 steps, where it loses up to a third more
         assert found.agrees(expected, 0.001) and found.error < 0.02 * expected
+
+    def test_a_bead_leaves_a_slab_in_the_mean_exit_time(self):
+        observable = ResidenceTime(region=[(0, 6), (0, 20), (0, 20)], every=10)
+        fluid = make_fluid(
+            (20, 20, 20), solutes=Solutes((Polymer(100),), mass=4.0, solvent="random"), density=6,
+            timestep=0.2, collision=SRD(), observe=[observable],
+        )  # fmt: skip
+        accumulator = observable.accumulator(fluid.case)
+        for _ in range(1200):
+            fluid.advance(10)
+            accumulator.observe(fluid)
+        found = accumulator.result()
+        time, share = found["mean time until exit"], found["share of the time"]
+        assert abs(share.deviation) < 3.5 and share.error < 0.02
+        # 1 %: two beads in a cell diffuse more slowly, and a bead remembers its velocity
+        assert abs(time.measured - time.expected) < 3.5 * time.error + 0.01 * time.expected
+        assert time.error < 0.05 * time.expected
 
     def test_it_takes_momentum_and_keeps_the_temperature(self):
         """Few beads wander about: a total momentum of zero is not theirs to keep."""

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from laboratory import KNOWN
 
 from mesokit import Box, Case, Fluid, MaxwellBoltzmann, NoThermostat, Run, Simulation, Stress
-from mesokit.method.mpcd.collision import RULES
 
 pytestmark = pytest.mark.long
 
@@ -14,7 +14,7 @@ CHAOS = {2: 0.2, 3: 0.06}
 
 
 @pytest.mark.parametrize("size", [(24, 24), (10, 10, 10)], ids=["2D", "3D"])
-@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.__name__)
+@pytest.mark.parametrize("rule", KNOWN, ids=lambda rule: rule.__name__)
 def test_sheared_fluid_has_its_viscosity_and_pressure(rule, size):
     """Standard errors of the viscosity are 1 to 3 %; the pressure is density kT."""
     bath = NoThermostat() if rule().rule.startswith("at") else MaxwellBoltzmann()

@@ -14,7 +14,7 @@ from mesokit.method.mpcd.molecule import Molecule
 
 def case_for(observable, make_case, size, **fluid):
     """A case in which it can be measured: without walls, in a slit, in a flow about a body, in a
-    shear that oscillates, or in a fluid of molecules."""
+    shear that oscillates, or in a fluid of molecules, also between plates."""
     middle = [length / 2 for length in size]
     body = Disk(centre=middle, radius=1) if len(size) == 2 else Sphere(centre=middle, radius=1)
     push = {"force": Uniform((0.01,) + (0.0,) * (len(size) - 1))}
@@ -23,7 +23,7 @@ def case_for(observable, make_case, size, **fluid):
     pairs = {"density": 9, "molecule": Molecule(bond=Harmonic(K=1.0))} | alone
     for walls, parts in (
         ((), fluid), ((Plates(axis="y"),), fluid), ((body,), push | fluid), ((), shear | fluid),
-        ((), pairs),
+        ((), pairs), ((Plates(axis="y"),), pairs),
     ):  # fmt: skip
         try:
             return make_case(size, [observable], walls=walls, **parts)
@@ -151,7 +151,8 @@ class FakeFluid:
         return total(np.ones(self.n)), total(self.m), momentum, energy
 
     def modes(self, wavevectors):
-        phase = np.exp(-1j * self.positions() @ np.asarray(wavevectors).T)
+        angle = self.positions() @ np.asarray(wavevectors).T
+        phase = np.cos(angle) - 1j * np.sin(angle)  # in half the time of a complex exponential
         return self.m @ phase, phase.T @ (self.m[:, None] * self.velocities())
 
 

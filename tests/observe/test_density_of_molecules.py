@@ -94,6 +94,6 @@ def test_what_has_no_meaning_is_refused():
         make_case((8, 8), [DensityProfile(of="ends")])
     with pytest.raises(CaseError, match=r"observe\[#1\].of = 'ends': rings have none"):
         make_case((8, 8), [DensityProfile(of="ends")], density=10, molecule=rings)
-    with pytest.raises(CaseError, match=r"of = 'centres': not along 'x' under box.shear_rate"):
+    with pytest.raises(CaseError, match=r"of = 'centres': not along 'x' under shear"):
         make_case((8, 8), [DensityProfile("x", of="centres")], density=10, molecule=chains,
                   shear_rate=0.1)  # fmt: skip

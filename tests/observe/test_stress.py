@@ -21,6 +21,7 @@ from mesokit import (
 )
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.rheometer import modes_of_stress
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.observe.conservation import ROWS
@@ -236,3 +237,28 @@ def test_modulus_of_a_known_stress(make_case):
     (viscosity,) = result.comparisons
     integral = 16.0 * 0.1 * (0.5 + kept / (1 - kept)) / case.fluid.density
     assert abs(viscosity.measured - integral) < 4 * viscosity.error + 0.02 * integral
+
+
+def test_modulus_of_molecules_stands_beside_rouse(make_case):
+    """Bonds in G(t) after lag 0, the apparent viscosity, and both moduli."""
+    molecule = Molecule(length=2, bond=Harmonic(K=0.5))
+    case = make_case(
+        (4, 4), [StressAutocorrelation()], density=10, timestep=0.1, molecule=molecule,
+        thermostat=MaxwellBoltzmann(),
+    )  # fmt: skip
+    accumulator, fluid = StressAutocorrelation().accumulator(case), FakeFluid(case)
+    rng, kept = np.random.default_rng(3), np.zeros((2, 2))
+    for _ in range(400):
+        kept = 0.9 * kept + rng.normal(size=(2, 2))
+        fluid.stress = {"kinetic": 0.1 * kept, "collisional": 0.1 * kept, "bond": 0.8 * kept}
+        accumulator.observe(fluid)
+    result = accumulator.result()
+    phi_kT, (tau,), eta = modes_of_stress(case)
+    assert phi_kT == 5.0 and np.isnan(result.expected[0])
+    np.testing.assert_allclose(result.expected[1:], 5 * np.exp(-result.x["time"][1:] / tau))
+    (viscosity,) = result.comparisons
+    assert viscosity.expected == pytest.approx((eta + 5 * tau) / 10) and viscosity.approximate
+    w = result.extra["frequency"]
+    stored = 5 * (w * tau) ** 2 / (1 + (w * tau) ** 2)
+    np.testing.assert_allclose(result.extra["storage_theory"], stored)
+    np.testing.assert_allclose(result.extra["loss_theory"], w * eta + stored / (w * tau))

@@ -45,7 +45,7 @@ def test_every_observable_has_a_figure(kind, make_case, tmp_path):
 @pytest.mark.parametrize("samples", [1, 2])
 @pytest.mark.parametrize("kind", OBSERVABLES)
 def test_short_runs_can_be_drawn(kind, samples, make_case):
-    plot(result_of(kind, make_case, samples)).savefig(io.BytesIO(), dpi=20)
+    plot(result_of(kind, make_case, samples)).draw_without_rendering()
 
 
 @pytest.mark.parametrize("kind", OBSERVABLES)
@@ -55,7 +55,7 @@ def test_it_draws_into_given_axes(kind, make_case):
     figure = Figure()
     ax = figure.subplots()
     assert result_of(kind, make_case, 5).plot(ax) is ax
-    assert ax.has_data()
+    assert ax.has_data() or ax.texts  # that nothing has happened
 
 
 @pytest.mark.parametrize("kind", (Stress, DynamicModuli, Forces, VelocityAutocorrelation, Wake))

@@ -13,6 +13,7 @@ import pytest
 import mesokit
 from mesokit import AT, Box, Case, Conservation, Fluid, Plates, Run
 from mesokit.case import kind
+from mesokit.method import templates
 
 SOURCE = str(Path(mesokit.__file__).parent.parent)
 CASE = """
@@ -51,12 +52,13 @@ def test_interrupted_while_compiling(case_file, tmp_path):
     assert time.perf_counter() - began < 5
     assert "stopped at step 0, while compiling, by SIGINT" in errors
     assert "mesokit resume case" in errors and "Traceback" not in errors
-    assert sorted(p.name for p in (tmp_path / "case").iterdir()) == ["case.toml", "provenance.json"]
+    written = {path.name for path in (tmp_path / "case").iterdir()}
+    assert written == {".lock", "case.toml", "provenance.json"}
 
 
 def test_a_case_without_solids_is_checked_without_compiling(tmp_path):
-    for template in ("couette", "poiseuille", "shear", "kolmogorov", "bulk"):
-        command(tmp_path, "new", template).communicate()
+    for template in ("poiseuille", "shear"):
+        (tmp_path / f"{template}.toml").write_text(templates()[template].read_text("utf-8"))
         process = command(tmp_path, "check", f"{template}.toml")
         _, errors = process.communicate()
         assert process.returncode == 0, errors

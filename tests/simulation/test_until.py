@@ -5,6 +5,7 @@ import dataclasses
 import pytest
 
 import mesokit
+from mesokit.cli import main
 from mesokit.errors import CaseError
 from mesokit.running.until import Goal
 from mesokit.simulation import Simulation
@@ -48,6 +49,21 @@ def test_limit(short):
     with pytest.warns(UserWarning, match="known to .* after 90 steps: more is needed"):
         simulation.run(37 + 90, until="velocity-profile.viscosity=0.001%")
     assert simulation.case.run.steps == 90 and simulation.step == 127
+
+
+def test_status_of_the_command(short, tmp_path, capsys):
+    """0 where the error is as small as was asked, 3 where the limit came first."""
+    folder = tmp_path / "run"
+    Simulation(short, output=folder, threads=1).run()
+    for goal, status in (("slip=100", 0), ("slip=1e-9", 3)):
+        with pytest.raises(SystemExit) as end:
+            given = ["--until-error", f"velocity-profile.{goal}", "--steps", "75"]
+            main(["resume", str(folder), *given])
+        said = capsys.readouterr().err
+        assert (end.value.code or 0) == status
+        assert ("more is needed" in said) == (status == 3)
+        assert "0 steps of" not in said
+    assert mesokit.open(folder).case.run.steps == 75
 
 
 @pytest.mark.parametrize(

@@ -19,6 +19,7 @@ from mesokit import Study
 from mesokit.cli import main
 from mesokit.errors import CaseError, RunError
 from mesokit.study import local
+from mesokit.study.drive import StudyReporter
 
 FORCE = "fluid.force.acceleration"
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "studies"
@@ -111,8 +112,13 @@ def test_pictures(study):
     )
     x = np.array([1.0, 2.0, 4.0, 8.0])
     curve = Curve("", x, 3 * x**-0.5, 0.01 * x, np.full(4, np.nan))
-    found, words = fitted(curve, "power")
-    assert found.coefficients == pytest.approx([np.log(3), -0.5]) and "x^{-0.500(" in words
+    found = fitted(curve, "power")
+    assert found.fit.coefficients == pytest.approx([np.log(3), -0.5])
+    assert found.formula.startswith("y = 3.00") and " x^-0.500(" in found.formula
+    assert r"\,x^{-0.500(" in found.legend
+    assert found(x) == pytest.approx(3 * x**-0.5)
+    [line] = study.fit("acceleration", "flow-rate.mean", "line")
+    assert line.formula.replace(" x", r"\,x") in labels[1]
     with pytest.raises(CaseError, match=r"density: not varied; expected 'acceleration'"):
         study.plot("density", "flow-rate.mean")
     with pytest.raises(CaseError, match=r"did you mean 'flow-rate\.mean-velocity"):
@@ -161,8 +167,16 @@ def test_bad_values_make_no_folder(case_file, tmp_path):
 def test_one_that_fails_does_not_stop_the_others(case_file, tmp_path, capsys):
     vary = {(FORCE, "fluid.thermostat.rule"): [(500.0, "none"), (0.02, "maxwell-boltzmann")]}
     study = Study(case_file, vary, output=tmp_path / "s")
+    told: list[int] = []
+
+    class Watching(StudyReporter):
+        def update(self, step: int) -> None:
+            told.append(step)
+
     with pytest.raises(RunError, match=r"acceleration=500,rule=none/seed=5: .*particle moves at"):
-        study.run(jobs=1)
+        study.run(jobs=1, progress=Watching(quiet=True))
+    one = 130 * sum(group.number for group in study.runs[0].files.case.groups)
+    assert one <= max(told) < 2 * one  # the one that failed has not been carried to its end
     assert [run.ended for run in study.runs] == [False, True]
     code, out, err = said(capsys, "study", study.path, "--jobs", 1)
     assert code == 1 and "flow-rate: mean velocity" in out and "table:" in out
@@ -186,7 +200,9 @@ def test_study_files_and_the_command(case_file, tmp_path, capsys, monkeypatch):
     assert Study.open("forces").runs[0].files.case.run.steps == 60
     y = "flow-rate.mean-velocity"
     code, out, _ = said(capsys, "study", "forces", "--y", y, "--fit", "line", "--quiet")
-    assert code == 0 and "mean-velocity-along-x-against-acceleration.png" in out
+    assert (
+        code == 0 and "fit: y = " in out and "mean-velocity-along-x-against-acceleration.png" in out
+    )
     code, out, _ = said(capsys, "study", "forces", "--job-array", "--threads", 2)
     script = Path("forces/job-array.sh").read_text()
     assert "--array=1-2" in script and "--cpus-per-task=2" in script

@@ -6,6 +6,7 @@ import base64
 import json
 import os
 import shlex
+from types import SimpleNamespace
 
 import pytest
 from html_page import Page
@@ -19,6 +20,7 @@ from mesokit.io.run_directory import RunDirectory
 from mesokit.report.document.links import link_to
 from mesokit.report.progress import Reporter
 from mesokit.report.table import cells
+from mesokit.study import document
 from mesokit.study.here import Here
 from mesokit.study.work import carry
 
@@ -132,6 +134,16 @@ def test_a_warning_names_the_points_where_it_holds(case_file, tmp_path):
     texts = Page(study.report().read_text("utf-8")).texts
     assert any("Mach number" in text and "(at acceleration = 0.2)" in text for text in texts)
     assert not any("Mach number" in text and "(at acceleration = 0.002)" in text for text in texts)
+
+
+def test_several_warnings_at_one_point(study, monkeypatch):
+    def summary(case, threads):
+        strong = case.fluid.force.acceleration[0] > 0.03
+        return SimpleNamespace(warnings=["fast", "hot"] if strong else [])
+
+    monkeypatch.setattr(document, "method_of", lambda case: SimpleNamespace(summary=summary))
+    at = "(at acceleration = 0.04)"
+    assert document._warnings(study) == [f"fast {at}", f"hot {at}"]
 
 
 def test_a_notebook_shows_a_study(study, case_file, tmp_path):

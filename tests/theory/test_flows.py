@@ -12,6 +12,8 @@ from mesokit.theory import (
     kolmogorov_viscosity,
     lees_edwards_relaxation_time,
     lees_edwards_velocity,
+    oscillating_slit_response,
+    oscillating_slit_velocity,
     poiseuille_fit,
     poiseuille_velocity,
     transverse_correlation,
@@ -70,6 +72,22 @@ def test_poiseuille_refuses():
         poiseuille_fit(y[:2], y[:2], 4, 1)
     with pytest.raises(ValueError, match="error"):
         poiseuille_fit(y, y, 4, 1, error=np.zeros(4))
+
+
+@given(height=st.floats(2, 50), nu=st.floats(0.1, 5), frequency=st.floats(1e-3, 2))
+def test_oscillating_slit_solves_navier_stokes(height, nu, frequency):
+    """i w chi = 1 + nu chi'', no slip; slow as Poiseuille."""
+    step = 1e-3 * min(height, (2 * nu / frequency) ** 0.5)
+    y = 0.3 * height + step * np.arange(-1, 2)
+    chi = oscillating_slit_response(y, height, nu, frequency)
+    curvature = (chi[0] - 2 * chi[1] + chi[2]) / step**2
+    assert abs(1j * frequency * chi[1] - 1 - nu * curvature) < 1e-4
+    ends = oscillating_slit_response([0, height], height, nu, frequency)
+    assert abs(ends).max() < 1e-12 / frequency
+    slow = oscillating_slit_velocity(y, 0.0, height, 0.3, nu, 1e-5 * nu / height**2)
+    assert slow == pytest.approx(poiseuille_velocity(y, height, 0.3, nu), rel=1e-5)
+    with pytest.raises(ValueError, match="frequency = 0"):
+        oscillating_slit_response(y, height, nu, 0)
 
 
 @given(height=positive, upper=st.floats(-5, 5), lower=st.floats(-5, 5))

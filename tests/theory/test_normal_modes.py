@@ -11,6 +11,7 @@ from mesokit.theory import (
     mean_square_bond,
     mean_square_end_to_end,
     mean_square_gyration,
+    pulled_shape,
     ring_modes,
     spring,
     spring_of_bond,
@@ -142,3 +143,17 @@ def test_refuses():
         star_modes(3, 0)
     with pytest.raises(ValueError, match=r"beads = 2\.5"):
         linear_modes(2.5)
+
+
+@pytest.mark.parametrize(("modes", "bonds"), MOLECULES)
+def test_forces_pull_beads_to_where_the_springs_balance_them(modes, bonds):
+    n = len(modes.eigenvalues)
+    forces = np.random.default_rng(n).standard_normal((n, 3))
+    forces -= forces.mean(axis=0)
+    r = pulled_shape(modes, forces, K=0.7)
+    np.testing.assert_allclose(1.4 * connectivity(bonds, n) @ r, forces, atol=1e-9)
+    np.testing.assert_allclose(r.sum(axis=0), 0, atol=1e-7)
+    with pytest.raises(ValueError, match="sum of 0"):
+        pulled_shape(modes, forces + 0.1, K=0.7)
+    with pytest.raises(ValueError, match="expected shape"):
+        pulled_shape(modes, forces[1:], K=0.7)

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-import math
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from pydantic import field_validator
 
-from mesokit.case.component import component, param
+from mesokit.case.component import component, name_of, param, show
 from mesokit.case.describe.hints import Many
+from mesokit.case.shear import ShearHistory
+from mesokit.case.shear.oscillating import OscillatingShear
+from mesokit.case.shear.protocol import slid, speed
+from mesokit.case.shear.steady import SteadyShear
 from mesokit.errors import CaseError
-from mesokit.scalar.elementary import sincos_turn
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import generic, scalar
 
 Axis = Literal["x", "y", "z"]
 AXES: tuple[Axis, ...] = ("x", "y", "z")
-TURNS = 0.5 / math.pi  # in a radian
 
 
 @component
@@ -38,6 +39,12 @@ class Box:
         ge=0,
         le=1e6,
     )
+    open: Many[Axis] = param(
+        (), doc="axes along which the box has no bounds, for collision rule 'none' alone"
+    )
+    shear: ShearHistory | None = param(
+        None, doc="how the shear rate changes in time, in place of shear_rate and shear_frequency"
+    )
 
     @field_validator("size")
     @classmethod
@@ -47,6 +54,11 @@ class Box:
         if min(size) < 2:
             raise ValueError("expected at least 2 cells along each axis")
         return size
+
+    @field_validator("open")
+    @classmethod
+    def _each_axis_once(cls, axes: tuple[Axis, ...]) -> tuple[Axis, ...]:
+        return tuple(axis for axis in AXES if axis in axes)
 
     @property
     def density_unit(self) -> str:
@@ -82,20 +94,70 @@ class Box:
             cells *= length
         return cells
 
-    def kernel(
-        self, closed: tuple[bool, ...], time: float = 0.0
-    ) -> Periodic | Sheared | Oscillating:
+    @property
+    def history(self) -> ShearHistory | None:
+        """How the shear rate changes in time, whichever keys say so; None without shear.
+
+        >>> Box([8, 8], shear_rate=0.1).history
+        SteadyShear(rule='steady', rate=0.1)
+        """
+        if self.shear_rate and self.shear_frequency:
+            return OscillatingShear(self.shear_rate, self.shear_frequency)
+        if self.shear_rate:
+            return SteadyShear(self.shear_rate)
+        return self.shear if self.sheared else None
+
+    @property
+    def sheared(self) -> bool:
+        """Whether images ever move."""
+        return bool(self.shear_rate or (self.shear is not None and self.shear.largest))
+
+    @property
+    def shear_key(self) -> str:
+        """The key that says how it is sheared, and its value, as messages name it.
+
+        >>> Box([8, 8], shear_rate=0.1).shear_key
+        'box.shear_rate = 0.1'
+        """
+        if self.shear is not None:
+            return f"box.shear.rule = {show(name_of(self.shear))}"
+        return f"box.shear_rate = {show(self.shear_rate)}"
+
+    @property
+    def steady_rate(self) -> float:
+        """The shear rate if it is the same at all times; 0 where it changes, or there is none."""
+        history = self.history
+        return history.rate_at(0.0) if history is not None and history.steady else 0.0
+
+    @property
+    def first_rate(self) -> float:
+        """The shear rate at time 0."""
+        history = self.history
+        return 0.0 if history is None else history.rate_at(0.0)
+
+    @property
+    def largest_rate(self) -> float:
+        """Largest size of the shear rate."""
+        history = self.history
+        return 0.0 if history is None else history.largest
+
+    @property
+    def oscillation(self) -> OscillatingShear | None:
+        """The shear, if it oscillates."""
+        return self.history if isinstance(self.history, OscillatingShear) else None
+
+    def kernel(self, closed: tuple[bool, ...], time: float = 0.0) -> Periodic | Sheared:
         """Parameters for `fold` at a time; `closed` says which axes walls close."""
         size = tuple(float(length) for length in self.size)
         inverse = tuple(
-            0.0 if shut else 1.0 / length for shut, length in zip(closed, size, strict=True)
+            0.0 if shut or axis in self.open else 1.0 / length
+            for shut, length, axis in zip(closed, size, self.axes, strict=True)
         )
-        if self.shear_rate == 0.0:
+        history = self.history
+        if history is None:
             return Periodic(size, inverse)
-        speed = self.shear_rate * size[1]
-        if self.shear_frequency == 0.0:
-            return Sheared(size, inverse, speed, speed * time % size[0])
-        return oscillating(size, inverse, speed, self.shear_frequency, time)
+        kernel = history.kernel(size[1])
+        return Sheared(size, inverse, speed(kernel, time), slid(kernel, time) % size[0], kernel)
 
     def displacement(self, time: float) -> float:
         """How far the image above has slid since time 0.
@@ -103,14 +165,12 @@ class Box:
         >>> Box([8, 8], shear_rate=0.1).displacement(5.0)
         4.0
         """
-        speed = self.shear_rate * self.size[1]
-        if self.shear_frequency == 0.0:
-            return speed * time
-        return speed / self.shear_frequency * math.sin(self.shear_frequency * time)
+        history = self.history
+        return 0.0 if history is None else float(slid(history.kernel(float(self.size[1])), time))
 
 
 class Periodic(NamedTuple):
-    """Lengths, and their inverses (0 along an axis that walls close)."""
+    """Lengths, and their inverses (0 along an axis that walls close or that is open)."""
 
     size: tuple[float, ...]
     inverse: tuple[float, ...]
@@ -119,36 +179,18 @@ class Periodic(NamedTuple):
 class Sheared(NamedTuple):
     """A box whose images along y slide along x (Lees and Edwards 1972).
 
-    The image above moves at `speed` and is displaced by `offset` at this time.
+    The image above moves at `speed` and is displaced by `offset` at this time; `history` is the
+    kernel that says how both go on.
     """
 
     size: tuple[float, ...]
     inverse: tuple[float, ...]
     speed: float
     offset: float
+    history: Any
 
 
-class Oscillating(NamedTuple):
-    """The same where the speed is `fastest` times the cosine of `frequency` times the time."""
-
-    size: tuple[float, ...]
-    inverse: tuple[float, ...]
-    speed: float
-    offset: float
-    fastest: float
-    frequency: float
-
-
-SLIDING = (Sheared, Oscillating)  # boxes whose images move: what is next to what depends on time
-
-
-@scalar
-def oscillating(size, inverse, fastest, frequency, time):
-    """An oscillating box at a time."""
-    turns = frequency * time * TURNS
-    sine, cosine = sincos_turn(turns - floor(turns))
-    offset = fastest / frequency * sine % size[0]
-    return Oscillating(size, inverse, fastest * cosine, offset, fastest, frequency)
+SLIDING = (Sheared,)  # boxes whose images move: what is next to what depends on time
 
 
 @generic
@@ -163,12 +205,8 @@ def _(box, time):
 
 @at_time.register(Sheared)
 def _(box, time):
-    return Sheared(box.size, box.inverse, box.speed, box.speed * time % box.size[0])
-
-
-@at_time.register(Oscillating)
-def _(box, time):
-    return oscillating(box.size, box.inverse, box.fastest, box.frequency, time)
+    offset = slid(box.history, time) % box.size[0]
+    return Sheared(box.size, box.inverse, speed(box.history, time), offset, box.history)
 
 
 @scalar

@@ -185,7 +185,10 @@ def case_class(name: str) -> type[Case]:
 def method_named(run: Any) -> str:
     """The method that a section `run` names, or its table; a wrong name is left to its check."""
     given = run.get("method") if isinstance(run, dict) else getattr(run, "method", None)
-    return given if isinstance(given, str) and given in methods.modules() else methods.DEFAULT
+    if not isinstance(given, str):
+        return methods.DEFAULT
+    known = given in methods.METHODS or given in methods.modules()  # which looks at all packages
+    return given if known else methods.DEFAULT
 
 
 def _require_method(run: Any) -> None:

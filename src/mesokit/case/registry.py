@@ -34,6 +34,7 @@ class Family:
         self.base, self.title, self.tag, self.group = base, title, tag, group
         self.functions = functions
         self.parts: dict[str, type[Any]] = {}
+        self._described = False  # while its schema is made
 
     def add(self, name: str, part: type) -> None:
         """Register a part. Raises CaseError if another has its name."""
@@ -112,10 +113,26 @@ class Family:
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        """One of the parts by their tag, those that packages bring included."""
+        """One of the parts by their tag, those that packages bring included.
+
+        Within a part that has another of its family in it, only those that have none.
+        """
         parts: dict[Any, Any] = {name: self.find(name) for name in self.names()}
-        known = {name: part.__pydantic_core_schema__ for name, part in parts.items() if part}
-        return handler(core_schema.tagged_union_schema(known, self.tag))
+        within, self._described = self._described, True
+        known = {
+            name: part.__pydantic_core_schema__
+            for name, part in parts.items()
+            if part and not (within and self._in(part))
+        }
+        try:
+            return handler(core_schema.tagged_union_schema(known, self.tag))
+        finally:
+            self._described = within
+
+    def _in(self, part: Any) -> bool:
+        """Whether a part has another of this family in it."""
+        fields = part.__pydantic_fields__.values()
+        return any(self in (field.annotation, *field.metadata) for field in fields)
 
     def _validated(self, value: Any, info: ValidationInfo) -> Any:
         """A part as it is, or built from a table that names it."""

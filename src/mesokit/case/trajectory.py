@@ -17,22 +17,22 @@ COMPRESSED = 0.9  # thermal noise hardly compresses
 
 
 class Kind(NamedTuple):
-    """Equal particles: mass of each, how many there are, and what files for others call them."""
-
-    mass: float
-    number: int
-    name: str = ""
-
-
-class Group(NamedTuple):
-    """Particles with consecutive numbers, such as a fluid or its solutes, kind after kind.
+    """Equal particles: mass of each, how many there are, and what files for others call them.
 
     `diameter` is that of a particle in pictures, in cells.
     """
 
+    mass: float
+    number: int
+    name: str = ""
+    diameter: float = 0.5
+
+
+class Group(NamedTuple):
+    """Particles with consecutive numbers, such as a fluid or its solutes, kind after kind."""
+
     name: str
     kinds: tuple[Kind, ...]
-    diameter: float = 0.5
 
     @property
     def number(self) -> int:
@@ -87,7 +87,7 @@ def names_and_diameters(groups: Sequence[Group]) -> tuple[tuple[str, ...], NDArr
 
     Names are never single letters, which stand for chemical elements.
 
-    >>> beads = Group("solutes", (Kind(5.0, 2, "polymer-1"),), diameter=1.0)
+    >>> beads = Group("solutes", (Kind(5.0, 2, "polymer-1", diameter=1.0),))
     >>> names_and_diameters([Group("fluid", (Kind(1.0, 3),)), beads])
     (('fluid', 'polymer-1'), array([0.5, 1. ]))
     >>> names_and_diameters([Group("fluid", (Kind(1.0, 3), Kind(2.0, 3)))])[0]
@@ -98,7 +98,7 @@ def names_and_diameters(groups: Sequence[Group]) -> tuple[tuple[str, ...], NDArr
         for group in groups
         for i, kind in enumerate(group.kinds, start=1)
     ]
-    return tuple(names), np.array([group.diameter for group in groups for _ in group.kinds])
+    return tuple(names), np.array([kind.diameter for group in groups for kind in group.kinds])
 
 
 def stored_bytes(

@@ -37,48 +37,54 @@ SCHEMA = "case.schema.json"
 @cli.command(
     help="Write a commented case NAME.toml: "
     f"{', '.join(TEMPLATES)}, or one of the examples: {_listed(EXAMPLES)}.\n\n"
-    "With another NAME, say which --template. Beside it comes "
+    "With a FILE, that is what is written (or give another NAME and its --template). Beside it "
+    "comes "
     f"{SCHEMA}, by which editors complete and check all cases of the folder."
 )
 @click.argument("name", shell_complete=lambda context, parameter, text: beginning(text, KNOWN))
+@click.argument("path", metavar="[FILE]", required=False)
 @click.option(
     "--template", type=click.Choice(list(KNOWN)), metavar="NAME", help="What to start from."
 )
-def new(name: str, template: str | None) -> None:
+def new(name: str, path: str | None, template: str | None) -> None:
     """Write a commented case."""
-    path = Path(name if name.endswith(".toml") else f"{name}.toml")
-    if template is None and path.stem in KNOWN:
-        template = path.stem
-    elif template is None and name.removesuffix(".toml") in KNOWN:  # one in a folder of examples
-        template, path = name.removesuffix(".toml"), Path(path.name)
-    if template is None:
-        from mesokit.case.component import nearest
+    from mesokit.case.component import nearest
 
+    if path is not None:
+        name, template = path, template or name.removesuffix(".toml")
+        if template not in KNOWN:
+            raise CaseError(f"{template}: no such template{nearest(template, KNOWN)}")
+    file = Path(name if name.endswith(".toml") else f"{name}.toml")
+    if template is None and file.stem in KNOWN:
+        template = file.stem
+    elif template is None and name.removesuffix(".toml") in KNOWN:  # one in a folder of examples
+        template, file = name.removesuffix(".toml"), Path(file.name)
+    if template is None:
         raise CaseError(
-            f"{name}: no such template{nearest(path.stem, KNOWN)} (give one of them, "
+            f"{name}: no such template{nearest(file.stem, KNOWN)} (give one of them, "
             f"or --template: {_listed(KNOWN)})"
         )
     source = KNOWN[template]
     text = source.read_text(encoding="utf-8")
     said = rf"(^# .*?\bmesokit .*?\b){template.rpartition('/')[2]}(?=\.toml|/| |$)"
-    text = re.sub(said, rf"\g<1>{path.stem}", text, flags=re.M)
+    text = re.sub(said, rf"\g<1>{file.stem}", text, flags=re.M)
     try:
-        with open(path, "x", encoding="utf-8") as file:
-            file.write(f"#:schema ./{SCHEMA}\n{text}")
+        with open(file, "x", encoding="utf-8") as written:
+            written.write(f"#:schema ./{SCHEMA}\n{text}")
     except FileExistsError:
-        raise CaseError(f"{path}: exists already; remove it, or choose another name") from None
+        raise CaseError(f"{file}: exists already; remove it, or choose another name") from None
     from mesokit.case.describe.schema import schema_text
     from mesokit.io.atomic import write_text
 
-    write_text(path.with_name(SCHEMA), schema_text())  # for the parts that are installed now
+    write_text(file.with_name(SCHEMA), schema_text())  # for the parts that are installed now
     for other in re.findall(
         r'^file = "([\w.-]+)"', text, flags=re.M
     ):  # such as a picture of solids
-        beside = path.with_name(other)
+        beside = file.with_name(other)
         if not beside.exists():
             beside.write_bytes((source.parent / other).read_bytes())
     click.echo(
-        f"wrote {path} (and {SCHEMA}, for editors); next: mesokit check {path}, mesokit run {path}"
+        f"wrote {file} (and {SCHEMA}, for editors); next: mesokit check {file}, mesokit run {file}"
     )
 
 

@@ -33,14 +33,17 @@ def report(what: Path, output: Path | None, films: bool) -> None:
 @cli.command()
 @click.argument("run", type=RUN)
 @click.option("--result", metavar="NAME", help="All values of this result; else all comparisons.")
-@click.option("--output", type=FILE, required=True, help="The CSV file.")
-def table(run: Path, result: str | None, output: Path) -> None:
-    """Write the comparisons of RUN, or the values of one result, as a CSV file."""
+@click.option("--output", type=FILE, help="The file (on the screen unless said).")
+def table(run: Path, result: str | None, output: Path | None) -> None:
+    """Write the comparisons of RUN, or the values of one result, as CSV."""
     import mesokit
+    from mesokit.io.atomic import write_text
+    from mesokit.io.tables import result_text, rows_text
 
     require_run(run)
     files = mesokit.open(run)
-    if result is None:
-        click.echo(files.to_csv(output))
-        return
-    click.echo(result_named(files, result).to_csv(output))
+    one = None if result is None else result_named(files, result)
+    text = rows_text(files.results) if one is None else result_text(one)
+    if output is None:
+        return click.echo(text, nl=False)
+    click.echo(write_text(output, text))

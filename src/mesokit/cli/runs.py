@@ -24,6 +24,8 @@ from mesokit.cli.outcome import show_results, stopping, warnings_said
 from mesokit.cli.words import in_json, patience, say
 from mesokit.errors import CaseError
 
+NOT_REACHED = 3  # exit status of a run that had to end before an error was as small as was asked
+
 
 @cli.command()
 @click.argument("case", type=CASE)
@@ -120,6 +122,8 @@ def resume(
         simulation.run(limit, until=until_error, progress=Reporter(quiet or ended))
     if not quiet:
         show_results(run)
+    if until_error and not simulation.reached(until_error):
+        raise SystemExit(NOT_REACHED)
 
 
 @cli.command()
@@ -188,14 +192,20 @@ def _files_of_run(output: Path) -> list[Path]:
     files = [run.data_file, run.checkpoint_file, run.log_file, run.report_file]
     files += [run.provenance_file]
     files += [run.trajectory_folder, run.trajectory_remains, run.trajectory_coming]
-    files += [run.progress_file, run.case_file]
+    files += [run.progress_file, run.lock_file, run.case_file]
     return [*figures, *output.glob(".*.tmp"), *run.files_of_parts(), *files]
 
 
 def _clear(output: Path) -> None:
-    """Remove the files of an earlier run."""
-    for path in _files_of_run(output):
-        if path.is_dir():
-            shutil.rmtree(path)
-        else:
-            path.unlink(missing_ok=True)
+    """Remove the files of an earlier run, unless another process writes them."""
+    from mesokit.io.one_writer import alone
+    from mesokit.io.run_directory import RunDirectory
+
+    run = RunDirectory(output)
+    with alone(run if output.is_dir() else None):
+        for path in set(_files_of_run(output)) - {run.lock_file}:
+            if path.is_dir():
+                shutil.rmtree(path)
+            else:
+                path.unlink(missing_ok=True)
+    run.lock_file.unlink(missing_ok=True)

@@ -75,6 +75,9 @@ def study(what: Path, **given: Any) -> None:
     Runs that have ended are not repeated. At the end there are a table (table.csv) and a picture of
     every number against the first key that is varied.
     """
+    for option in ("x", "fit"):
+        if given[option] and not given["y"]:
+            raise CaseError(f"--{option}: of which number? add --y")
     from mesokit.study.job_array import write_job_array
     from mesokit.study.study import Study
 
@@ -161,11 +164,11 @@ def _show(made: Any, given: dict[str, Any]) -> None:
             click.echo(line)
     click.echo(f"table: {table}")
     if given["y"]:
-        picture = made.save_picture(given["x"] or _first(made), given["y"], given["fit"])
+        x, fit = given["x"] or _first(made), given["fit"]
+        picture = made.save_picture(x, given["y"], fit)
+        for found in made.fit(x, given["y"], fit) if fit else ():
+            click.echo(f"fit: {found}")
         return click.echo(f"picture: {picture}")
-    for option in ("x", "fit"):
-        if given[option]:
-            raise CaseError(f"--{option}: of which number? add --y")
     for path in made.save_pictures():
         click.echo(f"picture: {path}")
 

@@ -44,10 +44,11 @@ def replacing(path: str | Path) -> Iterator[Path]:
             temporary.unlink(missing_ok=True)
 
 
-def write_text(path: str | Path, text: str) -> None:
-    """Write a text file whole. Raises RunError."""
+def write_text(path: str | Path, text: str) -> Path:
+    """Write a text file whole, and return its path. Raises RunError."""
     with replacing(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
+        temporary.write_text(text, encoding="utf-8", newline="\n")
+    return Path(path)
 
 
 def _replace(temporary: Path, path: Path) -> None:

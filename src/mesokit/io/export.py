@@ -151,7 +151,7 @@ def _moment(case: Case, frame: dict[str, Array]) -> Moment:
     )
     assert position is not None
     tilt = 0.0
-    if case.box.shear_rate:
+    if case.box.sheared:
         slid = case.box.displacement(time)
         tilt = slid - width * np.round(slid / width)
         position = position.astype(float)

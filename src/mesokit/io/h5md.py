@@ -31,6 +31,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.component import name_of
 from mesokit.case.trajectory import masses_and_kinds, names_and_diameters
 from mesokit.errors import RunError
 from mesokit.io.atomic import replacing
@@ -229,11 +230,16 @@ def _box(group: Any, case: Case, frames: int) -> Any:
     boundary = ["none" if axis in closed else "periodic" for axis in range(3)]
     box.attrs["dimension"] = 3
     box.attrs["boundary"] = np.array(boundary, dtype=h5py.string_dtype("ascii"))
-    shape = (frames, 3, 3) if case.box.shear_rate else (frames, 3)
-    if case.box.shear_rate:
-        box.attrs["lees_edwards_shear_rate"] = case.box.shear_rate
-        if case.box.shear_frequency:
-            box.attrs["lees_edwards_shear_frequency"] = case.box.shear_frequency
+    shape = (frames, 3, 3) if case.box.sheared else (frames, 3)
+    if case.box.sheared:
+        steady, oscillation = case.box.steady_rate, case.box.oscillation
+        if steady:
+            box.attrs["lees_edwards_shear_rate"] = steady
+        elif oscillation:
+            box.attrs["lees_edwards_shear_rate"] = oscillation.rate
+            box.attrs["lees_edwards_shear_frequency"] = oscillation.frequency
+        else:
+            box.attrs["lees_edwards_shear"] = name_of(case.box.history)
     edges = _element(box, "edges", group).create_dataset("value", shape, float)
     edges.attrs["reduced_unit"] = "a"
     return edges

@@ -11,6 +11,15 @@ from mesokit.io.atomic import replacing
 from mesokit.io.run_directory import RunDirectory
 
 
+def kept_row(parts: tuple[Any, ...], key: str, name: str, folder: Path) -> tuple[Any, ...]:
+    """Components of which each holds the contents of the file of its part of that key, as
+    `kept_part` has it; files are named by `name`, the number of the component, and the key."""
+    found = tuple(
+        _kept(part, key, f"{name}-{n}-{key}", folder) for n, part in enumerate(parts, start=1)
+    )
+    return parts if all(a is b for a, b in zip(found, parts, strict=True)) else found
+
+
 def kept_part(whole: Any, key: str, folder: Path) -> Any:
     """A case, or a component, whose part of that key holds the contents of its file, if it has one:
     they are written into the folder, under the last name of the key, now.
@@ -22,11 +31,18 @@ def kept_part(whole: Any, key: str, folder: Path) -> Any:
     part: Any = getattr(whole, name)
     if rest:
         kept = kept_part(part, rest, folder) if part is not None else None
-    elif isinstance(part, FromContents):
-        file = RunDirectory(folder).part_file(f"{name}{Path(part.file).suffix}")
-        with replacing(file) as temporary:
-            temporary.write_bytes(part.contents)
-        kept = dataclasses.replace(part, file=str(file))  # type: ignore[type-var]
     else:
-        return whole
+        return _kept(whole, name, name, folder)
     return whole if kept is part else dataclasses.replace(whole, **{name: kept})
+
+
+def _kept(whole: Any, key: str, name: str, folder: Path) -> Any:
+    """The component whose part of that key is read from a file of that name in the folder."""
+    part = getattr(whole, key)
+    if not isinstance(part, FromContents):
+        return whole
+    file = RunDirectory(folder).part_file(f"{name}{Path(part.file).suffix}")
+    with replacing(file) as temporary:
+        temporary.write_bytes(part.contents)
+    part = dataclasses.replace(part, file=str(file))  # type: ignore[type-var]
+    return dataclasses.replace(whole, **{key: part})

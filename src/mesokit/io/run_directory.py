@@ -82,6 +82,11 @@ class RunDirectory:
         return self.path / ".progress"
 
     @property
+    def lock_file(self) -> Path:
+        """Held by the process that writes here."""
+        return self.path / ".lock"
+
+    @property
     def trajectory_folder(self) -> Path:
         """Frames that are not in the data file yet."""
         return self.path / "trajectory"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesokit.io.atomic import replacing
+from mesokit.io.atomic import write_text
 from mesokit.io.optional import package
 from mesokit.observe.shared.named import keyed
 from mesokit.observe.shared.result import Comparison, Result
@@ -54,11 +55,16 @@ def dataset(result: Result) -> Any:
 
 
 def write_result(result: Result, path: str | Path) -> Path:
-    """A result as a CSV file, whose first line, after `#`, has its units. Raises RunError."""
+    """A result as a CSV file. Raises RunError."""
+    return write_text(path, result_text(result))
+
+
+def result_text(result: Result) -> str:
+    """A result as CSV, whose first line, after `#`, has its units."""
     units = ", ".join(f"{name} in {unit}" for name, unit in result.units.items() if unit)
     about = f"# {result.name}: {result.label}, {result.samples} samples; {units}"
     found = columns(result)
-    return _write(path, [about], list(found), zip(*found.values(), strict=True))
+    return f"{about}\n" + _text(list(found), zip(*found.values(), strict=True))
 
 
 def rows(results: Mapping[str, Result]) -> list[dict[str, Any]]:
@@ -108,7 +114,12 @@ def rows_dataframe(results: Mapping[str, Result]) -> Any:
 
 def write_rows(results: Mapping[str, Result], path: str | Path) -> Path:
     """All comparisons as a CSV file, a row for each. Raises RunError."""
-    return _write(path, [], HEADINGS, (row.values() for row in rows(results)))
+    return write_text(path, rows_text(results))
+
+
+def rows_text(results: Mapping[str, Result]) -> str:
+    """All comparisons as CSV, a row for each."""
+    return _text(HEADINGS, (row.values() for row in rows(results)))
 
 
 HEADINGS = ["result", "key", *record(Comparison("", 0.0, 0.0))]
@@ -128,13 +139,9 @@ def _about(result: Result) -> dict[str, Any]:
     }
 
 
-def _write(
-    path: str | Path, lines: list[str], headings: list[str], table: Iterable[Iterable[Any]]
-) -> Path:
-    path = Path(path)
-    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
-        file.writelines(f"{line}\n" for line in lines)
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(headings)
-        writer.writerows(table)
-    return path
+def _text(headings: list[str], table: Iterable[Iterable[Any]]) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(headings)
+    writer.writerows(table)
+    return text.getvalue()

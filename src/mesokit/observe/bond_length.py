@@ -9,15 +9,19 @@ import numpy as np
 from mesokit.case.component import component, param, tag
 from mesokit.engine import RunningFluid
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import KIND, bond_in_shear, bonds_of, molecule_of
+from mesokit.method.mpcd.expected.molecules import (
+    KIND,
+    bond_in_shear,
+    bonds_of,
+    molecule_of,
+    shear_note,
+)
 from mesokit.observe.shared.molecule_tensor import MoleculeTensorAccumulator
 from mesokit.observe.shared.protocol import Observable
 from mesokit.observe.shared.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-
-IN_SHEAR = "approximate: stretched by the flow, beads with the friction of free particles"
 
 
 @component
@@ -26,7 +30,7 @@ class BondLength(Observable):
 
     quantity: Literal["bond-length"] = tag("bond-length")
     needs_fluid: ClassVar[bool] = False
-    kind: int = param(1, doc=KIND, ge=1)
+    kind: int | str = param(1, doc=KIND)
 
     def check(self, case: Case) -> None:
         """Raise CaseError for a fluid without bonds."""
@@ -68,6 +72,10 @@ class BondLengthAccumulator(MoleculeTensorAccumulator):
         at_rest = not setting.driven(case) or (setting.isothermal(case) and falling)
         if case.walls or not at_rest:
             return np.nan
+        solutes = case.solutes
+        ideal = solutes is None or solutes.ideal(solutes.index_of(self.kind))
+        if self.molecule.pair is None and not ideal:
+            return np.nan  # beads of other kinds matter
         found = self.molecule.mean_square_bond(case.box.dimension, case.fluid.kT)
         return np.nan if found is None else found
 
@@ -82,10 +90,10 @@ class BondLengthAccumulator(MoleculeTensorAccumulator):
         mean, error = self.size(0)
         expected, note = self.square(), ""
         undisturbed = not case.walls and not case.fluid.force.acts
-        if box.shear_rate and not box.shear_frequency and undisturbed and setting.isothermal(case):
+        if box.steady_rate and undisturbed and setting.isothermal(case):
             flowing = bond_in_shear(case)
             if flowing is not None:
-                expected, note = flowing, IN_SHEAR
+                expected, note = flowing, shear_note(case)
         root = max(mean, 0.0) ** 0.5
         note = "; ".join(filter(None, (note, self.short_run())))
         error = setting.with_start(case, error, mean, self.blocks.series)

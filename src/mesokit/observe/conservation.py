@@ -34,6 +34,7 @@ class Conservation(Observable):
     """
 
     quantity: Literal["conservation"] = tag("conservation")
+    in_open_box: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
 
     def accumulator(self, case: Case) -> ConservationAccumulator:

@@ -11,7 +11,7 @@ from mesokit.case.component import component, param, tag
 from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import KIND, Group, group_of, spring_of
+from mesokit.method.mpcd.expected.molecules import KIND, Group, group_of, springs_of
 from mesokit.observe.shared.estimate import Estimate, of_mean
 from mesokit.observe.shared.profile import Array, Profile, ProfileAccumulator
 from mesokit.observe.shared.result import Comparison, Result
@@ -39,7 +39,7 @@ class DensityProfile(Profile):
         "particles",
         doc='"beads": of solutes or molecules; "centres": of mass; "ends": beads with one bond',
     )
-    kind: int = param(1, doc=KIND, ge=1)
+    kind: int | str = param(1, doc=KIND)
 
     def check(self, case: Case) -> None:
         """Raise CaseError for an axis that the box has not, and for what molecules have not."""
@@ -47,10 +47,8 @@ class DensityProfile(Profile):
         molecule = group_of(case, self.of, self.kind).molecule
         if self.of == "ends" and molecule and molecule.topology == "ring":
             raise CaseError("of = 'ends': rings have none")
-        if self.of == "centres" and self.axis == "x" and case.box.shear_rate:
-            raise CaseError(
-                "of = 'centres': not along 'x' under box.shear_rate, whose images slide"
-            )
+        if self.of == "centres" and self.axis == "x" and case.box.sheared:
+            raise CaseError("of = 'centres': not along 'x' under shear, whose images slide")
 
     def accumulator(self, case: Case) -> DensityProfileAccumulator:
         """An empty memory for it."""
@@ -65,7 +63,8 @@ class DensityProfileAccumulator(ProfileAccumulator):
         size = case.box.size
         self.unit = case.box.density_unit
         self.slice_volume = np.prod(size) / self.bins
-        self.of, self.group = observable.of, group_of(case, observable.of, observable.kind)
+        self.of, self.kind = observable.of, observable.kind
+        self.group = group_of(case, observable.of, observable.kind)
         if self.of != "particles":
             beads = self.group.beads()
             self.beads = beads[:, _ends(self.group)] if self.of == "ends" else beads
@@ -133,8 +132,10 @@ class DensityProfileAccumulator(ProfileAccumulator):
             return None
         weight = 0.0 if self.periodic else float(setting.acceleration(case)[self.axis])
         solutes = case.solutes if self.of != "particles" else None
-        decay = (solutes.mass if solutes else case.fluid.mass) * weight / case.fluid.kT
-        if solutes and (solutes.pair or solutes.wall) and not self.periodic:
+        kind = solutes.index_of(self.kind) if solutes else 0
+        mass = solutes.masses[kind] if solutes else case.fluid.mass
+        decay = mass * weight / case.fluid.kT
+        if solutes and not (solutes.ideal(kind) and solutes.wall is None) and not self.periodic:
             return None  # beads that are not ideal
         if group.molecule is not None:
             return self.expected_of_molecules(decay)
@@ -150,7 +151,7 @@ class DensityProfileAccumulator(ProfileAccumulator):
         """Of ideal molecules; None for other bonds, and where the sums would take too long."""
         molecule = self.group.molecule
         assert molecule is not None
-        spring, ends = spring_of(molecule), _ends(self.group)
+        spring, ends = springs_of(self.case, self.kind), _ends(self.group)
         shares = {"centres": 1, "ends": len(ends)}
         number = self.group.number * shares.get(self.of, molecule.length)
         mean = number / float(np.prod(self.case.box.size))

@@ -32,7 +32,8 @@ class DynamicModuli(Observable):
     """Shear stress over an oscillating strain: the part in phase with it, and with its rate.
 
     sigma_xy = strain_0 (G' sin wt + G'' cos wt) for the strain strain_0 sin wt that the box's
-    shear_rate and shear_frequency give; fitted to every whole period of the run.
+    shear_rate and shear_frequency, or its oscillating shear, give; fitted to every whole period of
+    the run.
     """
 
     quantity: Literal["dynamic-moduli"] = tag("dynamic-moduli")
@@ -41,12 +42,12 @@ class DynamicModuli(Observable):
 
     def check(self, case: Case) -> None:
         """Raise CaseError without an oscillating shear, or with too few samples in its period."""
-        box = case.box
-        if not box.shear_frequency:
+        oscillation = case.box.oscillation
+        if oscillation is None:
             raise CaseError("dynamic-moduli needs box.shear_rate and box.shear_frequency")
         if case.walls:
             raise CaseError("stress is measured without walls")
-        samples = 2 * math.pi / (box.shear_frequency * case.fluid.timestep * self.every)
+        samples = 2 * math.pi / (oscillation.frequency * case.fluid.timestep * self.every)
         if samples < LEAST_SAMPLES:
             raise CaseError(
                 f"every = {self.every}: {samples:.2g} samples in a period; expected at least "
@@ -64,6 +65,9 @@ class DynamicModuliAccumulator:
     def __init__(self, observable: DynamicModuli, case: Case) -> None:
         observable.check(case)
         self.case, self.name = case, observable.label
+        oscillation = case.box.oscillation
+        assert oscillation is not None
+        self.amplitude, self.frequency = oscillation.rate, oscillation.frequency
         bonded = case.fluid.molecule is not None or case.solutes is not None
         self.parts = PARTS[: 3 if bonded else 2]
         self.blocks = Blocks((len(self.parts) + 1, 2))
@@ -73,15 +77,15 @@ class DynamicModuliAccumulator:
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        box, time = self.case.box, fluid.time
+        time = fluid.time
         if np.isnan(self.began[0]):
             self.began[0] = time
         # a rounded time must not put the first sample of a period into the one before
-        elif box.shear_frequency * (time - self.began[0]) > 2 * math.pi * (1 - 1e-9):
+        elif self.frequency * (time - self.began[0]) > 2 * math.pi * (1 - 1e-9):
             self.close()
-            self.began[0] += 2 * math.pi / box.shear_frequency
+            self.began[0] += 2 * math.pi / self.frequency
         self.samples += 1
-        phase = box.shear_frequency * time
+        phase = self.frequency * time
         basis = np.array([math.sin(phase), math.cos(phase), 1.0])
         parts = [fluid.stress[part][0, 1] for part in self.parts]
         self.squares += np.outer(basis, basis)
@@ -90,7 +94,7 @@ class DynamicModuliAccumulator:
     def close(self) -> None:
         """Fit the period, and begin the next."""
         fitted = np.linalg.solve(self.squares, self.products)
-        self.blocks.add(fitted[:2].T * self.case.box.shear_frequency / self.case.box.shear_rate)
+        self.blocks.add(fitted[:2].T * self.frequency / self.amplitude)
         self.squares[:], self.products[:] = 0.0, 0.0
 
     def state(self) -> State:
@@ -131,14 +135,14 @@ class DynamicModuliAccumulator:
             else ROUSE,
             comparisons=tuple(self.comparisons()) if self.blocks.count else (),
             samples=int(self.samples[0]),
-            extra={"frequency": self.case.box.shear_frequency},
+            extra={"frequency": self.frequency},
         )
 
     def expected(self) -> Array:
         """eta w for the loss modulus, nothing stored; and what springs add to that."""
         expected, case = np.zeros((len(self.parts) + 1, 2)), self.case
         expected[:, 1] = np.nan
-        c, w = setting.transport(case), case.box.shear_frequency
+        c, w = setting.transport(case), self.frequency
         if case.fluid.molecule is not None:
             expected[:, 0] = np.nan
             c, times = without_bonds(case), rouse_times_of(case)
@@ -168,7 +172,7 @@ class DynamicModuliAccumulator:
             for k, name in enumerate(MODULI.values())
         ]  # fmt: skip
         if self.case.fluid.molecule is None:
-            scale = setting.mass_density(self.case) * self.case.box.shear_frequency
+            scale = setting.mass_density(self.case) * self.frequency
             found.append(
                 Comparison(
                     "viscosity from the loss modulus",

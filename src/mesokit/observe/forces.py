@@ -129,7 +129,7 @@ class ForcesAccumulator:
             name=self.name,
             x={"body": np.array(self.bodies), "component": np.array(self.components)},
             value=self.blocks.mean()[:size].reshape(self.shape),
-            error=self.blocks.error()[:size].reshape(self.shape),
+            error=self.errors()[:size].reshape(self.shape),
             label="force and torque on each solid",
             units={"value": ""} | units,
             expected=expected,
@@ -148,6 +148,32 @@ class ForcesAccumulator:
                 ),
             },
         )
+
+    def errors(self) -> Array:
+        """Standard errors of all components, and of the momentum."""
+        found = of_mean(self.blocks, falling=True).error
+        known = self.balanced_error()
+        if len(self.bodies) == 1 and np.isfinite(known):
+            found[: self.dimension] = known
+        return found
+
+    def balanced_error(self) -> float:
+        """Standard error of the force on all solids together, nan where it is not known.
+
+        They take all the momentum that the force gives the fluid but for what the fluid has gained
+        from the first to the last step. That has the variance 2 N m kT whatever happens between, so
+        that the error falls with the time and not with its root.
+        """
+        case, count = self.case, self.blocks.count
+        uniform = case.fluid.force.uniform(self.dimension) is not None
+        # under shear images hand on momentum, and what heats has no one kT
+        known = uniform and not case.box.sheared
+        known = known and (setting.isothermal(case) or not setting.driven(case))
+        if not known or not count:
+            return float("nan")
+        mass = setting.mass_density(case) * free_volume(case)
+        time = count * self.observable.every * case.fluid.timestep
+        return float((2 * self.blocks.series * mass * case.fluid.kT) ** 0.5 / time)
 
     def obstacles(self) -> list[int]:
         """Numbers of the bodies that stand in the flow: all but plates."""
@@ -218,7 +244,7 @@ class ForcesAccumulator:
 
     def comparisons(self, expected: Array) -> list[Comparison]:
         """The balance of all forces, shares and torques of the solids, and their coefficients."""
-        mean, total = of_mean(self.blocks), self.total()
+        mean, total = of_mean(self.blocks, falling=True), self.total()
         force = np.arange(np.prod(self.shape)).reshape(self.shape)  # places of the components
         found = []
         few = len(self.bodies) <= NAMED
@@ -226,6 +252,8 @@ class ForcesAccumulator:
             every = np.zeros(mean.value.shape)
             every[force[:, axis]] = 1.0
             value, error = mean.scalar(every @ mean.value, every)
+            known = self.balanced_error()
+            error = known if np.isfinite(known) and np.isfinite(total[axis]) else error
             note = "the force on the fluid; steady flow"
             if np.isnan(total[axis]):
                 note = "nothing holds the fluid"

@@ -60,15 +60,15 @@ class MeanSquareDisplacement(Observable):
     """
 
     quantity: Literal["mean-square-displacement"] = tag("mean-square-displacement")
+    in_open_box: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
     of: Literal["particles", "beads", "centres"] = param(
         "particles", doc='"beads": of solutes or molecules; "centres": their centres of mass'
     )
-    kind: int = param(
-        1,
-        ge=1,
-        doc="which molecules: the kind of solutes.polymers, from 1; "
-        "1 where the fluid is of molecules",
+    kind: int | str | None = param(
+        None,
+        doc="which kind: name or number of solutes.polymers, or number of fluid.species, from 1 "
+        "(the first kind of solutes, particles of all species unless said)",
     )
     particles: int = param(2000, doc="particles (or molecules) followed", ge=1)
     max_lag: int = param(1000, doc="longest lag", unit="steps", ge=1)

@@ -9,11 +9,12 @@ import numpy as np
 from mesokit import theory
 from mesokit.case.component import component, param, tag
 from mesokit.engine import RunningFluid
-from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.ideal import mean_shape
 from mesokit.method.mpcd.expected.molecules import (
     KIND,
     beads_of,
     free_bond,
+    group_of,
     gyration,
     modes_of,
     molecule_of,
@@ -35,7 +36,7 @@ class MoleculeSize(Observable):
     quantity: Literal["molecule-size"] = tag("molecule-size")
     needs_fluid: ClassVar[bool] = False
     molecules: int = param(2000, doc="molecules looked at", ge=1)
-    kind: int = param(1, doc=KIND, ge=1)
+    kind: int | str = param(1, doc=KIND)
 
     def check(self, case: Case) -> None:
         """Raise CaseError without molecules."""
@@ -80,26 +81,23 @@ class MoleculeSizeAccumulator(MoleculeTensorAccumulator):
         """Tensors and their traces."""
         return self.tensors("molecule-size", "size of molecules", "a^2", "ideal molecules")
 
-    def squares(self) -> list[float]:
-        """Expected traces; nan where there is no theory."""
-        bond = free_bond(self.case, self.kind)
-        rest = not (self.case.walls or setting.driven(self.case))
-        if bond is None or not rest:
-            return [np.nan] * len(self.parts)
-        known = [theory.mean_square_gyration(modes_of(self.molecule), bond)]
-        if len(self.parts) > 1:
-            known.append(theory.mean_square_end_to_end(self.molecule.length, bond))
-        return known
-
     def expected(self) -> Array:
-        """Isotropic tensors."""
-        d = self.case.box.dimension
-        return np.array([square / d * np.eye(d) for square in self.squares()])
+        """Tensors: isotropic, and what pulls add; nan where there is no theory."""
+        bond, d = free_bond(self.case, self.kind), self.case.box.dimension
+        mean = mean_shape(self.case, self.kind, group_of(self.case, "beads", self.kind))
+        if bond is None or mean is None:
+            return np.full((len(self.parts), d, d), np.nan)
+        squares = [theory.mean_square_gyration(modes_of(self.molecule), bond)]
+        added = [gyration(mean[None])[0]]
+        if len(self.parts) > 1:
+            squares.append(theory.mean_square_end_to_end(self.molecule.length, bond))
+            added.append(np.outer(mean[-1] - mean[0], mean[-1] - mean[0]))
+        return np.array(squares)[:, None, None] / d * np.eye(d) + np.array(added)
 
     def comparisons(self) -> list[Comparison]:
         """Mean squares of radius of gyration and end-to-end distance."""
         names = ("mean square radius of gyration", "mean square end-to-end distance")
         return [
             Comparison(names[part], *self.size(part), expected, "a^2", self.short_run())
-            for part, expected in enumerate(self.squares())
+            for part, expected in enumerate(np.trace(self.expected(), axis1=1, axis2=2).tolist())
         ]

@@ -18,7 +18,7 @@ from mesokit.method.mpcd.expected.molecules import (
     mode_times_of,
     modes_of,
     molecule_of,
-    spring_of,
+    springs_of,
 )
 from mesokit.observe.shared.decay import fit_curve, normalised
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
@@ -45,7 +45,7 @@ class NormalModes(Observable):
     needs_fluid: ClassVar[bool] = False
     modes: int = param(5, doc="modes followed, from the slowest", ge=1)
     molecules: int = param(500, doc="molecules followed", ge=1)
-    kind: int = param(1, doc=KIND, ge=1)
+    kind: int | str = param(1, doc=KIND)
     max_lag: int | None = param(
         None, doc="longest lag (as the run allows unless said)", unit="steps", ge=1
     )
@@ -142,8 +142,8 @@ class NormalModesAccumulator:
         """Relaxation times and mean squares of the slowest."""
         found = []
         times, note = self.times()
-        molecule = molecule_of(self.case, kind=self.observable.kind)
-        spring = spring_of(molecule) if self.undisturbed() else None
+        kind = self.observable.kind
+        spring = springs_of(self.case, kind) if self.undisturbed() else None
         for p, correlator in enumerate(self.correlators[:SHOWN]):
             measured = self.relaxation_time(correlator)
             if measured is not None:

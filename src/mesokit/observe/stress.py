@@ -11,7 +11,7 @@ from mesokit.case.component import component, option, tag
 from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import bond_viscosity, rouse_note, stress_in_shear
+from mesokit.method.mpcd.expected.molecules import bond_viscosity, shear_note, stress_in_shear
 from mesokit.observe.shared.protocol import Observable
 from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.observe.shared.tensor import TensorAccumulator
@@ -70,24 +70,30 @@ class StressAccumulator(TensorAccumulator):
         """Pressure on the diagonal, eta gdot off it; nan where there is no theory."""
         case, d = self.case, self.case.box.dimension
         expected = np.zeros((len(self.parts), d, d))
-        known = setting.isothermal(case) or not setting.driven(case)
+        known = self.known()
         kT = case.fluid.kT if known else np.nan
         for axis in range(d):
             expected[0, axis, axis] = -self.carriers * kT
             expected[-1, axis, axis] = -self.wholes * kT  # bonds pull as if beads were one
             expected[2:-1, axis, axis] = (self.carriers - self.wholes) * kT
-        rate, coefficients = case.box.shear_rate, setting.transport(case)
+        rate, coefficients = case.box.steady_rate, setting.transport(case)
         if case.fluid.force.acts:
             expected[:] = np.nan
-        elif rate:
+        elif case.box.sheared:
             # the parts and the normal stresses are of higher order in the shear rate
             expected[:, range(d), range(d)] = np.nan
             expected[2:-1] = np.nan
-            steady = coefficients and not case.box.shear_frequency
+            steady = coefficients and rate
             for part, nu in zip((0, 1, -1), self.viscosities(), strict=True):
                 shear = nu * setting.mass_density(case) * rate if steady else np.nan
                 expected[part, 0, 1] = expected[part, 1, 0] = shear
         return expected
+
+    def known(self) -> bool:
+        """Whether the pressure is that of an ideal gas of known temperature."""
+        case = self.case
+        ideal = case.fluid.collision.ideal or not case.fluid.species
+        return ideal and (setting.isothermal(case) or not setting.driven(case))
 
     def viscosities(self) -> tuple[float, float, float]:
         """Kinetic, collisional and total viscosity of the theory."""
@@ -100,12 +106,14 @@ class StressAccumulator(TensorAccumulator):
         """Pressure, and under shear the viscosity with its parts."""
         case, found = self.case, []
         mean, error = self.blocks.mean(), self.blocks.error()
-        rate = case.box.shear_rate
-        if rate and not case.box.shear_frequency:
+        rate = case.box.steady_rate
+        if rate:
             scale = setting.mass_density(case) * rate
             notes = (
                 setting.caveat(case),
-                setting.chaos(case, "10 to 30 % low at mean free path 0.1"),
+                setting.chaos(
+                    case, "10 to 30 % low at mean free path 0.1, in 2D and with rules +a up to 85 %"
+                ),
                 setting.chaos(case, "1 to 2 % high at mean free path 0.1"),
             )
             for part, name, note in zip(
@@ -113,7 +121,7 @@ class StressAccumulator(TensorAccumulator):
             ):
                 nu, bonded = self.viscosities()[part], self.bonded()
                 if part < 0 and bonded is not None:
-                    nu, note = bonded.viscosity / setting.mass_density(case), rouse_note(case)
+                    nu, note = bonded.viscosity / setting.mass_density(case), shear_note(case)
                 found.append(
                     Comparison(
                         f"{name} from the stress",
@@ -127,17 +135,17 @@ class StressAccumulator(TensorAccumulator):
             if self.bonded_beads:
                 found.append(self.bond_part(scale))
             found += self.normal_differences()
-        known = setting.isothermal(case) or not setting.driven(case)
+        known = self.known()
         ideal = self.wholes * case.fluid.kT
-        if rate and self.bonded_beads:  # stretched bonds pull along the flow
-            bonded = None if case.box.shear_frequency else self.bonded()
+        if case.box.sheared and self.bonded_beads:  # stretched bonds pull along the flow
+            bonded = self.bonded() if rate else None
             ideal = ideal - bonded.first / case.box.dimension if bonded else np.nan
         d = case.box.dimension
         pressure, spread = self.summed(-1, -np.eye(d) / d)
         spread = setting.with_start(case, spread, ideal, self.blocks.series)
         ideal = ideal if known else np.nan
-        stretched = rate and self.bonded_beads and self.case.fluid.molecule is not None
-        note = rouse_note(case) if stretched else ""
+        stretched = case.box.sheared and self.bonded_beads and self.case.fluid.molecule is not None
+        note = shear_note(case) if stretched else ""
         found.append(Comparison("pressure", pressure, spread, ideal, UNIT[d], note))
         return found
 
@@ -147,7 +155,7 @@ class StressAccumulator(TensorAccumulator):
         known, expected, note = bond_viscosity(self.case), np.nan, ""
         if known is not None:
             expected = known / setting.mass_density(self.case)
-            note = rouse_note(self.case)
+            note = shear_note(self.case)
             if not self.bonded():
                 note = f"approximate: at zero shear rate; {ROUSE}"
         what = "bond part from the stress"
@@ -171,7 +179,7 @@ class StressAccumulator(TensorAccumulator):
                     *self.summed(-1, weight),
                     known[which],
                     UNIT[d],
-                    rouse_note(self.case) if bonded else "",
+                    shear_note(self.case) if bonded else "",
                 )
             )
         return found

@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit import theory
 from mesokit.case.component import component, option, param, tag
 from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import shear_note
+from mesokit.method.mpcd.expected.rheometer import modes_of_stress
 from mesokit.observe.shared.estimate import Estimate
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Array, Comparison, Result
@@ -101,6 +104,11 @@ class StressAutocorrelationAccumulator:
     def result(self) -> Result:
         """G(t), its integral and its Fourier transforms."""
         time, modulus = self.modulus()
+        known = modes_of_stress(self.case)
+        bonds = None
+        if known is not None and known[1] and len(time):
+            bonds = theory.relaxation_modulus(time, *known[:2])
+            bonds[time == 0] = np.nan  # where all collide as well
         extra: dict[str, Any] = {}
         comparisons: list[Comparison] = []
         if len(time) > 3:
@@ -114,6 +122,8 @@ class StressAutocorrelationAccumulator:
             error=modulus.error,
             label="relaxation modulus G",
             units={"value": UNIT[self.case.box.dimension], "time": "tau"},
+            expected=bonds,
+            theory="Rouse, bonds alone",
             comparisons=tuple(comparisons),
             samples=self.correlator.count,
             extra=extra,
@@ -130,12 +140,16 @@ class StressAutocorrelationAccumulator:
         weight[1:end] += np.diff(time[:end]) / 2
         density = setting.mass_density(self.case)
         value, spread = modulus.scalar(weight @ modulus.value, weight)
-        coefficients = setting.transport(self.case)
-        known = coefficients.viscosity if coefficients else np.nan
+        known = modes_of_stress(self.case)
+        molecules = self.case.fluid.molecule is not None
+        expected, note = np.nan, setting.caveat(self.case)
+        if known is not None:
+            note = shear_note(self.case) if molecules else note
+            expected = theory.apparent_viscosity(known[2], *known[:2]) / density
         found = [
             Comparison(
-                "viscosity from the integral", value / density, spread / density, known, "a^2/tau",
-                setting.caveat(self.case),
+                "viscosity from the integral", value / density, spread / density, expected,
+                "a^2/tau", note,
             )
         ]  # fmt: skip
         last = time[end - 1] if end > 1 else time[1]
@@ -145,4 +159,8 @@ class StressAutocorrelationAccumulator:
             kernel = frequency[:, None] * wave(frequency[:, None] * time) * weight
             transformed = modulus.linear(kernel)
             extra[name], extra[f"{name}_error"] = transformed.value, transformed.error
+        if known is not None:
+            phi_kT, times, viscosity = known
+            extra["storage_theory"] = theory.storage_modulus(frequency, phi_kT, times)
+            extra["loss_theory"] = theory.loss_modulus(frequency, phi_kT, times, viscosity)
         return found, extra

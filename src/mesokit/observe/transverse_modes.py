@@ -13,9 +13,11 @@ from mesokit.method.mpcd.expected.molecules import (
     free_bond,
     modes_of,
     molecule_of,
+    rouse_note,
     rouse_times_of,
     without_bonds,
 )
+from mesokit.observe.shared.bonded_decay import BondedLaw, fit_bonded
 from mesokit.observe.shared.decay import fit_curve, normalised
 from mesokit.observe.shared.modes import SHOWN, Array, Modes, ModesAccumulator, transverse_units
 from mesokit.observe.shared.result import Comparison, Result
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
 LOWEST = (0.5, 0.2)  # of the correlation, that the fit looks at: later lags add little but noise
 FEWEST = 4  # lags; the lower limit serves where the sampling is too coarse for the upper one
 DROWNED = 2.0  # standard errors below which a correlation has drowned in noise
+FITTED = 3  # wave numbers of a fluid of molecules that are fitted
 FIRST = 3  # steps left out of the fit: the first collisions do not obey hydrodynamics yet
 
 
@@ -61,7 +64,9 @@ class TransverseModesAccumulator(ModesAccumulator):
         coefficients = setting.transport(self.case) if self.undisturbed() else None
         first = self.equipartition() if self.undisturbed() else None
         bonded = self.case.fluid.molecule is not None
-        fits = self.deviations() if bonded else self.viscosities(coefficients)
+        fits = self.viscosities(coefficients)
+        if bonded:
+            fits = self.bonded_fits() + self.deviations()
         return Result(
             quantity="transverse-modes",
             drawing="modes",
@@ -110,6 +115,53 @@ class TransverseModesAccumulator(ModesAccumulator):
             for k in self.wavenumbers
         ]
         return np.stack(curves, axis=1)
+
+    def bonded_fits(self) -> list[Comparison]:
+        """Stress time of the slowest mode and background viscosity, from each of the longest waves.
+
+        Fitted to the correlation of finite k up to where theory falls below noise.
+        """
+        case = self.case
+        coefficients, times, bond = without_bonds(case), rouse_times_of(case), free_bond(case)
+        if not self.undisturbed() or coefficients is None or times is None or bond is None:
+            return []
+        molecule, found = molecule_of(case), []
+        springs = theory.GaussianMolecule(
+            modes_of(molecule),
+            times.mode[0],
+            bond,
+            coefficients.diffusion / molecule.length,
+            case.box.dimension,
+        )
+        elasticity = case.fluid.kT / (case.fluid.mass * molecule.length)
+        for k, _, correlator in self.shells[:FITTED]:
+            lags, curve = normalised(correlator)
+            time, law = lags * self.interval(), BondedLaw(k, elasticity, springs)
+            start = (coefficients.viscosity, float(times.mode[0]))
+            if len(time) < FEWEST:
+                continue
+            error = curve.error
+            above = np.flatnonzero(np.abs(law(time, *start)) > DROWNED * error)
+            use = np.arange(len(time)) <= (above[-1] if len(above) else 0)
+            use &= lags * self.observable.every >= FIRST
+            fitted = fit_bonded(time, curve, law, start, use)
+            if fitted is None:
+                continue
+            nu, slowest = np.exp(fitted.value)
+            for value, gradient, what, expected, unit, note in (
+                (
+                    slowest / 2, [0.0, slowest / 2], "stress time", times.stress[0], "tau",
+                    rouse_note(case),
+                ),
+                (
+                    nu, [nu, 0.0], "background viscosity", start[0], "a^2/tau",
+                    "approximate: that of free particles",
+                ),
+            ):  # fmt: skip
+                number, spread = fitted.scalar(float(value), np.array(gradient))
+                name = f"{what} at k = {k:.4g}/a"
+                found.append(Comparison(name, number, spread, float(expected), unit, note))
+        return found
 
     def deviations(self) -> list[Comparison]:
         """The largest from theory for each of the smallest wave numbers, above noise."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,7 @@ class VelocityAutocorrelation(Observable):
     """
 
     quantity: Literal["velocity-autocorrelation"] = tag("velocity-autocorrelation")
+    in_open_box: ClassVar[bool] = True
     every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
     particles: int = param(2000, doc="particles followed", ge=1)
     max_lag: int = param(200, doc="longest lag", unit="steps", ge=1)
@@ -87,6 +88,8 @@ class VelocityAutocorrelationAccumulator:
             )
             expected = theory.vacf_molecular_chaos(steps, g, fluid.kT, fluid.mass)
             extra["tail"] = self.tail(time, coefficients)
+        elif self._keep_velocities():
+            expected = np.full(len(time), fluid.kT / fluid.mass)
         return Result(
             quantity="velocity-autocorrelation",
             drawing="memory",
@@ -97,11 +100,17 @@ class VelocityAutocorrelationAccumulator:
             label="velocity autocorrelation",
             units={"value": "a^2/tau^2", "time": "tau"},
             expected=expected,
-            theory=setting.chaos_label(self.case),
+            theory=setting.chaos_label(self.case) if fluid.collision.acts else "free flight",
             comparisons=tuple(self.comparisons(time, kept, expected, coefficients, extra)),
             samples=self.origins.count,
             extra=extra,
         )
+
+    def _keep_velocities(self) -> bool:
+        """Whether particles fly freely, and so for ever as they started."""
+        case = self.case
+        bound = case.walls or case.fluid.molecule is not None or case.fluid.mixed
+        return not (case.fluid.collision.acts or bound or case.fluid.force.acts)
 
     def tail(self, time: Array, coefficients: theory.Transport) -> Array:
         """The hydrodynamic tail in this box once sound has left the cell, nan before."""
@@ -156,7 +165,7 @@ class VelocityAutocorrelationAccumulator:
                     error,
                     coefficients.diffusion,
                     "a^2/tau",
-                    setting.chaos(self.case, "correlated collisions and the tail add 10 to 18 %"),
+                    setting.chaos(self.case, setting.STIRRED),
                 )
             )
         crossing = max(self.case.box.size) ** 2 / (4 * np.pi**2 * coefficients.viscosity)

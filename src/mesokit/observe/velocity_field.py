@@ -67,7 +67,7 @@ class VelocityFieldAccumulator(FieldAccumulator):
     def comparisons(self, velocity: Estimate) -> tuple[Comparison, ...]:
         """The Mach number where the flow is fastest, less what noise adds to the speed."""
         coefficients = setting.transport(self.case)
-        if coefficients is None or not setting.driven(self.case) or self.case.box.shear_rate:
+        if coefficients is None or not setting.driven(self.case) or self.case.box.sheared:
             return ()
         square = (velocity.value**2 - velocity.error**2).sum(axis=0)  # of bins
         known = np.isfinite(square)

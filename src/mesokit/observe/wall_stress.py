@@ -149,7 +149,7 @@ def balance(case: Case) -> Array:
             eta = coefficients.dynamic_viscosity if coefficients else np.nan
             drag = eta * (upper - lower) / height
             expected[:, axis] += np.array([drag, -drag])
-    if case.fluid.force.uniform(d) is None or case.box.shear_rate:
+    if case.fluid.force.uniform(d) is None or case.box.sheared:
         expected[:, [axis for axis in range(d) if axis != across]] = np.nan
     return expected
 
@@ -178,7 +178,7 @@ def _contact(case: Case, height: float) -> float:
     fluid, solutes = case.fluid, case.solutes
     if solutes is None:
         return fluid.density * _at_plate(case, fluid.molecule, height)
-    if solutes.pair is not None or solutes.wall is not None:
+    if solutes.different_pairs or solutes.wall is not None:
         return np.nan
     kinds = [
         polymer.number * polymer.length * _at_plate(case, solutes.molecule(i), height)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal, NamedTuple
 
 from mesokit.case.component import component, param, tag
@@ -28,6 +29,15 @@ class LennardJones(Pair):
         """How large a bead is."""
         return self.sigma
 
+    def mixed(self, other: Pair) -> LennardJones | None:
+        """By the rule of Lorentz and Berthelot, where both are cut off in the same way."""
+        if not isinstance(other, LennardJones):
+            return None
+        if (self.cutoff, self.shift) != (other.cutoff, other.shift):
+            return None
+        both = lorentz_berthelot((self.epsilon, self.sigma), (other.epsilon, other.sigma))
+        return LennardJones(*both, self.cutoff, self.shift)
+
     def kernel(self) -> TwelveSix:
         """Parameters for the scalar function below."""
         return twelve_six(self.epsilon, self.sigma, self.cutoff, self.shift)
@@ -47,6 +57,16 @@ def twelve_six(epsilon: float, sigma: float, cutoff: float, shift: bool) -> Twel
     sixth = cutoff**-6
     at_cutoff = 4.0 * epsilon * (sixth * sixth - sixth)
     return TwelveSix(4.0 * epsilon, sigma**2, (cutoff * sigma) ** 2, -at_cutoff if shift else 0.0)
+
+
+def lorentz_berthelot(one: tuple[float, float], other: tuple[float, float]) -> tuple[float, float]:
+    """Energy and diameter between two kinds of beads, from those of each: the geometric mean of
+    the energies (Berthelot 1898), the arithmetic mean of the diameters (Lorentz 1881).
+
+    >>> lorentz_berthelot((1.0, 1.0), (4.0, 3.0))
+    (2.0, 2.0)
+    """
+    return math.sqrt(one[0] * other[0]), 0.5 * (one[1] + other[1])
 
 
 CLOSEST = 1e-3  # of sigma^2: nearer, the force grows no more

@@ -54,6 +54,10 @@ class Pair(ABC):
     def kernel(self) -> Any:
         """Parameters for the scalar functions below."""
 
+    def mixed(self, other: Pair) -> Pair | None:
+        """What acts between beads of this and of another potential; None where no rule says."""
+        return None
+
 
 @family("angle potential", "rule", "mesokit.potential")
 @component

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -81,6 +82,11 @@ class Table(FromContents, Pair):
         CaseError
             For what is no such function, and a file that cannot be written.
         """
+        if not 0 < start < end < math.inf or rows < 2:
+            raise CaseError(
+                f"Table: start = {start}, end = {end}, rows = {rows}: expected 0 < start < end and "
+                "two rows at least"
+            )
         r = np.linspace(start, end, rows)
         try:
             table = np.column_stack([r, np.broadcast_to(np.asarray(energy(r), float), r.shape)])
@@ -115,6 +121,12 @@ class Table(FromContents, Pair):
         r, energy = self.rows[:, :2].T
         high = np.flatnonzero(energy - energy[-1] > 1.0)
         return float(r[high[-1]] if len(high) else r[0])
+
+    def mixed(self, other: Pair) -> Table | None:
+        """The same table, where both hold the same; there is no rule to mix others."""
+        if not isinstance(other, Table) or self.shift != other.shift:
+            return None
+        return self if np.array_equal(self.rows, other.rows) else None
 
     @functools.cached_property
     def cubics(self) -> Floats:

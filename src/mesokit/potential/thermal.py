@@ -65,3 +65,29 @@ def stiffness(kernels: Sequence[Any], kT: float, longest: float) -> float:
     met = radii[energy - energy.min() <= SOMETIMES * kT]
     force = [-r * sum(central.plain(k, r * r)[1] for k in kernels) for r in met.tolist()]
     return float(np.abs(np.diff(force) / np.diff(met)).max())
+
+
+def boltzmann_volume(kernel: Any, dimension: int, kT: float, radius: float) -> float:
+    """Integral of exp(-U/kT) over a ball: its density times this many ideal particles are in it."""
+    radii = np.linspace(0.0, radius, POINTS)
+    weight = np.exp(-np.clip(energies((kernel,), radii) / kT, -NEVER, None))
+    shell = 2.0 * np.pi * radii if dimension == 2 else 4.0 * np.pi * radii**2
+    return float(np.trapezoid(shell * weight, radii))
+
+
+def excluded_volume(kernel: Any, dimension: int, kT: float, reach: float) -> float:
+    """Integral of 1 - exp(-U/kT): by how much less room ideal particles have.
+
+    >>> from mesokit import WCA
+    >>> disk = WCA(sigma=3.0)
+    >>> round(excluded_volume(disk.kernel(), 2, 1.0, disk.reach) / (3.1416 * 3.0**2), 2)
+    1.03
+    """
+    ball = np.pi * reach**2 if dimension == 2 else 4.0 / 3.0 * np.pi * reach**3
+    return float(ball) - boltzmann_volume(kernel, dimension, kT, reach)
+
+
+def effective_radius(kernel: Any, kT: float, reach: float) -> float:
+    """Integral of 1 - exp(-U/kT) along a ray: of the hard sphere that the potential is like."""
+    radii = np.linspace(0.0, reach, POINTS)
+    return float(np.trapezoid(1.0 - np.exp(-energies((kernel,), radii) / kT), radii))

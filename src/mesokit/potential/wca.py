@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from mesokit.case.component import component, param, tag
-from mesokit.potential.lennard_jones import TwelveSix, twelve_six
+from mesokit.potential.lennard_jones import TwelveSix, lorentz_berthelot, twelve_six
 from mesokit.potential.protocol import Pair
 
 
@@ -29,6 +29,16 @@ class WCA(Pair):
     def diameter(self) -> float:
         """How large a bead is."""
         return self.sigma
+
+    def mixed(self, other: Pair) -> WCA | None:
+        """By the rule of Lorentz and Berthelot.
+
+        >>> WCA(epsilon=1, sigma=1).mixed(WCA(epsilon=4, sigma=3))
+        WCA(rule='wca', epsilon=2.0, sigma=2.0)
+        """
+        if not isinstance(other, WCA):
+            return None
+        return WCA(*lorentz_berthelot((self.epsilon, self.sigma), (other.epsilon, other.sigma)))
 
     def kernel(self) -> TwelveSix:
         """Parameters for the scalar function of the Lennard-Jones potential."""

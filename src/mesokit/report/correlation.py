@@ -12,6 +12,7 @@ from mesokit.report.caption import mathematics
 from mesokit.report.style import COLOURS, MARKERS, labelled, legend_above, sparse_logarithm
 
 SHOWN = 6  # curves in one figure
+DEEPEST = 1e-4  # of the largest modulus, the least that is drawn
 
 
 def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
@@ -89,18 +90,29 @@ def draw_modulus(result: Result, figure: Any, ax: Any) -> None:
     if right is None or "frequency" not in result.extra:
         return
     w = result.extra["frequency"]
+    largest = 0.0
     for k, (name, label) in enumerate((("storage", "$G'$"), ("loss", "$G''$"))):
+        value, error = result.extra[name], result.extra[f"{name}_error"]
+        use = value > 0
         right.errorbar(
-            w,
-            result.extra[name],
-            result.extra[f"{name}_error"],
+            w[use],
+            value[use],
+            _bars(value[use], error[use]),
             fmt=MARKERS[k],
             mfc="white",
             color=COLOURS[k],
             label=label,
+            zorder=2,
         )
+        line = result.extra.get(f"{name}_theory")
+        if line is not None and (line > 0).any():
+            right.plot(w, line, color="black", lw=1.2, label=None if k else "theory", zorder=3)
+        largest = max(largest, value.max(initial=0.0))
     right.set_xscale("log")
     right.set_yscale("log", nonpositive="mask")
+    if largest > 0:
+        noise = np.nanmedian(result.extra["storage_error"])
+        right.set_ylim(max(0.2 * noise, DEEPEST * largest), 3 * largest)
     sparse_logarithm(right.xaxis, w[0], w[-1])
     right.set_xlabel(labelled(r"frequency $\omega$", "1/tau"))
     right.set_ylabel(labelled("modulus", result.units["value"]))
@@ -115,11 +127,10 @@ def _logarithmic(result: Result, ax: Any) -> None:
     for (label, sign), fill in zip(signs.items(), ("white", COLOURS[0]), strict=True):
         use = late & sign
         if use.any():
-            error = np.minimum(result.error[use], 0.999 * size[use])
             ax.errorbar(
                 time[use],
                 size[use],
-                error,
+                _bars(size[use], result.error[use]),
                 fmt="o",
                 mfc=fill,
                 color=COLOURS[0],
@@ -140,6 +151,11 @@ def _logarithmic(result: Result, ax: Any) -> None:
         ax.set_ylim(0.2 * max(noise, 1e-6 * largest), 3 * largest)
     ax.set_xlabel(labelled("time lag $t$", result.units["time"]))
     legend_above(ax, columns=1)
+
+
+def _bars(value: Any, error: Any) -> Any:
+    """Error bars (2, n) on a logarithmic axis: those that reach zero have no lower end in sight."""
+    return np.stack([np.where(error < value, error, (1 - 1e-12) * value), error])
 
 
 def draw_modes(result: Result, figure: Any, ax: Any) -> None:

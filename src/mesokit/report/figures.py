@@ -11,12 +11,25 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mesokit.observe.shared.result import Result
-from mesokit.report import correlation, curve, field, forces, probe, profile, series, tensor, wake
+from mesokit.report import (
+    correlation,
+    curve,
+    field,
+    forces,
+    probe,
+    profile,
+    series,
+    tensor,
+    wake,
+)
 from mesokit.report.caption import LINE, below, compared
 from mesokit.report.finish.origin import origin_of
 from mesokit.report.finish.saving import save_figure
 from mesokit.report.finish.several import add
 from mesokit.report.flow.layout import page_width
+from mesokit.report.molecules import histogram, tracks
+from mesokit.report.particles import histograms, snapshots, structure_factor
+from mesokit.report.rheology import stress_in_time
 from mesokit.report.style import HEIGHT, STYLE, WIDTH
 
 if TYPE_CHECKING:
@@ -33,11 +46,17 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "normal modes": correlation.draw_normal_modes,
     "modes": correlation.draw_modes,
     "modulus": correlation.draw_modulus,
+    "stress in time": stress_in_time.draw,
     "tensor": tensor.draw,
     "moduli": tensor.draw_moduli,
     "per solid": forces.draw,
+    "histograms": histograms.draw,
+    "snapshots": snapshots.draw,
+    "structure factor": structure_factor.draw,
     "centreline": wake.draw,
     "signal": probe.draw,
+    "tracks": tracks.draw,
+    "histogram": histogram.draw,
 }
 MAPS = ("map", "frames")
 LEAST_HEIGHT, LEAST_FONT = 0.7, 0.75  # of the usual, however narrow a figure is

@@ -38,7 +38,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         fmt="o",
         mfc="white",
         color=COLOURS[0],
-        ms=2 if many else 3 if len(x) > 60 else 4,
+        ms=2 if len(x) > 60 else 4,
         lw=0.8,
         capsize=0 if many else 2,
         label=r"measured, $\pm$ one standard error",
@@ -48,11 +48,16 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         name = NAMES.get(result.theory, result.theory)
         label = mathematics(f"theory: {name}")
         ax.plot(x, result.expected, "-", color="black", lw=1.5, label=label, zorder=3)
+    raised = result.extra.get("raised")
+    if raised is not None:
+        percent = float(result.extra["raised_by"])
+        label = f"in 2D: viscosity +{percent:.1f} %"
+        ax.plot(x, raised, ":", color=COLOURS[2], lw=2, label=label, zorder=3)
     if result.fit is not None:
         ax.plot(x, result.fit, "--", color=COLOURS[1], lw=1.3, label="fit", zorder=4)
     ax.set_ylabel(labelled(result.label, result.units["value"]))
     _frame(ax, result)
-    legend_above(ax)
+    legend_above(ax, columns=3 if raised is None else 2)
     bottom = ax
     if residuals is not None:
         bottom = residuals
@@ -60,6 +65,10 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         residuals.axhline(0, color="black", lw=1)
         residuals.axhspan(-1, 1, color="0.88", lw=0)
         residuals.plot(x, deviation, "o", mfc="white", color=COLOURS[0], ms=2 if many else 3)
+        if raised is not None and result.expected is not None:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                beside = (raised - result.expected) / result.error
+            residuals.plot(x, beside, ":", color=COLOURS[2], lw=2)
         residuals.set_ylabel("deviation\n[std. errors]")
         finite = abs(deviation[np.isfinite(deviation)]) if deviation is not None else np.zeros(0)
         reach = max(3.5, 1.15 * finite.max()) if len(finite) else 3.5

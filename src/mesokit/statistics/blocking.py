@@ -24,7 +24,9 @@ def merge_pairs(blocks: NDArray[np.float64]) -> NDArray[np.float64]:
     return merged
 
 
-def plateau_error(residuals: ArrayLike, weights: ArrayLike) -> NDArray[np.float64]:
+def plateau_error(
+    residuals: ArrayLike, weights: ArrayLike, falling: bool = False
+) -> NDArray[np.float64]:
     """Standard error of an estimate from what each block of time contributes to its deviation.
 
     Neighbouring blocks are merged level by level, element by element, until the first level
@@ -38,6 +40,8 @@ def plateau_error(residuals: ArrayLike, weights: ArrayLike) -> NDArray[np.float6
     residuals: (n, *shape) contributions of the blocks to (estimate - truth), linearised, so that
         they add up to zero over the blocks; for a mean, (block sum - mean * samples) / all samples.
     weights: (n,) or (n, *shape), how much data each block holds, empty blocks 0.
+    falling: merge also as long as the error falls by more than its uncertainty, as it does where
+        what one moment adds the next takes back, such as momentum that a wall has taken.
 
     Returns (*shape), nan where the data amount to fewer than 4 blocks.
     Raises ValueError if the number of blocks differs.
@@ -47,6 +51,9 @@ def plateau_error(residuals: ArrayLike, weights: ArrayLike) -> NDArray[np.float6
     >>> error = plateau_error(alternating, np.ones(16))
     >>> round(float(error), 4)  # 1 / sqrt(15): merging gives no rise
     0.2582
+    >>> back_and_forth = np.tile([1.0, -1.0], 128) / 256
+    >>> [round(float(plateau_error(back_and_forth, np.ones(256), way)), 4) for way in (False, True)]
+    [0.0626, 0.0]
     """
     residuals, weights = np.asarray(residuals, float), np.asarray(weights, float)
     if residuals.ndim == 0 or weights.ndim == 0 or len(residuals) != len(weights):
@@ -61,9 +68,12 @@ def plateau_error(residuals: ArrayLike, weights: ArrayLike) -> NDArray[np.float6
         climbing = np.isfinite(error)
         while len(residuals) > FEWEST_MERGED and climbing.any():
             residuals, weights = merge_pairs(residuals), merge_pairs(weights)
-            threshold = error * (1 + 1 / np.sqrt(2 * (number - 1)))
+            slack = 1 / np.sqrt(2 * (number - 1))
             number, merged = _level(residuals, weights)
-            climbing &= (number > FEWEST_MERGED - _SLACK) & (merged > threshold)
+            moves = merged > error * (1 + slack)
+            if falling:
+                moves |= merged < error * (1 - slack)
+            climbing &= (number > FEWEST_MERGED - _SLACK) & moves
             error = np.where(climbing, merged, error)
     return np.asarray(error)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -64,8 +65,6 @@ def draw(
 
     from mesokit.report.notebook import ShownFigure
 
-    if fit is not None and fit not in FITS:
-        raise CaseError(f"fit = {show(fit)}: expected {one_of(FITS)}")
     with mpl.rc_context(STYLE):
         figure = ShownFigure(figsize=(WIDTH, HEIGHT), layout="constrained")
         ax = figure.subplots()
@@ -100,23 +99,50 @@ def _draw(ax: Any, curve: Curve, number: int, note: str, fit: str | None) -> Non
             look |= {"marker": "_", "ms": 14}
         ax.plot(curve.x[known], curve.expected[known], label=label, **look)
     if fit is not None:
-        found, words = fitted(curve, fit)
-        at = np.linspace(curve.x.min(), curve.x.max(), 200)
-        if fit == "power":
-            at = np.geomspace(curve.x.min(), curve.x.max(), 200)
-        shown = np.exp(found(np.log(at))) if fit == "power" else found(at)
-        ax.plot(at, shown, "--", color=colour, lw=1.1, label=words, zorder=1)
+        found = fitted(curve, fit)
+        space = np.geomspace if fit == "power" else np.linspace
+        at = space(curve.x.min(), curve.x.max(), 200)
+        ax.plot(at, found(at), "--", color=colour, lw=1.1, label=found.legend, zorder=1)
 
 
-def fitted(curve: Curve, kind: str) -> tuple[Fit, str]:
-    """A straight line, in logarithms for a power, and what to say of it.
+class Fitted(NamedTuple):
+    """A fit to one curve: `fit` of y, or of the logarithms for a power, and what it says.
 
-    Raises CaseError without enough points that have an error bar (and are above 0, for a power).
+    `formula` is y = ... in words, `label` of which curve.
+    """
+
+    label: str
+    kind: str
+    fit: Fit
+    formula: str
+
+    def __call__(self, x: Array) -> Array:
+        """The fitted curve at `x`."""
+        return np.asarray(np.exp(self.fit(np.log(x))) if self.kind == "power" else self.fit(x))
+
+    def __str__(self) -> str:
+        p = "" if np.isnan(self.fit.p) else f", p = {self.fit.p:.2g}"
+        return f"{self.label and f'{self.label}: '}{self.formula}{p}"
+
+    @property
+    def legend(self) -> str:
+        """The same for a picture."""
+        formula = re.sub(r"\^(\S+)", r"^{\1}", self.formula).replace(" x", r"\,x")
+        p = "" if np.isnan(self.fit.p) else f", $p$ = {self.fit.p:.2g}"
+        return f"fit: ${formula}${p}"
+
+
+def fitted(curve: Curve, kind: str) -> Fitted:
+    """A straight line y = a + b x, or a power y = a x^b, through the points that have error bars.
+
+    Raises CaseError for another kind, or too few such points (above 0, for a power).
 
     >>> x = np.array([1.0, 2.0, 4.0])
-    >>> fitted(Curve("", x, 3 * x**2, 0.01 * x**2, x), "power")[1]
-    'fit: $y = 3.0000(91)\\\\,x^{2.0000(34)}$, $p$ = 1'
+    >>> print(fitted(Curve("", x, 3 * x**2, 0.01 * x**2, x), "power"))
+    y = 3.0000(91) x^2.0000(34), p = 1
     """
+    if kind not in FITS:
+        raise CaseError(f"fit = {show(kind)}: expected {one_of(FITS)}")
     use = np.isfinite(curve.value) & (curve.error > 0)
     if kind == "power":
         use &= (curve.value > 0) & (curve.x > 0)
@@ -128,15 +154,13 @@ def fitted(curve: Curve, kind: str) -> tuple[Fit, str]:
         front = float(np.exp(found.coefficients[0]))
         first = with_error(front, front * float(found.errors[0]))
         second = with_error(float(found.coefficients[1]), float(found.errors[1]))
-        formula = f"y = {first}\\,x^{{{second}}}"
-    else:
-        found = weighted_line(x, value, error)
-        start, slope = (float(c) for c in found.coefficients)
-        first = with_error(start, float(found.errors[0]))
-        second = with_error(abs(slope), float(found.errors[1]))
-        formula = f"y = {first} {'-' if slope < 0 else '+'} {second}\\,x"
-    quality = "" if np.isnan(found.p) else f", $p$ = {found.p:.2g}"
-    return found, f"fit: ${formula}${quality}"
+        return Fitted(curve.label, kind, found, f"y = {first} x^{second}")
+    found = weighted_line(x, value, error)
+    start, slope = (float(c) for c in found.coefficients)
+    first = with_error(start, float(found.errors[0]))
+    second = with_error(abs(slope), float(found.errors[1]))
+    sign = "-" if slope < 0 else "+"
+    return Fitted(curve.label, kind, found, f"y = {first} {sign} {second} x")
 
 
 def _spans(x: Array) -> bool:

@@ -177,11 +177,12 @@ def _warnings(study: Studied) -> list[str]:
         except (MesokitError, OSError):  # a file that the start was made from may be gone
             continue
         names = zip(short_names(study.keys), point_words(runs[0].point), strict=True)
+        where = ", ".join(f"{key} = {value}" for key, value in names)
         for text in warnings:
-            found.setdefault(text, []).append(", ".join(f"{k} = {v}" for k, v in names))
+            found.setdefault(text, []).append(where)
     return [
-        text if len(where) == len(points) else f"{text} (at {'; '.join(where)})"
-        for text, where in found.items()
+        text if len(there) == len(points) else f"{text} (at {'; '.join(there)})"
+        for text, there in found.items()
     ]
 
 

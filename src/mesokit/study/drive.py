@@ -130,9 +130,11 @@ def drive(
         workers.close()
         return []
     done = sum(work.total for work in works if work.run.ended)
+    for work in waiting:
+        work.seen = work.run.step
     stopped: list[signal.Signals] = []
     failed: list[tuple[Planned, str]] = []
-    progress.start(sum(work.total for work in works), 1, "study", done)
+    progress.start(sum(work.total for work in works), 1, "study", done + _seen(waiting))
     in_hand: list[_Work] = []
     looked = 0.0
     try:
@@ -143,7 +145,7 @@ def drive(
                 for work in [w for w in in_hand if w.future is not None and w.future.done()]:
                     in_hand.remove(work)
                     why = _answer(work, stopped)
-                    done += work.total
+                    done += work.total if work.run.ended else _seen([work])
                     for other in waiting:  # they find its kernels, or cannot be helped
                         other.compiled = other.compiled or other.kind == work.kind
                     if why:
@@ -153,7 +155,7 @@ def drive(
                     looked = now
                     for work in in_hand:
                         work.seen = work.run.step
-                progress.update(done + sum(w.particles * w.seen for w in in_hand))
+                progress.update(done + _seen(in_hand) + _seen(waiting))
                 if in_hand:
                     time.sleep(POLL_SECONDS)
     finally:
@@ -163,6 +165,11 @@ def drive(
         by = stopped[0]
         raise Stopped(by, f"stopped by {by.name}: {progress.ended} of {len(works)} runs have ended")
     return failed
+
+
+def _seen(works: Sequence[_Work]) -> int:
+    """What is known to have been done of runs that have not ended."""
+    return sum(work.particles * work.seen for work in works)
 
 
 def _work(run: Planned) -> _Work:

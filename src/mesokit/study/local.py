@@ -12,6 +12,9 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
+from mesokit.io.run_directory import RunDirectory
+from mesokit.running.record import note_failed
+
 LOST = "its process ended"  # killed from outside, or for want of memory
 
 
@@ -54,7 +57,9 @@ class Processes:
         if not answer.endswith("\n"):
             status = worker.wait()
             by = f" by {signal.Signals(-status).name}" if status < 0 else f" with {status}"
-            return f"{LOST}{by}; perhaps there was too little memory"
+            why = f"{LOST}{by}; perhaps there was too little memory"
+            note_failed(RunDirectory(path), why)  # it could not say so itself
+            return why
         self.idle.put(worker)
         return answer.rstrip("\n")
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import copy
+import functools
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from mesokit.case import toml
 from mesokit.case.case import Case
@@ -17,6 +18,8 @@ from mesokit.errors import CaseError, RunError
 from mesokit.io import checkpoint
 from mesokit.io.open import RunFiles
 from mesokit.io.run_directory import RunDirectory
+from mesokit.observe.shared.named import keyed
+from mesokit.observe.shared.result import Comparison
 from mesokit.running.longer import longer
 from mesokit.study.axes import Axis, grid
 from mesokit.study.merge import different_key, flat
@@ -38,7 +41,13 @@ class Planned:
     @property
     def ended(self) -> bool:
         """Whether it has its results."""
-        return RunDirectory(self.path).data_file.exists() and self.files.ended
+        run = RunDirectory(self.path)
+        return run.data_file.exists() and _ended(self.path, *_stamps(run))
+
+    @property
+    def numbers(self) -> Numbers:
+        """What a run that has ended says. Raises RunError if its results cannot be read."""
+        return _numbers(self.path, *_stamps(RunDirectory(self.path)))
 
     @property
     def failed(self) -> str:
@@ -59,12 +68,48 @@ class Planned:
     @property
     def step(self) -> int:
         """Steps done, by what the run says of itself while it goes on, or its last checkpoint."""
-        run = RunDirectory(self.path)
+        run, steps = RunDirectory(self.path), [0]
         with contextlib.suppress(OSError, ValueError):
-            return int(run.progress_file.read_text(encoding="utf-8"))
+            steps.append(int(run.progress_file.read_text(encoding="utf-8")))
         with contextlib.suppress(RunError):
-            return int(checkpoint.read_meta(run.checkpoint_file)["step"])
-        return 0
+            steps.append(int(checkpoint.read_meta(run.checkpoint_file)["step"]))
+        return max(steps)
+
+
+class Numbers(NamedTuple):
+    """Compared numbers, each with its result and its key there, and steps after the warm-up."""
+
+    steps: int
+    compared: tuple[tuple[str, str, Comparison], ...]
+
+
+# A study asks for these again and again; files that are as they were need not be read again.
+@functools.lru_cache(maxsize=10_000)
+def _ended(path: Path, *stamps: Any) -> bool:
+    return RunFiles(path).ended
+
+
+@functools.lru_cache(maxsize=10_000)
+def _numbers(path: Path, *stamps: Any) -> Numbers:
+    files = RunFiles(path)
+    compared = (
+        (name, key, comparison)
+        for name, result in files.results.items()
+        for key, comparison in keyed(result.comparisons).items()
+    )
+    return Numbers(files.case.run.steps, tuple(compared))
+
+
+def _stamps(run: RunDirectory) -> list[Any]:
+    """What tells whether the files of a run have been written anew."""
+    stamps: list[Any] = []
+    for file in (run.case_file, run.checkpoint_file, run.data_file):
+        try:
+            now = file.stat()
+            stamps.append((now.st_mtime_ns, now.st_size, now.st_ino))
+        except OSError:
+            stamps.append(None)
+    return stamps
 
 
 def planned(axes: Sequence[Axis], seeds: Sequence[int], folder: Path) -> list[Planned]:

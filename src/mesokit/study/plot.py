@@ -33,6 +33,17 @@ def plot(
     number is drawn against, in a `unit`.
     Raises CaseError for a number that is not there, or values that are no numbers.
     """
+    drawn, first = curves_of(rows, axes, key, number), find_rows(rows, number)[0]
+    note = f"mean of {first.runs} runs" if first.runs > 1 else "one run each"
+    named = first.number.what, first.number.unit
+    return draw(drawn, x=(key, unit), y=named, fit=fit, log=log, note=note)
+
+
+def curves_of(rows: Sequence[Pooled], axes: Sequence[Axis], key: str, number: str) -> list[Curve]:
+    """One number of the table against a key that is varied: a curve for each other value.
+
+    Raises CaseError as `plot` does.
+    """
     rows = find_rows(rows, number)
     keys = [other for axis in axes for other in axis.keys]
     linked = next(axis.keys for axis in axes if key in axis.keys)
@@ -42,11 +53,7 @@ def plot(
         others = [(names[other], row.point[other]) for other in keys if other not in linked]
         label = ", ".join(f"{name} = {_word(value)}" for name, value in others)
         curves.setdefault(label, []).append(row)
-    drawn = [_curve(label, key, group) for label, group in curves.items()]
-    first = rows[0]
-    note = f"mean of {first.runs} runs" if first.runs > 1 else "one run each"
-    named = first.number.what, first.number.unit
-    return draw(drawn, x=(key, unit), y=named, fit=fit, log=log, note=note)
+    return [_curve(label, key, group) for label, group in curves.items()]
 
 
 def drawable(rows: Sequence[Pooled], axes: Sequence[Axis]) -> list[str]:

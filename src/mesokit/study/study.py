@@ -20,13 +20,14 @@ from mesokit.running.cores import usable_cores
 from mesokit.study import table as tables
 from mesokit.study.axes import Axis
 from mesokit.study.cluster import Cluster
+from mesokit.study.dependence import Fitted, fitted
 from mesokit.study.drive import StudyReporter, Workers, drive, reporter_for
 from mesokit.study.here import Here
 from mesokit.study.local import Processes
 from mesokit.study.merge import merge
 from mesokit.study.numbers import numbers, words_of
 from mesokit.study.plan import Base, Planned, by_point, make, planned, short_names
-from mesokit.study.plot import drawable, find_rows, plot, unit_of
+from mesokit.study.plot import curves_of, drawable, find_rows, plot, unit_of
 
 if TYPE_CHECKING:
     from mesokit.io.open import RunFiles
@@ -281,6 +282,16 @@ class Study(Shown):
         key = self.key(x)
         unit = unit_of(self.base.case(self.runs[0].point, self.runs[0].seed), key)
         return plot(self.table(), self.axes, key, y, unit, fit, **look)
+
+    def fit(self, x: str, y: str, kind: str) -> list[Fitted]:
+        """Fit y = a + b x ("line") or y = a x^b ("power") to each curve that `plot` draws.
+
+        Of each, `formula` says what was found, and `fit` holds coefficients, errors, covariance and
+        the quality, of the logarithms for a power. Raises CaseError as `plot` does, and for too few
+        points with an error bar.
+        """
+        curves = curves_of(self.table(), self.axes, self.key(x), y)
+        return [fitted(curve, kind) for curve in curves]
 
     def lines(self) -> list[str]:
         """The table in words, point after point."""

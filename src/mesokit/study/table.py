@@ -13,7 +13,6 @@ import numpy as np
 
 from mesokit.io.atomic import replacing
 from mesokit.io.optional import package
-from mesokit.observe.shared.named import keyed
 from mesokit.observe.shared.result import Comparison
 from mesokit.statistics import ChiSquare, chi_square
 from mesokit.study.plan import Planned, by_point
@@ -81,10 +80,9 @@ def table(runs: Iterable[Planned]) -> list[Pooled]:
 def _of_point(runs: Sequence[Planned]) -> Iterator[Pooled]:
     numbers: dict[tuple[str, str], list[tuple[Comparison, float]]] = {}
     for run in runs:
-        files = run.files
-        for name, result in files.results.items():
-            for key, comparison in keyed(result.comparisons).items():
-                numbers.setdefault((name, key), []).append((comparison, files.case.run.steps))
+        steps, compared = run.numbers
+        for name, key, comparison in compared:
+            numbers.setdefault((name, key), []).append((comparison, steps))
     for (name, key), each in numbers.items():
         number, scatter, seeds = pooled([c for c, _ in each], [float(s) for _, s in each])
         yield Pooled(runs[0].point, name, key, number, len(each), scatter, seeds)

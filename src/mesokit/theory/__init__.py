@@ -4,6 +4,7 @@ Nothing here uses the rest of mesokit, so that it can judge it. Lengths are in c
 """
 
 from mesokit.theory.bead_diffusion import bead_diffusion
+from mesokit.theory.bond_correlation import BondCorrelation, bond_correlation
 from mesokit.theory.chain_diffusion import (
     kirkwood_diffusion,
     kirkwood_in_cells,
@@ -11,6 +12,7 @@ from mesokit.theory.chain_diffusion import (
     zimm_diffusion,
 )
 from mesokit.theory.chain_displacement import msd_rouse_beads
+from mesokit.theory.chain_distribution import cosine_cdf, end_to_end_cdf, gyration_cdf
 from mesokit.theory.chain_in_slit import beads_in_slit, centre_in_slit
 from mesokit.theory.chain_scaling import ChainExponents, chain_exponents
 from mesokit.theory.chain_size import mean_square_end_to_end, mean_square_gyration
@@ -21,6 +23,7 @@ from mesokit.theory.cubic_array import (
     cubic_array_drag_dilute,
     cubic_array_permeability,
 )
+from mesokit.theory.demixing import demixing_coupling, demixing_diffusion
 from mesokit.theory.diffusion_in_box import diffusion_in_box
 from mesokit.theory.dumbbell_shear import (
     dumbbell_viscosity,
@@ -29,6 +32,7 @@ from mesokit.theory.dumbbell_shear import (
 )
 from mesokit.theory.finite_size import viscosity_renormalised
 from mesokit.theory.gamma import cell_energy_cdf, cell_energy_pdf, cell_energy_variance
+from mesokit.theory.gaussian_structure_factor import gaussian_structure_factor
 from mesokit.theory.hagen_poiseuille import (
     hagen_poiseuille_flow_rate,
     hagen_poiseuille_velocity,
@@ -60,9 +64,18 @@ from mesokit.theory.mean_square_displacement import (
     decorrelation_from_diffusion,
     msd_molecular_chaos,
 )
-from mesokit.theory.normal_modes import NormalModes, linear_modes, ring_modes, star_modes
+from mesokit.theory.normal_modes import (
+    NormalModes,
+    linear_modes,
+    network_modes,
+    ring_modes,
+    star_modes,
+)
 from mesokit.theory.origin import Origin, origins
+from mesokit.theory.oscillating_slit import oscillating_slit_response, oscillating_slit_velocity
+from mesokit.theory.passage_times import first_passage_cdf, mean_exit_time
 from mesokit.theory.poiseuille import PoiseuilleFit, poiseuille_fit, poiseuille_velocity
+from mesokit.theory.pulled_shape import pulled_shape
 from mesokit.theory.relaxation_modulus import (
     apparent_viscosity,
     complex_viscosity,
@@ -71,11 +84,14 @@ from mesokit.theory.relaxation_modulus import (
     storage_modulus,
 )
 from mesokit.theory.rouse_times import RouseTimes, rouse_times, rouse_times_from_slowest
+from mesokit.theory.self_diffusion import self_diffusion
+from mesokit.theory.slip_sphere import enskog_friction, slip_sphere_diffusion
 from mesokit.theory.square_array import (
     square_array_drag,
     square_array_drag_dilute,
     square_array_permeability,
 )
+from mesokit.theory.stress_in_time import StressInTime, stress_in_time
 from mesokit.theory.taylor_couette import (
     taylor_couette_coefficients,
     taylor_couette_torque,
@@ -110,11 +126,14 @@ from mesokit.theory.water import (
     water_sound_speed,
     water_viscosity,
 )
+from mesokit.theory.zimm_shear import ChainInShear, zimm_shear
 from mesokit.theory.zimm_times import zimm_times
 
 __all__ = [
+    "BondCorrelation",
     "BondLength",
     "ChainExponents",
+    "ChainInShear",
     "GaussianMolecule",
     "NormalModes",
     "Origin",
@@ -124,12 +143,14 @@ __all__ = [
     "ShearStress",
     "SizeInShear",
     "Spring",
+    "StressInTime",
     "Transport",
     "TransversePoles",
     "ViscosityFit",
     "apparent_viscosity",
     "bead_diffusion",
     "beads_in_slit",
+    "bond_correlation",
     "cell_energy_cdf",
     "cell_energy_pdf",
     "cell_energy_variance",
@@ -137,17 +158,25 @@ __all__ = [
     "chain_exponents",
     "channel_cylinder",
     "complex_viscosity",
+    "cosine_cdf",
     "couette_velocity",
     "cubic_array_drag",
     "cubic_array_drag_dilute",
     "cubic_array_permeability",
     "decorrelation_from_diffusion",
+    "demixing_coupling",
+    "demixing_diffusion",
     "diffusion_in_box",
     "dimer_oscillation_range",
     "dumbbell_thinning",
     "dumbbell_viscosity",
+    "end_to_end_cdf",
+    "enskog_friction",
     "fene_p_thinning",
+    "first_passage_cdf",
     "gaussian_stress_kernel",
+    "gaussian_structure_factor",
+    "gyration_cdf",
     "hagen_poiseuille_flow_rate",
     "hagen_poiseuille_velocity",
     "kirkwood_diffusion",
@@ -165,23 +194,30 @@ __all__ = [
     "maxwell_shear",
     "maxwell_speed_cdf",
     "maxwell_speed_pdf",
+    "mean_exit_time",
     "mean_square_bond",
     "mean_square_end_to_end",
     "mean_square_gyration",
     "msd_molecular_chaos",
     "msd_rouse_beads",
+    "network_modes",
     "origins",
+    "oscillating_slit_response",
+    "oscillating_slit_velocity",
     "pair_friction",
     "poiseuille_fit",
     "poiseuille_velocity",
+    "pulled_shape",
     "relaxation_modulus",
     "ring_modes",
     "rouse_diffusion",
     "rouse_times",
     "rouse_times_from_slowest",
+    "self_diffusion",
     "shear_heating",
     "shear_warming",
     "size_in_shear",
+    "slip_sphere_diffusion",
     "spring",
     "spring_of_bond",
     "square_array_drag",
@@ -190,6 +226,7 @@ __all__ = [
     "square_wake_length",
     "star_modes",
     "storage_modulus",
+    "stress_in_time",
     "taylor_couette_coefficients",
     "taylor_couette_torque",
     "taylor_couette_velocity",
@@ -212,5 +249,6 @@ __all__ = [
     "water_sound_speed",
     "water_viscosity",
     "zimm_diffusion",
+    "zimm_shear",
     "zimm_times",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -72,11 +73,27 @@ def star_modes(arms: int, arm_beads: int) -> NormalModes:
     """
     whole(1, arms=arms, arm_beads=arm_beads)
     beads = 1 + arms * arm_beads
+    outer = range(1, beads)
+    return network_modes([(0 if (b - 1) % arm_beads == 0 else b - 1, b) for b in outer], beads)
+
+
+def network_modes(bonds: Iterable[Sequence[int]], beads: int) -> NormalModes:
+    """Modes of any beads that hang together: networks, dendrimers.
+
+    Parameters: `bonds`, pairs of beads from 0; `beads` n. Raises ValueError for fewer than 2 beads
+    and for bonds that leave several pieces. Source: B. E. Eichinger, Macromolecules 13, 1 (1980):
+    the matrix of Kirchhoff, diagonalised numerically, to rounding.
+
+    >>> network_modes([(0, 1), (1, 2), (2, 3), (3, 0), (0, 2)], 4).eigenvalues.round(12).tolist()
+    [0.0, 2.0, 4.0, 4.0]
+    """
+    whole(2, beads=beads)
     matrix = np.zeros((beads, beads))
-    for outer in range(1, beads):
-        inner = 0 if (outer - 1) % arm_beads == 0 else outer - 1
-        matrix[[inner, outer], [inner, outer]] += 1
-        matrix[[inner, outer], [outer, inner]] -= 1
+    for one, other in bonds:
+        matrix[[one, other], [one, other]] += 1
+        matrix[[one, other], [other, one]] -= 1
     eigenvalues, vectors = np.linalg.eigh(matrix)
+    if eigenvalues[1] < 1e-9 * eigenvalues[-1]:
+        raise ValueError("bonds: expected beads that hang together")
     eigenvalues[0] = 0  # exactly: the centre of mass
     return NormalModes(eigenvalues, vectors)

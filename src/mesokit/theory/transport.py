@@ -173,6 +173,8 @@ def _check(
     mass: float,
     thermostat: str,
 ) -> None:
+    if rule == "none":
+        raise ValueError("rule = 'none': no transport coefficients; particles never meet")
     one_of(("srd", "srd+a", "at", "at+a"), rule=rule)
     dimension_two_or_three(dimension)
     positive(density=density, timestep=timestep, kT=kT, mass=mass)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit.theory._check import positive, whole
 from mesokit.theory.rouse_times import RouseTimes
@@ -28,8 +29,25 @@ def zimm_times(
     >>> zimm_times(3, friction=50, viscosity=8.7, bond_length=1).mode.round(3).tolist()
     [23.74, 10.336]
     """
+    positive(kT=kT)
+    mobilities = bond_mobilities(beads, friction, viscosity, bond_length)
+    mode = 1 / np.sort(3 * kT / bond_length**2 * mobilities)
+    return RouseTimes(mode, mode / 2)
+
+
+def bond_mobilities(
+    beads: int, friction: float, viscosity: float, bond_length: float
+) -> NDArray[np.float64]:
+    """Eigenvalues (n - 1,) of the mobility of the bonds of a chain, B H B^T; times the spring
+    constant they are the rates of its modes.
+
+    Parameters, errors and source as in `zimm_times`.
+
+    >>> bond_mobilities(2, friction=50, viscosity=8.7, bond_length=2).round(5).tolist()
+    [0.03157]
+    """
     whole(2, beads=beads)
-    positive(friction=friction, viscosity=viscosity, bond_length=bond_length, kT=kT)
+    positive(friction=friction, viscosity=viscosity, bond_length=bond_length)
     apart = np.abs(np.subtract.outer(np.arange(beads), np.arange(beads)))
     scale = viscosity * bond_length * math.sqrt(6 * math.pi**3)
     mobility = np.where(apart == 0, 1 / friction, 1 / (scale * np.sqrt(np.maximum(apart, 1))))
@@ -40,6 +58,4 @@ def zimm_times(
         )
     # bond vectors have the same rates, without the zero of the centre of mass
     bonds = np.diff(np.eye(beads), axis=0)
-    rates = 3 * kT / bond_length**2 * np.linalg.eigvalsh(bonds @ mobility @ bonds.T)
-    mode = 1 / np.sort(rates)
-    return RouseTimes(mode, mode / 2)
+    return np.asarray(np.linalg.eigvalsh(bonds @ mobility @ bonds.T))

@@ -31,7 +31,8 @@ class Place(NamedTuple):
 def explain(path: str = "") -> list[Explanation]:
     """What a key or a part of a case means, such as "wall.disk" or "fluid.force.acceleration".
 
-    The name of a part alone, such as "wake", is looked for everywhere. Without a path: sections.
+    The name of a part alone, such as "wake", is looked for everywhere, any other in the sections,
+    such as "pulls" of [solutes]. Without a path: sections.
 
     Raises:
         CaseError: there is no such key; it names the nearest.
@@ -42,6 +43,8 @@ def explain(path: str = "") -> list[Explanation]:
         'the same seed gives the same bits'
         >>> explain("wake")[0].path
         'observe.wake'
+        >>> explain("pulls")[0].path
+        'solutes.pulls'
     """
     whole = schema()
     definitions = whole["definitions"]
@@ -54,6 +57,10 @@ def explain(path: str = "") -> list[Explanation]:
         places = [p for p in _everywhere(start, definitions) if p.path.endswith(f".{first}")]
         places.sort(key=lambda place: place.path.count("."), reverse=True)
         places = list({id(place.node): place for place in places}.values())  # where it is nearest
+    if not places:
+        sections = [p for name in whole["properties"] for p in _inside(start, name, definitions)]
+        sections = [section for section in sections if len(section.tables) == 1]
+        places = [p for section in sections for p in _inside(section, first, definitions)]
     if not places:
         raise _unknown(path, first, start, definitions)
     for word in rest:

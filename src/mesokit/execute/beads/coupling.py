@@ -9,11 +9,13 @@ import math
 
 import numpy as np
 
+from mesokit.execute.beads.state import mass_of
 from mesokit.execute.cpu.collide import as_many, draw_with_care
 from mesokit.execute.cpu.strips.cell_energy import asks
 from mesokit.execute.cpu.strips.layout import LANES, record_length, share
 from mesokit.execute.cpu.strips.rows import load_values, store_values
 from mesokit.execute.cpu.strips.terms import read_sums, sums_of_cell
+from mesokit.execute.embedded.state import collides
 from mesokit.method.mpcd.collision.protocol import Cell, contribute, freedom
 from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.method.mpcd.thermostat.protocol import guess
@@ -30,7 +32,7 @@ NOBODY = -1
 @by_type
 def join_beads(team, now, physics, fluid, beads):
     """Answers for the cells with beads, from sums that `collide` is about to clear."""
-    if len(beads) == 0:
+    if not collides(beads):
         return lambda team, now, physics, fluid, beads: None
     return lambda team, now, physics, fluid, beads: _join(team, now, physics, fluid.cells, beads)
 
@@ -76,7 +78,7 @@ def answer_for(beads, leader, physics, counter, sums, cell):
     while i != NOBODY:
         given = load_values(beads.given, np.uint64(i * len(beads.terms)), beads.terms)
         more, its_energy, its_own = parts_of(given, physics.zero)
-        n, mass, momentum = n + 1.0, mass + beads.mass, added(momentum, more)
+        n, mass, momentum = n + 1.0, mass + mass_of(beads, i), added(momentum, more)
         energy, own = energy + its_energy, added(own, its_own)
         i = beads.following[i]
     chance = words(counter, CELL, cell, 0)
@@ -128,7 +130,7 @@ def _with_random_solvent(solvent, beads, physics, counter, cell, total):
 @by_type
 def answer_beads(team, now, physics, fluid, beads):
     """Put these answers in the place of those that `collide` found without beads."""
-    if len(beads) == 0:
+    if not collides(beads):
         return lambda team, now, physics, fluid, beads: None
     return _put_answers
 

@@ -5,53 +5,31 @@ on it in one order, so that threads share the beads without sharing sums; few be
 thread's.
 """
 
-from typing import Any, NamedTuple
-
 import numpy as np
 
 from mesokit.case.box import at_time, fold, peculiar, unfold
-from mesokit.execute.beads.interactions import Force, Virial
-from mesokit.execute.beads.neighbours import refresh
+from mesokit.execute.beads.moving import Moving
 from mesokit.execute.beads.state import (
     GROUP,
-    Beads,
     load_folded,
-    load_place,
-    load_velocity,
-    store_place,
+    mass_of,
     store_velocity,
 )
-from mesokit.execute.beads.traverse import each_on_bead
-from mesokit.execute.beads.verlet import drift, flown, kick, verlet
+from mesokit.execute.beads.verlet import verlet
 from mesokit.execute.cpu.grid import cell_index, in_cell
 from mesokit.execute.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
-from mesokit.execute.cpu.physics import kind_of_solid, momentum_scale
 from mesokit.execute.cpu.stress import flux
 from mesokit.execute.cpu.strips.layout import record_length, share
 from mesokit.execute.cpu.strips.rows import load_values, store_values
-from mesokit.execute.cpu.threads import Team, meet
-from mesokit.geometry.solids.none import Nothing
+from mesokit.execute.cpu.threads import Team
 from mesokit.method.mpcd.collision.protocol import collide, contribute
-from mesokit.method.mpcd.field.none import Zero
-from mesokit.method.mpcd.field.protocol import acceleration
 from mesokit.scalar.cache import inner
 from mesokit.scalar.fixed_point import add_quanta
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.random import FIRST_BEAD
-from mesokit.scalar.vector import added, added_scaled, dot, scaled
+from mesokit.scalar.vector import added, dot, scaled
 
 LEAST = 4  # groups for a thread: fewer do not pay for the gate
-
-
-class Moving(NamedTuple):
-    """The beads from the first to that before the last, and the thread that moves them."""
-
-    team: Team
-    beads: Beads
-    first: int
-    last: int
-    impulse: Any
-    measured: int
 
 
 @by_type
@@ -106,69 +84,12 @@ def bin_bead(beads, i, physics, now):
     """The cell of a bead, and what it adds to the sums of that cell."""
     r, v, boxes = load_folded(beads, i, now.box, now.grid.shift)
     beads.cell[i] = cell_index(r, now.grid)
-    who, m = (FIRST_BEAD + i, 0), beads.mass
+    who, m = (FIRST_BEAD + i, 0), mass_of(beads, i)
     kept, own = contribute(physics.rule, now.counter, who, m, v, in_cell(r, now.grid))
     _, kept = unfold(now.box, r, kept, boxes)
     store_velocity(beads, i, kept)
     terms = scaled(m, v) + (m * dot(v, v),) + own
     store_values(beads.given, np.uint64(i * len(terms)), terms)
-
-
-@drift.register(Moving)
-def _(moving, counter, physics):
-    meet(moving.team)  # nobody looks at the places before any more
-    for i in range(moving.first, moving.last):
-        drift_bead(moving.beads, i, counter, physics, moving.impulse)
-
-
-@by_type
-def drift_bead(beads, i, counter, physics, impulse):
-    """Straight flight, with reflections."""
-    return _drift if kind_of_solid(physics) is Nothing else _drift_among_solids
-
-
-def _drift(beads, i, counter, physics, impulse):
-    r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
-    store_place(beads, i, added_scaled(r, physics.timestep, v))
-
-
-def _drift_among_solids(beads, i, counter, physics, impulse):
-    r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
-    r, v = flown(physics, counter, FIRST_BEAD + i, beads.mass, r, v, impulse)
-    store_place(beads, i, r)
-    store_velocity(beads, i, v)
-
-
-@kick.register(Moving)
-def _(moving, step, box, physics):
-    beads, team, zero = moving.beads, moving.team, physics.zero
-    meet(team)
-    refresh(team, beads.neighbours, box, beads.r, (moving.first, moving.last), zero)
-    if moving.measured:
-        for i in range(moving.first, moving.last):
-            virial = Virial(physics.timestep, beads.tensor[2, i // GROUP], physics.stress_scale)
-            each_on_bead(virial, (), beads, i, load_place(beads, i, zero), box)
-    scale, faults = momentum_scale(physics), beads.faults[team.thread]
-    force = Force(physics.timestep, moving.impulse, scale, step, faults)
-    for i in range(moving.first, moving.last):
-        kick_bead(force, beads, i, box, physics)
-
-
-@scalar
-def kick_bead(asked, beads, i, box, physics):
-    """Change of the velocity of a bead by the forces on it."""
-    r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
-    force = each_on_bead(asked, scaled(0.0, physics.zero), beads, i, r, box)
-    v = added_scaled(v, physics.timestep * beads.potentials.inverse_mass, force)
-    store_velocity(beads, i, pushed(physics.field, physics.timestep, r, v))
-
-
-@by_type
-def pushed(field, time, r, v):
-    """The velocity after the body force."""
-    if field.instance_class is Zero:
-        return lambda field, time, r, v: v
-    return lambda field, time, r, v: added_scaled(v, time, acceleration(field, r))
 
 
 @scalar
@@ -180,5 +101,5 @@ def add_bead_flux(beads, i, physics, box, shift, when):
     tensor = beads.tensor[when, i // GROUP]
     r, v, _ = load_folded(beads, i, box, scaled(0.0, shift))
     place, u, _ = fold(box, r, v, shift)
-    carried = flux(beads.mass, peculiar(box, r, v), u, added(place, shift))
+    carried = flux(mass_of(beads, i), peculiar(box, r, v), u, added(place, shift))
     add_quanta(tensor, physics.stress_scale, carried)

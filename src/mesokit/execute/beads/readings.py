@@ -9,13 +9,15 @@ from numpy.typing import NDArray
 
 from mesokit.case.box import fold
 from mesokit.errors import RunError
+from mesokit.execute.beads.external import external_energy
 from mesokit.execute.beads.interactions import Energy
 from mesokit.execute.beads.neighbours import MADE, refresh
 from mesokit.execute.beads.state import load_place
-from mesokit.execute.beads.torn import refuse_torn
+from mesokit.execute.beads.torn import first_torn, refuse_torn
 from mesokit.execute.beads.traverse import each_on_bead
 from mesokit.execute.cpu.strips.rows import load_values, store_values
 from mesokit.execute.cpu.threads import Team
+from mesokit.execute.embedded.readings import energy_in_fluid, refuse_faults
 from mesokit.scalar.cache import kernel
 from mesokit.scalar.fixed_point import total
 from mesokit.scalar.vector import scaled
@@ -73,12 +75,11 @@ class SoluteReadings:
 
     def masses(self) -> Floats:
         """Masses (beads,)."""
-        return np.full(self.shape[0], self.given.mass)
+        return np.array(self.given.masses)[self.given.kinds()]
 
     def kinds(self) -> NDArray[np.int64]:
         """The place of each bead's polymer in solutes.polymers."""
-        count = [polymer.number * polymer.length for polymer in self.given.polymers]
-        return np.repeat(np.arange(len(count)), count)
+        return self.given.kinds()
 
     def bond_vectors(self) -> Floats:
         """From the first to the second bead of each bond (bonds, d)."""
@@ -86,15 +87,17 @@ class SoluteReadings:
 
     def motion(self) -> Floats:
         """Momentum and sum of m v^2 of the beads (d + 1,)."""
-        (_, v, _), m = self.folded(), self.given.mass
+        (_, v, _), m = self.folded(), self.masses()
         scales = np.array(self.memory.numbers.scales_of_motion)
-        terms = np.column_stack([m * v, m * (v**2).sum(axis=1)]) * scales
+        terms = np.column_stack([m[:, None] * v, m * (v**2).sum(axis=1)]) * scales
         return total(np.rint(terms).astype(np.int64), scales)
 
     def potential_energy(self) -> float:
-        """Of bonds, angles, pairs and walls."""
+        """Of bonds, angles, pairs and walls, and of beads that act on the fluid."""
         box, zero = self.memory.box, self.memory.physics.zero
-        return float(energy_of(ALONE, self.state_of, box, zero))
+        energy = float(energy_of(ALONE, self.state_of, box, zero))
+        energy += external_energy(self.state_of.external, self.places)
+        return energy + (energy_in_fluid(self.memory) if self.state_of.embedded else 0.0)
 
     def begin(self, places: Floats, velocities: Floats) -> None:
         """Give the beads their first places and velocities (beads, d)."""
@@ -109,6 +112,8 @@ class SoluteReadings:
         """Go on from `state()`."""
         self.state_of.r[:], self.state_of.v[:] = state["solute_r"], state["solute_v"]
         self.state_of.faults[:] = 0
+        for embedded in self.state_of.embedded:
+            embedded.faults[:] = 0
         self.forget_lists()
 
     def forget_lists(self) -> None:
@@ -117,11 +122,16 @@ class SoluteReadings:
             lists.noted[:, MADE] = 0.0
 
     def check(self) -> None:
-        """That no bond was torn, and no bead lost, in the last steps. Raises RunError."""
+        """That no bond was torn, no bead lost or too fast in the last steps. Raises RunError."""
         substeps = self.state_of.potentials.substeps
-        if self.given.bond is not None:
+        first = first_torn(self.state_of.faults)
+        if first is not None:
             advice = f"take more sub-steps than {substeps} (solutes.substeps), or a stiffer bond"
-            refuse_torn(self.state_of.faults, self.given.bond.longest, "beads", advice)
+            bond = self.given.bond_of(int(self.given.kinds()[first - 1]))
+            assert bond is not None
+            refuse_torn(self.state_of.faults, bond.longest, "beads", advice)
+        for embedded in self.state_of.embedded:
+            refuse_faults(embedded.faults, embedded.skin, substeps)
         sound = np.isfinite(self.state_of.r) & np.isfinite(self.state_of.v)
         if not sound.all():
             bead = int(np.argmin(sound)) // self.shape[1]

@@ -3,10 +3,11 @@
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba import types
 
 from mesokit.case.box import fold
 from mesokit.execute.cpu.strips.rows import load_values, store_values
-from mesokit.scalar.jit import scalar
+from mesokit.scalar.jit import by_type, scalar
 
 GROUP = 64  # beads whose part in the stress is added up by itself
 
@@ -14,7 +15,9 @@ GROUP = 64  # beads whose part in the stress is added up by itself
 class Beads(NamedTuple):
     """Beads, what holds them, and memory for a step.
 
-    mass: of a bead; potentials: of type `Potentials`; neighbours: (Neighbours,) or ().
+    mass: of a bead, or (beads,) where they differ; potentials: of type `Potentials`; neighbours:
+    (Neighbours,) or ().
+    kinds: which of several potentials act, see `KindsOfLinks`; () where there is one of each.
     r, v (beads * d,): places, whole molecules in one image, and velocities there.
     bond_starts (beads + 1,), bonds: to whom each bead is linked.
     angle_starts (beads + 1,), angles (n, 4): the angles that each bead is in, and as which bead.
@@ -26,10 +29,13 @@ class Beads(NamedTuple):
     solvent: (mean number, mass of a particle) for random solvent, or ().
     tensor (3, groups, 2 d d): what groups of beads add to the stress: before
     and after the collision, and by forces; whole numbers.
+    embedded: (Embedded,) for beads that do not collide but act by a potential, or ().
+    external: (External,) for beads that are pulled, trapped or in a magnetic field, or ().
     """
 
-    mass: float
+    mass: Any
     potentials: tuple
+    kinds: tuple
     neighbours: tuple
     r: Any
     v: Any
@@ -48,6 +54,37 @@ class Beads(NamedTuple):
     leads: Any
     solvent: tuple
     tensor: Any
+    embedded: tuple
+    external: tuple
+
+
+class KindsOfLinks(NamedTuple):
+    """Which of several potentials act on what: kinds of solutes, from 0.
+
+    bonds, angles: kind of each entry of `Beads.bonds` and `Beads.angles`; beads (beads,): of each
+    bead; number: how many kinds there are.
+    """
+
+    bonds: Any
+    angles: Any
+    beads: Any
+    number: int
+
+
+@by_type
+def mass_of(beads, i):
+    """Mass of bead i."""
+    if beads.types[beads.fields.index("mass")] == types.float64:
+        return lambda beads, i: beads.mass
+    return lambda beads, i: beads.mass[i]
+
+
+@by_type
+def inverse_mass_of(beads, i):
+    """One over the mass of bead i."""
+    if beads.types[beads.fields.index("mass")] == types.float64:
+        return lambda beads, i: beads.potentials.inverse_mass
+    return lambda beads, i: 1.0 / beads.mass[i]
 
 
 @scalar

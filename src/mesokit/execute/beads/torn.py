@@ -20,6 +20,14 @@ def note_torn(faults, step, one, other):
         faults[STEP], faults[FIRST], faults[SECOND] = step, one, np.int64(other)
 
 
+def first_torn(faults: NDArray[np.int64]) -> int | None:
+    """The first bead of the first bond that was torn in the last steps; None if none was."""
+    noted = faults[faults[:, STEP] > 0]
+    if not len(noted):
+        return None
+    return int(min(map(tuple, noted[:, [STEP, FIRST, SECOND]].tolist()))[1])
+
+
 def refuse_torn(faults: NDArray[np.int64], longest: float, name: str, advice: str) -> None:
     """Raise RunError if a bond of those, as they are called, was torn in the last steps.
 

@@ -4,7 +4,14 @@ Each bead has a sum of its own (see `interactions`), always added up in one orde
 share the beads without sharing sums.
 """
 
-from mesokit.execute.beads.interactions import of_three, of_two, of_wall
+from mesokit.execute.beads.choice import (
+    kind_of_angle,
+    kind_of_bond,
+    kind_of_pair,
+    of_chosen,
+    of_chosen_angle,
+)
+from mesokit.execute.beads.interactions import of_wall
 from mesokit.execute.beads.neighbours import CROWDED, apart
 from mesokit.execute.beads.state import load_place
 from mesokit.scalar.jit import by_type, elementwise, scalar
@@ -38,7 +45,8 @@ def _each_bond(bond, asked, total, beads, i, r):
     for n in range(beads.bond_starts[i], beads.bond_starts[i + 1]):
         j = beads.bonds[n]
         separation = added_scaled(r, -1.0, load_place(beads, j, r))
-        part = of_two(asked, part, potential, separation, i, j)
+        kind = kind_of_bond(beads.kinds, n)
+        part = of_chosen(potential, kind, asked, part, separation, i, j)
     return added(total, part)
 
 
@@ -55,7 +63,8 @@ def _each_angle(angle, asked, total, beads, i, r):
         b = load_place(beads, beads.angles[n, 1], r)
         c = load_place(beads, beads.angles[n, 2], r)
         before, after = added_scaled(b, -1.0, a), added_scaled(c, -1.0, b)
-        part = of_three(asked, part, potential, before, after, beads.angles[n, 3])
+        kind, role = kind_of_angle(beads.kinds, n), beads.angles[n, 3]
+        part = of_chosen_angle(potential, kind, asked, part, before, after, role)
     return added(total, part)
 
 
@@ -71,7 +80,8 @@ def _each_pair(pair, asked, total, beads, i, r, box):
     for n in range(count if count != CROWDED else len(lists.count)):
         j = lists.near[i, n] if count != CROWDED else n
         separation = apart(box, load_place(beads, j, r), r)
-        part = of_two(asked, part, potential, separation, i, j)
+        kind = kind_of_pair(beads.kinds, i, j)
+        part = of_chosen(potential, kind, asked, part, separation, i, j)
     return added(total, part)
 
 

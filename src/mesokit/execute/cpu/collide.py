@@ -6,8 +6,9 @@ from mesokit.execute.cpu.strips.layout import LANES, QUAD, record_length, share,
 from mesokit.execute.cpu.strips.records import spread, take
 from mesokit.execute.cpu.strips.rows import load_scratch, load_values, store_scratch, store_values
 from mesokit.execute.cpu.strips.terms import nothing_found, read_sums
+from mesokit.execute.neighbours.gradient import gradient_at
+from mesokit.method.mpcd.collision.protocol import Cell, freedom
 from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
-from mesokit.method.mpcd.collision.protocol import freedom
 from mesokit.method.mpcd.thermostat.protocol import draw, guess
 from mesokit.scalar.cache import inner
 from mesokit.scalar.jit import by_type, scalar
@@ -79,12 +80,15 @@ def as_many(answer, coefficients):
 
 
 @scalar
-def needs_of_cell(physics, counter, cell, found, certain):
+def needs_of_cell(physics, counter, cell, found, gradient, certain):
     """What the particles of a cell need in order to collide, and whether that is sure.
+
+    `gradient` is that of the sum of which the rule asks for it, and follows its own sums.
 
     A thermostat only guesses its random number, unless it must be `certain`: that takes longer.
     """
-    sums = read_sums(physics, found)
+    n, mass, momentum, energy, own = read_sums(physics, found)
+    sums = Cell(n, mass, momentum, energy, own + gradient)
     chance, free = words(counter, CELL, cell, 0), freedom(physics.rule, sums.number)
     x, sure = guess(physics.thermostat, chance[2:], free)
     if certain:
@@ -110,13 +114,15 @@ def collide(team, now, physics, fluid):
         in_doubt = np.int64(0)
         for i in range(LANES):
             found = load_scratch(totals, i, none)
-            answer, sure = needs_of_cell(physics, now.counter, start + i, found, False)
+            gradient = gradient_at(cells.field, start + i)
+            answer, sure = needs_of_cell(physics, now.counter, start + i, found, gradient, False)
             doubtful[i] = 1 - np.int64(sure)
             in_doubt |= doubtful[i]
             store_scratch(rows, i, answer)
         for i in range(count if in_doubt != 0 else 0):
             if doubtful[i] != 0:
                 found = load_scratch(totals, i, none)
-                answer, _ = needs_of_cell(physics, now.counter, start + i, found, True)
+                gradient = gradient_at(cells.field, start + i)
+                answer, _ = needs_of_cell(physics, now.counter, start + i, found, gradient, True)
                 store_scratch(rows, i, answer)
         put_block(cells.coefficients, start, count, rows, physics.coefficients)

@@ -49,6 +49,7 @@ class Cells(NamedTuple):
     number: int
     coefficients: Any  # a record for each cell: what its particles need to collide
     sums: Any  # (threads, ...) fixed-point sums over the particles of each cell
+    field: tuple  # one of these sums in all cells, where the rule asks for its gradient, or ()
 
 
 class Scratch(NamedTuple):

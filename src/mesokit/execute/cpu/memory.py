@@ -27,6 +27,8 @@ from mesokit.execute.cpu.strips.layout import (
     sums_length,
     zeros,
 )
+from mesokit.execute.embedded.allocate import embedded_of
+from mesokit.execute.neighbours.gradient import Field
 from mesokit.execute.virtual.allocate import virtual_particles, with_clearance
 from mesokit.geometry.solids.none import Nothing
 
@@ -49,7 +51,10 @@ class Memory:
         self._tables: list[Any] = []  # which compiled code knows by address
         self.physics = self._physics()
         self._allocate()
-        self.solutes = beads_of(case.solutes, self) if case.solutes else ()
+        self.solutes: Any = ()
+        if case.solutes is not None:
+            embedded = embedded_of(case.solutes, numbers, threads)
+            self.solutes = beads_of(case.solutes, self)._replace(embedded=embedded)
         zero, cells = (0.0,) * d, tuple(float(n) for n in numbers.cells)
         self.grid = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
 
@@ -62,7 +67,7 @@ class Memory:
     def _physics(self) -> Physics:
         numbers, fluid, d = self.numbers, self.numbers.case.fluid, self.numbers.dimension
         return Physics(
-            rule=fluid.collision.kernel(d, fluid.kT),
+            rule=self._rule(),
             thermostat=fluid.thermostat.kernel(fluid.kT, numbers.least_energy),
             field=fluid.force.kernel(numbers.case.box.size),
             solid=self._solid(),
@@ -77,6 +82,11 @@ class Memory:
             scales=numbers.scales,
             stress_scale=numbers.units["stress"],
         )
+
+    def _rule(self) -> Any:
+        numbers, fluid = self.numbers, self.numbers.case.fluid
+        kernel = fluid.collision.kernel(numbers.dimension, fluid.kT)
+        return fluid.collision.among(kernel, tuple(numbers.counts), fluid.mass)
 
     def _solid(self) -> tuple:
         """Parameters of the solids; plates alone have a kernel of their own."""
@@ -137,7 +147,19 @@ class Memory:
             self.numbers.number_of_cells,
             zeros(every * record_length(self.numbers.coefficient_count)),
             zeros((self.threads, every * width), np.int64),
+            self._field(),
         )
+
+    def _field(self) -> tuple:
+        """Where the sum of which the rule asks for the gradient is written down."""
+        numbers = self.numbers
+        wanted = numbers.case.fluid.collision.gradient_of
+        if wanted is None:
+            return ()
+        own = len(numbers.case.fluid.collision.own_sums(numbers.dimension))
+        closed = tuple(int(shut) for shut in numbers.closed)
+        term, values = len(numbers.scales) - own + wanted, zeros(numbers.number_of_cells)
+        return Field(term, values, tuple(numbers.cells), closed)
 
     def _scratch(self) -> Scratch:
         d, threads, beads = self.numbers.dimension, self.threads, self.numbers.beads

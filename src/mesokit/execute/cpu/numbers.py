@@ -17,7 +17,8 @@ from mesokit.execute.cpu.strips.cell_energy import (
     with_count,
 )
 from mesokit.execute.cpu.strips.layout import Molecules, Singles
-from mesokit.geometry.solids.solids import free_volume, slit_of, solids_of
+from mesokit.geometry.solids.solids import slit_of, solids_of
+from mesokit.method.mpcd.groups import fluid_volume
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -53,7 +54,8 @@ class Numbers:
         held = any(body.surface.rule != "slip" for body in bodies)
         self.virtual = case.walls[0].virtual if held else "none"
 
-        self.counts = [round(kind.density * free_volume(case)) for kind in fluid.kinds]
+        room = fluid_volume(case)
+        self.counts = [round(kind.density * room) for kind in fluid.kinds]
         self.beads = fluid.molecule.length if fluid.molecule else 1
         if self.beads > 1 or case.particles == 0:
             self.counts = [case.particles]
@@ -91,6 +93,11 @@ class Numbers:
         return NotAsked()
 
     @property
+    def density(self) -> float:
+        """Particles per cell, of all kinds."""
+        return sum(kind.density for kind in self.case.fluid.kinds)
+
+    @property
     def scales_of_motion(self) -> tuple[float, ...]:
         """Whole numbers per unit of momentum (d) and of m v^2, in sums over all particles."""
         return (self.units["momentum"],) * self.dimension + (self.units["energy"],)
@@ -119,8 +126,8 @@ def units_of(case: Case) -> dict[str, float]:
     heaviest = max(masses)
     speed = max(
         math.sqrt(fluid.kT / min(masses)),
-        abs(box.shear_rate) * box.size[1] / 16.0,
-        _fastest_surface(case) / 16.0,
+        box.largest_rate * box.size[1] / 16.0,
+        fastest_surface(case) / 16.0,
     )
     return {
         "momentum": 2.0 ** (MOMENTUM_BITS - math.ceil(math.log2(heaviest * speed))),
@@ -130,7 +137,7 @@ def units_of(case: Case) -> dict[str, float]:
     }
 
 
-def _fastest_surface(case: Case) -> float:
+def fastest_surface(case: Case) -> float:
     """A bound of the speed of all surfaces."""
     bodies = solids_of(case).bodies if case.walls else []
     return max(

@@ -2,6 +2,7 @@
 
 from typing import Any, NamedTuple
 
+from mesokit.method.mpcd.field.protocol import field_at
 from mesokit.scalar.jit import scalar
 
 
@@ -41,6 +42,27 @@ def for_time(physics, time):
         physics.masses,
         physics.energy,
         time,
+        physics.kT,
+        physics.molecule,
+        physics.zero,
+        physics.coefficients,
+        physics.terms,
+        physics.scales,
+        physics.stress_scale,
+    )
+
+
+@scalar
+def at_middle(physics, done):
+    """The same physics in the middle of the step after so many: forces may change in time."""
+    return Physics(
+        physics.rule,
+        physics.thermostat,
+        field_at(physics.field, (done + 0.5) * physics.timestep),
+        physics.solid,
+        physics.masses,
+        physics.energy,
+        physics.timestep,
         physics.kT,
         physics.molecule,
         physics.zero,

@@ -2,13 +2,14 @@
 
 from mesokit.case.box import at_time
 from mesokit.execute.beads.coupling import answer_beads, join_beads
-from mesokit.execute.beads.flight import move_beads
 from mesokit.execute.cpu.clock import CELLS, FINISH, START, SWEEP, lap
 from mesokit.execute.cpu.collide import collide
 from mesokit.execute.cpu.grid import moved_grid
 from mesokit.execute.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM, Now
-from mesokit.execute.cpu.sweep import stream
+from mesokit.execute.cpu.physics import at_middle
 from mesokit.execute.cpu.threads import meet
+from mesokit.execute.embedded.stages import move_beads, stream
+from mesokit.execute.neighbours.gradient import fill_field
 from mesokit.execute.virtual.stages import fill_walls, follow_flow, recoil, top_up_walls
 from mesokit.scalar.cache import inner, kernel
 from mesokit.scalar.jit import scalar
@@ -18,12 +19,13 @@ from mesokit.scalar.random import Counter, grid_shift
 @inner
 def step(team, now, physics, fluid, beads, walls):
     """One collision interval: r, v from t to t + dt."""
-    stream(team, now, physics, fluid)  # v: the collision at t; r, v: t -> t + dt; cell sums
+    stream(team, now, physics, fluid, beads)  # v: the collision at t; r, v: t -> t + dt; sums
     move_beads(team, now, physics, fluid, beads)  # the same for solutes, in sub-steps
     fill_walls(team, now, physics, fluid, walls)  # virtual particles at t + dt
     meet(team)
     follow_flow(team, now, physics, fluid, walls)  # what they will need to know of the fluid
     top_up_walls(team, now, physics, fluid, walls)  # those that depend on the fluid's number
+    fill_field(team, physics, fluid)  # what cells must know of those next to them
     lap(team, SWEEP)
     join_beads(team, now, physics, fluid, beads)  # cells with solutes: sums of both
     collide(team, now, physics, fluid)  # thermostat and rule at t + dt: coefficients of each cell
@@ -40,10 +42,10 @@ def advance(team, course, physics, fluid, beads, walls):
     now = Now(Counter(course.seed, course.done), course.box, course.grid, course.grid, 0)
     for n in range(course.steps):
         now = next_step(course, now, physics, n)
-        step(team, now, physics, fluid, beads, walls)
+        step(team, now, at_middle(physics, course.done + n), fluid, beads, walls)
     if course.steps > 0:
         now = last_collision(course, now)
-        stream(team, now, physics, fluid)
+        stream(team, now, physics, fluid, beads)
         move_beads(team, now, physics, fluid, beads)
         meet(team)
         lap(team, FINISH)

@@ -35,7 +35,7 @@ class Displacement:
     """The mean square displacement of free particles: 2 D t along each axis (Einstein 1905)."""
 
     def __init__(self, case: Case, observable: Any) -> None:
-        if observable.of != "particles" or observable.kind != 1:
+        if observable.of != "particles" or observable.kind is not None:
             raise CaseError("of: expected 'particles'; there are no molecules")
         chosen = observable.components or case.box.axes
         self.axes = tuple(case.box.index(axis, "components") for axis in chosen)
@@ -77,8 +77,10 @@ def check(case: Case) -> None:
             f"brownian.diffusion = {show(given.diffusion)}: in {steps} steps particles go so far "
             "that boxes cannot be counted; expected less"
         )
-    if case.box.shear_rate or case.box.shear_frequency:
+    if case.box.shear_rate or case.box.shear_frequency or case.box.shear:
         raise CaseError("box: not with shear; the particles of method 'brownian' drift with no one")
+    if case.box.open:
+        raise CaseError(f"box.open = {show(list(case.box.open))}: not with method 'brownian'")
     if case.trajectory is not None and "velocity" in case.trajectory.fields:
         raise CaseError("trajectory.fields: not 'velocity'; Brownian particles have none")
 

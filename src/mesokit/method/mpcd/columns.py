@@ -43,7 +43,7 @@ def total_mass(case: Case, number: int) -> float:
     solutes = case.solutes
     mass = number * case.fluid.mass
     if solutes is not None:
-        mass += solutes.beads * (solutes.mass - case.fluid.mass)
+        mass += solutes.sum_over_mass(lambda own: own - case.fluid.mass)
     return float(mass)
 
 

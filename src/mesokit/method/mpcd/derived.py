@@ -65,7 +65,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         ("thermostat", fluid.thermostat.acts),
         ("walls", bool(case.walls)),
         ("solids", setting.obstructed(case)),
-        ("shear", case.box.shear_rate != 0),
+        ("shear", case.box.sheared),
     ):
         rate /= COSTS[cost] if applies else 1
     substeps = None
@@ -77,7 +77,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
     beads, bead_seconds = 0, 0.0
     if case.solutes is not None:
         beads = case.solutes.beads
-        substeps = case.solutes.number_of_substeps(dimension, fluid.timestep, fluid.kT)
+        substeps = case.solutes.number_of_substeps(dimension, fluid)
         bead_seconds = beads * (BEAD + BEAD_SUBSTEP * substeps) * steps
     memory = beads * BYTES["bead"] + case.particles * BYTES[f"particle {dimension}D"]
     memory += case.box.volume * BYTES[f"cell {dimension}D"] * threads

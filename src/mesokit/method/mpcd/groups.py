@@ -12,34 +12,57 @@ from mesokit.geometry.solids.solids import free_volume
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.method.mpcd.solutes import Solutes
 
 
 def groups(case: Case) -> tuple[Group, ...]:
     """The fluid, species by species, and its solutes, polymer by polymer.
 
-    The fluid has its density times the volume that walls leave, of each species. Of molecules
+    The fluid has its density times its volume (`fluid_volume`), of each species. Of molecules
     there is a whole number, and of a random solvent none.
     """
     solutes = case.solutes
     if solutes is None:
         return Group("fluid", _fluid(case)), Group("solutes", ())
     kinds = tuple(
-        Kind(solutes.mass, kind.number * kind.length, f"polymer-{i}")
-        for i, kind in enumerate(solutes.polymers, start=1)
+        Kind(
+            solutes.mass_of(i), kind.number * kind.length, solutes.names[i], *_diameter(solutes, i)
+        )
+        for i, kind in enumerate(solutes.polymers)
     )
-    bead = (solutes.pair.diameter,) if solutes.pair is not None else ()
-    return Group("fluid", _fluid(case)), Group("solutes", kinds, *bead)
+    return Group("fluid", _fluid(case)), Group("solutes", kinds)
+
+
+def _diameter(solutes: Solutes, kind: int) -> tuple[float, ...]:
+    """Of the beads of a kind, if they feel one another, others, or else the fluid."""
+    own, pushed = solutes.own_pair(kind), solutes.solvent_pair
+    if own is not None:
+        return (own.diameter,)
+    found = [pair.diameter for pair in solutes.pairs[kind] if pair is not None]
+    found += [2.0 * pushed.diameter] if pushed is not None else []
+    return tuple(found[:1])
 
 
 def _fluid(case: Case) -> tuple[Kind, ...]:
     fluid = case.fluid
     if case.solutes is not None and case.solutes.solvent == "random":
         return (Kind(fluid.mass, 0),)
-    volume = free_volume(case)
+    volume = fluid_volume(case)
     if fluid.molecule is not None:
         length = fluid.molecule.length
         return (Kind(fluid.mass, length * round(fluid.density * volume / length)),)
     return tuple(Kind(kind.mass, round(kind.density * volume)) for kind in fluid.kinds)
+
+
+def fluid_volume(case: Case) -> float:
+    """Volume that walls leave to the fluid, less what beads exclude that push it away.
+
+    The fluid has its density far from them then. Where they overlap they exclude less.
+    """
+    solutes, volume = case.solutes, free_volume(case)
+    if solutes is None or solutes.solvent_pair is None:
+        return volume
+    return volume - solutes.beads * solutes.excluded_volume(case.box.dimension, case.fluid.kT)
 
 
 def bonds(case: Case) -> NDArray[np.int64]:

@@ -16,7 +16,7 @@ from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.checks import combinations
 from mesokit.method.mpcd.columns import columns
 from mesokit.method.mpcd.expected.displacement import Displacement
-from mesokit.method.mpcd.expected.setting import closed_axes
+from mesokit.method.mpcd.expected.setting import aperiodic_axes
 from mesokit.method.mpcd.groups import bonds, groups
 from mesokit.method.mpcd.sections import KEYS, Sections
 from mesokit.method.mpcd.start.fluid import start
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from mesokit.engine import Engine
     from mesokit.geometry.solids.solids import Solids
     from mesokit.method.mpcd.si import SI
+    from mesokit.method.mpcd.solutes import Solutes
     from mesokit.method.mpcd.start.first_state import FirstState
 
 
@@ -77,12 +78,28 @@ def _keep_files(case: Case, folder: Path) -> Case:
     from mesokit.io.solid_files import kept
 
     case = kept_part(case, "fluid.force", folder)
+    if not case.fluid.force.steady:
+        case = kept_part(case, "fluid.force.of", folder)
     case = kept_part(case, "fluid.molecule.pair", folder)
     case = kept_part(case, "solutes.pair", folder)
     case = kept_part(case, "solutes.wall", folder)
+    case = kept_part(case, "solutes.solvent_pair", folder)
+    if case.solutes is not None:
+        case = dataclasses.replace(case, solutes=_kept_kinds(case.solutes, folder))
     if not any(isinstance(wall, FromFile) for wall in case.walls):
         return case
     return dataclasses.replace(case, walls=kept(case.walls, solids_of(case), folder))
+
+
+def _kept_kinds(solutes: Solutes, folder: Path) -> Solutes:
+    """The solutes with the potentials of single kinds."""
+    from mesokit.io.part_files import kept_row
+
+    kinds = kept_row(solutes.polymers, "pair", "polymer", folder)
+    between = kept_row(solutes.between, "pair", "between", folder)
+    if kinds is solutes.polymers and between is solutes.between:
+        return solutes
+    return dataclasses.replace(solutes, polymers=kinds, between=between)
 
 
 def _si(case: Case) -> SI:
@@ -100,7 +117,7 @@ METHOD = Method(
     check=combinations.check,
     groups=groups,
     bonds=bonds,
-    closed_axes=closed_axes,
+    closed_axes=aperiodic_axes,
     solids=_solids,
     timestep=lambda case: float(case.fluid.timestep),
     kT=lambda case: float(case.fluid.kT),

@@ -48,6 +48,8 @@ class Molecule:
     )
 
     def __post_init__(self) -> None:
+        if self.topology == "free" and type(self) is Molecule:
+            raise ValueError("topology = 'free': only of solutes.polymers, with bonds")
         if self.topology == "ring" and self.length < 3:
             raise ValueError(f"length = {self.length}: a ring has at least 3 beads")
         if self.topology != "star":

@@ -64,6 +64,9 @@ class Derived(Shown):
         if self.flow_bound:
             said = f"obstacles slow it down; {number(self.flow_bound, 'a/time')} without them"
             rows = [("flow speed", "not known", said)]
+            if self.transport is not None:
+                most = number(self.flow_bound * self.flow_size / self.transport.viscosity)
+                rows.append(("Reynolds number", "not known", f"{most} without obstacles"))
         elif self.flow_speed:
             rows = [
                 ("flow speed", number(self.flow_speed, "a/time"), self.flow),

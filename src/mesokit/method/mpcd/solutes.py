@@ -1,44 +1,49 @@
-"""Solutes: monomers and polymers that live in the fluid, as heavy as they are told to be."""
+"""Solutes: monomers and polymers in the fluid, kind by kind: what they are and what they feel."""
 
 from __future__ import annotations
 
 import functools
+import itertools
 import math
-from typing import Literal, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from mesokit.case.component import component, param
+from mesokit.case.component import component, name_of, nearest, one_of, param, show
 from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
-from mesokit.method.mpcd import topology as links
 from mesokit.method.mpcd.molecule import MOST_SUBSTEPS, PHASE, Molecule
+from mesokit.method.mpcd.solute.free import FreeMolecule
+from mesokit.method.mpcd.solute.magnetic import MagneticField
+from mesokit.method.mpcd.solute.polymer import Between, Polymer
+from mesokit.method.mpcd.solute.pull import Pull
+from mesokit.method.mpcd.solute.trap import Trap
 from mesokit.method.mpcd.start.section import Start
+from mesokit.method.mpcd.topology import Links
 from mesokit.potential import Angle, Bond, Pair
-from mesokit.potential.thermal import stiffness
+from mesokit.potential.several import several
+from mesokit.potential.thermal import effective_radius, excluded_volume, stiffness
 
-Topology = links.Topology
-
-
-@component
-class Polymer:
-    """One kind of solute: so many molecules of so many beads; single beads are monomers."""
-
-    number: int = param(1, doc="molecules of this kind", ge=1)
-    length: int = param(1, doc="beads of a molecule; 1: monomers", ge=1, le=1000)
-    topology: Topology = param("chain", doc="how the beads are linked")
-    arms: int | None = param(None, doc="arms of a star, all of one length", ge=1)
+if TYPE_CHECKING:
+    from mesokit.method.mpcd.fluid import Fluid
 
 
 @component
 class Solutes:
     """Beads in the fluid: they fly by molecular dynamics and take part in its collisions.
 
-    All beads have one mass and the same potentials. `pair` acts between any two of them, bonded
-    ones too, `wall` between a bead and the nearest surface. With `solvent = "random"` there is no
-    fluid: the beads of a cell collide with as many particles as it would hold, of a Maxwellian
-    momentum that is forgotten (random-solvent MPCD; Kikuchi, Gent and Yeomans 2002, Ripoll, Winkler
-    and Gompper 2007): friction and noise as in the fluid, but no hydrodynamics.
+    `mass`, `bond`, `bending` and `pair` are those of all kinds that have none of their own. `pair`
+    acts between any two beads, bonded ones too, `wall` between a bead and the nearest surface.
+    Between kinds of different `pair` acts what `between` says, else the rule of Lorentz and
+    Berthelot mixes the two: the mean of the diameters, the geometric mean of the energies; a kind
+    without a pair potential feels nobody unless `between` says so. With `coupling = "potential"`
+    beads take no part in the collisions but push the particles of the fluid away, or attract them,
+    by `solvent_pair` (Malevanets and Kapral 2000): so they have a size. With `solvent = "random"`
+    there is no fluid: the beads of a cell collide with as many particles as it would hold, of a
+    Maxwellian momentum that is forgotten (random-solvent MPCD; Kikuchi, Gent and Yeomans 2002,
+    Ripoll, Winkler and Gompper 2007): friction and noise as in the fluid, but no hydrodynamics.
     """
 
     polymers: Many[Polymer] = param(doc="the kinds of molecules", min_length=1)
@@ -49,6 +54,13 @@ class Solutes:
     wall: Pair | None = param(
         None, doc="potential of a bead and the nearest surface, by their distance"
     )
+    coupling: Literal["collision", "potential"] = param(
+        "collision",
+        doc="how beads and fluid act on one another: in its collisions, or by `solvent_pair`",
+    )
+    solvent_pair: Pair | None = param(
+        None, doc="potential of a bead and any particle of the fluid, with coupling = 'potential'"
+    )
     substeps: int | None = param(
         None,
         doc="sub-steps of velocity Verlet in a timestep (from the stiffest spring if none)",
@@ -57,7 +69,8 @@ class Solutes:
     )
     skin: float = param(
         0.4,
-        doc="by how much neighbour lists reach beyond the pair potential",
+        doc="by how much neighbour lists reach beyond potentials; with coupling = 'potential' also "
+        "the farthest that a bead may go in a timestep",
         unit="a",
         gt=0,
         le=1e6,
@@ -66,35 +79,147 @@ class Solutes:
     solvent: Literal["fluid", "random"] = param(
         "fluid", doc="what the beads collide with; 'random': without hydrodynamics"
     )
+    pulls: Many[Pull] = param((), doc="constant forces on chosen beads")
+    traps: Many[Trap] = param((), doc="harmonic traps for chosen beads")
+    magnetic: Many[MagneticField] = param((), doc="magnetic fields on chosen beads with a charge")
+    between: Many[Between] = param(
+        (), doc="pair potentials of two kinds (mixed by Lorentz and Berthelot unless said)"
+    )
 
     def __post_init__(self) -> None:
-        long = [i for i, polymer in enumerate(self.polymers) if polymer.length > 1]
-        if long and self.bond is None:
+        if (self.solvent_pair is not None) != (self.coupling == "potential"):
+            missing = "missing; " if self.solvent_pair is None else "only with "
             raise ValueError(
-                f"bond: missing; polymers[#{long[0] + 1}].length = "
-                f"{self.polymers[long[0]].length} needs one"
+                f"solvent_pair: {missing}coupling = 'potential'"
+                + (" needs it" if self.solvent_pair is None else "")
             )
+        long = [polymer for polymer in self.polymers if polymer.length > 1]
+        for i, polymer in enumerate(self.polymers):
+            if polymer.length > 1 and self.bond_of(i) is None:
+                raise ValueError(
+                    f"bond: missing; polymers[#{i + 1}].length = {polymer.length} needs one"
+                )
         if not long and self.bond is not None:
             raise ValueError("bond: only with polymers of length = 2 or more")
         if self.bending is not None and max(p.length for p in self.polymers) < 3:
             raise ValueError("bending: only with polymers of length = 3 or more")
-        for i, polymer in enumerate(self.polymers):
-            if polymer.length == 1 and (polymer.topology != "chain" or polymer.arms is not None):
-                raise ValueError(
-                    f"polymers[#{i + 1}].topology = {polymer.topology!r}: a monomer is a chain"
-                )
+        for i in range(len(self.polymers)):
             try:
                 self.molecule(i)
             except CaseError as error:
                 words = str(error).removeprefix("Molecule.")
                 raise ValueError(f"polymers[#{i + 1}].{words}") from None
+        self._check_names()
+        self._check_between()
+
+    def _check_names(self) -> None:
+        """No two kinds of one name."""
+        names = self.names
+        for i, name in enumerate(names):
+            if name in names[:i]:
+                raise ValueError(
+                    f"polymers[#{i + 1}].name = {name!r}: expected another than that of "
+                    f"polymers[#{names.index(name) + 1}]"
+                )
+
+    def _check_between(self) -> None:
+        """Two kinds that there are, once, and a rule for all others."""
+        seen = set()
+        for n, between in enumerate(self.between):
+            try:
+                pair = frozenset(self.index_of(kind) for kind in between.kinds)
+            except CaseError as error:
+                raise ValueError(f"between[#{n + 1}].kinds: {error}") from None
+            if len(pair) < 2:
+                raise ValueError(
+                    f"between[#{n + 1}].kinds = {show(between.kinds)}: expected two kinds; of one "
+                    "kind it is its pair"
+                )
+            if pair in seen:
+                raise ValueError(f"between[#{n + 1}].kinds = {show(between.kinds)}: said before")
+            seen.add(pair)
+        for i, j in itertools.combinations(range(len(self.polymers)), 2):
+            one, other = self.own_pair(i), self.own_pair(j)
+            if {i, j} in seen or one is None or other is None or self.pair_of(i, j) is not None:
+                continue
+            raise ValueError(
+                f"between: missing; pair potentials of {self.names[i]!r} ({name_of(one)}) and "
+                f"{self.names[j]!r} ({name_of(other)}) have no rule to mix them; expected "
+                f"[[solutes.between]] with kinds = {show([self.names[i], self.names[j]])}"
+            )
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What the kinds are called."""
+        return tuple(
+            polymer.name or f"polymer-{i}" for i, polymer in enumerate(self.polymers, start=1)
+        )
+
+    def index_of(self, kind: int | str) -> int:
+        """The place of a kind, given by its name or its number from 1, in `polymers`.
+
+        Raises CaseError if there is none.
+        """
+        if isinstance(kind, str):
+            if kind in self.names:
+                return self.names.index(kind)
+            raise CaseError(
+                f"kind = {show(kind)}: expected {one_of(self.names)}{nearest(kind, self.names)}"
+            )
+        if not 1 <= kind <= len(self.polymers):
+            raise CaseError(f"kind = {kind}: expected 1 to {len(self.polymers)} (solutes.polymers)")
+        return kind - 1
+
+    def mass_of(self, kind: int) -> float:
+        """Of a bead of a kind."""
+        own = self.polymers[kind].mass
+        return self.mass if own is None else own
+
+    def bond_of(self, kind: int) -> Bond | None:
+        """Potential of the bonds of a kind; None for monomers."""
+        polymer = self.polymers[kind]
+        return (polymer.bond or self.bond) if polymer.length > 1 else None
+
+    def bending_of(self, kind: int) -> Angle | None:
+        """Potential of the angles of a kind, None if it has none."""
+        polymer = self.polymers[kind]
+        return (polymer.bending or self.bending) if polymer.length > 2 else None
+
+    def own_pair(self, kind: int) -> Pair | None:
+        """Potential of any two beads of a kind."""
+        return self.polymers[kind].pair or self.pair
+
+    def pair_of(self, one: int, other: int) -> Pair | None:
+        """Potential of two beads, one of each kind; None if they do not feel one another."""
+        mine, theirs = self.own_pair(one), self.own_pair(other)
+        for between in self.between:
+            if {self.index_of(kind) for kind in between.kinds} == {one, other}:
+                return between.pair
+        if mine is None or theirs is None or mine == theirs:
+            return mine if theirs is not None else None
+        return mine.mixed(theirs)
+
+    @functools.cached_property
+    def pairs(self) -> tuple[tuple[Pair | None, ...], ...]:
+        """Those of all kinds with all."""
+        kinds = range(len(self.polymers))
+        return tuple(tuple(self.pair_of(i, j) for j in kinds) for i in kinds)
+
+    @property
+    def different_pairs(self) -> tuple[Pair, ...]:
+        """Each pair potential once."""
+        return tuple(dict.fromkeys(p for row in self.pairs for p in row if p is not None))
+
+    def ideal(self, kind: int) -> bool:
+        """Whether its beads feel no others but by bonds."""
+        return not any(self.pairs[kind])
 
     def molecule(self, kind: int) -> Molecule | None:
         """A kind as a molecule of its own; None for monomers."""
-        polymer = self.polymers[kind]
-        if polymer.length == 1 or self.bond is None:
+        polymer, bond = self.polymers[kind], self.bond_of(kind)
+        if bond is None:
             return None
-        return _molecule(polymer, self.bond, self.bending, self.pair)
+        return _molecule(polymer, bond, self.bending_of(kind), self.own_pair(kind))
 
     @property
     def beads(self) -> int:
@@ -105,56 +230,148 @@ class Solutes:
         """Beads of all kinds before this one."""
         return sum(polymer.number * polymer.length for polymer in self.polymers[:kind])
 
-    def frequency(self, dimension: int, kT: float) -> float:
-        """Angular frequency of the fastest oscillation."""
-        kinds = [self.molecule(i) for i in range(len(self.polymers))]
-        found = [m.frequency(dimension, kT, self.mass) for m in kinds if m is not None]
-        for potential in (self.pair, self.wall):
-            if potential is not None:
-                square = stiffness((potential.kernel(),), kT, potential.reach)
-                found.append(math.sqrt(2.0 * square / self.mass))
+    def excluded_volume(self, dimension: int, kT: float) -> float:
+        """Volume that a bead alone takes from the fluid (cells); 0 if it only collides with it."""
+        pair = self.solvent_pair
+        return excluded_volume(pair.kernel(), dimension, kT, pair.reach) if pair else 0.0
+
+    def radius(self, kT: float) -> float:
+        """That of the hard sphere which a bead is like for the fluid; 0 if it only collides."""
+        pair = self.solvent_pair
+        return effective_radius(pair.kernel(), kT, pair.reach) if pair else 0.0
+
+    def numbers(self) -> NDArray[np.int64]:
+        """Beads of each kind."""
+        return np.array([polymer.number * polymer.length for polymer in self.polymers])
+
+    def kinds(self) -> NDArray[np.int64]:
+        """The kind of each bead: its place in `polymers`."""
+        return np.repeat(np.arange(len(self.polymers)), self.numbers())
+
+    @functools.cached_property
+    def masses(self) -> tuple[float, ...]:
+        """Of a bead of each kind."""
+        return tuple(self.mass_of(kind) for kind in range(len(self.polymers)))
+
+    def mass_per_bead(self) -> float | NDArray[np.float64]:
+        """Of each bead (beads,), or of all if they are equal."""
+        first, *others = self.masses
+        return first if {first, *others} == {first} else np.array(self.masses)[self.kinds()]
+
+    def sum_over_mass(self, part: Callable[[float], float]) -> float:
+        """Sum over all beads of what follows from the mass of one."""
+        found = dict.fromkeys(self.masses, 0)
+        for mass, number in zip(self.masses, self.numbers().tolist(), strict=True):
+            found[mass] += number
+        return sum(number * part(mass) for mass, number in found.items())
+
+    @property
+    def total_mass(self) -> float:
+        """Of all beads."""
+        return self.sum_over_mass(lambda mass: mass)
+
+    def frequency(self, dimension: int, kT: float, lightest: float) -> float:
+        """Angular frequency of the fastest oscillation in a fluid of particles of this mass."""
+        found = [
+            molecule.frequency(dimension, kT, mass)
+            for molecule, mass in zip(self._molecules(), self.masses, strict=True)
+            if molecule is not None
+        ]
+        for i, row in enumerate(self.pairs):
+            for j, pair in enumerate(row[: i + 1]):
+                if pair is not None:
+                    square = stiffness((pair.kernel(),), kT, pair.reach)
+                    found.append(_swing(square, self.masses[i], self.masses[j]))
+        if self.wall is not None:
+            square = stiffness((self.wall.kernel(),), kT, self.wall.reach)
+            found.append(math.sqrt(2.0 * square / min(self.masses)))
+        if self.solvent_pair is not None:
+            square = stiffness((self.solvent_pair.kernel(),), kT, self.solvent_pair.reach)
+            found.append(math.sqrt(square * (1.0 / min(self.masses) + 1.0 / lightest)))
         return max(found, default=0.0)
 
-    def needed_substeps(self, dimension: int, timestep: float, kT: float) -> int:
+    def _molecules(self) -> list[Molecule | None]:
+        return [self.molecule(kind) for kind in range(len(self.polymers))]
+
+    def needed_substeps(self, dimension: int, fluid: Fluid) -> int:
         """So many that the fastest oscillation turns by PHASE in each."""
-        return max(1, math.ceil(self.frequency(dimension, kT) * timestep / PHASE))
+        lightest = min(kind.mass for kind in fluid.kinds)
+        turns = self.frequency(dimension, fluid.kT, lightest) * fluid.timestep
+        return max(1, math.ceil(turns / PHASE))
 
-    def number_of_substeps(self, dimension: int, timestep: float, kT: float) -> int:
+    def number_of_substeps(self, dimension: int, fluid: Fluid) -> int:
         """Those given, or those that it needs."""
-        return self.substeps or self.needed_substeps(dimension, timestep, kT)
+        return self.substeps or self.needed_substeps(dimension, fluid)
 
-    def bonds(self) -> np.ndarray:
+    def bonds(self) -> NDArray[np.int64]:
         """Beads (bonds, 2) that are linked, counted from the first bead."""
-        return self._all("bonds", 2)
+        return self._all(lambda molecule: molecule.bonds, 2)[0]
 
-    def angles(self) -> np.ndarray:
+    def angles(self) -> NDArray[np.int64]:
         """Beads (angles, 3), the second of which two bonds share; none without stiffness."""
-        return self._all("angles", 3) if self.bending is not None else np.zeros((0, 3), np.int64)
+        return self._all(stiff_angles, 3)[0]
 
-    def _all(self, name: str, columns: int) -> np.ndarray:
-        found = [np.zeros((0, columns), np.int64)]
+    def kinds_of_bonds(self) -> NDArray[np.int64]:
+        """The kind of molecules that each of `bonds` belongs to."""
+        return self._all(lambda molecule: molecule.bonds, 2)[1]
+
+    def kinds_of_angles(self) -> NDArray[np.int64]:
+        """The same of `angles`."""
+        return self._all(stiff_angles, 3)[1]
+
+    def _all(
+        self, links: Callable[[Molecule], Links], columns: int
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        found, kinds = [np.zeros((0, columns), np.int64)], [np.zeros(0, np.int64)]
         for kind, polymer in enumerate(self.polymers):
             molecule, first = self.molecule(kind), self.first_bead(kind)
             if molecule is not None:
-                own = np.array(getattr(molecule, name), np.int64).reshape(-1, columns)
+                own = np.array(links(molecule), np.int64).reshape(-1, columns)
                 starts = first + polymer.length * np.arange(polymer.number)
                 found.append((starts[:, None, None] + own).reshape(-1, columns))
-        return np.concatenate(found)
+                kinds.append(np.full(len(found[-1]), kind))
+        return np.concatenate(found), np.concatenate(kinds)
 
-    def kernel(self, dimension: int, timestep: float, kT: float) -> Potentials:
+    def kernel(self, dimension: int, fluid: Fluid) -> Potentials:
         """Parameters for compiled code."""
+        every = range(len(self.polymers))
         return Potentials(
-            1.0 / self.mass,
-            self.number_of_substeps(dimension, timestep, kT),
-            tuple(p.kernel() for p in (self.bond,) if p is not None),
-            tuple(p.kernel() for p in (self.bending,) if p is not None),
-            tuple(p.kernel() for p in (self.pair,) if p is not None),
+            1.0 / max(self.masses),
+            self.number_of_substeps(dimension, fluid),
+            _kernels([self.bond_of(kind) for kind in every]),
+            _kernels([self.bending_of(kind) for kind in every]),
+            _kernels([pair for row in self.pairs for pair in row], all_of_them=True),
             tuple(p.kernel() for p in (self.wall,) if p is not None),
         )
 
 
+def stiff_angles(molecule: Molecule) -> Links:
+    """The angles of a molecule that have a potential."""
+    return molecule.angles if molecule.bending is not None else ()
+
+
+def _kernels(potentials: Sequence[Any], all_of_them: bool = False) -> tuple[Any, ...]:
+    """The only potential, Several that differ, or () where there is none.
+
+    `all_of_them`: None is a potential too, namely no force.
+    """
+    kernels = [None if p is None else p.kernel() for p in potentials]
+    given = {(type(one), one): one for one in kernels if one is not None or all_of_them}
+    if set(given.values()) <= {None}:
+        return ()
+    return tuple(given.values()) if len(given) == 1 else (several(kernels),)
+
+
+def _swing(square: float, one: float, other: float) -> float:
+    """Angular frequency of two masses on a spring constant."""
+    return math.sqrt(2.0 * square / one if one == other else square * (1.0 / one + 1.0 / other))
+
+
 class Potentials(NamedTuple):
-    """What beads feel: (potential,) or () for each of bond, angle, pair and wall."""
+    """What beads feel: (potential,) or () for each of bond, angle, pair and wall.
+
+    Where kinds of solutes differ it is (Several,). inverse_mass is that of beads of one mass.
+    """
 
     inverse_mass: float
     substeps: int
@@ -166,6 +383,16 @@ class Potentials(NamedTuple):
 
 @functools.lru_cache(maxsize=64)
 def _molecule(polymer: Polymer, bond: Bond, bending: Angle | None, pair: Pair | None) -> Molecule:
+    if polymer.topology == "free":
+        return FreeMolecule(
+            topology="free",
+            length=polymer.length,
+            bond=bond,
+            bending=bending if polymer.angles else None,
+            pair=pair,
+            linked=polymer.pairs_of_beads,
+            bent=polymer.triples_of_beads,
+        )
     return Molecule(
         topology=polymer.topology,
         length=polymer.length,

@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-Topology = Literal["chain", "ring", "star"]
+Topology = Literal["chain", "ring", "star", "free"]
 Links = tuple[tuple[int, ...], ...]
 
 
@@ -19,6 +19,8 @@ def bonds(topology: Topology, length: int, arms: int = 1) -> Links:
     >>> bonds("ring", 3), bonds("star", 5, 2)
     (((0, 1), (1, 2), (2, 0)), ((0, 1), (1, 2), (0, 3), (3, 4)))
     """
+    if topology == "free":
+        return ()
     if topology == "star":
         arm = (length - 1) // arms
         return tuple((0 if k % arm == 0 else k, k + 1) for k in range(arm * arms))

@@ -12,12 +12,14 @@ from mesokit.case.warnings import run_warnings
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.compression import compression, unit_cell
 from mesokit.method.mpcd.molecule import COARSE
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.method.mpcd.numbers import Derived
 
+COMPRESSED = 0.2  # acceleration x length/(kT/m) of a fluid driven against solids
 STRONG = 0.3  # thermal velocities that a force may add in a timestep
 
 
@@ -44,7 +46,7 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
             f"fluid.grid_shift = {fluid.grid_shift:g}: with a mean free path of {path:.3g} cells "
             "(below 0.5) only the full shift makes the fluid Galilean invariant"
         )
-    if _above(path, 1, 3):
+    if _above(path, 1, 3) and fluid.collision.acts:
         yield (
             f"fluid.timestep = {fluid.timestep:g}: the mean free path is {path:.3g} cells; above 1 "
             "the fluid is a dilute gas, with slip at walls"
@@ -59,7 +61,8 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
             )
     if case.solutes is not None and case.solutes.substeps is not None:
         given = case.solutes
-        frequency = given.frequency(case.box.dimension, fluid.kT)
+        lightest = min(kind.mass for kind in fluid.kinds)
+        frequency = given.frequency(case.box.dimension, fluid.kT, lightest)
         phase = frequency * fluid.timestep / case.solutes.substeps
         if phase > COARSE:
             yield (
@@ -67,7 +70,7 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
                 f"rad in each (above {COARSE:g}): its swings read up to {25 * phase**2:.2g} % too "
                 "large"
             )
-    if fluid.density < 3:
+    if fluid.density < 3 and fluid.collision.acts:
         yield (
             f"fluid.density = {fluid.density:g}: below 3 many cells hold no pair that could "
             "collide, and the formulas for the viscosity fail"
@@ -117,7 +120,7 @@ def _place(coordinates: Sequence[float]) -> str:
 
 def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
     fluid, force = case.fluid, case.fluid.force
-    sheared = case.box.shear_rate != 0
+    sheared = case.box.sheared
     if numbers.mach is not None and _above(numbers.mach, 0.2) and not sheared:
         yield (
             f"Mach number {numbers.mach:.2g}: above 0.2 the fluid is compressible; "
@@ -131,12 +134,20 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
                 "compressible; lower their velocity or rotation"
             )
     if sheared and numbers.transport:
-        cell = abs(case.box.shear_rate) / numbers.transport.sound_speed
+        cell = case.box.largest_rate / numbers.transport.sound_speed
         if _above(cell, 0.2):
             yield (
-                f"box.shear_rate = {case.box.shear_rate:g}: velocities differ by {cell:.2g} of the "
+                f"{case.box.shear_key}: velocities differ by {cell:.2g} of the "
                 "speed of sound across a cell; keep it below 0.2"
             )
+    pressed = compression(case)
+    if pressed is not None and _above(pressed[1], COMPRESSED):
+        yield (
+            f"fluid.force.acceleration: over {unit_cell(case, pressed[0]):g} cells, until the "
+            f"solids repeat, it may change the density by a factor of up to {1 + pressed[1]:.2g}: "
+            f"acceleration x length/(kT/m) = {pressed[1]:.2g} (above {COMPRESSED:g}); measure it "
+            "with density-gradient, lower the force"
+        )
     for note in force.notes(case.box.size):
         yield f"fluid.force.{note}"
     kick = force.largest_in(case.box.size) * fluid.timestep / math.sqrt(fluid.kT / fluid.mass)

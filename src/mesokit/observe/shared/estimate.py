@@ -19,33 +19,36 @@ Array = NDArray[np.floating[Any]]
 
 
 class Estimate(NamedTuple):
-    """`value` (*shape), what each block adds to its deviation (blocks, *shape), block weights."""
+    """`value` (*shape), what each block adds to its deviation (blocks, *shape), block weights, and
+    whether one block may take back what another has added (see `plateau_error`)."""
 
     value: Array
     residuals: Array
     weights: Array
+    falling: bool = False
 
     @property
     def error(self) -> Array:
         """Standard error, (*shape)."""
-        return plateau_error(self.residuals, self.weights)
+        return plateau_error(self.residuals, self.weights, self.falling)
 
     def linear(self, matrix: Array) -> Estimate:
         """The linear combinations `matrix` (p, n) of a value of shape (n,)."""
-        return Estimate(matrix @ self.value, self.residuals @ matrix.T, _per_block(self.weights))
+        residuals, weights = self.residuals @ matrix.T, _per_block(self.weights)
+        return Estimate(matrix @ self.value, residuals, weights, self.falling)
 
     def scalar(self, value: float | Array, gradient: Array) -> tuple[float, float]:
         """A function of the value (n,), given what it is and its gradient: value and error."""
-        error = plateau_error(self.residuals @ gradient, _per_block(self.weights))
+        error = plateau_error(self.residuals @ gradient, _per_block(self.weights), self.falling)
         return float(value), float(error)
 
 
-def of_mean(blocks: Blocks) -> Estimate:
+def of_mean(blocks: Blocks, falling: bool = False) -> Estimate:
     """The mean of a series."""
     sums, samples = blocks.sums()
     mean = blocks.mean()
     residuals = (sums - np.multiply.outer(samples, mean)) / max(blocks.count, 1)
-    return Estimate(mean, residuals, samples.astype(float))
+    return Estimate(mean, residuals, samples.astype(float), falling)
 
 
 def of_ratio(above: Array, below: Array) -> Estimate:

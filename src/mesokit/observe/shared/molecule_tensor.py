@@ -42,7 +42,7 @@ class MoleculeTensorAccumulator(TensorAccumulator):
     """Block averages of tensors of molecules, and how much these differ in one sample."""
 
     def __init__(
-        self, observable: Observable, case: Case, parts: tuple[str, ...], kind: int
+        self, observable: Observable, case: Case, parts: tuple[str, ...], kind: int | str
     ) -> None:
         super().__init__(observable, case, parts)
         self.every, self.kind = observable.every, kind

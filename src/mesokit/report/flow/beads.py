@@ -37,7 +37,11 @@ class BeadFrames:
         self.kinds = reader.species[self.rows] - len(first.kinds)
         bonds = method.bonds(case) - (reader.id[self.rows[0]] if len(self.rows) else 0)
         self.bonds = bonds[(bonds < len(self.rows)).all(axis=1)]
-        self.diameter = others[0].diameter
+        self.diameters = np.array([kind.diameter for kind in others[0].kinds])
+        self.called = tuple(
+            f"kind {i}" if kind.name in ("", f"polymer-{i}") else kind.name
+            for i, kind in enumerate(others[0].kinds, start=1)
+        )
         closed = method.closed_axes(case)
         sizes = enumerate(case.box.size)
         self.periods = np.array([np.inf if k in closed else float(n) for k, n in sizes])
@@ -47,7 +51,7 @@ class BeadFrames:
         times = self.reader.time
         index = len(times) - 1 if time is None else int(np.argmin(np.abs(times - time)))
         now, slid = float(times[index]), 0.0
-        if self.case.box.shear_rate:
+        if self.case.box.sheared:
             slid = self.case.box.displacement(now) % float(self.case.box.size[0])
         position = self.reader[index]["position"][self.rows].astype(float)
         whole = self._whole(position, slid)
@@ -59,9 +63,8 @@ class BeadFrames:
         near = np.ones(len(whole))
         if third:
             near = position[:, third[0]] / float(self.case.box.size[third[0]])
-        return Beads(
-            places, self.kinds, self.bonds, self.diameter, repeats, now, self.molecules, near
-        )
+        how = self.diameters, self.called
+        return Beads(places, self.kinds, self.bonds, *how, repeats, now, self.molecules, near)
 
     @cached_property
     def molecules(self) -> NDArray[np.int64]:
@@ -141,7 +144,6 @@ def draw(ax: Any, beads: Beads, region: Region) -> None:
 
     box = ax.get_position()
     points = 72.0 * box.width * ax.figure.get_size_inches()[0] / np.ptp(ax.get_xlim())
-    size = max(SMALLEST, beads.diameter * points)
     only = not beads.names
     layers = np.minimum((beads.nearness * LAYERS).astype(int), LAYERS - 1)
     groups = np.stack([layers, beads.kinds, beads.molecules % len(COLOURS) * only], axis=1)
@@ -154,7 +156,7 @@ def draw(ax: Any, beads: Beads, region: Region) -> None:
             colour, marker = look(kind, molecule, only)
             colour = _paler(colour, PALE * (1 - (layer + 1) / LAYERS))
             chosen = (groups == group).all(axis=1)
-            own = inside & chosen
+            own, size = inside & chosen, max(SMALLEST, float(beads.diameters[kind]) * points)
             bonds = places[ends[chosen[ends[:, 0]]]]
             ax.add_collection(
                 LineCollection(list(bonds), colors=colour, linewidths=BOND * size, zorder=ABOVE),

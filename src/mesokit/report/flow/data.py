@@ -20,7 +20,8 @@ class Beads:
     places: (n, 2) along the axes of the picture.
     kinds: (n,) from 0.
     bonds: (m, 2) rows of `places`.
-    diameter: in cells.
+    diameters: of each kind, in cells.
+    called: what each kind is called.
     repeats: vectors (2,) by which all of it repeats.
     time: of the frame.
     molecules: (n,) numbers of the molecules, from 0.
@@ -30,7 +31,8 @@ class Beads:
     places: Array
     kinds: NDArray[np.int64]
     bonds: NDArray[np.int64]
-    diameter: float
+    diameters: Array
+    called: tuple[str, ...]
     repeats: tuple[tuple[float, float], ...]
     time: float
     molecules: NDArray[np.int64]
@@ -40,7 +42,7 @@ class Beads:
     def names(self) -> list[str]:
         """What to call the kinds in a legend; none where there is one kind only."""
         kinds = np.unique(self.kinds)
-        return [f"kind {kind + 1}" for kind in kinds] if len(kinds) > 1 else []
+        return [self.called[kind] for kind in kinds] if len(kinds) > 1 else []
 
 
 @dataclass(frozen=True)

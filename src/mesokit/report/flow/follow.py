@@ -96,7 +96,7 @@ def _spread(found: list[Array], distance: float, step: float) -> list[Array]:
 
     found = [line for line in found if len(line) * step > SHORTEST * distance]
     kept: list[Array] = []
-    trees: list[cKDTree] = []
+    trees: list[cKDTree] = []  # of all that is kept, each more than twice as large as the next
     for line in sorted(found, key=len, reverse=True):
         some = line[::2]
         away = np.full(len(some), np.inf)
@@ -105,5 +105,8 @@ def _spread(found: list[Array], distance: float, step: float) -> list[Array]:
         far = np.median(away) >= 0.9 * distance
         if far and np.mean(away < NEAR * distance) <= CROWDED:
             kept.append(line)
-            trees.append(cKDTree(line))
+            places = line
+            while trees and trees[-1].n <= 2 * len(places):
+                places = np.concatenate([trees.pop().data, places])
+            trees.append(cKDTree(places))
     return kept

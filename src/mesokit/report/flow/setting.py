@@ -36,7 +36,7 @@ class Setting:
         """That of a case. Images along y move under shear: flow does not go on across them."""
         section = Section(case, axes)
         first, second = (
-            not closed and not (case.box.shear_rate and axis == "y")
+            not closed and not (case.box.sheared and axis == "y")
             for closed, axis in zip(section.closed(), axes, strict=True)
         )
         size = [float(case.box.size[column]) for column in section.columns]

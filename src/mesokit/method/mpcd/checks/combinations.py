@@ -11,6 +11,7 @@ from mesokit.case.units import MATCHES
 from mesokit.errors import CaseError
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.method.mpcd.checks.free_flight import free_flight, open_box
 from mesokit.method.mpcd.checks.kernels import kernels
 from mesokit.method.mpcd.checks.solutes import solutes
 from mesokit.method.mpcd.checks.walls import moving_surfaces, room, surfaces, walls
@@ -43,7 +44,9 @@ def cells(case: Case) -> Iterator[str]:
 
 def size(case: Case) -> Iterator[str]:
     """Neither empty nor with more particles than can be numbered."""
-    if case.particles < 2 and (case.solutes is None or case.solutes.solvent == "fluid"):
+    alone = case.solutes is None or case.solutes.coupling == "collision"
+    random = case.solutes is not None and case.solutes.solvent == "random"
+    if case.particles < 2 and alone and not random:
         yield f"fluid.density = {show(case.fluid.density)}: fewer than 2 particles in this box"
     if case.particles > MOST_PARTICLES:
         yield (
@@ -56,7 +59,7 @@ def mean_free_path(case: Case) -> Iterator[str]:
     """A fluid whose particles meet."""
     fluid = case.fluid
     path = fluid.timestep * math.sqrt(fluid.kT / fluid.mass)
-    if path > LONGEST_PATH:
+    if path > LONGEST_PATH and fluid.collision.acts:
         yield (
             f"fluid.timestep = {show(fluid.timestep)}: the mean free path timestep sqrt(kT/mass) "
             f"is {path:.3g} cells; expected at most {LONGEST_PATH:g}"
@@ -97,27 +100,47 @@ def collision(case: Case) -> Iterator[str]:
             f"fluid.thermostat.rule = {show(name_of(thermostat))}: collision rule "
             f"{show(name_of(rule))} is its own thermostat; leave the thermostat out"
         )
+    yield from neighbours(case)
+
+
+def neighbours(case: Case) -> Iterator[str]:
+    """What a rule that looks at neighbouring cells, or tells species apart, can have."""
+    rule, species = case.fluid.collision, len(case.fluid.species)
+    name = show(name_of(rule))
+    if rule.kinds is not None and species > rule.kinds:
+        yield f"fluid.species: {species} of them; collision rule {name} is for {rule.kinds}"
+    if rule.gradient_of is None:
+        return
+    if case.box.sheared:
+        yield f"{case.box.shear_key}: not with collision rule {name}; move a plate to shear a slit"
+    if case.solutes is not None:
+        yield f"solutes: not with collision rule {name}, which knows two species of the fluid alone"
 
 
 def force(case: Case) -> Iterator[str]:
     """A body force that fits the box and its walls."""
     for problem in case.fluid.force.misfits(case.box.size):
         yield f"fluid.force.{problem}"
-    for problem in case.fluid.force.problems(closed_axes(case.walls)):
+    for problem in case.fluid.force.problems({*closed_axes(case.walls), *case.box.open}):
         yield f"fluid.force.{problem}"
 
 
 def shear(case: Case) -> Iterator[str]:
     """Lees-Edwards images along y, flow along x."""
-    rate, rule = case.box.shear_rate, case.fluid.force
-    if rate == 0:
-        if case.box.shear_frequency:
-            yield (
-                f"box.shear_frequency = {show(case.box.shear_frequency)}: needs box.shear_rate, "
-                "the amplitude of the shear rate"
-            )
+    box, rule = case.box, case.fluid.force
+    if box.shear_frequency and not box.shear_rate:
+        yield (
+            f"box.shear_frequency = {show(box.shear_frequency)}: needs box.shear_rate, "
+            "the amplitude of the shear rate"
+        )
+    if box.shear is not None:
+        if box.shear_rate:
+            yield f"box.shear_rate = {show(box.shear_rate)}: not with box.shear; give one of them"
+        for problem in box.shear.problems():
+            yield f"box.shear.{problem}"
+    if not box.sheared:
         return
-    key = f"box.shear_rate = {show(rate)}"
+    key = box.shear_key
     for i, wall in enumerate(case.walls):
         if not isinstance(wall, Plates) or len(case.walls) > 1 or wall.diffuse:
             shape = show(name_of(wall))
@@ -222,6 +245,8 @@ RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
     size,
     mean_free_path,
     collision,
+    free_flight,
+    open_box,
     force,
     shear,
     molecule,

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 from mesokit.case.component import name_of, one_of, show
 from mesokit.case.registry import family_of
 from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.geometry.solids.solids import free_volume
+from mesokit.method.mpcd.checks.external import external
 from mesokit.method.mpcd.molecule import MOST_SUBSTEPS, UNSTABLE
 from mesokit.potential.thermal import mean_square
 
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.method.mpcd.solutes import Solutes
 
+MOST_EXCLUDED = 0.9  # of the fluid's volume
 MOST_BEADS = 2**31 - 1  # their numbers are 32-bit
 
 
@@ -32,6 +35,9 @@ def solutes(case: Case) -> Iterator[str]:
     yield from _substeps(case, given)
     if given.solvent == "random":
         yield from _random_solvent(case)
+    yield from external(case, given)
+    if given.coupling == "potential":
+        yield from _potential(case, given)
 
 
 def _sizes(case: Case, given: Solutes) -> Iterator[str]:
@@ -39,11 +45,10 @@ def _sizes(case: Case, given: Solutes) -> Iterator[str]:
     closed = closed_axes(case.walls)
     lengths = dict(zip(case.box.axes, case.box.size, strict=True))
     shortest = min((n for axis, n in lengths.items() if axis not in closed), default=math.inf)
-    if given.pair is not None and given.pair.reach > 0.5 * shortest:
-        yield (
-            f"solutes.pair: it reaches {given.pair.reach:.3g}, more than half of the box of "
-            f"{shortest}"
-        )
+    for pair in given.different_pairs:
+        if pair.reach > 0.5 * shortest:
+            key = "solutes.pair" if pair == given.pair else "solutes: a pair potential"
+            yield f"{key}: it reaches {pair.reach:.3g}, more than half of the box of {shortest}"
     for kind in range(len(given.polymers)):
         molecule = given.molecule(kind)
         if molecule is None:
@@ -56,6 +61,11 @@ def _sizes(case: Case, given: Solutes) -> Iterator[str]:
                 f"solutes.bond: its root-mean-square length {size:.3g} is more than half of the "
                 f"box of {shortest}"
             )
+    if given.solvent_pair is not None and given.solvent_pair.reach > 0.5 * shortest:
+        yield (
+            f"solutes.solvent_pair: it reaches {given.solvent_pair.reach:.3g}, more than half of "
+            f"the box of {shortest}"
+        )
     if given.wall is None:
         return
     if not case.walls:
@@ -71,7 +81,7 @@ def _sizes(case: Case, given: Solutes) -> Iterator[str]:
 def _substeps(case: Case, given: Solutes) -> Iterator[str]:
     """Sub-steps short enough for the stiffest spring."""
     fluid, d = case.fluid, case.box.dimension
-    need = given.needed_substeps(d, fluid.timestep, fluid.kT)
+    need = given.needed_substeps(d, fluid)
     if given.substeps is None:
         if need > MOST_SUBSTEPS:
             yield (
@@ -79,7 +89,8 @@ def _substeps(case: Case, given: Solutes) -> Iterator[str]:
                 f"at most {MOST_SUBSTEPS}: softer potentials, or a shorter fluid.timestep"
             )
         return
-    phase = given.frequency(d, fluid.kT) * fluid.timestep / given.substeps
+    lightest = min(kind.mass for kind in fluid.kinds)
+    phase = given.frequency(d, fluid.kT, lightest) * fluid.timestep / given.substeps
     if phase >= UNSTABLE:
         yield (
             f"solutes.substeps = {given.substeps}: the stiffest potential turns by {phase:.3g} rad "
@@ -96,8 +107,8 @@ def _random_solvent(case: Case) -> Iterator[str]:
         yield f"{key}: not with fluid.species"
     if case.walls:
         yield f"{key}: not with walls; there is no fluid that they could hold"
-    if case.box.shear_rate != 0.0:
-        yield f"{key}: not with box.shear_rate; the solvent is at rest"
+    if case.box.sheared:
+        yield f"{key}: not in a sheared box; the solvent is at rest"
     for i, observable in enumerate(case.observe):
         if observable.needs_fluid:
             others = family_of(observable).parts.items()
@@ -106,3 +117,25 @@ def _random_solvent(case: Case) -> Iterator[str]:
                 f"observe[#{i + 1}].quantity = {show(name_of(observable))}: there is no fluid to "
                 f"measure; expected {one_of(expected)}"
             )
+
+
+def _potential(case: Case, given: Solutes) -> Iterator[str]:
+    """A fluid with room for what pushes it away, and nothing that such beads do not do yet."""
+    key = "solutes.coupling = 'potential'"
+    if given.solvent == "random":
+        yield f"{key}: not with solutes.solvent = 'random', which has no particles; use 'fluid'"
+    if case.box.sheared:
+        yield f"{key}: not in a sheared box; move a plate (wall.upper.velocity) to shear a slit"
+    if case.box.open:
+        yield f"{key}: not with box.open"
+    for i, observable in enumerate(case.observe):
+        if "stress" in observable.measures:
+            name = show(name_of(observable))
+            yield f"observe[#{i + 1}].quantity = {name}: not with {key}"
+    excluded, room = given.excluded_volume(case.box.dimension, case.fluid.kT), free_volume(case)
+    if given.beads * excluded > MOST_EXCLUDED * room:
+        yield (
+            f"solutes.solvent_pair: {given.beads} beads exclude the fluid from "
+            f"{given.beads * excluded:.4g} of {room:.4g} cells; expected at most "
+            f"{MOST_EXCLUDED:.0%}: fewer or smaller beads"
+        )

@@ -38,10 +38,15 @@ class Gas(NamedTuple):
 class CollisionRule(ABC):
     """How the particles of a cell exchange momentum."""
 
+    acts: ClassVar[bool] = True  # False: particles never meet
     conserves: ClassVar[tuple[str, ...]] = ()  # "mass", "momentum", "energy", "angular momentum"
     needs_energy: ClassVar[bool] = False  # whether `coefficients` asks for the sum of m v^2
     isothermal: ClassVar[bool] = False  # whether it holds the temperature itself
     one_temperature: ClassVar[bool] = True  # of all kinds of particles in a mixture
+    # which of its own sums `coefficients` is to have the gradient of, over neighbouring cells
+    gradient_of: ClassVar[int | None] = None
+    kinds: ClassVar[int | None] = None  # how many species it is for; None for any number
+    ideal: ClassVar[bool] = True  # whether any mixture is an ideal gas at rest
     # million particle-steps per second of one thread, by dimension: for estimates of the run time
     rates: ClassVar[Mapping[int, float]] = {2: 60.0, 3: 33.0}
 
@@ -56,6 +61,10 @@ class CollisionRule(ABC):
     @abstractmethod
     def coefficient_count(self, dimension: int, stretched: bool) -> int:
         """How many numbers `coefficients` gives; `stretched` says that a thermostat acts."""
+
+    def among(self, kernel: Any, counts: tuple[int, ...], mass: float) -> Any:
+        """The kernel for so many particles of each species, numbered in turn; mean mass."""
+        return kernel
 
     def problems(self, dimension: int) -> Iterator[str]:
         """What is wrong with it in this dimension, key first."""
@@ -100,7 +109,8 @@ class CollisionRule(ABC):
 class Cell(NamedTuple):
     """What the particles of a cell add up to.
 
-    Their number, mass and momentum, `energy` the sum of m v^2, `sums` what a rule asked for.
+    Their number, mass and momentum, `energy` the sum of m v^2, `sums` what a rule asked for: its
+    own sums, and after them the gradient of the one that `gradient_of` says, per cell of length.
     """
 
     number: float

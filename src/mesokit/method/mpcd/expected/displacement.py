@@ -12,11 +12,13 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import (
     free_diffusion,
+    friction_of,
     group_of,
     kirkwood,
     modes_of,
     rouse_note,
-    spring_of,
+    springs_of,
+    stirring_diffusion,
     without_solutes,
 )
 
@@ -34,9 +36,11 @@ class Displacement:
     """
 
     def __init__(self, case: Case, observable: Any) -> None:
-        self.case, self.of, self.kind = case, observable.of, observable.kind
+        self.case, self.of = case, observable.of
+        self.kind = 1 if observable.kind is None else observable.kind
+        self.species = observable.kind if case.fluid.species else None
         self.axes = _axes(case, observable.components)
-        self.group = group_of(case, self.of, self.kind)
+        self.group = group_of(case, self.of, observable.kind)
         self.length, self.number = self.group.length, self.group.number
         self.molecule = self.group.molecule
 
@@ -46,6 +50,8 @@ class Displacement:
 
     def legend(self) -> str:
         """What the theory is called in a figure."""
+        if self.ballistic():
+            return "free flight"
         label = setting.chaos_label(self.case)
         return label if self.molecule is None else label.replace("molecular chaos", "Rouse")
 
@@ -53,9 +59,11 @@ class Displacement:
     def mass(self) -> float:
         """Of one bead."""
         solutes = self.case.solutes
+        if self.of == "particles" and self.species is not None:
+            return self.case.fluid.species[self.species - 1].mass
         if solutes is None or self.of == "particles":
             return self.case.fluid.mass
-        return solutes.mass
+        return solutes.masses[solutes.index_of(self.kind)]
 
     def alone(self) -> float | None:
         """Diffusion coefficient of one bead alone; None where what it drags along drags it."""
@@ -64,11 +72,17 @@ class Displacement:
             return free_diffusion(self.case)
         if of == "particles":
             return None
-        return free_diffusion(self.case) if self.case.solutes.solvent == "random" else None
+        return (
+            free_diffusion(self.case, kind=self.kind)
+            if self.case.solutes.solvent == "random"
+            else None
+        )
 
     def expected(self, steps: Integers) -> Array | None:
         """Molecular chaos, of molecules Rouse's; None without a theory."""
         fluid, molecule, alone = self.case.fluid, self.molecule, self.alone()
+        if self.ballistic():
+            return len(self.axes) * fluid.kT / self.mass * (steps * fluid.timestep) ** 2
         if alone is None or not set(self.axes) <= set(setting.quiet_axes(self.case)):
             return None
         d, dt, kT, mass = len(self.axes), fluid.timestep, fluid.kT, self.mass
@@ -79,11 +93,21 @@ class Displacement:
             return None
         if self.of == "centres":
             return theory.msd_molecular_chaos(steps, dt, g, d, kT, mass * molecule.length)
-        spring = spring_of(molecule)
+        spring = springs_of(self.case, self.kind)
         if spring is None:
             return None
         modes = modes_of(molecule).eigenvalues
         return theory.msd_rouse_beads(steps, dt, g, modes, spring.k, d, kT, mass)
+
+    def ballistic(self) -> bool:
+        """Whether they fly freely: nothing to meet, to be bound to, or to fall by."""
+        case = self.case
+        bound = case.fluid.molecule is not None or (
+            case.solutes is not None and self.of != "particles"
+        )
+        return not (case.fluid.collision.acts or case.fluid.mixed or case.walls or bound) and set(
+            self.axes
+        ) <= set(setting.quiet_axes(case))
 
     def diffusive_from(self) -> float:
         """The lag from which on the displacement is a straight line.
@@ -93,7 +117,9 @@ class Displacement:
         a bead has forgotten where in the molecule it is. What drags beads along in a fluid of
         molecules changes as the molecule turns, so that its centre is in no hurry either.
         """
-        alone = free_diffusion(self.case, self.of)
+        if not self.case.fluid.collision.acts and self.molecule is None:
+            return np.inf  # it never forgets
+        alone = free_diffusion(self.case, self.of, self.kind)
         start = 5 * alone * self.mass / self.case.fluid.kT if alone else 0.0
         solute = self.case.solutes is not None and self.of != "particles"
         if solute:
@@ -115,7 +141,7 @@ class Displacement:
 
     def slowest(self, alone: float | None) -> float | None:
         """The longest relaxation time of the molecules, by Rouse's theory; None without one."""
-        spring = spring_of(self.molecule) if self.molecule else None
+        spring = springs_of(self.case, self.kind) if self.molecule else None
         if spring is None or alone is None or self.molecule is None:
             return None
         friction = self.case.fluid.kT / alone
@@ -125,7 +151,7 @@ class Displacement:
     def coefficient(self) -> tuple[float, str]:
         """The diffusion coefficient of theory, nan if there is none, and what to say of it."""
         nothing, alone = float("nan"), self.alone()
-        note = setting.chaos(self.case, "correlated collisions add 10 to 18 %")
+        note = setting.chaos(self.case, setting.STIRRED)
         solutes, molecule = self.case.solutes, self.molecule
         if solutes is not None and alone is None:
             if self.of == "particles":
@@ -134,14 +160,25 @@ class Displacement:
             dragged = kirkwood(self.case, self.kind) if whole else None
             if dragged is None:
                 return nothing, "no theory of such beads in a fluid"
+            if solutes.solvent_pair is not None:
+                return dragged, "approximate: Enskog and Stokes with slip, less what images take"
             return dragged, "Kirkwood, smeared over cells, less what images of the box take"
         if alone is None:
             return nothing, note
         if molecule is None:
-            return alone, "molecular chaos, exact for a bead alone" if solutes else note
+            if solutes is not None:
+                return alone, "molecular chaos, exact for a bead alone"
+            quiet = not self.case.walls and setting.mean_free_path(self.case) < 1
+            stirring = stirring_diffusion(self.case, boxed=True) if quiet else None
+            if stirring is None:
+                return alone, note
+            return stirring, f"approximate: {setting.STIRRING}"
         if self.case.walls:
             return nothing, note
-        return alone / molecule.length, rouse_note(self.case)
+        friction = friction_of(self.case)
+        if friction is None:
+            return nothing, note
+        return self.case.fluid.kT / friction / molecule.length, rouse_note(self.case)
 
 
 def _axes(case: Case, components: tuple[str, ...] | None) -> tuple[int, ...]:
@@ -152,6 +189,6 @@ def _axes(case: Case, components: tuple[str, ...] | None) -> tuple[int, ...]:
             raise CaseError("components: every axis has a flow or a wall; name those to follow")
         return axes
     axes = tuple(case.box.index(axis, "components") for axis in components)
-    if case.box.shear_rate and 0 in axes:
-        raise CaseError("components: not 'x' under box.shear_rate, whose images slide")
+    if case.box.sheared and 0 in axes:
+        raise CaseError("components: not 'x' under shear, whose images slide")
     return axes

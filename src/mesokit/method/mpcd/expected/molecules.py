@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
+from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.statistics import spread_ids
@@ -20,23 +21,22 @@ if TYPE_CHECKING:
 
 
 Array = NDArray[np.floating[Any]]
-KIND = "which molecules: the kind of solutes.polymers, from 1; 1 where the fluid is of molecules"
+KIND = "which molecules: name or number, from 1, of solutes.polymers; 1 in a fluid of molecules"
 
 
-def molecule_of(case: Case, quantity: str = "this", kind: int = 1) -> Molecule:
+def molecule_of(case: Case, quantity: str = "this", kind: int | str = 1) -> Molecule:
     """What the fluid is made of, or a kind of solutes. Raises CaseError if there is no such."""
     solutes = case.solutes
     if solutes is None:
         if case.fluid.molecule is None:
             raise CaseError(f"{quantity} needs molecules; give fluid.molecule or solutes")
         if kind != 1:
-            raise CaseError(f"kind = {kind}: expected 1 in a fluid of molecules")
+            raise CaseError(f"kind = {show(kind)}: expected 1 in a fluid of molecules")
         return case.fluid.molecule
-    if kind > len(solutes.polymers):
-        raise CaseError(f"kind = {kind}: expected 1 to {len(solutes.polymers)} (solutes.polymers)")
-    molecule = solutes.molecule(kind - 1)
+    place = solutes.index_of(kind)
+    molecule = solutes.molecule(place)
     if molecule is None:
-        raise CaseError(f"{quantity} needs molecules; solutes.polymers[#{kind}] are monomers")
+        raise CaseError(f"{quantity} needs molecules; solutes.polymers[#{place + 1}] are monomers")
     return molecule
 
 
@@ -54,32 +54,46 @@ class Group(NamedTuple):
         return self.first + chosen[:, None] * self.length + np.arange(self.length)
 
 
-def group_of(case: Case, of: str, kind: int = 1) -> Group:
+def group_of(case: Case, of: str, kind: int | str | None = 1) -> Group:
     """Those that an observable of "particles" (of the fluid), "beads", "centres" or "ends" follows.
 
+    Of particles `kind` is the number of a species, None all of them; of others None is the first.
     Raises CaseError if there are none.
     """
     molecule, solutes = case.fluid.molecule, case.solutes
     if of == "particles" and (solutes is None or solutes.solvent == "fluid"):
-        if kind != 1:
-            raise CaseError(f"kind = {kind}: only with of = 'beads', 'centres' or 'ends'")
+        if case.fluid.species and kind is not None:
+            return _species(case, kind)
+        if kind not in (None, 1):
+            raise CaseError(
+                f"kind = {show(kind)}: only with of = 'beads', 'centres' or 'ends', or with "
+                "fluid.species"
+            )
         length = molecule.length if molecule else 1
         return Group(0, length, case.particles // length, molecule)
+    kind = 1 if kind is None else kind
     if solutes is None:
         found = molecule_of(case, f"of = {of!r}", kind)
         return Group(0, found.length, case.particles // found.length, found)
     if of == "particles":
         raise CaseError("of = 'particles': a random solvent has none; expected 'beads'")
-    if kind > len(solutes.polymers):
-        raise CaseError(f"kind = {kind}: expected 1 to {len(solutes.polymers)} (solutes.polymers)")
-    polymer = solutes.polymers[kind - 1]
+    place = solutes.index_of(kind)
+    polymer = solutes.polymers[place]
     if of == "ends":
         molecule_of(case, f"of = {of!r}", kind)
-    first = case.particles + solutes.first_bead(kind - 1)
-    return Group(first, polymer.length, polymer.number, solutes.molecule(kind - 1))
+    first = case.particles + solutes.first_bead(place)
+    return Group(first, polymer.length, polymer.number, solutes.molecule(place))
 
 
-def beads_of(case: Case, wanted: int | None = None, kind: int = 1) -> NDArray[np.int64]:
+def _species(case: Case, kind: int | str) -> Group:
+    """Particles of one species."""
+    kinds = case.groups[0].kinds
+    if not isinstance(kind, int) or not 1 <= kind <= len(kinds):
+        raise CaseError(f"kind = {show(kind)}: expected 1 to {len(kinds)} (fluid.species)")
+    return Group(sum(one.number for one in kinds[: kind - 1]), 1, kinds[kind - 1].number, None)
+
+
+def beads_of(case: Case, wanted: int | None = None, kind: int | str = 1) -> NDArray[np.int64]:
     """Ids of the beads (molecules, length) of all molecules, or of some that are evenly spread.
 
     Beads of solutes are numbered after the particles of the fluid.
@@ -88,12 +102,12 @@ def beads_of(case: Case, wanted: int | None = None, kind: int = 1) -> NDArray[np
     return group_of(case, "beads", kind).beads(wanted)
 
 
-def bonds_of(case: Case, kind: int = 1) -> slice:
+def bonds_of(case: Case, kind: int | str = 1) -> slice:
     """Where the bonds of a kind are among all `bond_vectors`."""
     if case.solutes is None:
         return slice(None)
     count, first = 0, 0
-    for k in range(kind):
+    for k in range(case.solutes.index_of(kind) + 1):
         molecule, first = case.solutes.molecule(k), first + count
         count = len(molecule.bonds) * case.solutes.polymers[k].number if molecule else 0
     return slice(first, first + count)
@@ -101,11 +115,21 @@ def bonds_of(case: Case, kind: int = 1) -> slice:
 
 def modes_of(molecule: Molecule) -> theory.NormalModes:
     """Normal modes of its springs."""
+    if molecule.topology == "free":
+        return theory.network_modes(molecule.bonds, molecule.length)
     if molecule.topology == "ring":
         return theory.ring_modes(molecule.length)
     if molecule.arms is not None:
         return theory.star_modes(molecule.arms, (molecule.length - 1) // molecule.arms)
     return theory.linear_modes(molecule.length)
+
+
+def springs_of(case: Case, kind: int | str = 1) -> theory.Spring | None:
+    """The springs of molecules; None where beads feel anything else, of other kinds too."""
+    solutes = case.solutes
+    if solutes is not None and not solutes.ideal(solutes.index_of(kind)):
+        return None
+    return spring_of(molecule_of(case, kind=kind))
 
 
 def spring_of(molecule: Molecule) -> theory.Spring | None:
@@ -132,13 +156,31 @@ def without_solutes(case: Case) -> theory.Transport | None:
     )
 
 
-def rouse_times_of(case: Case, kind: int = 1) -> theory.RouseTimes | None:
+def rouse_times_of(case: Case, kind: int | str = 1) -> theory.RouseTimes | None:
     """Relaxation times of molecules whose beads have the friction of free particles."""
-    molecule, friction = molecule_of(case, kind=kind), friction_of(case)
-    spring = spring_of(molecule)
+    molecule, friction = molecule_of(case, kind=kind), friction_of(case, kind)
+    spring = springs_of(case, kind)
     if friction is None or spring is None:
         return None
     return theory.rouse_times(modes_of(molecule), friction, K=spring.K)
+
+
+def stirring_diffusion(case: Case, boxed: bool = False) -> float | None:
+    """Diffusion coefficient of a particle of the fluid with the flow that it stirs up; None without
+    a theory. In 3D that of a large box unless `boxed`, in 2D there is none but in this box.
+
+    Of particles that fly a cell and more molecular chaos holds, and the former is no better.
+    """
+    alone, box = without_bonds(case), case.box
+    if alone is None:
+        return None
+    if setting.mean_free_path(case) >= 1:
+        return alone.diffusion
+    fluid = case.fluid
+    size = box.size if boxed or box.dimension == 2 else None
+    return theory.self_diffusion(
+        box.dimension, alone.diffusion, alone.viscosity, fluid.density, size, fluid.kT, fluid.mass
+    )
 
 
 def rouse_note(case: Case) -> str:
@@ -150,15 +192,20 @@ def rouse_note(case: Case) -> str:
     return "Rouse; beads with the friction of free particles"
 
 
-def friction_of(case: Case) -> float | None:
+def friction_of(case: Case, kind: int | str = 1) -> float | None:
     """kT over the diffusion coefficient of a bead alone; None where the fluid remembers it."""
-    diffusion = free_diffusion(case)
+    # beads of one molecule are stirred by the same flow, which in 2D is as large as the box: what
+    # tells them apart is what they do within a bond's length of each other
+    if case.solutes is not None or case.box.dimension == 2:
+        diffusion = free_diffusion(case, kind=kind)
+    else:
+        diffusion = stirring_diffusion(case)
     if diffusion is None or (case.solutes is not None and case.solutes.solvent == "fluid"):
         return None
     return case.fluid.kT / diffusion
 
 
-def free_diffusion(case: Case, of: str = "beads") -> float | None:
+def free_diffusion(case: Case, of: str = "beads", kind: int | str | None = None) -> float | None:
     """Diffusion coefficient of a particle or bead alone by molecular chaos; None if unknown."""
     fluid, solutes = case.fluid, case.solutes
     if solutes is None or of == "particles":
@@ -166,7 +213,30 @@ def free_diffusion(case: Case, of: str = "beads") -> float | None:
         return None if alone is None else alone.diffusion
     if fluid.species or not fluid.thermostat.canonical:
         return None
-    return fluid.collision.bead_diffusion(setting.gas(case), solutes.mass)
+    if solutes.solvent_pair is not None:
+        return fluid.kT / hits_of(case, kind)
+    mass = solutes.masses[solutes.index_of(1 if kind is None else kind)]
+    return fluid.collision.bead_diffusion(setting.gas(case), mass)
+
+
+def hits_of(case: Case, kind: int | str | None = None) -> float:
+    """Friction by hits of a bead that acts on the fluid by a potential (Enskog)."""
+    fluid, solutes = case.fluid, case.solutes
+    assert solutes is not None
+    mass = solutes.masses[solutes.index_of(1 if kind is None else kind)]
+    size = solutes.radius(fluid.kT), fluid.density, mass
+    return theory.enskog_friction(*size, case.box.dimension, fluid.kT, fluid.mass)
+
+
+def colloid_diffusion(case: Case, kind: int | str) -> float | None:
+    """Diffusion coefficient of a bead that acts on the fluid by a potential, in this cubic box."""
+    solvent, solutes, size = without_solutes(case), case.solutes, case.box.size
+    if solvent is None or solutes is None or case.box.dimension == 2 or case.walls:
+        return None
+    if len(set(size)) > 1 or case.fluid.species:
+        return None
+    eta, kT = solvent.viscosity * case.fluid.density * case.fluid.mass, case.fluid.kT
+    return theory.slip_sphere_diffusion(solutes.radius(kT), eta, hits_of(case, kind), size[0], kT)
 
 
 class Solution(NamedTuple):
@@ -180,12 +250,14 @@ class Solution(NamedTuple):
     kT: float
 
 
-def solution_of(case: Case, kind: int) -> Solution | None:
+def solution_of(case: Case, kind: int | str) -> Solution | None:
     """Chains of a kind that drag the fluid along, in 3D without walls; None for others."""
     assert case.solutes is not None
-    molecule = case.solutes.molecule(kind - 1)
-    bond, alone = free_bond(case, kind) if molecule else None, free_diffusion(case)
+    molecule = case.solutes.molecule(case.solutes.index_of(kind))
+    bond, alone = free_bond(case, kind) if molecule else None, free_diffusion(case, kind=kind)
     solvent = without_solutes(case)
+    if case.solutes.solvent_pair is not None:
+        return None
     if molecule is None or bond is None or alone is None or solvent is None:
         return None
     if molecule.topology != "chain" or case.box.dimension == 2 or case.walls:
@@ -194,29 +266,33 @@ def solution_of(case: Case, kind: int) -> Solution | None:
     return Solution(molecule.length, case.fluid.kT / alone, eta, math.sqrt(bond), case.fluid.kT)
 
 
-def kirkwood(case: Case, kind: int) -> float | None:
+def kirkwood(case: Case, kind: int | str) -> float | None:
     """Diffusion coefficient of monomers and ideal chains that drag the fluid along, in this cubic
     box; None for other molecules and boxes."""
     assert case.solutes is not None
+    if case.solutes.solvent_pair is not None:
+        whole = case.solutes.molecule(case.solutes.index_of(kind)) is not None
+        return None if whole else colloid_diffusion(case, kind)
     size, solution = case.box.size, solution_of(case, kind)
-    if case.solutes.molecule(kind - 1) is None and case.solutes.pair is None:
-        solution = monomers_of(case)
+    place = case.solutes.index_of(kind)
+    if case.solutes.molecule(place) is None and case.solutes.ideal(place):
+        solution = monomers_of(case, kind)
     if solution is None or len(set(size)) > 1:
         return None
     free = theory.kirkwood_in_cells(*solution)
     return theory.diffusion_in_box(free, size[0], solution.viscosity, solution.kT)
 
 
-def monomers_of(case: Case) -> Solution | None:
+def monomers_of(case: Case, kind: int | str) -> Solution | None:
     """Beads alone that drag the fluid along, in 3D without walls."""
-    alone, solvent = free_diffusion(case), without_solutes(case)
+    alone, solvent = free_diffusion(case, kind=kind), without_solutes(case)
     if alone is None or solvent is None or case.box.dimension == 2 or case.walls:
         return None
     eta = solvent.viscosity * case.fluid.density * case.fluid.mass
     return Solution(1, case.fluid.kT / alone, eta, 1.0, case.fluid.kT)
 
 
-def mode_times_of(case: Case, kind: int = 1) -> tuple[theory.RouseTimes | None, str]:
+def mode_times_of(case: Case, kind: int | str = 1) -> tuple[theory.RouseTimes | None, str]:
     """Relaxation times of molecules at rest, and whose theory says so: Rouse or Zimm."""
     if case.solutes is None or case.solutes.solvent == "random":
         return rouse_times_of(case, kind), rouse_note(case)
@@ -230,15 +306,50 @@ def mode_times_of(case: Case, kind: int = 1) -> tuple[theory.RouseTimes | None, 
         return None, "no theory of bonds as short as these"
 
 
+FEW = 3  # beads of a molecule up to which the others do not screen what it drags along
+
+
+def few_in_shear(case: Case) -> theory.ChainInShear | None:
+    """Dimers and trimers in steady shear (3D), with hydrodynamic interaction; None for others.
+
+    The particles of longer molecules are mostly beads of others, beside which their own drag one
+    another along less than Zimm has it: Rouse's times are nearer (docs/validation/viscoelastic.md).
+    """
+    c, friction, molecule = without_bonds(case), friction_of(case), molecule_of(case)
+    spring = spring_of(molecule)
+    if c is None or friction is None or spring is None or case.box.dimension == 2:
+        return None
+    if molecule.topology != "chain" or molecule.length > FEW:
+        return None
+    eta, rate = c.viscosity * setting.mass_density(case), case.box.steady_rate
+    try:
+        return theory.zimm_shear(molecule.length, rate, spring.K, friction, eta, case.fluid.kT)
+    except ValueError:  # bonds shorter than beads are large
+        return None
+
+
+def shear_note(case: Case) -> str:
+    """How good the theory of molecules in shear is."""
+    if few_in_shear(case) is None:
+        return rouse_note(case)
+    return "approximate: one molecule in a simple fluid, hydrodynamics averaged over its bonds"
+
+
+def times_in_shear(case: Case) -> theory.RouseTimes | None:
+    """Relaxation times of the molecules of a sheared fluid."""
+    few = few_in_shear(case)
+    return rouse_times_of(case) if few is None else few.times
+
+
 def stress_in_shear(case: Case) -> theory.ShearStress | None:
-    """Viscosity (dynamic) and normal-stress differences of Rouse molecules in steady shear."""
-    c, times = without_bonds(case), rouse_times_of(case)
+    """Viscosity (dynamic) and normal-stress differences of molecules of springs in steady shear."""
+    c, times = without_bonds(case), times_in_shear(case)
     if c is None or times is None:
         return None
     fluid = case.fluid
     modulus = fluid.density / molecule_of(case).length * fluid.kT
     eta = c.viscosity * setting.mass_density(case)
-    return theory.maxwell_shear(case.box.shear_rate, modulus, times.stress, eta)
+    return theory.maxwell_shear(case.box.steady_rate, modulus, times.stress, eta)
 
 
 def bond_viscosity(case: Case) -> float | None:
@@ -249,41 +360,33 @@ def bond_viscosity(case: Case) -> float | None:
     c = without_bonds(case)
     if c is None:
         return None
-    molecule, times = molecule_of(case), rouse_times_of(case)
+    molecule, times = molecule_of(case), times_in_shear(case)
     molecules = case.fluid.density / molecule.length
     if times is not None:
         return molecules * case.fluid.kT * float(times.stress.sum())
     d, kT = case.box.dimension, case.fluid.kT
     square = molecule.mean_square_bond(d, kT) if molecule.length == 2 else None
-    if square is None:
+    friction = friction_of(case)
+    if square is None or friction is None:
         return None
-    return theory.dumbbell_viscosity(molecules, kT / c.diffusion, square / d)
+    return theory.dumbbell_viscosity(molecules, friction, square / d)
 
 
 def bond_in_shear(case: Case) -> float | None:
-    """Mean square bond length in steady shear: Rouse, of trimers with hydrodynamic interaction."""
-    c = without_bonds(case)
-    if c is None:
-        return None
+    """Mean square bond length in steady shear: Rouse, or with hydrodynamic interaction."""
+    few = few_in_shear(case)
+    if few is not None:
+        return few.bond_squared
     times, bond = rouse_times_of(case), free_bond(case)
     if times is None or bond is None:
         return None
-    molecule, rate, kT = molecule_of(case), case.box.shear_rate, case.fluid.kT
-    spring = spring_of(molecule)
-    if molecule.topology == "chain" and molecule.length == 3 and case.box.dimension == 3 and spring:
-        eta = c.viscosity * setting.mass_density(case)
-        radius = kT / (6 * math.pi * eta * c.diffusion)
-        try:
-            return theory.trimer_bond_length(spring.K, rate, eta, radius, kT) ** 2
-        except ValueError:  # bonds shorter than beads are large
-            return None
-    modes, dimension = modes_of(molecule), case.box.dimension
+    modes, dimension, rate = modes_of(molecule_of(case)), case.box.dimension, case.box.steady_rate
     return theory.size_in_shear(modes, rate, float(times.stress[0]), bond, dimension).bond
 
 
-def free_bond(case: Case, kind: int = 1) -> float | None:
+def free_bond(case: Case, kind: int | str = 1) -> float | None:
     """Mean square length of a bond that is not in a ring; None without a theory."""
-    spring = spring_of(molecule_of(case, kind=kind))
+    spring = springs_of(case, kind)
     if spring is None:
         return None
     return theory.mean_square_bond(K=spring.K, dimension=case.box.dimension, kT=case.fluid.kT)

@@ -36,6 +36,7 @@ class Force(ABC):
     """What accelerates the fluid and all solutes."""
 
     acts: ClassVar[bool] = True
+    steady: ClassVar[bool] = True  # whether it does not change in time
     gathers: ClassVar[bool] = True  # whether the density may be uneven for it, if it is not uniform
 
     @property
@@ -95,3 +96,11 @@ class Force(ABC):
 @generic
 def acceleration(field, r):
     """Acceleration of a particle at r, or () for none."""
+
+
+@generic
+def field_at(field, time):
+    """The field at a time since the start of the warm-up: the same, unless it changes."""
+
+
+field_at.otherwise(lambda field, time: field)

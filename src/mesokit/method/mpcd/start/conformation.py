@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
+from mesokit.method.mpcd.solute.free import spanning
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.potential.protocol import angular, central
 from mesokit.potential.thermal import lengths, mean_square
@@ -149,6 +150,8 @@ def connected(places: Floats, molecule: Molecule, periods: Floats) -> Floats:
     """The same places, each bead in the image that is nearest to the one it hangs on."""
     whole = places.reshape(-1, molecule.length, places.shape[1]).copy()
     links = molecule.bonds[:-1] if molecule.topology == "ring" else molecule.bonds
+    if molecule.topology == "free":
+        links = spanning(molecule.bonds, molecule.length)
     for a, b in links:
         apart = whole[:, b] - whole[:, a]
         with np.errstate(invalid="ignore"):

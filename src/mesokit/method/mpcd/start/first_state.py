@@ -10,11 +10,13 @@ from mesokit.errors import CaseError
 from mesokit.io import checkpoint
 from mesokit.io.run_directory import RunDirectory
 from mesokit.io.snapshot_file import read_snapshot
+from mesokit.method.mpcd.solute.free import FreeMolecule
 from mesokit.method.mpcd.start.arrays import read_arrays
 from mesokit.method.mpcd.start.snapshot import fitted, fitted_beads
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.method.mpcd.solutes import Solutes
 
 
 class FirstState(NamedTuple):
@@ -47,7 +49,23 @@ def first_state(
     solutes = read_arrays(
         case, "solutes", beads, bead_velocities, run=_last_beads, file=_beads_from_file
     )
+    if solutes[0] is None:
+        _require_drawable(case.solutes)
     return FirstState(*fluid, *solutes)
+
+
+def _require_drawable(solutes: Solutes) -> None:
+    """Raise CaseError for free molecules whose beads must be given places."""
+    for kind in range(len(solutes.polymers)):
+        molecule = solutes.molecule(kind)
+        if isinstance(molecule, FreeMolecule) and molecule.bond.spring() is None:
+            if molecule.loops == 0 and molecule.tree:
+                continue
+            why = "close loops" if molecule.loops else "lead to beads before those they start from"
+            raise CaseError(
+                f"solutes.start.positions: missing; bonds of solutes.polymers[#{kind + 1}] {why}, "
+                "and only springs without a length of their own can then be drawn"
+            )
 
 
 def _beads_from_file(case: Case, path: str) -> tuple[Any, Any]:
@@ -67,7 +85,9 @@ def _last_beads(case: Case, path: str) -> tuple[Any, Any]:
 def _polymers(case: Case) -> list[tuple[Any, ...]]:
     """Number, length, topology and arms of each kind of solutes."""
     kinds = case.solutes.polymers if case.solutes is not None else ()
-    return [(kind.number, kind.length, kind.topology, kind.arms) for kind in kinds]
+    return [
+        (kind.number, kind.length, kind.topology, kind.arms, *kind.pairs_of_beads) for kind in kinds
+    ]
 
 
 def _from_file(case: Case, path: str) -> tuple[Any, Any]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.geometry.solids.contact import MARGIN
+from mesokit.method.mpcd.start.around_beads import out_of_beads
 from mesokit.method.mpcd.start.conformation import connected, drawn
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.method.mpcd.start.room import periods, stays_out
@@ -42,28 +43,31 @@ def start(
     """
     numbers: Numbers = engine.numbers
     case, mass, at_rest = numbers.case, numbers.masses(), velocities is None
-    positions = first_positions(numbers, positions)
-    if at_rest:
-        velocities = thermal_velocities(numbers, mass)
+    drift = np.zeros(numbers.dimension)
     if case.solutes is not None:
         given = beads, bead_velocities
         beads, bead_velocities, drift = first_beads(numbers, case.solutes, *given, at_rest)
         engine.solutes.begin(beads, bead_velocities)
-        velocities = velocities - drift if at_rest else velocities
-    if at_rest and case.box.shear_rate != 0.0:
-        velocities[:, 0] += case.box.shear_rate * (positions[:, 1] - 0.5 * numbers.box[1])
+    positions = first_positions(numbers, positions, beads)
+    if at_rest:
+        velocities = thermal_velocities(numbers, mass)
+        velocities = velocities - drift if case.solutes is not None else velocities
+    if at_rest and case.box.sheared:
+        velocities[:, 0] += case.box.first_rate * (positions[:, 1] - 0.5 * numbers.box[1])
     engine.begin(positions, velocities)
 
 
-def first_positions(numbers: Numbers, given: Any) -> Floats:
-    """Positions (n, d): the given ones, or drawn where there is no solid."""
+def first_positions(numbers: Numbers, given: Any, beads: Any = None) -> Floats:
+    """Positions (n, d): the given ones, or drawn where there is no solid, and where the beads that
+    act on the fluid leave room."""
     case, molecule = numbers.case, numbers.case.fluid.molecule
     if given is not None:
         return given if molecule is None else connected(given, molecule, periods(numbers))
     number = numbers.n if molecule is None else numbers.n // molecule.length
     random = Draws(case.run.seed, INITIAL_POSITION, np.arange(number))
     if molecule is None:
-        return _uniform(numbers, random)
+        places = _uniform(numbers, random)
+        return places if beads is None else out_of_beads(numbers, places, beads)
     return drawn(molecule, case.fluid.kT, numbers.box, random, stays_out(numbers))
 
 

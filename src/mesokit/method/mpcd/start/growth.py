@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
+from mesokit.method.mpcd.solute.free import FreeMolecule, phantom
 from mesokit.method.mpcd.start.conformation import bonds_of, nearest_of, turned
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.scalar.random import INITIAL_SOLUTES
@@ -24,6 +25,8 @@ from mesokit.scalar.random import INITIAL_SOLUTES
 if TYPE_CHECKING:
     from mesokit.method.mpcd.molecule import Molecule
     from mesokit.method.mpcd.solutes import Solutes
+    from mesokit.method.mpcd.topology import Links
+    from mesokit.potential import Pair
 
 Floats = NDArray[np.float64]
 InFluid = Callable[[Floats], NDArray[np.bool_]]
@@ -54,8 +57,8 @@ def grown(
 
     Raises RunError where there is no room.
     """
-    limit = nearest_of(solutes.pair.kernel(), kT) if solutes.pair is not None else 0.0
-    there, before = Placed(solutes.beads, box, periods, limit), 0
+    limits = np.array([[_nearest(pair, kT) for pair in row] for row in solutes.pairs])
+    there, before = Placed(solutes.kinds(), box, periods, limits), 0
     for kind, polymer in enumerate(solutes.polymers):
         molecule = solutes.molecule(kind)
         pool = np.zeros((1, len(box)))
@@ -65,7 +68,7 @@ def grown(
             pool = _pool(molecule, kT, len(box), draws)
         for number in range(polymer.number):
             random = Draws(seed, INITIAL_SOLUTES, [before + number])
-            if not _place(there, molecule, pool, random, in_fluid):
+            if not _place(there, molecule, pool, kT, random, in_fluid):
                 raise RunError(
                     f"solutes.polymers[#{kind + 1}].number = {polymer.number}: no place for "
                     f"molecule {number + 1} in {TRIES} tries; expected fewer or smaller molecules, "
@@ -73,6 +76,11 @@ def grown(
                 )
         before += polymer.number
     return there.places
+
+
+def _nearest(pair: Pair | None, kT: float) -> float:
+    """How near two beads may start to one another."""
+    return nearest_of(pair.kernel(), kT) if pair is not None else 0.0
 
 
 def _pool(molecule: Molecule, kT: float, d: int, random: Draws) -> Floats:
@@ -87,6 +95,7 @@ def _place(
     there: Placed,
     molecule: Molecule | None,
     pool: Floats,
+    kT: float,
     random: Draws,
     in_fluid: InFluid,
 ) -> bool:
@@ -94,7 +103,9 @@ def _place(
     for _ in range(TRIES):
         done = there.number
         first = random.units(len(there.box))[0] * there.box
-        if molecule and molecule.topology == "ring":
+        if isinstance(molecule, FreeMolecule) and not (molecule.tree and molecule.loops == 0):
+            done_well = _draw_network(there, molecule, kT, first, random, in_fluid)
+        elif molecule and molecule.topology == "ring":
             done_well = _grow_ring(there, molecule, pool, first, random, in_fluid)
         else:
             done_well = _grow(there, molecule, pool, first, random, in_fluid)
@@ -118,7 +129,7 @@ def _grow(
     start = there.number
     there.add(first)
     came: dict[int, Floats] = {}  # the bond by which each bead was reached
-    for a, b in molecule.bonds if molecule else ():
+    for a, b in tree_of(molecule) if molecule else ():
         bonds = pool[(random.units(AT_ONCE)[0] * len(pool)).astype(int)]
         if molecule and molecule.bending is not None:
             if a in came:
@@ -131,6 +142,31 @@ def _grow(
             return False
         came[b] = bonds[good]
         there.add(ends[good])
+    return True
+
+
+def tree_of(molecule: Molecule) -> Links:
+    """Bonds from a bead to the next one in order."""
+    return molecule.tree if isinstance(molecule, FreeMolecule) else molecule.bonds
+
+
+def _draw_network(
+    there: Placed,
+    molecule: FreeMolecule,
+    kT: float,
+    first: Floats,
+    random: Draws,
+    in_fluid: InFluid,
+) -> bool:
+    """Springs in equilibrium, as if beads did not feel one another otherwise."""
+    normal = np.concatenate([random.normals(len(first)) for _ in range(molecule.length)])
+    places = first + phantom(molecule, kT, normal)
+    if not (in_fluid(places).all() and all(there.free(place) for place in places)):
+        return False
+    for place in places:
+        if not there.free(place):  # of a bead of its own
+            return False
+        there.add(place)
     return True
 
 
@@ -171,11 +207,18 @@ def _any_turn(d: int, random: Draws) -> Floats:
 
 
 class Placed:
-    """The beads that have a place already, in cells, to see who is near."""
+    """The beads that have a place already, in cells, to see who is near.
 
-    def __init__(self, most: int, box: Floats, periods: Floats, limit: float) -> None:
-        self.places, self.number = np.empty((most, len(box))), 0
-        self.box, self.limit = box, limit
+    Beads are of `kinds` (beads,); limits (kinds, kinds): how near those of two kinds may come.
+    """
+
+    def __init__(
+        self, kinds: NDArray[np.int64], box: Floats, periods: Floats, limits: Floats
+    ) -> None:
+        self.places, self.number = np.empty((len(kinds), len(box))), 0
+        self.kinds, self.squares = kinds, limits**2
+        self.box, self.limit = box, float(limits.max())
+        limit = self.limit
         self.inverse = 1.0 / periods
         self.cells = np.maximum((box / max(limit, 1e-300)).clip(max=1000).astype(int), 1)
         self.inside: dict[tuple[int, ...], list[int]] = defaultdict(list)
@@ -195,7 +238,7 @@ class Placed:
         self.number = number
 
     def free(self, place: Floats) -> bool:
-        """Whether all beads are farther away than the limit."""
+        """Whether all beads are farther from the next one than the limit."""
         if self.limit <= 0.0:
             return True
         near = [i for cell in self._around(place) for i in self.inside.get(cell, ())]
@@ -203,7 +246,8 @@ class Placed:
             return True
         way = self.places[near] - place
         way -= np.rint(way * self.inverse) * self.box
-        return bool(((way**2).sum(axis=1) > self.limit**2).all())
+        limits = self.squares[self.kinds[self.number], self.kinds[near]]
+        return bool(((way**2).sum(axis=1) > limits).all())
 
     def _cell(self, place: Floats) -> tuple[int, ...]:
         return tuple((np.floor(place / self.box * self.cells).astype(int) % self.cells).tolist())

@@ -54,22 +54,23 @@ def fitted_beads(case: Case, there: Snapshot) -> tuple[Floats, Floats | None]:
     if n != solutes.beads:
         raise CaseError(f"it has {n} particles, this case {solutes.beads} beads of solutes")
     if there.masses is not None:
-        off = ~np.isclose(there.masses, solutes.mass, rtol=ROUNDING, atol=0)
+        wanted = np.array(solutes.masses)[solutes.kinds()]
+        off = ~np.isclose(there.masses, wanted, rtol=ROUNDING, atol=0)
         if off.any():
             one = int(np.argmax(off))
             raise CaseError(
                 f"particle {there.numbers[one]} has mass {there.masses[one]:.6g}; expected "
-                f"{solutes.mass:.6g} (solutes.mass)"
+                f"{wanted[one]:.6g} (solutes.mass)"
             )
     molecule = solutes.molecule(0)
-    if len(solutes.polymers) == 1 and molecule is not None:
+    if len(solutes.polymers) == 1 and molecule is not None and molecule.topology != "free":
         if not len(there.bonds):
             raise CaseError("it has no bonds; expected those of solutes.polymers")
         order = bead_order(there.bonds, n, molecule)
     else:
-        order, wanted = np.arange(n), np.sort(solutes.bonds(), axis=1)
+        order, links = np.arange(n), np.sort(solutes.bonds(), axis=1)
         found = np.unique(np.sort(there.bonds.reshape(-1, 2), axis=1), axis=0)
-        if not np.array_equal(found, np.unique(wanted, axis=0).reshape(-1, 2)):
+        if not np.array_equal(found, np.unique(links, axis=0).reshape(-1, 2)):
             raise CaseError(
                 "its bonds are not those of solutes.polymers, kind after kind, bead after bead"
             )
@@ -83,7 +84,7 @@ def fitted_beads(case: Case, there: Snapshot) -> tuple[Floats, Floats | None]:
 def _connected(case: Case, places: Floats) -> Floats:
     """Each bead in the image that is nearest to the one that it hangs on."""
     assert case.solutes is not None
-    closed = closed_axes(case.walls)
+    closed = {*closed_axes(case.walls), *case.box.open}
     axes = AXES[: case.box.dimension]
     periods = np.where([axis in closed for axis in axes], np.inf, np.array(case.box.size, float))
     whole = places.copy()
@@ -149,7 +150,7 @@ def _whole(case: Case, there: Snapshot) -> Floats:
     Raises CaseError for a bond so long that nobody could tell which images it links.
     """
     d = case.box.dimension
-    closed = closed_axes(case.walls)
+    closed = {*closed_axes(case.walls), *case.box.open}
     open_axes = np.array([axis not in closed for axis in AXES[:d]])
     size, places = there.lengths[:d], (there.positions - there.low)[:, :d]
     told = there.images is not None and bool(there.images[:, :d][:, open_axes].any())

@@ -35,10 +35,13 @@ def first_beads(
     if velocities is None:
         who = np.arange(FIRST_BEAD, FIRST_BEAD + solutes.beads)
         random = Draws(case.run.seed, INITIAL_VELOCITY, who)
-        velocities = np.sqrt(kT / solutes.mass) * random.normals(numbers.dimension)
+        mass = solutes.mass_per_bead()
+        velocities = random.normals(numbers.dimension)
+        velocities *= np.sqrt(kT / np.asarray(mass))[..., None]
         if fluid_is_drawn:
-            momentum = solutes.mass * velocities.sum(axis=0)
-            drift = momentum / (solutes.mass * len(velocities) + numbers.masses().sum())
+            one = isinstance(mass, float)
+            momentum = mass * velocities.sum(axis=0) if one else mass @ velocities
+            drift = momentum / (solutes.total_mass + numbers.masses().sum())
             velocities -= drift
-            velocities[:, 0] += case.box.shear_rate * (places[:, 1] - 0.5 * numbers.box[1])
+            velocities[:, 0] += case.box.first_rate * (places[:, 1] - 0.5 * numbers.box[1])
     return places, velocities, drift

@@ -1,0 +1,10 @@
+"""Histories of shear: how the shear rate of a box changes in time. A new one is a file here."""
+
+from __future__ import annotations
+
+from mesokit.case.registry import parts_in
+from mesokit.case.shear.protocol import ShearHistory
+
+HISTORIES = parts_in(__path__, __name__, ShearHistory)
+
+__all__ = ["HISTORIES", "ShearHistory"]

@@ -1,0 +1,47 @@
+"""The same shear rate at all times."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal, NamedTuple
+
+from mesokit.case.component import component, param, tag
+from mesokit.case.shear.protocol import ShearHistory, slid, speed
+
+
+@component
+class SteadyShear(ShearHistory):
+    """A steady shear: what `shear_rate` alone gives.
+
+    >>> float(SteadyShear(rate=0.1).strain_at(5.0))
+    0.5
+    """
+
+    rule: Literal["steady"] = tag("steady")
+    rate: float = param(doc="shear rate", unit="1/time", ge=-1e6, le=1e6)
+
+    steady: ClassVar[bool] = True
+
+    @property
+    def largest(self) -> float:
+        """Largest size of the shear rate."""
+        return abs(self.rate)
+
+    def kernel(self, height: float) -> Even:
+        """Parameters for the scalar functions."""
+        return Even(self.rate * height)
+
+
+class Even(NamedTuple):
+    """The same speed at all times."""
+
+    speed: float
+
+
+@speed.register(Even)
+def _(history, time):
+    return history.speed
+
+
+@slid.register(Even)
+def _(history, time):
+    return history.speed * time

@@ -1,0 +1,1 @@
+"""Solutes that act on the particles of the fluid near them by a potential."""

@@ -1,0 +1,1 @@
+"""What cells must know of those next to them."""

@@ -1,0 +1,47 @@
+"""Pulls, traps and magnetic fields on beads that do not fit the case."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from mesokit.case.component import show
+from mesokit.errors import CaseError
+from mesokit.method.mpcd.molecule import UNSTABLE
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.method.mpcd.solutes import Solutes
+
+
+def external(case: Case, given: Solutes) -> Iterator[str]:
+    """Beads that are there, vectors of the dimension, boxes whose images are at rest."""
+    d, lists = case.box.dimension, ("pulls", "traps", "magnetic")
+    for name in lists:
+        for i, part in enumerate(getattr(given, name)):
+            key = f"solutes.{name}[#{i + 1}]"
+            try:
+                part.beads(given)
+            except CaseError as error:
+                yield f"{key}.{error}"
+            for vector in ("force", "centre"):
+                value = getattr(part, vector, None)
+                if value is not None and len(value) != d:
+                    yield f"{key}.{vector} = {show(value)}: expected {d} numbers, one for each axis"
+            if name != "pulls" and case.box.sheared:
+                yield f"{key}: not in a sheared box, whose images move"
+            if given.coupling == "potential":
+                yield f"{key}: not with solutes.coupling = 'potential'"
+    for i, field in enumerate(given.magnetic):
+        if d == 2 and any(field.field[:2]):
+            yield (
+                f"solutes.magnetic[#{i + 1}].field = {show(field.field)}: expected [0, 0, B] in 2D"
+            )
+    for i, trap in enumerate(given.traps):
+        time = case.fluid.timestep / given.number_of_substeps(d, case.fluid)
+        phase = (trap.k / min(given.masses)) ** 0.5 * time
+        if phase >= UNSTABLE:
+            yield (
+                f"solutes.traps[#{i + 1}].k = {show(trap.k)}: it turns by {phase:.3g} rad in a "
+                f"sub-step and is unstable from {UNSTABLE:g} on; take more solutes.substeps"
+            )

@@ -1,0 +1,119 @@
+"""What ideal molecules are at rest, and how beads drift and spread where nothing is in the way."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import (
+    Group,
+    free_bond,
+    free_diffusion,
+    modes_of,
+    rouse_note,
+    springs_of,
+)
+from mesokit.potential.thermal import mean_square
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.method.mpcd.molecule import Molecule
+
+
+def undisturbed(case: Case) -> bool:
+    """Whether nothing drives the molecules, and no wall is in their way."""
+    return not (case.walls or setting.driven(case))
+
+
+def mean_shape(case: Case, kind: int | str, group: Group) -> NDArray[np.float64] | None:
+    """Mean places (beads, d) of an ideal molecule about its centre: all 0 at rest; with pulls that
+    cancel within each molecule where the springs hold them. None where there is no theory."""
+    molecule, d = group.molecule, case.box.dimension
+    if molecule is None or free_bond(case, kind) is None:
+        return None
+    if undisturbed(case):
+        return np.zeros((group.length, d))
+    spring, solutes = springs_of(case, kind), case.solutes
+    if spring is None or solutes is None or not solutes.pulls:
+        return None
+    alone = dataclasses.replace(solutes, pulls=())
+    forces = np.zeros((solutes.beads, d))
+    for pull in solutes.pulls:
+        forces[pull.beads(solutes)] += pull.force
+    first = solutes.first_bead(solutes.index_of(kind))
+    here = forces[first : first + group.length]  # of one molecule, as of all others of its kind
+    cancels = np.abs(here.sum(axis=0)).max() <= 1e-9 * np.abs(here).sum()
+    elsewhere = (
+        np.abs(forces[:first]).sum() + np.abs(forces[first + group.number * len(here) :]).sum()
+    )
+    if elsewhere or not cancels or not undisturbed(dataclasses.replace(case, solutes=alone)):
+        return None
+    return theory.pulled_shape(modes_of(molecule), here, spring.K)
+
+
+def ideal_sizes(case: Case, kind: int | str, group: Group) -> tuple[float, float]:
+    """Mean squares of the radius of gyration and, of chains, of the end-to-end distance.
+
+    nan where there is no theory: beads that repel one another, walls, flows.
+    """
+    molecule, mean = group.molecule, mean_shape(case, kind, group)
+    bond = free_bond(case, kind) if mean is not None else None
+    if molecule is None or mean is None or bond is None:
+        return math.nan, math.nan
+    square = theory.mean_square_gyration(modes_of(molecule), bond) + float((mean**2).sum()) / len(
+        mean
+    )
+    if molecule.topology != "chain":
+        return square, math.nan
+    ends = theory.mean_square_end_to_end(molecule.length, bond)
+    return square, ends + float(((mean[-1] - mean[0]) ** 2).sum())
+
+
+def stretched(case: Case, molecule: Molecule) -> float:
+    """Length of a stretched chain, or four spreads of few bonds: farther ends are rare."""
+    bonds, d, kT = molecule.length - 1, case.box.dimension, case.fluid.kT
+    bond = mean_square(molecule.bond_potentials, d, kT, molecule.bond.longest) ** 0.5
+    return 1.1 * bond * max(bonds, 4 * bonds**0.5)
+
+
+class Drift(NamedTuple):
+    """Velocity (d,) and diffusion coefficient of centres of mass, and what to say of them."""
+
+    velocity: NDArray[np.float64]
+    diffusion: float
+    note: str
+
+
+def drift_of(case: Case, group: Group, kind: int | str = 1) -> Drift | None:
+    """How centres of solutes move in a random solvent that is the same everywhere; None elsewhere.
+
+    A force drives a bead to force/friction, friction = kT/D (Einstein): exact for a bead whose
+    velocity is forgotten by a factor at each collision, whatever the timestep.
+    """
+    solutes, alone = case.solutes, free_diffusion(case, kind=kind)
+    if solutes is None or solutes.solvent != "random" or alone is None or case.walls:
+        return None
+    place = solutes.index_of(kind)
+    if not solutes.ideal(place) or case.fluid.force.uniform(case.box.dimension) is None:
+        return None
+    mobility = solutes.masses[place] * alone / case.fluid.kT
+    single = group.molecule is None
+    note = "molecular chaos, exact for a bead alone" if single else rouse_note(case)
+    return Drift(setting.acceleration(case) * mobility, alone / group.length, note)
+
+
+def flow_axis(case: Case) -> int:
+    """Number of the axis along which a force drives the fluid, x unless there is one."""
+    axis = setting.push_axis(case)
+    return 0 if axis is None else axis
+
+
+def flow_sign(case: Case, axis: int) -> int:
+    """-1 where a force drives the fluid backwards along an axis, else 1."""
+    return -1 if setting.acceleration(case)[axis] < 0 else 1

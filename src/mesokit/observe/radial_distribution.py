@@ -1,0 +1,207 @@
+"""Radial distribution function g(r): how many others there are at a distance."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.component import component, param, show, tag
+from mesokit.case.describe.hints import Many
+from mesokit.engine import RunningFluid
+from mesokit.errors import CaseError
+from mesokit.method.mpcd.expected.molecules import Group
+from mesokit.observe.shared.estimate import of_mean
+from mesokit.observe.shared.pair_counts import count_pairs, count_within, shells
+from mesokit.observe.shared.protocol import BlockAccumulator, Observable
+from mesokit.observe.shared.result import Array, Comparison, Result
+from mesokit.observe.shared.whose import OF, default_of, groups_of, periodic_all_over, strangers
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+Ids = NDArray[np.int64]
+FARTHEST = 5.0  # unless a reach is given
+
+
+@component
+class RadialDistribution(Observable):
+    """Pairs at a distance r over those of as many independent particles, in a periodic box.
+
+    Of the fluid some particles are looked at, which changes the error bars and not the mean; of
+    solutes all beads.
+    """
+
+    quantity: Literal["radial-distribution"] = tag("radial-distribution")
+    needs_fluid: ClassVar[bool] = False
+    of: Literal["beads", "particles"] | None = param(None, doc=OF)
+    kinds: Many[int | str] = param(
+        (),
+        doc="one kind, or two: those of the second about one of the first (all unless said); names "
+        "or numbers from 1, of solutes.polymers or fluid.species",
+        max_length=2,
+    )
+    pairs: Literal["all", "between"] = param(
+        "all", doc='"between": only those of different molecules'
+    )
+    reach: float | None = param(
+        None, doc="longest distance (half of the shortest side, 5 at most)", unit="a", gt=0
+    )
+    bins: int = param(50, doc="bins of the distance", ge=1, le=10_000)
+    particles: int = param(400, doc="of the fluid, those looked at, others at each sample", ge=2)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError in a box that is not periodic, and without a pair to look at."""
+        periodic_all_over(case, "radial-distribution")
+        half = min(case.box.size) / 2
+        if self.reach is not None and self.reach > half:
+            raise CaseError(
+                f"reach = {self.reach:g}: expected at most {half:g}, half of the shortest side"
+            )
+        first, second = self.chosen(case)
+        if len(self.kinds) == 2 and {g.first for g in first} & {g.first for g in second}:
+            raise CaseError(f"kinds = {show(self.kinds)}: expected two different ones, or one")
+        number = sum(group.number * group.length for group in first)
+        molecules = sum(group.number for group in first)
+        if not second and (number < 2 or (self.pairs == "between" and molecules < 2)):
+            what = "molecules" if self.pairs == "between" else "particles or beads"
+            raise CaseError(f"no pair to look at; expected two {what} at least")
+
+    def chosen(self, case: Case) -> tuple[list[Group], list[Group]]:
+        """Groups of the first kind and of the second, which is empty for pairs within the first."""
+        of = default_of(case, self.of)
+        if not self.kinds:
+            return groups_of(case, of), []
+        first, *others = (groups_of(case, of, kind) for kind in self.kinds)
+        return first, others[0] if others else []
+
+    def accumulator(self, case: Case) -> RadialDistributionAccumulator:
+        """An empty memory for it."""
+        return RadialDistributionAccumulator(self, case)
+
+
+class RadialDistributionAccumulator(BlockAccumulator):
+    """Block averages of g in bins."""
+
+    def __init__(self, observable: RadialDistribution, case: Case) -> None:
+        observable.check(case)
+        self.name, self.case, self.observable = observable.label, case, observable
+        self.first, self.second = observable.chosen(case)
+        solutes = default_of(case, observable.of) == "beads" and case.solutes is not None
+        most = None if solutes else observable.particles
+        self.beads, self.others = (_sample(groups, most) for groups in (self.first, self.second))
+        self.box = np.array(case.box.size, float)
+        reach = observable.reach or min(FARTHEST, min(case.box.size) / 2)
+        self.edges = np.linspace(0.0, reach, observable.bins + 1)
+        self.shells = shells(self.edges, case.box.dimension)
+        self.blocks = Blocks((observable.bins,))
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        found = self.counts(fluid) * self.box.prod() / self.shells
+        self.blocks.add(found / self.number())
+
+    def number(self) -> float:
+        """Pairs that there are at any distance, of all molecules and not only the sample."""
+        within, between = _pairs(self.first)
+        if self.second:
+            return float(_size(self.first) * _size(self.second))
+        return between if self.observable.pairs == "between" else within + between
+
+    def counts(self, fluid: RunningFluid) -> Array:
+        """Pairs (bins,) of all, as far as the sample knows."""
+        places = self.places(fluid, self.first, self.beads)
+        one = np.concatenate(places)
+        if self.second:
+            other = np.concatenate(self.places(fluid, self.second, self.others))
+            share = len(one) * len(other) / self.number()
+            return count_pairs(one, other, self.box, self.edges) / share
+        seen = count_pairs(one, None, self.box, self.edges)
+        looked = [g._replace(number=len(b)) for g, b in zip(self.first, self.beads, strict=True)]
+        if looked == self.first and self.observable.pairs == "all":
+            return seen.astype(float)
+        inside = np.zeros(len(seen), np.int64)
+        for beads, r in zip(self.beads, places, strict=True):
+            inside += count_within(r.reshape(*beads.shape, -1), self.box, self.edges)
+        # molecules are taken as wholes: of pairs within them another part than of all others
+        (within, between), (within_seen, between_seen) = _pairs(self.first), _pairs(looked)
+        found = (seen - inside) * (between / between_seen if between_seen else 0.0)
+        if self.observable.pairs == "all" and within_seen:
+            found = found + inside * (within / within_seen)
+        return np.asarray(found, float)
+
+    def places(self, fluid: RunningFluid, groups: list[Group], beads: list[Ids]) -> list[Array]:
+        """Of the sample in each group: other molecules each time, so that few tell of all soon."""
+        found = []
+        for group, ids in zip(groups, beads, strict=True):
+            if len(ids) < group.number:
+                turn = self.blocks.count * group.length
+                ids = group.first + (ids - group.first + turn) % (group.number * group.length)
+            found.append(fluid.positions(ids.ravel()))
+        return found
+
+    def result(self) -> Result:
+        """g(r), beside 1 where nobody knows of others."""
+        expected = self.expected()
+        return Result(
+            quantity="radial-distribution",
+            name=self.name,
+            x={"r": (self.edges[1:] + self.edges[:-1]) / 2},
+            value=self.blocks.mean(),
+            error=self.blocks.error(),
+            label="g(r)",
+            units={"value": "", "r": "a"},
+            expected=None if expected is None else np.full(len(self.shells), expected),
+            theory="ideal gas",
+            comparisons=tuple(self.comparisons(expected)),
+            samples=self.blocks.count,
+            extra={"edges": self.edges},
+        )
+
+    def expected(self) -> float | None:
+        """1 of what is independent of all others; None within molecules, and with potentials."""
+        case, groups = self.case, self.first + self.second
+        bonded = max(group.length for group in groups) > 1
+        if bonded and self.observable.pairs == "all" and not self.second:
+            return None
+        return 1.0 if strangers(case, default_of(case, self.observable.of), groups) else None
+
+    def comparisons(self, expected: float | None) -> list[Comparison]:
+        """Neighbours within the reach; without a theory also where g is largest."""
+        if not self.blocks.count:
+            return []
+        found, about = of_mean(self.blocks), self.number() / _size(self.first)
+        density = about * (1 if self.second else 2) / float(self.box.prod())
+        weights = density * self.shells
+        value, error = found.scalar(weights @ found.value, weights)
+        known = np.nan if expected is None else expected * float(weights.sum())
+        r = self.edges[-1]
+        listed = [Comparison("neighbours within the reach", value, error, known, "", f"r < {r:g}")]
+        if expected is None:
+            top = int(np.argmax(found.value))
+            note = f"at r = {(self.edges[top] + self.edges[top + 1]) / 2:.3g}"
+            height, error = float(found.value[top]), float(found.error[top])
+            listed.append(Comparison("largest g(r)", height, error, note=note))
+        return listed
+
+
+def _sample(groups: list[Group], most: int | None) -> list[Ids]:
+    """Beads (molecules, length) of each group, or of so many as have `most` beads at least."""
+    return [
+        group.beads(None if most is None else min(group.number, max(2, most // group.length)))
+        for group in groups
+    ]
+
+
+def _size(groups: list[Group]) -> int:
+    """Beads of them all."""
+    return sum(group.number * group.length for group in groups)
+
+
+def _pairs(groups: list[Group]) -> tuple[float, float]:
+    """Pairs within molecules, and of different ones."""
+    within = sum(group.number * (group.length * (group.length - 1) // 2) for group in groups)
+    size = _size(groups)
+    return float(within), float(size * (size - 1) // 2 - within)

@@ -1,0 +1,59 @@
+"""Whose places are looked at: groups of particles or beads, and whether others matter to them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mesokit.errors import CaseError
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import Group, group_of
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+OF = "what is looked at (beads of solutes or molecules where there are any)"
+
+
+def default_of(case: Case, of: str | None) -> str:
+    """What was asked for, or else beads where there are any."""
+    if of is not None:
+        return of
+    beads = case.solutes is not None or case.fluid.molecule is not None
+    return "beads" if beads else "particles"
+
+
+def groups_of(case: Case, of: str, kind: int | str | None = None) -> list[Group]:
+    """Those of a kind, or all. Raises CaseError if there are none.
+
+    Beads of all kinds are a group for each, particles of all species are one.
+    """
+    if kind is None and of != "particles" and case.solutes is not None:
+        kinds = range(1, len(case.solutes.polymers) + 1)
+        return [group_of(case, of, number) for number in kinds]
+    return [group_of(case, of, kind)]
+
+
+def at_rest(case: Case) -> bool:
+    """Whether nothing drives or gathers what is there, and no wall is in its way."""
+    return not (case.walls or setting.driven(case) or setting.gathered(case))
+
+
+def strangers(case: Case, of: str, groups: list[Group]) -> bool:
+    """Whether particles, or molecules as wholes, are independent of all others."""
+    solutes = case.solutes
+    if not at_rest(case) or (solutes is not None and solutes.solvent_pair is not None):
+        return False
+    if of == "particles" or solutes is None:
+        return True
+    starts = [case.particles + solutes.first_bead(k) for k in range(len(solutes.polymers))]
+    return all(solutes.ideal(starts.index(group.first)) for group in groups)
+
+
+def periodic_all_over(case: Case, what: str) -> None:
+    """Raise CaseError for a box with sliding images, open ends or walls."""
+    if case.box.sheared:
+        raise CaseError(f"{what}: not under box.shear_rate, whose images slide")
+    if case.walls:
+        raise CaseError(f"{what}: not beside a wall; expected a box without any")
+    if case.box.open:
+        raise CaseError(f"{what}: not in an open box; expected a periodic one")

@@ -1,0 +1,144 @@
+"""Where particles are and how fast, at chosen steps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.box import Axis
+from mesokit.case.component import component, option, param, show, tag
+from mesokit.case.describe.hints import Many
+from mesokit.engine import RunningFluid
+from mesokit.errors import CaseError
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.groups import groups
+from mesokit.observe.shared.protocol import Observable, State
+from mesokit.observe.shared.result import Comparison, Result
+from mesokit.statistics import spread_ids
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+MOST = 8  # pictures side by side
+
+
+@component
+class Snapshots(Observable):
+    """Positions and velocities of particles at chosen steps, each as a scatter plot."""
+
+    quantity: Literal["snapshots"] = tag("snapshots")
+    in_open_box: ClassVar[bool] = True
+    steps: Many[int] = param((0, 1, 10), doc="steps after the warm-up, each a multiple of every")
+    axes: tuple[Axis, Axis] = param(("x", "y"), doc="the two axes of the pictures")
+    particles: int = param(1000, doc="particles shown, evenly spread over their numbers", ge=1)
+    every: int = option(default=1, doc="steps between two looks", ge=1, kw_only=True)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for steps at which nobody looks."""
+        for axis in self.axes:
+            case.box.index(axis, "axes")
+        if self.axes[0] == self.axes[1]:
+            raise CaseError(f"axes = {show(list(self.axes))}: expected two different axes")
+        given = f"steps = {show(list(self.steps))}"
+        if not 1 <= len(self.steps) <= MOST:
+            raise CaseError(f"{given}: expected 1 to {MOST} steps")
+        if list(self.steps) != sorted(set(self.steps)) or self.steps[0] < 0:
+            raise CaseError(f"{given}: expected steps from 0 on, each once, in order")
+        if any(step % self.every for step in self.steps):
+            raise CaseError(f"{given}: expected multiples of every = {self.every}")
+
+    def warnings(self, case: Case) -> Iterator[str]:
+        """Steps that the run does not reach."""
+        if self.steps[-1] > case.run.steps:
+            yield (
+                f"steps = {show(list(self.steps))}: not all are reached; run.steps = "
+                f"{case.run.steps}"
+            )
+
+    def accumulator(self, case: Case) -> SnapshotsAccumulator:
+        """An empty memory for it."""
+        return SnapshotsAccumulator(self, case)
+
+
+class SnapshotsAccumulator:
+    """What was seen so far, (steps, particles, 4): two coordinates and two velocities."""
+
+    def __init__(self, observable: Snapshots, case: Case) -> None:
+        observable.check(case)
+        self.observable, self.case, self.name = observable, case, observable.label
+        self.columns = [case.box.index(axis) for axis in observable.axes]
+        self.ids = spread_ids(observable.particles, case.particles)
+        self.seen = np.zeros((0, len(self.ids), 4))
+        self.times = np.zeros((0, 2))  # step and time
+        self.looks = 0
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Look, if this is one of the steps."""
+        self.looks += 1
+        step = fluid.step - self.case.run.warmup
+        if step not in self.observable.steps or step in self.times[:, 0]:
+            return
+        r, v = fluid.positions(self.ids), fluid.velocities(self.ids)
+        row = np.concatenate([r[:, self.columns], v[:, self.columns]], axis=1)
+        self.seen = np.concatenate([self.seen, row[None]])
+        self.times = np.concatenate([self.times, [[step, fluid.time]]])
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return {"seen": self.seen.copy(), "times": self.times.copy(), "looks": np.array(self.looks)}
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.seen, self.times = np.array(state["seen"]), np.array(state["times"])
+        self.looks = int(state["looks"])
+
+    def pool(self, other: SnapshotsAccumulator) -> None:
+        """Those of the first run are kept: places of two runs have no mean."""
+        self.looks += other.looks
+
+    def result(self) -> Result:
+        """What was seen, in the order of the steps."""
+        first, second = self.observable.axes
+        names = [first, second, f"v_{first}", f"v_{second}"]
+        x = {"step": self.times[:, 0].astype(np.int64), "particle": self.ids}
+        return Result(
+            quantity="snapshots",
+            drawing="snapshots",
+            name=self.name,
+            x=x | {"component": np.array(names)},
+            value=self.seen.copy(),
+            error=np.full(self.seen.shape, np.nan),
+            label="positions and velocities",
+            units={"value": "", "position": "a", "velocity": "a/tau", "time": "tau"},
+            comparisons=tuple(self._comparisons()),
+            samples=self.looks,
+            extra={
+                "time": self.times[:, 1].copy(),
+                "species": self._species(),
+                "size": np.array([self.case.box.size[k] for k in self.columns], float),
+            },
+        )
+
+    def _species(self) -> NDArray[np.int64]:
+        """The place of each particle's kind in fluid.species; 0 of a fluid of one kind."""
+        counts = [kind.number for kind in groups(self.case)[0].kinds]
+        return np.searchsorted(np.cumsum(counts), self.ids, side="right").astype(np.int64)
+
+    def _comparisons(self) -> list[Comparison]:
+        """Of particles that fly freely nothing but the place changes, and that evenly."""
+        case, seen = self.case, self.seen
+        free = not (case.fluid.collision.acts or setting.driven(case) or case.walls)
+        if not free or case.fluid.molecule is not None or len(seen) < 2:
+            return []
+        exact = "exact: only rounding may show"
+        change = float(abs(seen[:, :, 2:] - seen[0, :, 2:]).max())
+        found = [Comparison("largest change of a velocity", change, 0.0, 0.0, "a/tau", exact)]
+        if set(self.observable.axes) <= set(case.box.open):
+            since = (self.times[:, 1] - self.times[0, 1])[:, None, None]
+            flown = seen[:, :, :2] - seen[0, :, :2] - since * seen[0, :, 2:]
+            far = float(abs(flown).max())
+            found.append(Comparison("largest way off free flight", far, 0.0, 0.0, "a", exact))
+        return found

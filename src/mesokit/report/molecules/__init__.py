@@ -1,0 +1,1 @@
+"""Pictures of molecules: in time, and how their numbers are distributed."""

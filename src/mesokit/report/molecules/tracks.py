@@ -1,0 +1,73 @@
+"""Molecules in time: size, orientation, the way of their centres and their velocity."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from mesokit.observe.shared.result import Result
+from mesokit.report.style import COLOURS, LINES, labelled
+
+SHOWN = 6  # molecules with a line of their own
+MORE = 2.4  # inches for four panels
+
+
+def draw(result: Result, figure: Any, ax: Any) -> None:
+    """Panels of the first molecules in time; in given axes their radius of gyration alone."""
+    if ax is not None:
+        _lines(ax, result, "gyration", "radius of gyration $R_g$")
+        ax.set_xlabel(labelled("time $t$", result.units["time"]))
+        return
+    names = [str(name) for name in result.x["component"]]
+    axis = str(result.extra["axis"])
+    wanted = [
+        ("gyration", "radius of\ngyration $R_g$"),
+        ("end-to-end", "end-to-end\ndistance $R$"),
+        ("orientation", f"orientation\nalong ${axis}$"),
+        (axis, f"centre ${axis}$"),
+        (f"v{axis}", f"velocity $v_{axis}$"),
+    ]
+    rows = [(name, label) for name, label in wanted if name in names]
+    figure.set_figheight(figure.get_figheight() + MORE * (len(rows) - 2) / 3)
+    panels = figure.subplots(len(rows), 1, sharex=True)
+    for panel, (name, label) in zip(panels, rows, strict=True):
+        _lines(panel, result, name, label)
+        panel.yaxis.label.set_size(9)
+        panel.locator_params(axis="y", nbins=4)
+    time = result.x["time"]
+    if len(time) > 1:
+        panels[-1].set_xlim(time[0], time[-1])
+    panels[-1].set_xlabel(labelled("time $t$", result.units["time"]))
+    handles, labels = panels[0].get_legend_handles_labels()
+    if handles:
+        title = "molecule" if len(result.x["molecule"]) <= SHOWN else f"molecule (first {SHOWN})"
+        panels[0].legend(
+            handles,
+            labels,
+            loc="lower left",
+            bbox_to_anchor=(0, 1),
+            ncols=8,
+            title=title,
+            borderaxespad=0.2,
+            handlelength=1.5,
+        )
+    figure.align_ylabels()
+
+
+def _lines(ax: Any, result: Result, name: str, label: str) -> None:
+    """One number of the first molecules, and its root mean square where theory knows it."""
+    column = [str(n) for n in result.x["component"]].index(name)
+    for k, molecule in enumerate(result.x["molecule"][:SHOWN]):
+        ax.plot(
+            result.x["time"],
+            result.value[:, k, column],
+            color=COLOURS[k],
+            ls=LINES[k],
+            lw=0.9,
+            label=str(int(molecule)),
+        )
+    known = {"gyration": "ideal_gyration", "end-to-end": "ideal_end_to_end"}.get(name)
+    if known and np.isfinite(result.extra[known]):
+        ax.axhline(result.extra[known], color="black", lw=1.3, label="ideal: root mean square")
+    ax.set_ylabel(labelled(label, result.units[name]))

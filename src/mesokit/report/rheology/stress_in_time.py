@@ -1,0 +1,63 @@
+"""Stress in time under the shear rate that causes it, as rheometers draw it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from mesokit.observe.shared.result import Result
+from mesokit.report.caption import mathematics
+from mesokit.report.style import COLOURS, MARKERS, labelled, legend_above
+
+SYMBOLS = {
+    "shear stress": r"$\sigma_{xy}$",
+    "shear stress of bonds": r"$\sigma_{xy}$ of bonds",
+    "first normal-stress difference": r"$\sigma_{xx} - \sigma_{yy}$",
+}
+MORE = 1.4  # inches for three panels
+
+
+def draw(result: Result, figure: Any, ax: Any) -> None:
+    """Shear rate, shear stress, normal stress; in given axes the shear stress alone."""
+    names = [str(name) for name in result.x["component"]]
+    if ax is not None:
+        _curves(result, ax, names[:-1])
+        ax.set_xlabel(labelled("time $t$", result.units["time"]))
+        legend_above(ax)
+        return
+    figure.set_figheight(figure.get_figheight() + MORE)
+    rate, shear, normal = figure.subplots(3, 1, sharex=True, height_ratios=[1, 3, 2])
+    rate.plot(result.x["time"], result.extra["rate"], color=COLOURS[5], lw=1.2)
+    rate.set_ylabel(labelled(r"$\dot\gamma$", "1/tau"))
+    _curves(result, shear, names[:-1])
+    _curves(result, normal, names[-1:], first=len(names) - 1)
+    normal.set_xlabel(labelled("time $t$", result.units["time"]))
+    normal.get_legend_handles_labels()
+    legend_above(shear)
+    figure.align_ylabels()
+
+
+def _curves(result: Result, ax: Any, names: list[str], first: int = 0) -> None:
+    """Points with error bars where there are some, and theory."""
+    time = result.x["time"]
+    for k, name in enumerate(names, start=first):
+        value, error = result.value[:, k], result.error[:, k]
+        known = bool(np.isfinite(error).any())
+        ax.errorbar(
+            time,
+            value,
+            error if known else None,
+            fmt=MARKERS[k],
+            mfc="white",
+            ms=3,
+            lw=0.8,
+            color=COLOURS[k],
+            label=SYMBOLS[name] + (r", $\pm$ one standard error" if known and not k else ""),
+            zorder=2,
+        )
+        if result.expected is not None:
+            label = mathematics(f"theory: {result.theory}") if k == 0 else None
+            ax.plot(time, result.expected[:, k], color="black", lw=1.2, label=label, zorder=3)
+    ax.axhline(0, color="0.7", lw=0.7, zorder=1)
+    ax.set_ylabel(labelled(SYMBOLS[names[0]], result.units["value"]))

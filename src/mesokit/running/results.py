@@ -1,0 +1,32 @@
+"""What a run writes as it ends: results, figures, its record."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from mesokit.io import h5md
+from mesokit.io.run_directory import RunDirectory, now
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.io.trajectory import TrajectoryWriter
+    from mesokit.observe.shared.result import Result
+
+
+def write_results(
+    directory: RunDirectory,
+    case: Case,
+    results: Mapping[str, Result],
+    timings: Mapping[str, float],
+    writer: TrajectoryWriter | None,
+) -> None:
+    """Write all that a run says at its end. Raises RunError."""
+    kept = directory.read_provenance() | {"ended": now(), "timings": timings}
+    h5md.write(directory.data_file, case, kept, results.values(), writer)
+    directory.write_provenance(kept)
+    from mesokit.report import save_all
+
+    save_all(results.values(), directory.path, case)
+    if writer is not None:
+        writer.remove()
