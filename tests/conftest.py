@@ -25,6 +25,14 @@ HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE / name) for name in ("laws", "observe", "report", "geometry", "gpu")]
 
 
+@pytest.fixture(autouse=True, scope="session")
+def machine_in_no_hurry():
+    """What takes long says so: on a machine with much else to do, what a test asks for would."""
+    from mesokit.cli import words
+
+    words.SILENT = 3600.0
+
+
 @pytest.fixture
 def make_case():
     """A case from a box, observables and what else differs from the defaults."""

@@ -7,6 +7,7 @@ import io
 import os
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
@@ -325,6 +326,18 @@ class Terminal(io.StringIO):
 
     def isatty(self) -> bool:
         return True
+
+
+@pytest.mark.parametrize("quiet", [False, True])
+def test_what_takes_long_says_so(quiet: bool, monkeypatch, capsys) -> None:
+    from mesokit.cli import words
+
+    said = threading.Event()
+    monkeypatch.setattr(words, "SILENT", 0.001)
+    monkeypatch.setattr(words, "say", lambda text: (print(text), said.set()))
+    with words.patience("looking for something", quiet):
+        assert quiet or said.wait(60)
+    assert capsys.readouterr().out == ("" if quiet else "mesokit: looking for something ...\n")
 
 
 class TestProgress:

@@ -126,7 +126,8 @@ def test_what_is_wrong_is_said_in_one_line(
 ) -> None:
     done = command(folder, what, rule)
     assert done.returncode
-    lines = done.stderr.strip().splitlines()
+    # what takes long says so, with dots
+    lines = [line for line in done.stderr.strip().splitlines() if not line.endswith(" ...")]
     assert len(lines) == 1, done.stderr
     assert all(word in lines[0] for word in words), lines[0]
 

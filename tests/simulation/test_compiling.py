@@ -43,8 +43,9 @@ def test_interrupted_while_compiling(case_file, tmp_path):
     """The process ends at once, and its folder holds a run that can be gone on with."""
     process = command(tmp_path, "run", case_file, "--threads", "2")
     said = ""
-    while "compiling" not in said:
-        said += process.stderr.readline()
+    while "compiling" not in said and (line := process.stderr.readline()):
+        said += line
+    assert "compiling" in said, said
     process.send_signal(signal.SIGINT)
     began = time.perf_counter()
     _, errors = process.communicate()

@@ -15,7 +15,7 @@ from mesokit.study.cluster import Cluster
 SBATCH = """#!/bin/sh
 for script; do :; done
 cp "$script" "{folder}/job.sh"
-sh "$script" > "{folder}/job.txt" 2>&1 &
+sh "{folder}/job.sh" > "{folder}/job.txt" 2>&1 &
 echo "Submitted batch job 7"
 """
 

@@ -12,7 +12,7 @@ import click
 from mesokit import method as methods
 from mesokit.cli.commands import CASE, JSON, SET, THREADS, axes_of, cli, naming, read
 from mesokit.cli.completion import beginning
-from mesokit.cli.words import in_json, patience, show_table
+from mesokit.cli.words import READING, in_json, patience, show_table
 from mesokit.errors import CaseError
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ def check(
     from mesokit.case.kind import has_run
     from mesokit.method.protocol import method_of
 
-    with patience("looking at the solids (the first time, what looks at them is compiled)"):
+    with patience(READING):
         full = read(case, settings)
         method = method_of(full)
         with naming(case):

@@ -21,7 +21,7 @@ from mesokit.cli.commands import (
     require_run,
 )
 from mesokit.cli.outcome import show_results, stopping, warnings_said
-from mesokit.cli.words import in_json, patience, say
+from mesokit.cli.words import READING, in_json, patience, say
 from mesokit.errors import CaseError
 
 NOT_REACHED = 3  # exit status of a run that had to end before an error was as small as was asked
@@ -65,7 +65,7 @@ def run(
             raise CaseError("--overwrite: not with --seeds, whose runs go on where they are")
         given = {"settings": settings, "threads": threads, "quiet": quiet}
         return run_seeds(case, seeds, output, given)
-    with patience("looking at the solids (the first time, what looks at them is compiled)"):
+    with patience(READING, quiet):
         full = read(case, settings)
     _claim(output, overwrite)
     if not quiet:

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 SILENT = 2.0  # seconds
+READING = "reading the case (what looks at solids is compiled the first time)"
 
 
 def say(text: str) -> None:
@@ -22,11 +23,12 @@ def say(text: str) -> None:
 
 
 @contextlib.contextmanager
-def patience(why: str) -> Iterator[None]:
-    """Say why it takes so long, where it does."""
+def patience(why: str, quiet: bool = False) -> Iterator[None]:
+    """Say why it takes so long, where it does and anything is to be said."""
     timer = threading.Timer(SILENT, say, [f"mesokit: {why} ..."])
     timer.daemon = True
-    timer.start()
+    if not quiet:
+        timer.start()
     try:
         yield
     finally:
