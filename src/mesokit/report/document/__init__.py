@@ -1,6 +1,7 @@
 """Pages in HTML: the report of a run, the cards and the bar that notebooks show.
 
-Markup is in the templates beside the code, `base.html` of all pages, `parts.html` their tables.
+Markup is in the templates beside the code: `base.html` of all pages, `page.html` of reports,
+`parts.html` their tables.
 """
 
 from mesokit.report.document.card import card
