@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from mesokit.study.here import Here
+
 CASE = """
 title = "a channel"
 [run]
@@ -30,6 +32,13 @@ every = 3
 quantity = "flow-rate"
 every = 10
 """
+
+
+@pytest.fixture
+def here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs of studies go on in this process: the start of others is most of their time."""
+    made = "mesokit.study.study.Processes"
+    monkeypatch.setattr(made, lambda jobs, threads, parts: Here(threads))
 
 
 @pytest.fixture(scope="session")

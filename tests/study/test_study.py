@@ -134,7 +134,7 @@ def test_another_case_in_its_place_is_refused(study, case_file, tmp_path):
         Study(other, {FORCE: [0.02, 0.04]}, seeds=3, output=study.path)
 
 
-def test_runs_become_longer(case_file, tmp_path, study):
+def test_runs_become_longer(case_file, tmp_path, study, here):
     """A study that is made again with more steps goes on; to fewer it cannot come."""
     first = Study(case_file, output=tmp_path / "s", settings={"run.steps": 60})
     first.run()
@@ -147,7 +147,7 @@ def test_runs_become_longer(case_file, tmp_path, study):
         Study(case_file, output=tmp_path / "s", settings={"run.steps": 60})
 
 
-def test_a_folder_that_was_removed_is_made_again(case_file, tmp_path):
+def test_a_folder_that_was_removed_is_made_again(case_file, tmp_path, here):
     made = Study(case_file, output=tmp_path / "s", settings={"run.steps": 30})
     shutil.rmtree(made.runs[0].path)
     Study.open(tmp_path / "s").run()
@@ -165,15 +165,14 @@ def test_bad_values_make_no_folder(case_file, tmp_path):
 
 
 def test_one_that_fails_does_not_stop_the_others(case_file, tmp_path, capsys):
-    vary = {(FORCE, "fluid.thermostat.rule"): [(500.0, "none"), (0.02, "maxwell-boltzmann")]}
-    study = Study(case_file, vary, output=tmp_path / "s")
+    study = Study(case_file, {FORCE: [5000.0, 0.02]}, output=tmp_path / "s")
     told: list[int] = []
 
     class Watching(StudyReporter):
         def update(self, step: int) -> None:
             told.append(step)
 
-    with pytest.raises(RunError, match=r"acceleration=500,rule=none/seed=5: .*particle moves at"):
+    with pytest.raises(RunError, match=r"acceleration=5000/seed=5: .*particle moves at"):
         study.run(jobs=1, progress=Watching(quiet=True))
     one = 130 * sum(group.number for group in study.runs[0].files.case.groups)
     assert one <= max(told) < 2 * one  # the one that failed has not been carried to its end
@@ -185,7 +184,7 @@ def test_one_that_fails_does_not_stop_the_others(case_file, tmp_path, capsys):
     assert len(study.table()) > 0
 
 
-def test_study_files_and_the_command(case_file, tmp_path, capsys, monkeypatch):
+def test_study_files_and_the_command(case_file, tmp_path, capsys, monkeypatch, here):
     monkeypatch.chdir(tmp_path)
     text = f'case = "{case_file.as_posix()}"\nseeds = [5]\n[set]\n"run.steps" = 60\n'
     Path("forces.toml").write_text(f'{text}[[vary]]\n"{FORCE}" = "0.02:0.04:2"\n')
@@ -241,7 +240,7 @@ def test_poor_study_files(case_file, tmp_path, text, words):
         Study.open(tmp_path / "s.toml")
 
 
-def test_seeds_of_one_case(case_file, tmp_path, capsys):
+def test_seeds_of_one_case(case_file, tmp_path, capsys, here):
     """`run --seeds` runs them, and shows what they say as one."""
     output = tmp_path / "seeds"
     steps = ["--set", "run.steps=60"]
@@ -253,10 +252,10 @@ def test_seeds_of_one_case(case_file, tmp_path, capsys):
 
 
 def begun(study: Path, number: int, process: subprocess.Popen[str]) -> list[Path]:
-    """Waits until so many runs go on."""
+    """Waits until so many runs have gone some steps."""
     end = time.monotonic() + LONG
     while time.monotonic() < end:
-        found = list(study.rglob(".progress"))
+        found = [path for path in study.rglob(".progress") if int(path.read_text() or 0) > 50]
         if len(found) >= number:
             return [path.parent for path in found]
         with contextlib.suppress(subprocess.TimeoutExpired):

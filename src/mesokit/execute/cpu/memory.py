@@ -132,7 +132,7 @@ class Memory:
             self._taken(),
         )
         spare = zeros(numbers.n)
-        ends = zeros((self.threads, numbers.number_of_cells), np.int32)
+        ends = zeros((self.threads, numbers.number_of_cells + 1), np.int32)
         self.order = Order(
             zeros(numbers.n, np.int32), ends, spare, spare.view(np.int32), spare.view(np.int64)
         )

@@ -86,7 +86,8 @@ def bin_sums(team, zero, masses, box, particles, bins, sums):
             for k in range(2):
                 axis, number = bins.axes[k], bins.number[k]
                 x = floor(r[axis] / box.size[axis] * number)
-                index = index * number + min(max(x, 0.0), number - 1.0)
+                x = x if x > 0.0 else 0.0  # also of a place that is no number
+                index = index * number + (x if x < number else number - 1.0)
             place[i] = np.int32(index)
             store_scratch(quanta, i, rounded(scaled(m, v) + (m, m * dot(v, v)), scales))
         add_strip(place, quanta, out, lanes_in(filling, b), terms, ())
