@@ -176,12 +176,10 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
     if numbers.flow == "plug" and numbers.flow_speed is None:
         yield "fluid.force.acceleration: slip plates hold nothing: the fluid speeds up for ever"
     if numbers.heating is not None and numbers.heating > 0.01:
-        cooled = any(
-            surface.rule == "no-slip" for wall in case.walls for surface in wall.surfaces().values()
-        )
+        most = numbers.heating_bound
         yield (
-            f"no thermostat: friction raises the temperature by {'at most ' * cooled}"
-            f"{100 * numbers.heating:.2g} % over the run" + "; walls at kT cool the fluid" * cooled
+            f"no thermostat: friction raises the temperature by {'at most ' * most}"
+            f"{100 * numbers.heating:.2g} % over the run" + "; walls at kT cool the fluid" * most
         )
     if numbers.reynolds is not None:
         # as it is shown: 1.4 is not above 1.4
