@@ -6,7 +6,23 @@ import dataclasses
 
 import pytest
 
-from mesokit import SRD, Cylinder, Disk, NoThermostat, Plates, Run, Uniform
+from mesokit import (
+    FENE,
+    SRD,
+    BondLength,
+    Cylinder,
+    Disk,
+    FlowRate,
+    Harmonic,
+    Molecule,
+    MoleculeSize,
+    NoThermostat,
+    Plates,
+    Run,
+    Stress,
+    Uniform,
+    VelocityProfile,
+)
 from mesokit.method.mpcd.derived import derive
 from mesokit.method.mpcd.summary import summary
 
@@ -38,6 +54,22 @@ def test_the_flow_in_a_round_pipe_is_that_of_hagen_and_poiseuille(make_case):
     assert found.flow_speed == pytest.approx(0.01 * 100 / (4 * nu))
     assert found.reynolds == pytest.approx(found.flow_speed * 20 / nu)
     assert found.steady_time == pytest.approx(100 / (5.783 * nu), rel=1e-3)
+
+
+def test_what_lacks_theory_is_named_in_a_fluid_of_molecules(make_case):
+    """Those of springs have theories of their own."""
+
+    def said(bond, shear=None, walls=(), *observe):
+        fluid = {"molecule": Molecule(length=2, bond=bond), "walls": walls, "observe": observe}
+        found = make_case((20, 20), **fluid, **({"shear_rate": shear} if shear else {}))
+        return [text for text in derive(found).warnings if "theory" in text]
+
+    spring, plates = Harmonic(K=1), [Plates("y")]
+    assert said(spring, 0.1, (), Stress(), BondLength(), VelocityProfile()) == []
+    (text,) = said(spring, None, plates, MoleculeSize(), VelocityProfile(), FlowRate())
+    assert text.endswith("velocity-profile and flow-rate lack theory")
+    (text,) = said(FENE(), 0.1, (), Stress())
+    assert "no theory of a fluid of molecules" in text
 
 
 def heating(make_case, virtual="extrapolate", steps=10_000, **plates):
