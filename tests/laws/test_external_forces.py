@@ -123,7 +123,7 @@ def test_observables_see_trapped_dimers_as_boltzmann_has_them():
             assert abs(c.measured - c.expected) < 4 * c.error, (name, c)
     spread = found["histogram"].result()["mean square distance"]
     assert spread.expected == pytest.approx(0.625, rel=0.01) and spread.error < 0.05
-    level = found["moved"].result()["levelled off"]
+    level = found["moved"].result()["mean square displacement"]
     assert level.expected == pytest.approx(2 * 0.75) and level.error < 0.15
 
 
