@@ -6,7 +6,23 @@ import dataclasses
 
 import pytest
 
-from mesokit import Cylinder, Disk, NoThermostat, Plates, Run, Uniform
+from mesokit import (
+    FENE,
+    SRD,
+    BondLength,
+    Cylinder,
+    Disk,
+    FlowRate,
+    Harmonic,
+    Molecule,
+    MoleculeSize,
+    NoThermostat,
+    Plates,
+    Run,
+    Stress,
+    Uniform,
+    VelocityProfile,
+)
 from mesokit.method.mpcd.derived import derive
 from mesokit.method.mpcd.summary import summary
 
@@ -40,10 +56,46 @@ def test_the_flow_in_a_round_pipe_is_that_of_hagen_and_poiseuille(make_case):
     assert found.steady_time == pytest.approx(100 / (5.783 * nu), rel=1e-3)
 
 
+def test_what_lacks_theory_is_named_in_a_fluid_of_molecules(make_case):
+    """Those of springs have theories of their own."""
+
+    def said(bond, shear=None, walls=(), *observe):
+        fluid = {"molecule": Molecule(length=2, bond=bond), "walls": walls, "observe": observe}
+        found = make_case((20, 20), **fluid, **({"shear_rate": shear} if shear else {}))
+        return [text for text in derive(found).warnings if "theory" in text]
+
+    spring, plates = Harmonic(K=1), [Plates("y")]
+    assert said(spring, 0.1, (), Stress(), BondLength(), VelocityProfile()) == []
+    (text,) = said(spring, None, plates, MoleculeSize(), VelocityProfile(), FlowRate())
+    assert text.endswith("velocity-profile and flow-rate lack theory")
+    (text,) = said(FENE(), 0.1, (), Stress())
+    assert "no theory of a fluid of molecules" in text
+
+
+def heating(make_case, virtual="extrapolate", steps=10_000, **plates):
+    walls = [Plates("y", virtual=virtual, **plates)]
+    case = make_case(
+        (20, 20), walls=walls, thermostat=NoThermostat(), collision=SRD(), force=Uniform([0.004, 0])
+    )
+    longer = derive(dataclasses.replace(case, run=Run(steps=steps)))
+    return longer, [text for text in longer.warnings if "friction" in text]
+
+
+@pytest.mark.parametrize("virtual", ["top-up", "none"])
+def test_heating_by_friction_is_a_bound_where_nobody_knows_what_walls_cool(make_case, virtual):
+    """Particles bounce back with the energy that they had: without virtual ones nothing cools."""
+    found, (text,) = heating(make_case, virtual)
+    assert found.heating_bound == (virtual == "top-up") == ("at most" in text and "cool" in text)
+    assert found.heating == pytest.approx(10 * heating(make_case, virtual, 1000)[0].heating)
+
+
 @pytest.mark.parametrize("rule", ["no-slip", "slip"])
-def test_heating_by_friction_is_a_bound_where_walls_cool(make_case, rule):
-    walls = [Plates("y", lower={"rule": rule}, upper={"rule": "no-slip"})]
-    case = make_case((20, 20), walls=walls, thermostat=NoThermostat(), **PUSH)
-    longer = dataclasses.replace(case, run=Run(steps=10_000))
-    (text,) = (text for text in derive(longer).warnings if "friction" in text)
-    assert "by at most" in text and "cool" in text
+def test_heating_by_friction_ends_where_walls_take_all_of_it(make_case, rule):
+    """A slip plate takes none: the middle of a slit twice as high."""
+    early, _ = heating(make_case, steps=20, lower={"rule": rule})
+    bare, _ = heating(make_case, "none", steps=20, lower={"rule": rule})
+    assert early.heating == pytest.approx(bare.heating, rel=0.05)
+    late, (text,) = heating(make_case, steps=20_000, lower={"rule": rule})
+    later, _ = heating(make_case, steps=40_000, lower={"rule": rule})
+    assert later.heating == pytest.approx(late.heating, rel=0.01)
+    assert "at most" not in text and f"{100 * late.heating:.2g} %" in text

@@ -8,9 +8,12 @@ from numba import njit
 from mesokit import (
     Box,
     Case,
+    DensityProfile,
     Fluid,
     Harmonic,
     MagneticField,
+    MeanSquareDisplacement,
+    MoleculeHistogram,
     Polymer,
     Pull,
     Run,
@@ -90,6 +93,38 @@ def test_a_trapped_bead_is_spread_as_boltzmann_says():
     assert mean(middles).agrees(0.0), mean(middles)
     held = 0.5 * trap.k * (samples[-1] ** 2).sum()
     assert 0 < fluid.solutes.potential_energy() - held < 20  # and that of the dimer
+
+
+def test_observables_see_trapped_dimers_as_boltzmann_has_them():
+    """One bead held across an edge of the box, the other pulled: normal, folded into the box."""
+    held = {"traps": [Trap([6.0, 11.5], k=2.0, bead=1)], "pulls": [Pull([0.0, 0.6], bead=2)]}
+    fluid = in_random_solvent(Polymer(40, length=2), **held)
+    seen = {
+        "beads": DensityProfile(of="beads", bins_per_cell=2),
+        "ends": DensityProfile(of="ends", bins_per_cell=2),
+        "centres": DensityProfile(of="centres", bins_per_cell=2),
+        "histogram": MoleculeHistogram(of="centre", axis="y"),
+        "moved": MeanSquareDisplacement(of="beads", every=300, max_lag=9000, components=["y"]),
+    }
+    found = {name: one.accumulator(fluid.case) for name, one in seen.items()}
+    fluid.advance(2000)
+    for _ in range(60):
+        fluid.advance(300)
+        for one in found.values():
+            one.observe(fluid)
+    shape = theory.trapped_shape([(0, 1)], 2.0, [2.0, 0.0], [[11.5], [0.0]], [[0.0], [0.6]])
+    assert shape.mean[:, 0].tolist() == pytest.approx([11.8, 12.1])
+    assert np.diag(shape.covariance).tolist() == pytest.approx([0.5, 1.0])
+    assert shape.centre_variance == pytest.approx(0.625)
+    for name, one in found.items():
+        result = one.result()
+        assert result.comparisons, name
+        for c in result.comparisons:
+            assert abs(c.measured - c.expected) < 4 * c.error, (name, c)
+    spread = found["histogram"].result()["mean square distance"]
+    assert spread.expected == pytest.approx(0.625, rel=0.01) and spread.error < 0.05
+    level = found["moved"].result()["mean square displacement"]
+    assert level.expected == pytest.approx(2 * 0.75) and level.error < 0.15
 
 
 def test_a_pulled_chain_is_stretched_by_the_sum_of_its_springs():

@@ -12,6 +12,7 @@ from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import KIND, Group, group_of, springs_of
+from mesokit.method.mpcd.expected.traps import held, trapped
 from mesokit.observe.shared.estimate import Estimate, of_mean
 from mesokit.observe.shared.profile import Array, Profile, ProfileAccumulator
 from mesokit.observe.shared.result import Comparison, Result
@@ -31,7 +32,8 @@ LABELS = {
 class DensityProfile(Profile):
     """Particles per cell in slices across an axis.
 
-    Uniform but for a force towards a plate, and for plates that keep the beads of molecules off.
+    Uniform but for a force towards a plate, for plates that keep the beads of molecules off, and
+    for traps, in which solutes are spread by Boltzmann's distribution.
     """
 
     quantity: Literal["density-profile"] = tag("density-profile")
@@ -94,7 +96,9 @@ class DensityProfileAccumulator(ProfileAccumulator):
         found: list[Comparison] = []
         if expected is not None and self.blocks.count:
             found = self.chi_square(density, expected, "against theory")
-            if not self.periodic:
+            if self.trapped:
+                found.append(self.spread(density, expected))
+            elif not self.periodic:
                 cell = self.observable.bins_per_cell
                 for name, part in (("lower", slice(0, cell)), ("upper", slice(-cell, None))):
                     mean = np.zeros(self.bins)
@@ -119,8 +123,25 @@ class DensityProfileAccumulator(ProfileAccumulator):
             extra={"bins_per_cell": self.observable.bins_per_cell},
         )
 
+    @property
+    def trapped(self) -> bool:
+        """Whether it is of solutes in traps."""
+        return self.of != "particles" and trapped(self.case, self.kind)
+
+    def spread(self, density: Estimate, expected: Array) -> Comparison:
+        """Mean square distance from the expected middle, by the shorter way round the box."""
+        length, share = self.edges[-1], expected / expected.sum()
+        turns = np.angle(share @ np.exp(2j * np.pi * self.centres / length))
+        away = self.centres - turns * length / (2 * np.pi)
+        square = (away - length * np.rint(away / length)) ** 2 / expected.sum()
+        value, error = density.scalar(square @ density.value, square)
+        what = f"mean square distance from the middle of the traps along {self.observable.axis}"
+        return Comparison(what, value, error, float(square @ expected), "a^2")
+
     def legend(self) -> str:
         """What the theory is called in a figure."""
+        if self.trapped:
+            return "Boltzmann in traps"
         walls = self.group.molecule is not None and not self.periodic
         return "ideal molecules between walls" if walls else "ideal gas"
 
@@ -130,6 +151,8 @@ class DensityProfileAccumulator(ProfileAccumulator):
         density = group.number * group.length / float(np.prod(case.box.size))
         if setting.obstructed(case) or setting.gathered(case):
             return None
+        if self.trapped:
+            return self.expected_in_traps()
         weight = 0.0 if self.periodic else float(setting.acceleration(case)[self.axis])
         solutes = case.solutes if self.of != "particles" else None
         kind = solutes.index_of(self.kind) if solutes else 0
@@ -146,6 +169,22 @@ class DensityProfileAccumulator(ProfileAccumulator):
         height = self.edges[-1]
         scale = density * height * decay / np.expm1(decay * height)
         return scale * setting.bin_average(lambda y: np.exp(decay * y), self.edges)
+
+    def expected_in_traps(self) -> Array | None:
+        """Normal distributions, of which images of the box make one."""
+        found = held(self.case, self.kind)
+        if found is None or not self.periodic:
+            return None
+        given, length = self.edges, float(self.edges[-1])
+        if self.of == "centres":
+            spread = [(found.centre[self.axis], found.centre_variance)]
+        elif found.mean is None or found.variance is None:
+            return None
+        else:
+            which = _ends(self.group) if self.of == "ends" else slice(None)
+            spread = list(zip(found.mean[which, self.axis], found.variance[which], strict=True))
+        shares = [theory.normal_in_box(given, float(at), float(s), length) for at, s in spread]
+        return self.group.number * np.sum(shares, axis=0) / self.slice_volume
 
     def expected_of_molecules(self, decay: float) -> Array | None:
         """Of ideal molecules; None for other bonds, and where the sums would take too long."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,7 @@ class FlowRate(Observable):
     """
 
     quantity: Literal["flow-rate"] = tag("flow-rate")
+    asks_transport: ClassVar[bool] = True
     axis: Axis | None = param(None, doc="axis of the flow (that of the force unless said)")
 
     def check(self, case: Case) -> None:

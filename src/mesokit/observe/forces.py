@@ -44,6 +44,7 @@ class Forces(Observable):
     """
 
     quantity: Literal["forces"] = tag("forces")
+    asks_transport: ClassVar[bool] = True
     measures: ClassVar[tuple[str, ...]] = ("walls",)
     length: float | None = param(
         None, doc="length D of the coefficients (none unless said)", unit="a", gt=0

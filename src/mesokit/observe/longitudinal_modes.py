@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
@@ -28,6 +28,7 @@ class LongitudinalModes(Modes):
     """
 
     quantity: Literal["longitudinal-modes"] = tag("longitudinal-modes")
+    asks_transport: ClassVar[bool] = True
 
     def accumulator(self, case: Case) -> LongitudinalModesAccumulator:
         """An empty memory for it."""

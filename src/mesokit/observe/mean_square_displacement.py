@@ -47,6 +47,9 @@ class Displacement(Protocol):
     def diffusive_from(self) -> float:
         """The lag from which on the displacement is a straight line, inf if never."""
 
+    def level_from(self) -> float:
+        """The lag from which on the displacement no longer grows, inf if it always does."""
+
     def legend(self) -> str:
         """What the theory is called in a figure."""
 
@@ -151,6 +154,13 @@ class MeanSquareDisplacementAccumulator:
         late = time >= first if first else steps > 0
         if late.sum() >= 3:
             curve, comparisons = self.fit_diffusion(time, moved, late)
+        expected = self.theory.expected(steps)
+        level = time >= self.theory.level_from()
+        if level.any() and expected is not None:
+            mean = level / level.sum()
+            measured = moved.scalar(mean @ moved.value, mean)
+            what = "mean square displacement, levelled off"
+            comparisons.append(Comparison(what, *measured, expected[level].mean(), "a^2"))
         return Result(
             quantity="mean-square-displacement",
             drawing="displacement",
@@ -160,7 +170,7 @@ class MeanSquareDisplacementAccumulator:
             error=moved.error,
             label="mean square displacement" + " of centres of mass" * self.centres,
             units={"value": "a^2", "time": "tau"},
-            expected=self.theory.expected(steps),
+            expected=expected,
             fit=curve,
             theory=self.theory.legend(),
             comparisons=tuple(comparisons),

@@ -23,6 +23,7 @@ from mesokit.method.mpcd.expected.molecules import (
     modes_of,
     molecule_of,
 )
+from mesokit.method.mpcd.expected.traps import held, trapped
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.observe.shared.protocol import Observable, State
 from mesokit.observe.shared.result import Array, Comparison, Result
@@ -197,11 +198,21 @@ class MoleculeHistogramAccumulator:
             label="probability density",
             units={"value": "1/a" if unit else "", name: unit},
             expected=None if expected is None else expected / (edges[1] - edges[0]),
-            theory="ideal molecules" if self.observable.of != "centre" else "anywhere alike",
+            theory=self.legend(),
             comparisons=tuple(self.comparisons(known)) if self.means.blocks.count else (),
             samples=self.means.blocks.count,
             extra={"edges": edges, "of": self.words()},
         )
+
+    def spread(self, share: Array) -> Comparison:
+        """Mean square distance from the expected middle, by the shorter way round the box."""
+        length, middle = self.edges[-1], (self.edges[1:] + self.edges[:-1]) / 2
+        turns = np.angle(share @ np.exp(2j * np.pi * middle / length))
+        away = middle - turns * length / (2 * np.pi)
+        square = ((away - length * np.rint(away / length)) ** 2)[None]
+        value, error = float(self.means.mean(square)[0]), float(self.means.error(square)[0])
+        what = f"mean square distance from the middle of the traps along {AXES[self.axis]}"
+        return Comparison(what, value, error, float(square[0] @ share), "a^2")
 
     def words(self) -> str:
         """What is counted."""
@@ -210,6 +221,13 @@ class MoleculeHistogramAccumulator:
             return f"end-to-end vector along {axis}"
         against = {"orientation": f" against {axis}", "centre": f" along {axis}"}
         return words + against.get(self.observable.of, "")
+
+    def legend(self) -> str:
+        """What the theory is called in a figure."""
+        if self.observable.of != "centre":
+            return "ideal molecules"
+        in_traps = trapped(self.case, self.observable.kind)
+        return "Boltzmann in traps" if in_traps else "anywhere alike"
 
     def coarse(self) -> tuple[int, int, int]:
         """First and last fine edge of the result, and fine bins in each of its bins."""
@@ -227,6 +245,8 @@ class MoleculeHistogramAccumulator:
         of, case, kind = self.observable.of, self.case, self.observable.kind
         molecule, d = self.group.molecule, self.dimension
         assert molecule is not None
+        if of == "centre" and trapped(case, kind):
+            return self.cdf_in_traps(edges)
         if of == "centre":
             uneven = case.walls or setting.gathered(case)
             return None if uneven else (edges - edges[0]) / (edges[-1] - edges[0])
@@ -247,10 +267,23 @@ class MoleculeHistogramAccumulator:
             return theory.gyration_cdf(edges, modes_of(molecule), bond, d)
         return theory.end_to_end_cdf(edges, theory.mean_square_end_to_end(molecule.length, bond), d)
 
+    def cdf_in_traps(self, edges: Array) -> Array | None:
+        """Of the centres of molecules that traps hold, counted in a unit cell."""
+        found, length = held(self.case, self.observable.kind), float(edges[-1])
+        if found is None:
+            return None
+        share = theory.normal_in_box(
+            edges, float(found.centre[self.axis]), found.centre_variance, length
+        )
+        return np.concatenate([[0.0], np.cumsum(share)])
+
     def comparisons(self, known: Array | None) -> list[Comparison]:
-        """The mean, by the middles of the fine bins, as theory is taken too."""
+        """The mean, by the middles of the fine bins, as theory is taken too; of centres in traps
+        the mean square distance from where they are in the mean."""
         if self.observable.of == "centre":
-            return []
+            if known is None or not trapped(self.case, self.observable.kind):
+                return []
+            return [self.spread(np.diff(known))]
         middle = ((self.edges[1:] + self.edges[:-1]) / 2)[None]
         value, error = float(self.means.mean(middle)[0]), float(self.means.error(middle)[0])
         expected = np.nan if known is None else float(middle[0] @ np.diff(known))

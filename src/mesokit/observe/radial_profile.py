@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -39,6 +39,7 @@ class RadialProfile(Observable):
     """
 
     quantity: Literal["radial-profile"] = tag("radial-profile")
+    asks_transport: ClassVar[bool] = True
     of: Literal["azimuthal", "axial", "radial", "density", "temperature"] = param(
         "azimuthal", doc="what: a velocity component, 'density' or 'temperature'"
     )

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import component, tag
 from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.heating import settled, temperature_rise
 from mesokit.observe.shared.estimate import Estimate, of_ratio
 from mesokit.observe.shared.profile import Array, Profile, ProfileAccumulator
 from mesokit.observe.shared.result import Comparison, Result
@@ -121,16 +122,30 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
         """kT where something holds it, or where nothing heats or cools the fluid.
 
         What the thermostat of the cells makes of the shear (`theory.shear_warming`) comes on top,
-        and the shear within a slice.
+        or the heat that plates without a thermostat have yet to take, and the shear within a slice.
         """
         fluid = self.case.fluid
         if not self.flows:
             return np.full(self.bins, fluid.kT)
-        warming = setting.warming(self.case) if setting.isothermal(self.case) else None
-        if warming is None or any(flow.profile is None for flow in self.flows):
+        if any(flow.profile is None for flow in self.flows):
             return None
         inside = fluid.mass / self.observable.bins_per_cell**2 / (12 * self.dimension)
-        return fluid.kT + (warming + inside) * self.shear2()
+        if not setting.isothermal(self.case):
+            rise = self.rise()
+            return None if rise is None else fluid.kT + rise + inside * self.shear2()
+        warming = setting.warming(self.case)
+        return None if warming is None else fluid.kT + (warming + inside) * self.shear2()
+
+    def rise(self) -> Array | None:
+        """Of the temperature by friction in each slice of a slit; None until it is steady."""
+        (across,) = {flow.across for flow in self.flows}
+        found = temperature_rise(self.case) if settled(self.case, across) else None
+        if found is None:
+            return None
+        if self.axis != across:
+            return np.full(self.bins, found.mean())
+        height = np.linspace(0.0, float(self.case.box.size[across]), len(found))
+        return setting.bin_average(lambda y: np.interp(y, height, found), self.edges)
 
     def shear2(self) -> Array:
         """Square of the shear rate of the expected flow in each slice, (bins,)."""

@@ -31,6 +31,7 @@ class VelocityAutocorrelation(Observable):
     """
 
     quantity: Literal["velocity-autocorrelation"] = tag("velocity-autocorrelation")
+    asks_transport: ClassVar[bool] = True
     in_open_box: ClassVar[bool] = True
     every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
     particles: int = param(2000, doc="particles followed", ge=1)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
@@ -26,6 +26,7 @@ class VelocityField(Field):
     """Mean velocity on a grid over two axes: momentum over mass, every component."""
 
     quantity: Literal["velocity-field"] = tag("velocity-field")
+    asks_transport: ClassVar[bool] = True
 
     def accumulator(self, case: Case) -> VelocityFieldAccumulator:
         """An empty memory for it."""

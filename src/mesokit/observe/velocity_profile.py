@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -31,6 +31,7 @@ class VelocityProfile(Profile):
     """
 
     quantity: Literal["velocity-profile"] = tag("velocity-profile")
+    asks_transport: ClassVar[bool] = True
     component: Axis | None = param(None, doc="axis of the velocity (that of the flow unless said)")
 
     def check(self, case: Case) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +41,7 @@ class Wake(Observable):
     """
 
     quantity: Literal["wake"] = tag("wake")
+    asks_transport: ClassVar[bool] = True
     solid: str | None = param(None, doc="name of the body (the first that is no plate unless said)")
     flow: Axis | None = param(None, doc="axis of the flow (that of the force unless said)")
     width: float = param(1.0, doc="width of the strip", unit="a", gt=0)

@@ -38,6 +38,8 @@ from mesokit.theory.hagen_poiseuille import (
     hagen_poiseuille_velocity,
 )
 from mesokit.theory.harmonic_spring import Spring, mean_square_bond, spring, spring_of_bond
+from mesokit.theory.harmonic_trap import TrappedShape, normal_in_box, trapped_shape
+from mesokit.theory.heat_at_walls import HeatAtWalls, heat_at_walls, slit_temperature_rise
 from mesokit.theory.held_temperature import shear_warming, temperature_offset
 from mesokit.theory.hookean_shear import (
     ShearStress,
@@ -135,6 +137,7 @@ __all__ = [
     "ChainExponents",
     "ChainInShear",
     "GaussianMolecule",
+    "HeatAtWalls",
     "NormalModes",
     "Origin",
     "PoiseuilleFit",
@@ -146,6 +149,7 @@ __all__ = [
     "StressInTime",
     "Transport",
     "TransversePoles",
+    "TrappedShape",
     "ViscosityFit",
     "apparent_viscosity",
     "bead_diffusion",
@@ -179,6 +183,7 @@ __all__ = [
     "gyration_cdf",
     "hagen_poiseuille_flow_rate",
     "hagen_poiseuille_velocity",
+    "heat_at_walls",
     "kirkwood_diffusion",
     "kirkwood_in_cells",
     "kolmogorov_onset_time",
@@ -201,6 +206,7 @@ __all__ = [
     "msd_molecular_chaos",
     "msd_rouse_beads",
     "network_modes",
+    "normal_in_box",
     "origins",
     "oscillating_slit_response",
     "oscillating_slit_velocity",
@@ -218,6 +224,7 @@ __all__ = [
     "shear_warming",
     "size_in_shear",
     "slip_sphere_diffusion",
+    "slit_temperature_rise",
     "spring",
     "spring_of_bond",
     "square_array_drag",
@@ -238,6 +245,7 @@ __all__ = [
     "transverse_correlation_finite_k",
     "transverse_poles",
     "transverse_viscosity_fit",
+    "trapped_shape",
     "trimer_bond_length",
     "trimer_spring_constant",
     "vacf_modes",

@@ -58,6 +58,10 @@ class Displacement:
         """From the first step on."""
         return 0.0
 
+    def level_from(self) -> float:
+        """Never: nothing holds them."""
+        return float("inf")
+
     def legend(self) -> str:
         """The formula."""
         return f"{2 * len(self.axes)} D t"

@@ -12,6 +12,7 @@ from mesokit import theory
 from mesokit.case.trajectory import stored_bytes
 from mesokit.geometry.shape.plates import Plates
 from mesokit.method.mpcd.expected import recognise, setting
+from mesokit.method.mpcd.expected.heating import heating
 from mesokit.method.mpcd.numbers import Derived
 from mesokit.method.mpcd.warnings import cautions
 from mesokit.running.cores import usable_cores
@@ -81,6 +82,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         bead_seconds = beads * (BEAD + BEAD_SUBSTEP * substeps) * steps
     memory = beads * BYTES["bead"] + case.particles * BYTES[f"particle {dimension}D"]
     memory += case.box.volume * BYTES[f"cell {dimension}D"] * threads
+    heated = _heating(case, across)
     numbers = Derived(
         particles=case.particles,
         particle_steps=case.particles * steps,
@@ -94,7 +96,8 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         steady_time=_steady_time(case, across, nu)
         if nu and (speed or bound) and builds_up
         else None,
-        heating=_heating(case, across, nu) if nu else None,
+        heating=heated[0] if heated else None,
+        heating_bound=heated is not None and heated[1],
         seconds=case.particles * steps / rate + bead_seconds + _observe_seconds(case),
         memory=round(memory + BYTES["program"] + bool(case.observe) * BYTES["figures"]),
         trajectory=stored_bytes(case.trajectory, case.groups, dimension, case.run.steps),
@@ -187,22 +190,19 @@ def _steady_time(case: Case, across: int, viscosity: float) -> float:
     return 1 / (viscosity * _wavenumber(case, across) ** 2)
 
 
-def _heating(case: Case, across: int, viscosity: float) -> float | None:
-    """Relative rise of the temperature by viscous heating over the run; None if held.
-
-    About solids that move, of a flow that falls to zero over the whole box: they heat it no less.
-    """
-    if setting.isothermal(case):
+def _heating(case: Case, across: int) -> tuple[float, bool] | None:
+    """Relative rise of the temperature by friction over the run, and whether that is a bound, as
+    walls cool the fluid and nobody knows how much; None if held."""
+    found = heating(case, across)
+    if found is None:
         return None
-    length = float(case.box.size[across])
-    y = np.linspace(0, length, 401)
-    profiles = [setting.flow(case, i).profile for i in range(case.box.dimension)]
-    dissipation = sum(
-        viscosity * float(np.mean(np.gradient(u(y), y) ** 2)) for u in profiles if u is not None
-    )
-    dissipation = max(dissipation, viscosity * (setting.surface_speed(case) / length) ** 2)
     time = (case.run.warmup + case.run.steps) * case.fluid.timestep
-    return 2 / case.box.dimension * case.fluid.mass * dissipation * time / case.fluid.kT
+    cooled = any(
+        surface.rule == "diffuse" or (surface.rule == "no-slip" and wall.virtual != "none")
+        for wall in case.walls
+        for surface in wall.surfaces().values()
+    )
+    return found.after(time), found.steady is None and cooled
 
 
 def _observe_seconds(case: Case) -> float:

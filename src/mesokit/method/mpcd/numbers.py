@@ -21,8 +21,9 @@ class Derived(Shown):
     of the empty channel where obstacles stand in the flow and nobody knows its speed beforehand,
     `flow_size` the size across it, `reynolds` both over the viscosity, `mach` the speed over that
     of sound; `steady_time` is the time in which the flow comes within 1/e of its steady state.
-    `substeps` are those of molecules. `seconds` and `memory` (bytes) of the run are estimates,
-    `assumed` says of what.
+    `heating` is the relative rise of the temperature by friction at the end of the run,
+    `heating_bound` says that walls keep it lower. `substeps` are those of molecules. `seconds` and
+    `memory` (bytes) of the run are estimates, `assumed` says of what.
     """
 
     particles: int
@@ -36,6 +37,7 @@ class Derived(Shown):
     mach: float | None
     steady_time: float | None
     heating: float | None
+    heating_bound: bool
     seconds: float
     memory: int
     trajectory: int

@@ -13,6 +13,7 @@ from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.compression import compression, unit_cell
+from mesokit.method.mpcd.expected.molecules import spring_of, without_bonds
 from mesokit.method.mpcd.molecule import COARSE
 
 if TYPE_CHECKING:
@@ -83,12 +84,29 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
         )
     if transport is None:
         reason = setting.caveat(case) or "no formula for this fluid"
-        yield f"transport coefficients: {reason}; plots of what needs them lack theory"
+        lacking = _without_theory(case)
+        if lacking:
+            yield f"transport coefficients: {reason}; {lacking}"
     elif case.box.dimension == 2 and _above(7, transport.dynamic_viscosity, 3):
         yield (
             f"in 2D fluctuations raise a dynamic viscosity of {transport.dynamic_viscosity:.3g} "
             "(below 7) by several percent over theory, more in a larger box"
         )
+
+
+def _without_theory(case: Case) -> str:
+    """Which plots lack theory where transport coefficients do; "" if those of a case have it.
+
+    Molecules of springs have theories of their own, of all but flows between walls and of waves
+    and velocities of single beads.
+    """
+    molecule, sheared = case.fluid.molecule, bool(case.box.sheared)
+    if molecule is None or spring_of(molecule) is None or without_bonds(case) is None:
+        return "plots of what needs them lack theory"
+    names = [one.label for one in case.observe if one.asks_transport and not sheared]
+    if not names:
+        return ""
+    return f"{' and '.join(names)} {'lack' if len(names) > 1 else 'lacks'} theory"
 
 
 def _solid_warnings(case: Case) -> Iterator[str]:
@@ -176,12 +194,10 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
     if numbers.flow == "plug" and numbers.flow_speed is None:
         yield "fluid.force.acceleration: slip plates hold nothing: the fluid speeds up for ever"
     if numbers.heating is not None and numbers.heating > 0.01:
-        cooled = any(
-            surface.rule == "no-slip" for wall in case.walls for surface in wall.surfaces().values()
-        )
+        most = numbers.heating_bound
         yield (
-            f"no thermostat: friction raises the temperature by {'at most ' * cooled}"
-            f"{100 * numbers.heating:.2g} % over the run" + "; walls at kT cool the fluid" * cooled
+            f"no thermostat: friction raises the temperature by {'at most ' * most}"
+            f"{100 * numbers.heating:.2g} % over the run" + "; walls at kT cool the fluid" * most
         )
     if numbers.reynolds is not None:
         # as it is shown: 1.4 is not above 1.4

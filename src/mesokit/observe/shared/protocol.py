@@ -53,6 +53,8 @@ class Observable(ABC):
     methods: ClassVar[tuple[str, ...]] = ()  # it is for, beside those that offer it
     needs_fluid: ClassVar[bool] = True  # whether solutes alone cannot answer it
     in_open_box: ClassVar[bool] = False  # whether it can be told of particles far outside the box
+    # whether its theory needs the transport coefficients of the fluid as it is, molecules and all
+    asks_transport: ClassVar[bool] = False
     measures: ClassVar[tuple[str, ...]] = ()  # "stress" or "walls": what the step has to sum for it
     every: int = option(default=10, doc="steps between two samples", ge=1, kw_only=True)
     name: str | None = option(

@@ -21,6 +21,7 @@ from mesokit.method.mpcd.expected.molecules import (
     stirring_diffusion,
     without_solutes,
 )
+from mesokit.method.mpcd.expected.traps import LEVEL, held, trapped
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -50,6 +51,8 @@ class Displacement:
 
     def legend(self) -> str:
         """What the theory is called in a figure."""
+        if self.trapped:
+            return "level in traps, by Boltzmann"
         if self.ballistic():
             return "free flight"
         label = setting.chaos_label(self.case)
@@ -81,6 +84,8 @@ class Displacement:
     def expected(self, steps: Integers) -> Array | None:
         """Molecular chaos, of molecules Rouse's; None without a theory."""
         fluid, molecule, alone = self.case.fluid, self.molecule, self.alone()
+        if self.trapped:
+            return self.level(steps * fluid.timestep)
         if self.ballistic():
             return len(self.axes) * fluid.kT / self.mass * (steps * fluid.timestep) ** 2
         if alone is None or not set(self.axes) <= set(setting.quiet_axes(self.case)):
@@ -98,6 +103,24 @@ class Displacement:
             return None
         modes = modes_of(molecule).eigenvalues
         return theory.msd_rouse_beads(steps, dt, g, modes, spring.k, d, kT, mass)
+
+    @property
+    def trapped(self) -> bool:
+        """Whether traps hold those that are followed."""
+        return self.of != "particles" and trapped(self.case, self.kind)
+
+    def level(self, time: Array) -> Array | None:
+        """Twice the variance of places in traps, at lags after which all is forgotten, else nan."""
+        found = held(self.case, self.kind)
+        if found is None or found.time is None or found.variance is None:
+            return None
+        variance = found.centre_variance if self.of == "centres" else float(found.variance.mean())
+        return np.where(time >= self.level_from(), 2 * len(self.axes) * variance, np.nan)
+
+    def level_from(self) -> float:
+        """The lag from which on it no longer grows: in traps, if that is known, else inf."""
+        found = held(self.case, self.kind) if self.trapped else None
+        return np.inf if found is None or found.time is None else LEVEL * found.time
 
     def ballistic(self) -> bool:
         """Whether they fly freely: nothing to meet, to be bound to, or to fall by."""
@@ -117,8 +140,8 @@ class Displacement:
         a bead has forgotten where in the molecule it is. What drags beads along in a fluid of
         molecules changes as the molecule turns, so that its centre is in no hurry either.
         """
-        if not self.case.fluid.collision.acts and self.molecule is None:
-            return np.inf  # it never forgets
+        if self.trapped or (not self.case.fluid.collision.acts and self.molecule is None):
+            return np.inf  # it never gets far, or never forgets
         alone = free_diffusion(self.case, self.of, self.kind)
         start = 5 * alone * self.mass / self.case.fluid.kT if alone else 0.0
         solute = self.case.solutes is not None and self.of != "particles"
