@@ -21,8 +21,8 @@ class Derived(Shown):
     of the empty channel where obstacles stand in the flow and nobody knows its speed beforehand,
     `flow_size` the size across it, `reynolds` both over the viscosity, `mach` the speed over that
     of sound; `steady_time` is the time in which the flow comes within 1/e of its steady state.
-    `substeps` are those of molecules. `seconds` and `memory` (bytes) of the run are estimates,
-    `assumed` says of what.
+    `substeps` are those of the fluid's molecules, or else of solutes. `seconds` and `memory`
+    (bytes) of the run are estimates, `assumed` says of what.
     """
 
     particles: int
