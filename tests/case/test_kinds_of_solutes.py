@@ -28,6 +28,7 @@ from mesokit.method.mpcd.expected.molecules import (
     free_bond,
     group_of,
     kind_of,
+    least_times_of,
     mode_times_of,
     springs_of,
 )
@@ -136,6 +137,19 @@ class TestAmongMolecules:
             found = Displacement(case, MeanSquareDisplacement(of=of, kind=kind))
             assert np.isnan(found.coefficient()[0]) and found.expected(np.arange(3)) is None
             assert 0 < found.diffusive_from() < 1000
+
+    def test_error_bars_know_how_slow_molecules_are_at_least(self):
+        """In 3D: as slow as in the fluid without bonds, or without solutes."""
+        solutes = Solutes([BALL, CHAIN])
+        parts = {"run": Run(1), "box": Box([6, 6, 6])}
+        both = Case(fluid=TRIMERS, solutes=solutes, **parts)
+        simple, alone = (
+            Case(fluid=Fluid(density=6), solutes=solutes, **parts),
+            Case(fluid=TRIMERS, **parts),
+        )
+        for kind, other in (("chain", simple), ("fluid", alone)):
+            found, wanted = least_times_of(both, kind), mode_times_of(other, kind)[0]
+            assert found is not None and (found.mode == wanted.mode).all()
 
     def test_pairs_of_both(self):
         case = case_of(Solutes([BALL, CHAIN]), TRIMERS)

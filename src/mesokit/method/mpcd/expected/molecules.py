@@ -340,6 +340,21 @@ def mode_times_of(case: Case, kind: int | str = 1) -> tuple[theory.RouseTimes | 
         return None, "no theory of bonds as short as these"
 
 
+def least_times_of(case: Case, kind: int | str = 1) -> theory.RouseTimes | None:
+    """Relaxation times for error bars: those of theory.
+
+    Of solutes in a fluid of molecules, and of that fluid, there is none: it takes those of the
+    solutes in the fluid without its bonds, which make them longer, and those of the fluid alone.
+    """
+    if case.solutes is None or case.fluid.molecule is None:
+        return mode_times_of(case, kind)[0]
+    alone = dataclasses.replace(case, observe=(), trajectory=None, log=None)
+    if of_fluid(case, kind):
+        return mode_times_of(dataclasses.replace(alone, solutes=None))[0]
+    fluid = dataclasses.replace(case.fluid, molecule=None)
+    return mode_times_of(dataclasses.replace(alone, fluid=fluid), kind)[0]
+
+
 FEW = 3  # beads of a molecule up to which the others do not screen what it drags along
 
 
