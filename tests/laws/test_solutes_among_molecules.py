@@ -36,7 +36,6 @@ SHEARED = {
     "size": (12, 20), "density": 9, "shear_rate": 0.1, "thermostat": MaxwellBoltzmann(),
     "molecule": Molecule(length=3, bond=Harmonic(K=1.0), substeps=3), "solutes": FEW,
 }  # fmt: skip
-# the kinds of exact dimers and of the slit are those of an example and of the guide
 CASES = {"bulk": BULK, "exact dimers": EXACT, "slit": SLIT, "sheared": SHEARED}
 
 
