@@ -73,7 +73,8 @@ class RunningFluid(Particles, Protocol):
     `totals` gives number, momentum (d,) and kinetic energy of all particles. `moments` gives
     number, mass (*bins), momentum (d, *bins) and sum of m v^2 (*bins) in equal bins over the
     whole box along `axes`. `modes` gives sum m e^(-i k r) (K,) and sum m v e^(-i k r) (K, d).
-    `bond_vectors` (bonds, d) lead from the first to the second particle of each bond.
+    `bond_vectors` (bonds, d) lead from the first to the second particle of each bond, in molecules
+    of the fluid and then in solutes.
     `whole_positions` are those of whole molecules, each bead next to its first, whatever images
     they lie in: under shear `unwrapped` positions do not know how far images have slid.
     `stress` holds "kinetic", "collisional" and, of molecules, "bond" (d, d) of the last step if an

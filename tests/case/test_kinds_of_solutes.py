@@ -12,15 +12,27 @@ from mesokit import (
     Harmonic,
     LennardJones,
     MeanSquareDisplacement,
+    Molecule,
     MoleculeSize,
     Polymer,
+    RadialDistribution,
     Run,
     Solutes,
     Species,
     Table,
 )
 from mesokit.errors import CaseError
-from mesokit.method.mpcd.expected.molecules import group_of, springs_of
+from mesokit.method.mpcd.expected.displacement import Displacement
+from mesokit.method.mpcd.expected.molecules import (
+    bonds_of,
+    free_bond,
+    group_of,
+    kind_of,
+    least_times_of,
+    mode_times_of,
+    springs_of,
+)
+from mesokit.method.mpcd.groups import bonds
 from mesokit.method.mpcd.method import METHOD
 from mesokit.method.mpcd.solute.polymer import Between
 
@@ -82,6 +94,83 @@ def test_observables_know_kinds_by_name():
         case_of(solutes, observe=[MoleculeSize(kind="chian")])
     assert [kind.name for kind in case.groups[1].kinds] == ["ball", "chain"]
     assert [kind.diameter for kind in case.groups[1].kinds] == [2.0, 0.5]
+
+
+TRIMERS = Fluid(density=6, molecule=Molecule(length=3, bond=Harmonic(K=2.0)))
+
+
+class TestAmongMolecules:
+    """A fluid of molecules is a kind of its own, called fluid."""
+
+    def test_either_can_be_named(self):
+        case = case_of(Solutes([BALL, CHAIN]), TRIMERS)
+        assert case.particles == 1536
+        fluid, chain = group_of(case, "beads", "fluid"), group_of(case, "beads", "chain")
+        assert (fluid.first, fluid.length, fluid.number) == (0, 3, 512)
+        assert (chain.first, chain.length, chain.number) == (1539, 4, 2)
+        assert group_of(case, "beads") == group_of(case, "beads", "ball")  # unless said
+        assert group_of(case, "particles", None) == fluid
+        assert [kind_of(case, group) for group in (fluid, chain)] == ["fluid", 2]
+        assert bonds_of(case, "fluid") == slice(0, 1024)
+        assert bonds_of(case, "chain") == slice(1024, 1030)
+        linked = bonds(case)
+        assert linked[:2].tolist() == [[0, 1], [1, 2]] and linked[1024].tolist() == [1539, 1540]
+
+    def test_a_fluid_of_molecules_alone_has_two_names(self):
+        case = case_of(None, TRIMERS)
+        assert group_of(case, "beads", "fluid") == group_of(case, "beads", 1)
+        with pytest.raises(CaseError, match=r"kind = 2: expected 1 or 'fluid' in a fluid of"):
+            case_of(None, TRIMERS, observe=[MoleculeSize(kind=2)])
+        with pytest.raises(CaseError, match=r"kind = 'fluid': expected 'ball'"):
+            case_of(Solutes([BALL]), observe=[MoleculeSize(kind="fluid")])
+
+    def test_what_is_at_rest_has_its_theory_and_what_moves_has_none(self):
+        """Statics do not depend on the solvent; nobody knows how fast anything is in this one."""
+        case = case_of(Solutes([BALL, CHAIN]), TRIMERS)
+        assert (free_bond(case, "fluid"), free_bond(case, "chain")) == (0.5, 1.0)
+        assert mode_times_of(case, "fluid") == (
+            None,
+            "no theory of a fluid of molecules with solutes",
+        )
+        assert mode_times_of(case, "chain")[0] is None
+        for of, kind in (("particles", None), ("centres", "fluid"), ("beads", 1), ("centres", 2)):
+            found = Displacement(case, MeanSquareDisplacement(of=of, kind=kind))
+            assert np.isnan(found.coefficient()[0]) and found.expected(np.arange(3)) is None
+            assert 0 < found.diffusive_from() < 1000
+
+    def test_error_bars_know_how_slow_molecules_are_at_least(self):
+        """In 3D: as slow as in the fluid without bonds, or without solutes."""
+        solutes = Solutes([BALL, CHAIN])
+        parts = {"run": Run(1), "box": Box([6, 6, 6])}
+        both = Case(fluid=TRIMERS, solutes=solutes, **parts)
+        simple, alone = (
+            Case(fluid=Fluid(density=6), solutes=solutes, **parts),
+            Case(fluid=TRIMERS, **parts),
+        )
+        for kind, other in (("chain", simple), ("fluid", alone)):
+            found, wanted = least_times_of(both, kind), mode_times_of(other, kind)[0]
+            assert found is not None and (found.mode == wanted.mode).all()
+
+    def test_pairs_of_both(self):
+        case = case_of(Solutes([BALL, CHAIN]), TRIMERS)
+        observable = RadialDistribution(kinds=("fluid", "chain"), particles=30)
+        accumulator = observable.accumulator(case)
+        assert [len(beads) for beads in (*accumulator.beads, *accumulator.others)] == [10, 2]
+        assert accumulator.expected() == 1.0
+
+    @pytest.mark.parametrize(
+        ("parts", "says"),
+        [
+            ({"coupling": "potential", "solvent_pair": WCA()},
+             r"^solutes\.coupling = 'potential': not with fluid\.molecule; leave one"),
+            ({"solvent": "random"}, r"^solutes\.solvent = 'random': not with fluid\.molecule"),
+            ({"polymers": [BALL, Polymer(name="fluid")]},
+             r"^solutes\.polymers\[#2\]\.name = 'fluid': this names the molecules of the fluid"),
+        ],
+    )  # fmt: skip
+    def test_what_is_refused(self, parts, says):
+        with pytest.raises(CaseError, match=says):
+            case_of(Solutes(**{"polymers": [BALL]} | parts), TRIMERS)
 
 
 def test_displacement_of_one_species():

@@ -78,4 +78,6 @@ def test_values_are_printed_like_in_a_journal():
     assert with_error(12345.6, 123.0) == "12350(120)"
     assert with_error(3.2e-7, 1.5e-8) == "3.20(15)e-07"
     assert with_error(5.0, 1.2) == "5.0(12)"
+    assert with_error(1.5, 1.2e-9) == "1.5000000000(12)"
+    assert with_error(15.0, 1.2e-9) == "1.50000000000(12)e+01"
     assert with_error(-0.5, float("nan")) == "-0.5000"

@@ -9,6 +9,7 @@ from laboratory import make_case
 
 from mesokit import WCA, Harmonic, Plates
 from mesokit.errors import RunError
+from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.report.flow import picture
 from mesokit.report.flow.beads import BeadFrames
@@ -49,8 +50,13 @@ WHOLE = np.array([
 ])  # fmt: skip
 
 
-def test_molecules_are_whole_and_repeat_where_they_leave_the_box():
-    case = make_case(SIZE, density=2, solutes=SOLUTES)
+DIMERS = Molecule(bond=Harmonic(K=2.0))
+
+
+@pytest.mark.parametrize("molecule", [None, DIMERS], ids=["particles", "dimers"])
+def test_molecules_are_whole_and_repeat_where_they_leave_the_box(molecule):
+    """Whatever bonds the fluid around them has."""
+    case = make_case(SIZE, density=2, solutes=SOLUTES, molecule=molecule)
     beads = BeadFrames(case, trajectory(case, 0 * WHOLE, WHOLE), ("x", "y")).at()
     np.testing.assert_allclose(beads.places, WHOLE)
     assert beads.kinds.tolist() == [0, 0, 1, 1, 1, 2, 2, 2, 2]

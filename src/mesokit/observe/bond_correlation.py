@@ -40,7 +40,7 @@ class BondCorrelation(Observable):
     quantity: Literal["bond-correlation"] = tag("bond-correlation")
     needs_fluid: ClassVar[bool] = False
     molecules: int = param(500, doc="molecules followed", ge=1)
-    kind: int = param(1, doc=KIND, ge=1)
+    kind: int | str = param(1, doc=KIND)
     max_lag: int = param(500, doc="longest lag", unit="steps", ge=1)
 
     def check(self, case: Case) -> None:

@@ -14,6 +14,7 @@ from mesokit.method.mpcd.expected.molecules import (
     bond_in_shear,
     bonds_of,
     molecule_of,
+    of_fluid,
     shear_note,
 )
 from mesokit.observe.shared.molecule_tensor import MoleculeTensorAccumulator
@@ -72,7 +73,7 @@ class BondLengthAccumulator(MoleculeTensorAccumulator):
         at_rest = not setting.driven(case) or (setting.isothermal(case) and falling)
         if case.walls or not at_rest:
             return np.nan
-        solutes = case.solutes
+        solutes = None if of_fluid(case, self.kind) else case.solutes
         ideal = solutes is None or solutes.ideal(solutes.index_of(self.kind))
         if self.molecule.pair is None and not ideal:
             return np.nan  # beads of other kinds matter

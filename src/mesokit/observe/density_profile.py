@@ -11,7 +11,7 @@ from mesokit.case.component import component, param, tag
 from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import KIND, Group, group_of, springs_of
+from mesokit.method.mpcd.expected.molecules import KIND, Group, group_of, kind_of, springs_of
 from mesokit.method.mpcd.expected.traps import held, trapped
 from mesokit.observe.shared.estimate import Estimate, of_mean
 from mesokit.observe.shared.profile import Array, Profile, ProfileAccumulator
@@ -154,7 +154,7 @@ class DensityProfileAccumulator(ProfileAccumulator):
         if self.trapped:
             return self.expected_in_traps()
         weight = 0.0 if self.periodic else float(setting.acceleration(case)[self.axis])
-        solutes = case.solutes if self.of != "particles" else None
+        solutes = None if group.first < case.particles else case.solutes
         kind = solutes.index_of(self.kind) if solutes else 0
         mass = solutes.masses[kind] if solutes else case.fluid.mass
         decay = mass * weight / case.fluid.kT
@@ -190,7 +190,7 @@ class DensityProfileAccumulator(ProfileAccumulator):
         """Of ideal molecules; None for other bonds, and where the sums would take too long."""
         molecule = self.group.molecule
         assert molecule is not None
-        spring, ends = springs_of(self.case, self.kind), _ends(self.group)
+        spring, ends = springs_of(self.case, kind_of(self.case, self.group)), _ends(self.group)
         shares = {"centres": 1, "ends": len(ends)}
         number = self.group.number * shares.get(self.of, molecule.length)
         mean = number / float(np.prod(self.case.box.size))

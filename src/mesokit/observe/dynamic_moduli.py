@@ -145,7 +145,8 @@ class DynamicModuliAccumulator:
         c, w = setting.transport(case), self.frequency
         if case.fluid.molecule is not None:
             expected[:, 0] = np.nan
-            c, times = without_bonds(case), rouse_times_of(case)
+            c = without_bonds(case)
+            times = None if c is None else rouse_times_of(case)
             if c is not None and times is not None:
                 modulus = case.fluid.density / case.fluid.molecule.length * case.fluid.kT
                 eta = c.viscosity * setting.mass_density(case)

@@ -70,8 +70,8 @@ class MeanSquareDisplacement(Observable):
     )
     kind: int | str | None = param(
         None,
-        doc="which kind: name or number of solutes.polymers, or number of fluid.species, from 1 "
-        "(the first kind of solutes, particles of all species unless said)",
+        doc="which kind: name or number of solutes.polymers, or number of fluid.species, from 1; "
+        "'fluid': its molecules (the first kind of solutes, particles of all species unless said)",
     )
     particles: int = param(2000, doc="particles (or molecules) followed", ge=1)
     max_lag: int = param(1000, doc="longest lag", unit="steps", ge=1)

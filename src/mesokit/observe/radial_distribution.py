@@ -40,7 +40,7 @@ class RadialDistribution(Observable):
     kinds: Many[int | str] = param(
         (),
         doc="one kind, or two: those of the second about one of the first (all unless said); names "
-        "or numbers from 1, of solutes.polymers or fluid.species",
+        "or numbers from 1, of solutes.polymers or fluid.species; 'fluid': its molecules",
         max_length=2,
     )
     pairs: Literal["all", "between"] = param(
@@ -89,9 +89,10 @@ class RadialDistributionAccumulator(BlockAccumulator):
         observable.check(case)
         self.name, self.case, self.observable = observable.label, case, observable
         self.first, self.second = observable.chosen(case)
-        solutes = default_of(case, observable.of) == "beads" and case.solutes is not None
-        most = None if solutes else observable.particles
-        self.beads, self.others = (_sample(groups, most) for groups in (self.first, self.second))
+        most = observable.particles
+        self.beads, self.others = (
+            [_sample(case, group, most) for group in groups] for groups in (self.first, self.second)
+        )
         self.box = np.array(case.box.size, float)
         reach = observable.reach or min(FARTHEST, min(case.box.size) / 2)
         self.edges = np.linspace(0.0, reach, observable.bins + 1)
@@ -187,12 +188,11 @@ class RadialDistributionAccumulator(BlockAccumulator):
         return listed
 
 
-def _sample(groups: list[Group], most: int | None) -> list[Ids]:
-    """Beads (molecules, length) of each group, or of so many as have `most` beads at least."""
-    return [
-        group.beads(None if most is None else min(group.number, max(2, most // group.length)))
-        for group in groups
-    ]
+def _sample(case: Case, group: Group, most: int) -> Ids:
+    """Beads (molecules, length) of a group; of the fluid of so many as have `most` at least."""
+    if group.first >= case.particles:
+        return group.beads()
+    return group.beads(min(group.number, max(2, most // group.length)))
 
 
 def _size(groups: list[Group]) -> int:

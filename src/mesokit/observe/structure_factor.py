@@ -13,7 +13,7 @@ from mesokit import theory
 from mesokit.case.component import component, param, tag
 from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
-from mesokit.method.mpcd.expected.molecules import KIND, Group, free_bond
+from mesokit.method.mpcd.expected.molecules import KIND, Group, free_bond, kind_of
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Array, Comparison, Result
@@ -204,12 +204,7 @@ class StructureFactorAccumulator:
         """S(q) of one molecule of a group; None without a theory."""
         if group.molecule is None:
             return np.ones(len(lengths))
-        solutes = self.case.solutes
-        kind: int | str = 1
-        if solutes is not None:
-            starts = [solutes.first_bead(k) for k in range(len(solutes.polymers))]
-            kind = 1 + starts.index(group.first - self.case.particles)
-        bond = free_bond(self.case, kind)
+        bond = free_bond(self.case, kind_of(self.case, group))
         if bond is None:
             return None
         links, d = group.molecule.bonds, self.case.box.dimension

@@ -17,6 +17,7 @@ from mesokit.method.mpcd.expected.molecules import (
     rouse_times_of,
     without_bonds,
 )
+from mesokit.method.mpcd.molecule import FLUID
 from mesokit.observe.shared.bonded_decay import BondedLaw, fit_bonded
 from mesokit.observe.shared.decay import fit_curve, normalised
 from mesokit.observe.shared.modes import SHOWN, Array, Modes, ModesAccumulator, transverse_units
@@ -97,10 +98,11 @@ class TransverseModesAccumulator(ModesAccumulator):
     def bonded_law(self, time: Array, finite: bool = True) -> Array | None:
         """Of a fluid of Rouse molecules, at finite wave numbers or as for long waves."""
         case = self.case
-        coefficients, times, bond = without_bonds(case), rouse_times_of(case), free_bond(case)
+        coefficients = without_bonds(case)
+        times, bond = rouse_times_of(case, FLUID), free_bond(case, FLUID)
         if coefficients is None or times is None or bond is None:
             return None
-        molecule, nu = molecule_of(case), coefficients.viscosity
+        molecule, nu = molecule_of(case, kind=FLUID), coefficients.viscosity
         elasticity = case.fluid.kT / (case.fluid.mass * molecule.length)
         if not finite:
             return theory.transverse_correlation_chain(
@@ -122,10 +124,11 @@ class TransverseModesAccumulator(ModesAccumulator):
         Fitted to the correlation of finite k up to where theory falls below noise.
         """
         case = self.case
-        coefficients, times, bond = without_bonds(case), rouse_times_of(case), free_bond(case)
+        coefficients = without_bonds(case)
+        times, bond = rouse_times_of(case, FLUID), free_bond(case, FLUID)
         if not self.undisturbed() or coefficients is None or times is None or bond is None:
             return []
-        molecule, found = molecule_of(case), []
+        molecule, found = molecule_of(case, kind=FLUID), []
         springs = theory.GaussianMolecule(
             modes_of(molecule),
             times.mode[0],

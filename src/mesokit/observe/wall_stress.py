@@ -177,15 +177,16 @@ def _contact(case: Case, height: float) -> float:
     nan where there is no theory of how molecules lie there.
     """
     fluid, solutes = case.fluid, case.solutes
+    around = fluid.density * _at_plate(case, fluid.molecule, height)
     if solutes is None:
-        return fluid.density * _at_plate(case, fluid.molecule, height)
+        return around
     if solutes.different_pairs or solutes.wall is not None:
         return np.nan
     kinds = [
         polymer.number * polymer.length * _at_plate(case, solutes.molecule(i), height)
         for i, polymer in enumerate(solutes.polymers)
     ]
-    return fluid.density + sum(kinds) / case.box.volume
+    return around + sum(kinds) / case.box.volume
 
 
 def _at_plate(case: Case, molecule: Molecule | None, height: float) -> float:

@@ -18,6 +18,7 @@ from mesokit.method.mpcd import topology
 from mesokit.scalar.fixed_point import ROUNDER_BITS, total
 
 if TYPE_CHECKING:
+    from mesokit.method.mpcd.molecule import Molecule
     from mesokit.potential import Bond, Pair
 
 Moments = tuple[Floats, Floats, Floats, Floats]
@@ -140,26 +141,42 @@ class Readings:
         return kind[ids]
 
     def bonds(self) -> NDArray[np.int64]:
-        """Particle ids (bonds, 2) of all pairs that are linked; molecule after molecule."""
+        """Particle ids (bonds, 2) of all pairs that are linked; molecule after molecule, those of
+        the fluid before those of solutes."""
+        if self.solutes is None:
+            return self._bonds_of_fluid()
+        return np.concatenate([self._bonds_of_fluid(), self.n + self.solutes.bonds])
+
+    def _bonds_of_fluid(self) -> NDArray[np.int64]:
         molecule = self.numbers.case.fluid.molecule
         links = np.array(molecule.bonds if molecule else (), np.int64).reshape(-1, 2)
         starts = np.arange(0, self.n, self.beads)
         return (starts[:, None, None] + links).reshape(-1, 2) if len(links) else links
 
     def bond_vectors(self) -> Floats:
-        """From the first to the second particle of each bond (bonds, d)."""
-        if self.solutes is not None:
-            return self.solutes.bond_vectors()
-        return self._between(self.bonds())
+        """From the first to the second particle of each of `bonds` (bonds, d)."""
+        bonds = self._bonds_of_fluid()
+        if self.solutes is None:
+            return self._between(bonds)
+        beads = self.solutes.bond_vectors()
+        return np.concatenate([self._between(bonds), beads]) if len(bonds) else beads
 
     def whole_positions(self, ids: NDArray | None = None) -> Floats:
         """Positions (n, d) by particle id, in the box but for beads that hang over its ends.
 
         Those are where their molecule has them, next to its first bead, which is in the box.
-        `ids`, if given, name molecule after molecule with all of its beads.
+        `ids`, if given, name molecule after molecule with all of its beads; without them they are
+        those of the fluid.
         """
-        if self.solutes is not None and ids is not None:
-            return self.solutes.whole()[ids - self.n]
+        if self.solutes is None or ids is None or (ids < self.n).all():
+            return self._whole_in_fluid(ids)
+        own = ids < self.n
+        places = self.solutes.whole()[np.where(own, 0, ids - self.n)]
+        if own.any():
+            places[own] = self._whole_in_fluid(ids[own])
+        return places
+
+    def _whole_in_fluid(self, ids: NDArray | None) -> Floats:
         r, _, image = self._gather(ids, False)
         if self.beads == 1:
             return r
@@ -168,13 +185,14 @@ class Readings:
 
     def potential_energy(self) -> float:
         """Of all bonds, angles and pairs of beads, and of solutes near walls."""
-        if self.solutes is not None:
-            return self.solutes.potential_energy()
+        beads = 0.0 if self.solutes is None else self.solutes.potential_energy()
         molecule = self.numbers.case.fluid.molecule
-        if molecule is None:
-            return 0.0
+        return beads if molecule is None else beads + self._energy_of(molecule)
+
+    def _energy_of(self, molecule: Molecule) -> float:
+        """Potential energy of the molecules of the fluid."""
         starts = np.arange(0, self.n, self.beads)[:, None, None]
-        total = self._central_energy(molecule.bond, self.bonds())
+        total = self._central_energy(molecule.bond, self._bonds_of_fluid())
         if molecule.pair is not None:
             pairs = (starts + np.array(topology.pairs(self.beads))).reshape(-1, 2)
             total += self._central_energy(molecule.pair, pairs)
@@ -244,14 +262,16 @@ class Readings:
 
         Kinetic: momentum carried in the flight, which is the mean of the values before and after
         the collision. Collisional: momentum handed over within cells (Winkler and Huang 2009).
-        Bond: momentum handed over within molecules, the mean over the flight.
+        Bond: momentum handed over within molecules of the fluid and between beads of solutes, the
+        mean over the flight.
         """
         d = self.dimension
         unit = self.numbers.units["stress"]
         parts = total(self.memory.fluid.taken.tensor.swapaxes(0, 1), unit)
         if self.solutes is not None:
             theirs = total(self.solutes.state_of.tensor.swapaxes(0, 1), unit)
-            parts = np.concatenate([parts[:2] + theirs[:2], theirs[2:]])
+            bonded = theirs[2:] + parts[2:] if len(parts) > 2 else theirs[2:]
+            parts = np.concatenate([parts[:2] + theirs[:2], bonded])
         (flux, moment), (flux_after, moment_after), *rest = parts.reshape(-1, 2, d, d)
         volume = math.prod(self.numbers.case.box.size)
         self.stress = {

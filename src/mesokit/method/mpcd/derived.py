@@ -78,8 +78,9 @@ def derive(case: Case, threads: int | None = None) -> Derived:
     beads, bead_seconds = 0, 0.0
     if case.solutes is not None:
         beads = case.solutes.beads
-        substeps = case.solutes.number_of_substeps(dimension, fluid)
-        bead_seconds = beads * (BEAD + BEAD_SUBSTEP * substeps) * steps
+        flights = case.solutes.number_of_substeps(dimension, fluid)
+        substeps = flights if fluid.molecule is None else substeps
+        bead_seconds = beads * (BEAD + BEAD_SUBSTEP * flights) * steps
     memory = beads * BYTES["bead"] + case.particles * BYTES[f"particle {dimension}D"]
     memory += case.box.volume * BYTES[f"cell {dimension}D"] * threads
     heated = _heating(case, across)

@@ -66,11 +66,12 @@ def fluid_volume(case: Case) -> float:
 
 
 def bonds(case: Case) -> NDArray[np.int64]:
-    """Numbers of particles (bonds, 2) that are linked, in molecules of the fluid and solutes."""
+    """Numbers of particles (bonds, 2) that are linked: in molecules of the fluid and in solutes."""
+    found, molecule = [np.zeros((0, 2), np.int64)], case.fluid.molecule
+    if molecule is not None:
+        starts = np.arange(0, case.particles, molecule.length)
+        links = starts[:, None, None] + np.array(molecule.bonds, np.int64)
+        found.append(links.reshape(-1, 2))
     if case.solutes is not None:
-        return case.particles + case.solutes.bonds()
-    if case.fluid.molecule is None:
-        return np.zeros((0, 2), np.int64)
-    links = np.array(case.fluid.molecule.bonds, np.int64)
-    starts = np.arange(0, case.particles, case.fluid.molecule.length)
-    return (starts[:, None, None] + links).reshape(-1, 2)
+        found.append(case.particles + case.solutes.bonds())
+    return np.concatenate(found)

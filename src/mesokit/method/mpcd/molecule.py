@@ -20,6 +20,7 @@ COARSE = 0.7  # beyond this phase they read 12 % too long, and a case is warned 
 UNSTABLE = 2.0  # from this phase on velocity Verlet blows up
 
 MOST_SUBSTEPS = 100_000
+FLUID = "fluid"  # names the molecules of the fluid among kinds of molecules
 
 
 @component

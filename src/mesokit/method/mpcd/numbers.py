@@ -22,8 +22,9 @@ class Derived(Shown):
     `flow_size` the size across it, `reynolds` both over the viscosity, `mach` the speed over that
     of sound; `steady_time` is the time in which the flow comes within 1/e of its steady state.
     `heating` is the relative rise of the temperature by friction at the end of the run,
-    `heating_bound` says that walls keep it lower. `substeps` are those of molecules. `seconds` and
-    `memory` (bytes) of the run are estimates, `assumed` says of what.
+    `heating_bound` says that walls keep it lower.
+    `substeps` are those of the fluid's molecules, or else of solutes. `seconds` and `memory`
+    (bytes) of the run are estimates, `assumed` says of what.
     """
 
     particles: int

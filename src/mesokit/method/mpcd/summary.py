@@ -47,4 +47,7 @@ def _particle_rows(case: Case, numbers: Derived) -> list[Row]:
     if numbers.substeps is not None:
         how = molecule.propagation if molecule is not None else "verlet"
         rows.append(("sub-steps", str(numbers.substeps), how))
+    if molecule is not None and case.solutes is not None:
+        beads = case.solutes.number_of_substeps(case.box.dimension, case.fluid)
+        rows.append(("sub-steps of solutes", str(beads), "verlet"))
     return rows

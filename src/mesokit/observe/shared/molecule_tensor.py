@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.method.mpcd.expected.molecules import mode_times_of
+from mesokit.method.mpcd.expected.molecules import least_times_of
 from mesokit.observe.shared.protocol import BlockAccumulator, Observable, State, pack, unpack
 from mesokit.observe.shared.result import Array
 from mesokit.observe.shared.tensor import TensorAccumulator
@@ -49,7 +49,7 @@ class MoleculeTensorAccumulator(TensorAccumulator):
         self.number = 1  # molecules, or bonds, in a sample
         self.runs = 1  # that were pooled
         self.scatter = Blocks((len(parts), case.box.dimension**2 + 1))  # elements, and the trace
-        self.times = mode_times_of(case, kind)[0]
+        self.times = least_times_of(case, kind)
 
     def note_squares(self, elements: Array, traces: Array, number: int) -> None:
         """Take the means over `number` molecules of the squares of elements (parts, d, d) and of
@@ -94,7 +94,8 @@ class MoleculeTensorAccumulator(TensorAccumulator):
         times = self.relaxations()
         if not 0 < times < ENOUGH:
             return ""
-        return f"error bar is a lower bound: the run has {times:.2g} relaxation times"
+        most = "at most " * (self.case.solutes is not None and self.case.fluid.molecule is not None)
+        return f"error bar is a lower bound: the run has {most}{times:.2g} relaxation times"
 
     def bounds(self, part: int) -> tuple[Array, float]:
         """Least errors of the elements (d, d) of a part, and of its trace; 0 in a long run."""

@@ -117,6 +117,8 @@ def with_error(value: float, error: float) -> str:
         shown = f"{round(error * 10.0**digits)}" if digits > 0 else f"{round(error, digits):.0f}"
         return f"{round(value, digits):.{max(digits, 0)}f}({shown})"
     power = math.floor(math.log10(max(abs(value), error)))
+    if power == 0:  # an error far below the value
+        return f"{value:.{digits}f}({error * 10.0**digits:.0f})"
     scaled = with_error(value / 10.0**power, error / 10.0**power)
     return f"{scaled}e{power:+03d}"
 

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING
 
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import Group, group_of
+from mesokit.method.mpcd.expected.molecules import Group, group_of, kind_of
+from mesokit.method.mpcd.molecule import FLUID
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
-OF = "what is looked at (beads of solutes or molecules where there are any)"
+OF = "what is looked at (beads where there are any, those of solutes before those of molecules)"
 
 
 def default_of(case: Case, of: str | None) -> str:
@@ -25,7 +26,7 @@ def default_of(case: Case, of: str | None) -> str:
 def groups_of(case: Case, of: str, kind: int | str | None = None) -> list[Group]:
     """Those of a kind, or all. Raises CaseError if there are none.
 
-    Beads of all kinds are a group for each, particles of all species are one.
+    Beads of all kinds of solutes are a group for each, particles of all species are one.
     """
     if kind is None and of != "particles" and case.solutes is not None:
         kinds = range(1, len(case.solutes.polymers) + 1)
@@ -45,8 +46,8 @@ def strangers(case: Case, of: str, groups: list[Group]) -> bool:
         return False
     if of == "particles" or solutes is None:
         return True
-    starts = [case.particles + solutes.first_bead(k) for k in range(len(solutes.polymers))]
-    return all(solutes.ideal(starts.index(group.first)) for group in groups)
+    beads = [kind for kind in (kind_of(case, group) for group in groups) if kind != FLUID]
+    return all(solutes.ideal(solutes.index_of(kind)) for kind in beads)
 
 
 def periodic_all_over(case: Case, what: str) -> None:

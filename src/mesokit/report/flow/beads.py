@@ -36,7 +36,7 @@ class BeadFrames:
         self.rows = np.flatnonzero(reader.id >= first.number)
         self.kinds = reader.species[self.rows] - len(first.kinds)
         bonds = method.bonds(case) - (reader.id[self.rows[0]] if len(self.rows) else 0)
-        self.bonds = bonds[(bonds < len(self.rows)).all(axis=1)]
+        self.bonds = bonds[((bonds >= 0) & (bonds < len(self.rows))).all(axis=1)]
         self.diameters = np.array([kind.diameter for kind in others[0].kinds])
         self.called = tuple(
             f"kind {i}" if kind.name in ("", f"polymer-{i}") else kind.name

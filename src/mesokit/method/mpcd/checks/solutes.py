@@ -11,7 +11,7 @@ from mesokit.case.registry import family_of
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.checks.external import external
-from mesokit.method.mpcd.molecule import MOST_SUBSTEPS, UNSTABLE
+from mesokit.method.mpcd.molecule import FLUID, MOST_SUBSTEPS, UNSTABLE
 from mesokit.potential.thermal import mean_square
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ def solutes(case: Case) -> Iterator[str]:
     if given is None:
         return
     if case.fluid.molecule is not None:
-        yield "solutes: not with fluid.molecule; expected a fluid of single particles"
+        yield from _among_molecules(given)
     if given.beads > MOST_BEADS:
         yield f"solutes.polymers: {given.beads} beads; expected at most {MOST_BEADS}"
     yield from _sizes(case, given)
@@ -38,6 +38,19 @@ def solutes(case: Case) -> Iterator[str]:
     yield from external(case, given)
     if given.coupling == "potential":
         yield from _potential(case, given)
+
+
+def _among_molecules(given: Solutes) -> Iterator[str]:
+    """Beads that collide with a fluid of molecules, and names that are not those of the fluid."""
+    for key, value in (("coupling", "potential"), ("solvent", "random")):
+        if getattr(given, key) == value:
+            yield f"solutes.{key} = {show(value)}: not with fluid.molecule; leave one of both out"
+    if FLUID in given.names:
+        place = 1 + given.names.index(FLUID)
+        yield (
+            f"solutes.polymers[#{place}].name = {show(FLUID)}: this names the molecules of the "
+            "fluid (fluid.molecule); expected another name"
+        )
 
 
 def _sizes(case: Case, given: Solutes) -> Iterator[str]:

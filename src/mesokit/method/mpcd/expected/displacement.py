@@ -14,6 +14,7 @@ from mesokit.method.mpcd.expected.molecules import (
     free_diffusion,
     friction_of,
     group_of,
+    kind_of,
     kirkwood,
     modes_of,
     rouse_note,
@@ -22,9 +23,11 @@ from mesokit.method.mpcd.expected.molecules import (
     without_solutes,
 )
 from mesokit.method.mpcd.expected.traps import LEVEL, held, trapped
+from mesokit.method.mpcd.molecule import FLUID
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.method.mpcd.molecule import Molecule
 
 Array = NDArray[np.floating[Any]]
 Integers = NDArray[np.int64]
@@ -38,12 +41,12 @@ class Displacement:
 
     def __init__(self, case: Case, observable: Any) -> None:
         self.case, self.of = case, observable.of
-        self.kind = 1 if observable.kind is None else observable.kind
         self.species = observable.kind if case.fluid.species else None
         self.axes = _axes(case, observable.components)
         self.group = group_of(case, self.of, observable.kind)
         self.length, self.number = self.group.length, self.group.number
-        self.molecule = self.group.molecule
+        self.molecule, self.kind = self.group.molecule, kind_of(case, self.group)
+        self.dissolved = case.solutes is not None and self.group.first >= case.particles
 
     def beads(self, wanted: int) -> Integers:
         """Numbers (molecules, length) of so many molecules, evenly spread, or of all."""
@@ -64,16 +67,15 @@ class Displacement:
         solutes = self.case.solutes
         if self.of == "particles" and self.species is not None:
             return self.case.fluid.species[self.species - 1].mass
-        if solutes is None or self.of == "particles":
+        if solutes is None or not self.dissolved:
             return self.case.fluid.mass
         return solutes.masses[solutes.index_of(self.kind)]
 
     def alone(self) -> float | None:
         """Diffusion coefficient of one bead alone; None where what it drags along drags it."""
-        of = self.of
         if self.case.solutes is None:
             return free_diffusion(self.case)
-        if of == "particles":
+        if not self.dissolved:
             return None
         return (
             free_diffusion(self.case, kind=self.kind)
@@ -125,9 +127,7 @@ class Displacement:
     def ballistic(self) -> bool:
         """Whether they fly freely: nothing to meet, to be bound to, or to fall by."""
         case = self.case
-        bound = case.fluid.molecule is not None or (
-            case.solutes is not None and self.of != "particles"
-        )
+        bound = case.fluid.molecule is not None or self.dissolved
         return not (case.fluid.collision.acts or case.fluid.mixed or case.walls or bound) and set(
             self.axes
         ) <= set(setting.quiet_axes(case))
@@ -136,7 +136,8 @@ class Displacement:
         """The lag from which on the displacement is a straight line.
 
         That is when a particle has forgotten its velocity, which it does in m D/kT, and, of
-        solutes, when the flow that they had set going has spread over the box; in a molecule, when
+        solutes, when the flow that they had set going has spread over the box, and the molecules of
+        a fluid of such around them have relaxed; in a molecule, when
         a bead has forgotten where in the molecule it is. What drags beads along in a fluid of
         molecules changes as the molecule turns, so that its centre is in no hurry either.
         """
@@ -144,14 +145,14 @@ class Displacement:
             return np.inf  # it never gets far, or never forgets
         alone = free_diffusion(self.case, self.of, self.kind)
         start = 5 * alone * self.mass / self.case.fluid.kT if alone else 0.0
-        solute = self.case.solutes is not None and self.of != "particles"
-        if solute:
-            start = max(start, self.spreading())
+        if self.dissolved:
+            around = self.slowest(self.case.fluid.molecule, FLUID)
+            start = max(start, self.spreading(), 5 * (around or 0.0))
         if self.molecule is None:
             return start
-        slowest = self.slowest(alone)
+        slowest = self.slowest(self.molecule, self.kind)
         if self.of == "centres":
-            return start if solute else max(start, slowest or 0.0)
+            return start if self.dissolved else max(start, slowest or 0.0)
         return np.inf if slowest is None else max(start, 5 * slowest)
 
     def spreading(self) -> float:
@@ -162,13 +163,15 @@ class Displacement:
             return 0.0
         return 5 * max(self.case.box.size) ** 2 / (4 * np.pi**2 * solvent.viscosity)
 
-    def slowest(self, alone: float | None) -> float | None:
-        """The longest relaxation time of the molecules, by Rouse's theory; None without one."""
-        spring = springs_of(self.case, self.kind) if self.molecule else None
-        if spring is None or alone is None or self.molecule is None:
+    def slowest(self, molecule: Molecule | None, kind: int | str) -> float | None:
+        """The longest relaxation time of molecules, by Rouse's theory; None without one."""
+        if molecule is None:
+            return None
+        spring, alone = springs_of(self.case, kind), free_diffusion(self.case, kind=kind)
+        if spring is None or alone is None:
             return None
         friction = self.case.fluid.kT / alone
-        times = theory.rouse_times(modes_of(self.molecule), friction, K=spring.K)
+        times = theory.rouse_times(modes_of(molecule), friction, K=spring.K)
         return float(times.mode[0])
 
     def coefficient(self) -> tuple[float, str]:
@@ -177,7 +180,7 @@ class Displacement:
         note = setting.chaos(self.case, setting.STIRRED)
         solutes, molecule = self.case.solutes, self.molecule
         if solutes is not None and alone is None:
-            if self.of == "particles":
+            if not self.dissolved or self.case.fluid.molecule is not None:
                 return nothing, setting.caveat(self.case)
             whole = self.of == "centres" or molecule is None
             dragged = kirkwood(self.case, self.kind) if whole else None
@@ -198,7 +201,7 @@ class Displacement:
             return stirring, f"approximate: {setting.STIRRING}"
         if self.case.walls:
             return nothing, note
-        friction = friction_of(self.case)
+        friction = friction_of(self.case, self.kind)
         if friction is None:
             return nothing, note
         return self.case.fluid.kT / friction / molecule.length, rouse_note(self.case)

@@ -16,6 +16,7 @@ from mesokit.method.mpcd.expected.molecules import (
     free_bond,
     free_diffusion,
     modes_of,
+    of_fluid,
     rouse_note,
     springs_of,
 )
@@ -40,7 +41,7 @@ def mean_shape(case: Case, kind: int | str, group: Group) -> NDArray[np.float64]
     if undisturbed(case):
         return np.zeros((group.length, d))
     spring, solutes = springs_of(case, kind), case.solutes
-    if spring is None or solutes is None or not solutes.pulls:
+    if spring is None or solutes is None or not solutes.pulls or of_fluid(case, kind):
         return None
     alone = dataclasses.replace(solutes, pulls=())
     forces = np.zeros((solutes.beads, d))

@@ -13,6 +13,7 @@ from mesokit import theory
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.molecule import FLUID
 from mesokit.statistics import spread_ids
 
 if TYPE_CHECKING:
@@ -21,17 +22,27 @@ if TYPE_CHECKING:
 
 
 Array = NDArray[np.floating[Any]]
-KIND = "which molecules: name or number, from 1, of solutes.polymers; 1 in a fluid of molecules"
+KIND = (
+    "which molecules: name or number, from 1, of solutes.polymers; 'fluid': those of the fluid, "
+    "which are also 1 where there are no solutes"
+)
+
+
+def of_fluid(case: Case, kind: int | str | None) -> bool:
+    """Whether a kind of molecules is that of the fluid: named so, or there is no other."""
+    return case.solutes is None or (kind == FLUID and case.fluid.molecule is not None)
 
 
 def molecule_of(case: Case, quantity: str = "this", kind: int | str = 1) -> Molecule:
     """What the fluid is made of, or a kind of solutes. Raises CaseError if there is no such."""
     solutes = case.solutes
-    if solutes is None:
+    if solutes is None or of_fluid(case, kind):
         if case.fluid.molecule is None:
             raise CaseError(f"{quantity} needs molecules; give fluid.molecule or solutes")
-        if kind != 1:
-            raise CaseError(f"kind = {show(kind)}: expected 1 in a fluid of molecules")
+        if kind not in (1, FLUID):
+            raise CaseError(
+                f"kind = {show(kind)}: expected 1 or {show(FLUID)} in a fluid of molecules"
+            )
         return case.fluid.molecule
     place = solutes.index_of(kind)
     molecule = solutes.molecule(place)
@@ -57,14 +68,15 @@ class Group(NamedTuple):
 def group_of(case: Case, of: str, kind: int | str | None = 1) -> Group:
     """Those that an observable of "particles" (of the fluid), "beads", "centres" or "ends" follows.
 
-    Of particles `kind` is the number of a species, None all of them; of others None is the first.
+    Of particles `kind` is the number of a species, None all of them; of others None is the first of
+    solutes, or in a fluid of molecules alone these.
     Raises CaseError if there are none.
     """
     molecule, solutes = case.fluid.molecule, case.solutes
     if of == "particles" and (solutes is None or solutes.solvent == "fluid"):
         if case.fluid.species and kind is not None:
             return _species(case, kind)
-        if kind not in (None, 1):
+        if kind not in (None, 1, FLUID):
             raise CaseError(
                 f"kind = {show(kind)}: only with of = 'beads', 'centres' or 'ends', or with "
                 "fluid.species"
@@ -72,7 +84,7 @@ def group_of(case: Case, of: str, kind: int | str | None = 1) -> Group:
         length = molecule.length if molecule else 1
         return Group(0, length, case.particles // length, molecule)
     kind = 1 if kind is None else kind
-    if solutes is None:
+    if solutes is None or of_fluid(case, kind):
         found = molecule_of(case, f"of = {of!r}", kind)
         return Group(0, found.length, case.particles // found.length, found)
     if of == "particles":
@@ -83,6 +95,15 @@ def group_of(case: Case, of: str, kind: int | str | None = 1) -> Group:
         molecule_of(case, f"of = {of!r}", kind)
     first = case.particles + solutes.first_bead(place)
     return Group(first, polymer.length, polymer.number, solutes.molecule(place))
+
+
+def kind_of(case: Case, group: Group) -> int | str:
+    """The kind whose molecules are a group."""
+    if case.solutes is None or group.first < case.particles:
+        return FLUID
+    kinds = range(len(case.solutes.polymers))
+    starts = [case.particles + case.solutes.first_bead(kind) for kind in kinds]
+    return 1 + starts.index(group.first)
 
 
 def _species(case: Case, kind: int | str) -> Group:
@@ -103,10 +124,12 @@ def beads_of(case: Case, wanted: int | None = None, kind: int | str = 1) -> NDAr
 
 
 def bonds_of(case: Case, kind: int | str = 1) -> slice:
-    """Where the bonds of a kind are among all `bond_vectors`."""
-    if case.solutes is None:
-        return slice(None)
-    count, first = 0, 0
+    """Where the bonds of a kind are among all `bond_vectors`, of which the fluid's come first."""
+    own, count, first = case.fluid.molecule, 0, 0
+    if own is not None:
+        first = len(own.bonds) * (case.particles // own.length)
+    if case.solutes is None or of_fluid(case, kind):
+        return slice(0, first)
     for k in range(case.solutes.index_of(kind) + 1):
         molecule, first = case.solutes.molecule(k), first + count
         count = len(molecule.bonds) * case.solutes.polymers[k].number if molecule else 0
@@ -127,7 +150,8 @@ def modes_of(molecule: Molecule) -> theory.NormalModes:
 def springs_of(case: Case, kind: int | str = 1) -> theory.Spring | None:
     """The springs of molecules; None where beads feel anything else, of other kinds too."""
     solutes = case.solutes
-    if solutes is not None and not solutes.ideal(solutes.index_of(kind)):
+    beads = solutes is not None and not of_fluid(case, kind)
+    if beads and solutes is not None and not solutes.ideal(solutes.index_of(kind)):
         return None
     return spring_of(molecule_of(case, kind=kind))
 
@@ -150,10 +174,15 @@ def without_bonds(case: Case) -> theory.Transport | None:
 
 
 def without_solutes(case: Case) -> theory.Transport | None:
-    """The same of what the solutes are in, be there any."""
+    """The same without solutes too."""
     return without_bonds(
         dataclasses.replace(case, solutes=None, observe=(), trajectory=None, log=None)
     )
+
+
+def solvent_of(case: Case) -> theory.Transport | None:
+    """Transport coefficients of what the solutes are in; None of molecules."""
+    return without_solutes(case) if case.fluid.molecule is None else None
 
 
 def rouse_times_of(case: Case, kind: int | str = 1) -> theory.RouseTimes | None:
@@ -185,6 +214,8 @@ def stirring_diffusion(case: Case, boxed: bool = False) -> float | None:
 
 def rouse_note(case: Case) -> str:
     """How good Rouse's theory is where beads are said to have the friction of free particles."""
+    if case.solutes is not None and case.fluid.molecule is not None:
+        return setting.caveat(case)
     if case.solutes is None and setting.mean_free_path(case) < 1:
         return "approximate: Rouse; beads drag one another along"
     if case.solutes is not None:
@@ -196,19 +227,22 @@ def friction_of(case: Case, kind: int | str = 1) -> float | None:
     """kT over the diffusion coefficient of a bead alone; None where the fluid remembers it."""
     # beads of one molecule are stirred by the same flow, which in 2D is as large as the box: what
     # tells them apart is what they do within a bond's length of each other
+    if case.solutes is not None and case.solutes.solvent == "fluid":
+        return None
     if case.solutes is not None or case.box.dimension == 2:
         diffusion = free_diffusion(case, kind=kind)
     else:
         diffusion = stirring_diffusion(case)
-    if diffusion is None or (case.solutes is not None and case.solutes.solvent == "fluid"):
-        return None
-    return case.fluid.kT / diffusion
+    return None if diffusion is None else case.fluid.kT / diffusion
 
 
 def free_diffusion(case: Case, of: str = "beads", kind: int | str | None = None) -> float | None:
-    """Diffusion coefficient of a particle or bead alone by molecular chaos; None if unknown."""
+    """Diffusion coefficient of a particle or bead alone by molecular chaos; None if unknown.
+
+    In a fluid of molecules it is that in the same fluid without bonds.
+    """
     fluid, solutes = case.fluid, case.solutes
-    if solutes is None or of == "particles":
+    if solutes is None or of == "particles" or of_fluid(case, kind):
         alone = without_solutes(case)
         return None if alone is None else alone.diffusion
     if fluid.species or not fluid.thermostat.canonical:
@@ -230,7 +264,7 @@ def hits_of(case: Case, kind: int | str | None = None) -> float:
 
 def colloid_diffusion(case: Case, kind: int | str) -> float | None:
     """Diffusion coefficient of a bead that acts on the fluid by a potential, in this cubic box."""
-    solvent, solutes, size = without_solutes(case), case.solutes, case.box.size
+    solvent, solutes, size = solvent_of(case), case.solutes, case.box.size
     if solvent is None or solutes is None or case.box.dimension == 2 or case.walls:
         return None
     if len(set(size)) > 1 or case.fluid.species:
@@ -255,7 +289,7 @@ def solution_of(case: Case, kind: int | str) -> Solution | None:
     assert case.solutes is not None
     molecule = case.solutes.molecule(case.solutes.index_of(kind))
     bond, alone = free_bond(case, kind) if molecule else None, free_diffusion(case, kind=kind)
-    solvent = without_solutes(case)
+    solvent = solvent_of(case)
     if case.solutes.solvent_pair is not None:
         return None
     if molecule is None or bond is None or alone is None or solvent is None:
@@ -285,7 +319,7 @@ def kirkwood(case: Case, kind: int | str) -> float | None:
 
 def monomers_of(case: Case, kind: int | str) -> Solution | None:
     """Beads alone that drag the fluid along, in 3D without walls."""
-    alone, solvent = free_diffusion(case, kind=kind), without_solutes(case)
+    alone, solvent = free_diffusion(case, kind=kind), solvent_of(case)
     if alone is None or solvent is None or case.box.dimension == 2 or case.walls:
         return None
     eta = solvent.viscosity * case.fluid.density * case.fluid.mass
@@ -294,7 +328,7 @@ def monomers_of(case: Case, kind: int | str) -> Solution | None:
 
 def mode_times_of(case: Case, kind: int | str = 1) -> tuple[theory.RouseTimes | None, str]:
     """Relaxation times of molecules at rest, and whose theory says so: Rouse or Zimm."""
-    if case.solutes is None or case.solutes.solvent == "random":
+    if case.solutes is None or case.solutes.solvent == "random" or of_fluid(case, kind):
         return rouse_times_of(case, kind), rouse_note(case)
     note = "approximate: Zimm; hydrodynamics pre-averaged, large box"
     solution = solution_of(case, kind)
@@ -306,6 +340,21 @@ def mode_times_of(case: Case, kind: int | str = 1) -> tuple[theory.RouseTimes | 
         return None, "no theory of bonds as short as these"
 
 
+def least_times_of(case: Case, kind: int | str = 1) -> theory.RouseTimes | None:
+    """Relaxation times for error bars: those of theory.
+
+    Of solutes in a fluid of molecules, and of that fluid, there is none: it takes those of the
+    solutes in the fluid without its bonds, which make them longer, and those of the fluid alone.
+    """
+    if case.solutes is None or case.fluid.molecule is None:
+        return mode_times_of(case, kind)[0]
+    alone = dataclasses.replace(case, observe=(), trajectory=None, log=None)
+    if of_fluid(case, kind):
+        return mode_times_of(dataclasses.replace(alone, solutes=None))[0]
+    fluid = dataclasses.replace(case.fluid, molecule=None)
+    return mode_times_of(dataclasses.replace(alone, fluid=fluid), kind)[0]
+
+
 FEW = 3  # beads of a molecule up to which the others do not screen what it drags along
 
 
@@ -315,6 +364,8 @@ def few_in_shear(case: Case) -> theory.ChainInShear | None:
     The particles of longer molecules are mostly beads of others, beside which their own drag one
     another along less than Zimm has it: Rouse's times are nearer (docs/validation/viscoelastic.md).
     """
+    if case.solutes is not None:
+        return None
     c, friction, molecule = without_bonds(case), friction_of(case), molecule_of(case)
     spring = spring_of(molecule)
     if c is None or friction is None or spring is None or case.box.dimension == 2:
@@ -336,7 +387,9 @@ def shear_note(case: Case) -> str:
 
 
 def times_in_shear(case: Case) -> theory.RouseTimes | None:
-    """Relaxation times of the molecules of a sheared fluid."""
+    """Relaxation times of the molecules of a sheared fluid; None beside solutes."""
+    if case.solutes is not None:
+        return None
     few = few_in_shear(case)
     return rouse_times_of(case) if few is None else few.times
 
@@ -377,6 +430,8 @@ def bond_in_shear(case: Case) -> float | None:
     few = few_in_shear(case)
     if few is not None:
         return few.bond_squared
+    if case.solutes is not None:
+        return None
     times, bond = rouse_times_of(case), free_bond(case)
     if times is None or bond is None:
         return None

@@ -54,7 +54,8 @@ def caveat(case: Case) -> str:
     if case.fluid.mixed:
         return "no theory of a mixture"
     if case.fluid.molecule is not None:
-        return "no theory of a fluid of molecules"
+        among = " with solutes" if case.solutes is not None else ""
+        return f"no theory of a fluid of molecules{among}"
     if case.solutes is not None:
         return "no theory of a fluid with solutes"
     return "theory needs the full grid shift" if case.fluid.grid_shift < 1 else ""
@@ -146,13 +147,14 @@ def carriers(case: Case) -> tuple[float, float]:
     The latter is nan where beads of different molecules feel one another.
     """
     density, molecule, solutes = case.fluid.density, case.fluid.molecule, case.solutes
+    alone = density / (1 if molecule is None else molecule.length)
     if solutes is None:
-        return density, density / (1 if molecule is None else molecule.length)
+        return density, alone
     volume = free_volume(case)
     wholes = sum(polymer.number for polymer in solutes.polymers) / volume
     if solutes.different_pairs or solutes.solvent_pair is not None:
         wholes = float("nan")
-    return density + solutes.beads / volume, density + wholes
+    return density + solutes.beads / volume, alone + wholes
 
 
 def solute_mass(case: Case) -> float:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.method.mpcd.expected.molecules import free_diffusion, spring_of
+from mesokit.method.mpcd.molecule import FLUID
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -32,7 +33,7 @@ class Held(NamedTuple):
 def trapped(case: Case, kind: int | str) -> bool:
     """Whether a trap holds some bead of this kind."""
     solutes = case.solutes
-    if solutes is None:
+    if solutes is None or kind == FLUID:
         return False
     place = solutes.index_of(kind)
     return any(solutes.index_of(trap.kind) == place for trap in solutes.traps)

@@ -51,7 +51,8 @@ def read_arrays(
         if velocities is None and given.velocities is not None:
             velocities = _load(where, "velocities", given.velocities)
     if positions is not None:
-        _no_conformation(case)
+        if owner == "fluid":
+            _no_conformation(case)
         positions = _checked(case, owner, keys[0], positions)
         _inside(case, keys[0], positions)
         _near(case, keys[0], positions)
