@@ -87,6 +87,7 @@ from mesokit.observe.conservation import Conservation as Conservation
 from mesokit.observe.density_field import DensityField as DensityField
 from mesokit.observe.density_gradient import DensityGradient as DensityGradient
 from mesokit.observe.density_profile import DensityProfile as DensityProfile
+from mesokit.observe.domain_size import DomainSize as DomainSize
 from mesokit.observe.dynamic_moduli import DynamicModuli as DynamicModuli
 from mesokit.observe.flow_frames import FlowFrames as FlowFrames
 from mesokit.observe.flow_rate import FlowRate as FlowRate

@@ -14,6 +14,7 @@ from mesokit import (
     Disk,
     FlowRate,
     Harmonic,
+    MaxwellBoltzmann,
     Molecule,
     MoleculeSize,
     NoThermostat,
@@ -22,6 +23,7 @@ from mesokit import (
     Stress,
     Uniform,
     VelocityProfile,
+    theory,
 )
 from mesokit.method.mpcd.derived import derive
 from mesokit.method.mpcd.summary import summary
@@ -70,6 +72,20 @@ def test_what_lacks_theory_is_named_in_a_fluid_of_molecules(make_case):
     assert text.endswith("velocity-profile and flow-rate lack theory")
     (text,) = said(FENE(), 0.1, (), Stress())
     assert "no theory of a fluid of molecules" in text
+
+
+def test_thin_fluids_slip_at_plates(make_case):
+    def slips(density, timestep, **plates):
+        case = make_case(
+            (20, 20), walls=[Plates("y", **plates)], density=density, timestep=timestep,
+            collision=SRD(), thermostat=MaxwellBoltzmann(), force=Uniform([1e-3, 0]),
+        )  # fmt: skip
+        return [text for text in derive(case).warnings if "plates slip" in text]
+
+    (text,) = slips(4, 0.6)
+    expected = theory.virtual_gas_slip("srd", 2, 4, 0.6, angle=130, thermostat="maxwell-boltzmann")
+    assert f"{expected:.2g} cells" in text
+    assert not slips(10, 0.1) and not slips(4, 0.6, virtual="none")
 
 
 def heating(make_case, virtual="extrapolate", steps=10_000, **plates):

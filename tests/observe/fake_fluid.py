@@ -10,11 +10,14 @@ from mesokit import Disk, Harmonic, Plates, Sphere, Uniform
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.molecule import Molecule
+from mesokit.method.mpcd.species import Species
+
+TWO = (Species(1.0, 3.0), Species(4.0, 2.0))
 
 
 def case_for(observable, make_case, size, **fluid):
     """A case in which it can be measured: without walls, in a slit, in a flow about a body, in a
-    shear that oscillates, or in a fluid of molecules, also between plates."""
+    shear that oscillates, in a fluid of molecules, also between plates, or of two species."""
     middle = [length / 2 for length in size]
     body = Disk(centre=middle, radius=1) if len(size) == 2 else Sphere(centre=middle, radius=1)
     push = {"force": Uniform((0.01,) + (0.0,) * (len(size) - 1))}
@@ -23,7 +26,7 @@ def case_for(observable, make_case, size, **fluid):
     pairs = {"density": 9, "molecule": Molecule(bond=Harmonic(K=1.0))} | alone
     for walls, parts in (
         ((), fluid), ((Plates(axis="y"),), fluid), ((body,), push | fluid), ((), shear | fluid),
-        ((), pairs), ((Plates(axis="y"),), pairs),
+        ((), pairs), ((Plates(axis="y"),), pairs), ((), fluid | {"species": TWO}),
     ):  # fmt: skip
         try:
             return make_case(size, [observable], walls=walls, **parts)

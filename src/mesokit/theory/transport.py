@@ -200,10 +200,18 @@ def cell_means(
     dimension: int, density: float, angle: Angle, rule: str, thermostat: str
 ) -> tuple[Array, Array, Array]:
     """Occupancies N, their Poisson probabilities, and what a cell keeps of a velocity, r1 s1."""
+    return cell_memory(dimension, density, angle, rule, thermostat)[:3]
+
+
+def cell_memory(
+    dimension: int, density: float, angle: Angle, rule: str, thermostat: str
+) -> tuple[Array, Array, Array, Array]:
+    """The same, and what a cell keeps of a stress about its mean velocity, r2 s2."""
     n, p = _poisson(density)
     rigid = rigid_share(dimension, n) if rule.endswith("+a") else 1 / n
-    r1, _, _ = _rotation(dimension, fixed_angle(angle))
-    return n, p, r1 * _thermostat(thermostat, np.rint(dimension * n * (1 - rigid)))[0]
+    r1, r2, _ = _rotation(dimension, fixed_angle(angle))
+    s1, s2 = _thermostat(thermostat, np.rint(dimension * n * (1 - rigid)))
+    return n, p, r1 * s1, r2 * s2
 
 
 def _poisson(density: float) -> tuple[Array, Array]:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from mesokit.method.mpcd.numbers import Derived
 
 COMPRESSED = 0.2  # acceleration x length/(kT/m) of a fluid driven against solids
+SLIPPERY = 0.03  # slip length in cells
 STRONG = 0.3  # thermal velocities that a force may add in a timestep
 
 
@@ -165,6 +166,12 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
             f"solids repeat, it may change the density by a factor of up to {1 + pressed[1]:.2g}: "
             f"acceleration x length/(kT/m) = {pressed[1]:.2g} (above {COMPRESSED:g}); measure it "
             "with density-gradient, lower the force"
+        )
+    slip = setting.slip_length(case)
+    if slip is not None and slip > SLIPPERY and (numbers.flow_speed or sheared):
+        yield (
+            f"wall: in so thin a fluid plates slip, by a length of some {slip:.2g} cells: virtual "
+            "particles know nothing of its stress; more particles or a shorter timestep help"
         )
     for note in force.notes(case.box.size):
         yield f"fluid.force.{note}"

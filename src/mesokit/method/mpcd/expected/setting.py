@@ -167,6 +167,20 @@ def superficial_mass(case: Case) -> float:
     return mass_density(case) * case.box.volume
 
 
+def slip_length(case: Case) -> float | None:
+    """At plates whose virtual particles go on with the flow, in cells; None without a theory."""
+    plates, known = slit_of(case), case.fluid.collision.in_theory()
+    if plates is None or plates.slips or plates.virtual != "extrapolate" or known is None:
+        return None
+    given = gas(case)
+    if caveat(case) or given.thermostat is None:
+        return None
+    try:
+        return theory.virtual_gas_slip(**known, **given._asdict())
+    except ValueError:  # rules that conserve angular momentum
+        return None
+
+
 def isothermal(case: Case) -> bool:
     """Whether something holds the fluid at kT everywhere."""
     return case.fluid.thermostat.acts or case.fluid.collision.isothermal
