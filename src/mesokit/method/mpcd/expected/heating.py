@@ -74,7 +74,7 @@ def temperature_rise(case: Case) -> Array | None:
     plates, known = slit_of(case), case.fluid.collision.in_theory()
     if plates is None or setting.isothermal(case) or setting.caveat(case) or known is None:
         return None
-    if case.box.sheared or plates.virtual not in FILLED or known["rule"] != "srd":
+    if case.box.sheared or plates.virtual not in FILLED:
         return None
     taking = [surface.rule == "no-slip" for surface in (plates.lower, plates.upper)]
     across = AXES.index(plates.axis)
@@ -109,9 +109,11 @@ def _rise(case: Case, across: int, taking: list[bool], rule: Rule, angle: Angle)
     if known is None:
         return None
     d, height = case.box.dimension, float(case.box.size[across])
-    walls = theory.heat_at_walls(
-        rule, d, fluid.density, fluid.timestep, angle, fluid.kT, fluid.mass
-    )
+    gas = d, fluid.density, fluid.timestep, angle, fluid.kT, fluid.mass
+    try:
+        walls = theory.heat_at_walls(rule, *gas)
+    except ValueError:  # a rule without one
+        return None
     lower, upper = (walls.jump if takes else None for takes in taking)
     heat = _friction(case, across, known.viscosity)
     return theory.slit_temperature_rise(heat, height, walls.conductivity, lower, upper)
