@@ -151,6 +151,13 @@ class TestAmongMolecules:
             found, wanted = least_times_of(both, kind), mode_times_of(other, kind)[0]
             assert found is not None and (found.mode == wanted.mode).all()
 
+    def test_check_counts_both(self):
+        case = case_of(Solutes([BALL, CHAIN], substeps=7), TRIMERS)
+        rows = {name: (value, word) for name, value, word in METHOD.summary(case, 1).rows}
+        assert rows["molecules"] == ("512", "chains of 3") and rows["beads of solutes"][0] == "11"
+        assert rows["sub-steps of solutes"] == ("7", "verlet")
+        assert int(rows["sub-steps"][0]) == TRIMERS.molecule.number_of_substeps(2, 0.1, 1.0, 1.0)
+
     def test_pairs_of_both(self):
         case = case_of(Solutes([BALL, CHAIN]), TRIMERS)
         observable = RadialDistribution(kinds=("fluid", "chain"), particles=30)
