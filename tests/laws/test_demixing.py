@@ -10,7 +10,7 @@ from laboratory import Measured, assert_same, fingerprint, make_fluid, mean
 from numba import njit
 from scipy.special import ive
 
-from mesokit import CaseError, Demix, Species, theory
+from mesokit import CaseError, Demix, DomainSize, Species, theory
 from mesokit.execute.neighbours.gradient import Field, gradient_at
 from mesokit.method.mpcd.collision.directed import quaternion, turned_by, von_mises
 
@@ -100,53 +100,77 @@ def test_waves_of_colour_fade_below_the_threshold_and_grow_above():
         assert slowed.value * (limit - coupling) > 3 * slowed.error * abs(limit - coupling), slowed
 
 
-def film_tension(width=30, length=20, samples=20):
+def film_tension(size=(30, 20), samples=20, start=1000):
     """By the stress: what pulls along the interfaces of a film more than across."""
-    n = DENSITY * width * length // 2
-    places = np.random.default_rng(1).uniform(0, 1, (2 * n, 2)) * (width / 2, length)
+    width, d = size[0], len(size)
+    n = DENSITY * math.prod(size) // 2
+    places = np.random.default_rng(1).uniform(0, 1, (2 * n, d)) * (width / 2, *size[1:])
     places[n:, 0] += width / 2
     parts = {"species": TWO, "collision": Demix(TENSION), "measures": ("stress",)}
-    fluid = make_fluid((width, length), places, **parts)
-    fluid.advance(1000)
+    fluid = make_fluid(size, places, **parts)
+    fluid.advance(start)
     found = []
     for _ in range(samples):
-        total = np.zeros((2, 2))
+        total = np.zeros((d, d))
         for _ in range(300):
             fluid.advance(1, measure_stress=True)
             total += sum(fluid.stress.values()) / 300
-        found.append((total[1, 1] - total[0, 0]) * width / 2)
+        found.append((np.diag(total)[1:].mean() - total[0, 0]) * width / 2)
     return mean(found)
 
 
-def droplet_tension(side=32, radius=8.0, samples=20):
-    """By Laplace's law: R times what the ideal gas in a droplet has more of pressure."""
-    inside = round(DENSITY * math.pi * radius**2)
-    kinds = tuple(
-        Species(mass=1, density=number / side**2)
-        for number in (inside, DENSITY * side * side - inside)
-    )
-    random = np.random.default_rng(2)
-    places = random.uniform(0, side, (4 * DENSITY * side * side, 2))
-    far = np.hypot(*(places - side / 2).T)
-    outside = DENSITY * side * side - inside
+def droplet_tension(d=2, side=32, radius=8.0, apart=3.0, samples=20, start=1000):
+    """By Laplace's law: R/(d - 1) times what the ideal gas in a droplet has more of pressure."""
+    ball = math.pi if d == 2 else 4 / 3 * math.pi
+    inside, all_of = round(DENSITY * ball * radius**d), DENSITY * side**d
+    kinds = tuple(Species(mass=1, density=number / side**d) for number in (inside, all_of - inside))
+    places = np.random.default_rng(2).uniform(0, side, (4 * all_of, d))
+    far = np.linalg.norm(places - side / 2, axis=1)
+    outside = all_of - inside
     places = np.concatenate([places[far < radius][:inside], places[far > radius][:outside]])
-    fluid = make_fluid((side, side), places, species=kinds, collision=Demix(TENSION))
+    parts = {"species": kinds, "collision": Demix(TENSION), "measures": ("stress",)}
+    fluid = make_fluid((side,) * d, places, **parts)
     first = fluid.species() == 0
-    fluid.advance(1000)
+    fluid.advance(start)
     found = []
     for _ in range(samples):
         jump = []
         for _ in range(40):
-            fluid.advance(10)
+            fluid.advance(10 if d == 2 else 5)
             r = fluid.positions()
             centre = np.angle(np.exp(2j * math.pi * r[first] / side).sum(axis=0))
             way = (r - centre * side / (2 * math.pi) + side / 2) % side - side / 2
-            far = np.hypot(*way.T)
-            core, rest = radius - 3, radius + 3
-            inner = (far < core).sum() / (math.pi * core**2)
-            jump.append(inner - (far > rest).sum() / (side**2 - math.pi * rest**2))
-        found.append(np.mean(jump) * radius)
+            far = np.linalg.norm(way, axis=1)
+            core, rest = radius - apart, radius + apart
+            inner = (far < core).sum() / (ball * core**d)
+            jump.append(inner - (far > rest).sum() / (side**d - ball * rest**d))
+        found.append(np.mean(jump) * radius / (d - 1))
     return mean(found)
+
+
+@pytest.mark.long
+def test_in_space_too_film_and_droplet_have_one_tension():
+    """4.0(1) kT/a^2 across a film. The droplet's radius of five cells is known to half a cell."""
+    film = film_tension((16, 8, 8), samples=8, start=200)
+    droplet = droplet_tension(3, side=16, radius=5.0, apart=2.5, samples=6, start=200)
+    assert film.value > 20 * film.error, film
+    assert droplet.value > 6 * droplet.error, droplet
+    both = Measured(film.value - droplet.value, math.hypot(film.error, droplet.error))
+    assert abs(both.value) < 3.5 * both.error + film.value / 10, (film, droplet)
+
+
+def test_domains_of_a_mixture_grow_to_the_size_of_the_box():
+    """A band with sharp edges: odd waves n, of power 1/n^2, of which the longest three count."""
+    side, n = 20, np.array([1, 3, 5])
+    fluid = make_fluid((side, side), species=TWO, collision=Demix(TENSION), measures=("stress",))
+    seen = DomainSize().accumulator(fluid.case)
+    for steps in (0, 50, 400, 4500):
+        fluid.advance(steps)
+        seen.observe(fluid)
+    mixed, early, later, last = seen.result().value
+    assert np.isnan(mixed) and 1.4 * early < later < last / 1.4, (mixed, early, later, last)
+    # edges that are not sharp make it larger, those of a drop smaller
+    assert last == pytest.approx(side * (1 / n**2).sum() / (1 / n).sum(), rel=0.12)
 
 
 def test_stress_across_a_film_and_pressure_in_a_droplet_are_one_tension():

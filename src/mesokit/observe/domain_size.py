@@ -31,7 +31,8 @@ class DomainSize(Observable):
 
     The colour is the number of particles of one species less that of the other. Its structure
     factor S(k), without the noise of independent particles (1), weighs the wave numbers
-    (first moment). nan as long as there are no domains.
+    (first moment). A band of half of a box reads three quarters of it, for its edges. nan as
+    long as there are no domains.
     """
 
     quantity: Literal["domain-size"] = tag("domain-size")

@@ -112,7 +112,8 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
             label="temperature k_B T",
             units={"value": "m a^2/tau^2", self.observable.axis: "a"},
             expected=expected,
-            theory="kT of the case" + (", approximate" if note else ""),
+            theory=("heat of friction" if self.heated else "kT of the case")
+            + (", approximate" if note else ""),
             comparisons=tuple(found),
             samples=self.blocks.count,
             extra={"bins_per_cell": self.observable.bins_per_cell},
@@ -130,11 +131,16 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
         if any(flow.profile is None for flow in self.flows):
             return None
         inside = fluid.mass / self.observable.bins_per_cell**2 / (12 * self.dimension)
-        if not setting.isothermal(self.case):
+        if self.heated:
             rise = self.rise()
             return None if rise is None else fluid.kT + rise + inside * self.shear2()
         warming = setting.warming(self.case)
         return None if warming is None else fluid.kT + (warming + inside) * self.shear2()
+
+    @property
+    def heated(self) -> bool:
+        """Whether friction heats the fluid, and no thermostat takes that."""
+        return bool(self.flows) and not setting.isothermal(self.case)
 
     def rise(self) -> Array | None:
         """Of the temperature by friction in each slice of a slit; None until it is steady."""
@@ -162,6 +168,8 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
 
     def note(self) -> str:
         """What is known to be missing from the expected temperature, if it is above 0.01 %."""
+        if self.heated:
+            return "approximate: coefficients of the mean temperature, molecular chaos"
         missing = CORRELATIONS * self.case.fluid.mass * float(np.mean(self.shear2()))
         if missing > 1e-4 * self.case.fluid.kT:
             percent = 100 * missing / self.case.fluid.kT

@@ -88,6 +88,10 @@ class CollisionRule(ABC):
             return None
         return theory.shear_warming(**known, **gas._asdict())
 
+    def heat_at_walls(self, gas: Gas) -> theory.HeatAtWalls | None:
+        """Conductivity of heat, and jump of the temperature at walls, of a gas that is not held."""
+        return None
+
     def temperature_offset(self, gas: Gas, mean_free_path: float) -> float:
         """Largest known (T - kT)/kT of the gas at rest."""
         known = self.in_theory()

@@ -80,6 +80,12 @@ class SRD(CollisionRule):
         fixed = self.angle_distribution == "fixed"
         return {"rule": "srd", "angle": self.angle if fixed else "uniform"}
 
+    def heat_at_walls(self, gas: Gas) -> theory.HeatAtWalls:
+        """Conductivity of heat, and jump of the temperature at walls, of a gas that is not held."""
+        given = gas._asdict()
+        del given["thermostat"]
+        return theory.heat_at_walls(**self.in_theory(), **given)
+
     def bead_diffusion(self, gas: Gas, mass: float) -> float:
         """Diffusion coefficient of a bead of this mass alone in the gas."""
         # the cosine of an angle of 90 degrees is the mean of that of uniform ones

@@ -13,7 +13,6 @@ from mesokit import theory
 from mesokit.case.box import AXES
 from mesokit.geometry.solids.solids import slit_of
 from mesokit.method.mpcd.expected import setting
-from mesokit.theory.transport import Angle, Rule
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -71,8 +70,8 @@ def temperature_rise(case: Case) -> Array | None:
 
     Viscosity, conductivity and flow are those of the mean temperature.
     """
-    plates, known = slit_of(case), case.fluid.collision.in_theory()
-    if plates is None or setting.isothermal(case) or setting.caveat(case) or known is None:
+    plates = slit_of(case)
+    if plates is None or setting.isothermal(case) or setting.caveat(case):
         return None
     if case.box.sheared or plates.virtual not in FILLED:
         return None
@@ -83,10 +82,9 @@ def temperature_rise(case: Case) -> Array | None:
     fluid, mean = case.fluid, 0.0
     rise: Array | None = None
     for _ in range(ROUNDS):
-        warm = dataclasses.replace(
-            case, fluid=dataclasses.replace(fluid, kT=fluid.kT + mean), observe=(), trajectory=None
-        )
-        rise = _rise(warm, across, taking, known["rule"], known["angle"])
+        warmer = dataclasses.replace(fluid, kT=fluid.kT + mean)
+        bare = {"observe": (), "trajectory": None, "log": None}
+        rise = _rise(dataclasses.replace(case, fluid=warmer, **bare), across, taking)
         if rise is None:
             return None
         found = float(np.mean(rise))
@@ -103,17 +101,12 @@ def settled(case: Case, across: int) -> bool:
     return found is not None and found.time is not None and warmup >= SETTLED * found.time
 
 
-def _rise(case: Case, across: int, taking: list[bool], rule: Rule, angle: Angle) -> Array | None:
+def _rise(case: Case, across: int, taking: list[bool]) -> Array | None:
     """Of a fluid with the properties that it has at kT."""
-    fluid, known = case.fluid, setting.transport(case)
-    if known is None:
+    known, walls = setting.transport(case), case.fluid.collision.heat_at_walls(setting.gas(case))
+    if known is None or walls is None:
         return None
-    d, height = case.box.dimension, float(case.box.size[across])
-    gas = d, fluid.density, fluid.timestep, angle, fluid.kT, fluid.mass
-    try:
-        walls = theory.heat_at_walls(rule, *gas)
-    except ValueError:  # a rule without one
-        return None
+    height = float(case.box.size[across])
     lower, upper = (walls.jump if takes else None for takes in taking)
     heat = _friction(case, across, known.viscosity)
     return theory.slit_temperature_rise(heat, height, walls.conductivity, lower, upper)
