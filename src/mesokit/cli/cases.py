@@ -78,7 +78,7 @@ def new(name: str, path: str | None, template: str | None) -> None:
 
     write_text(file.with_name(SCHEMA), schema_text())  # for the parts that are installed now
     for other in re.findall(
-        r'^file = "([\w.-]+)"', text, flags=re.M
+        r'^(?:file|bonds) = "([\w.-]+)"', text, flags=re.M
     ):  # such as a picture of solids
         beside = file.with_name(other)
         if not beside.exists():

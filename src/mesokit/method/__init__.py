@@ -48,8 +48,8 @@ def examples() -> dict[str, Any]:
     folder = package / "examples"
     if not folder.is_dir():
         folder = pathlib.Path(str(package)).parents[1] / "examples"
-    found = {}
-    for place, start in ((folder, ""), (folder / "viscoelastic", "viscoelastic/")):
+    found, within = {}, ("viscoelastic", "rheometer")
+    for place, start in ((folder, ""), *((folder / name, f"{name}/") for name in within)):
         files = place.iterdir() if place.is_dir() else ()
         for file in sorted(files, key=lambda f: f.name):
             if file.name.endswith(".toml"):
