@@ -123,3 +123,12 @@ def test_an_oscillation_whose_period_is_no_whole_step_is_not_folded(sheared):
     assert OBSERVE.accumulator(sheared(OscillatingShear(0.1, 1.0), 50)).period is None
     with pytest.raises(CaseError, match="multiple of every = 3"):
         StressInTime(window=10, every=3).check(sheared(None, 10))
+
+
+def test_nothing_is_known_before_a_period_is_over(sheared):
+    """What has begun is no period yet."""
+    case = sheared(StartUp(0.1, start=2.0, period=6.0), 40, **DIMERS)
+    [said] = OBSERVE.warnings(case)
+    assert "no whole period of the shear (60 steps)" in said
+    result = measured(case, 30, lambda step: 1.0).result()
+    assert result.value.shape == (0, 3) and result.comparisons == ()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
@@ -66,6 +66,17 @@ class StressInTime(Observable):
         if rows > MOST_ROWS:
             least = math.ceil(rows * self.window / MOST_ROWS)
             raise CaseError(f"window = {self.window}: expected at least {least}, for so many steps")
+
+    def warnings(self, case: Case) -> Iterator[str]:
+        """A run that sees no whole period."""
+        steps = steps_of_period(case)
+        if steps is not None and -(-case.run.warmup // steps) * steps + steps > (
+            case.run.warmup + case.run.steps
+        ):
+            yield (
+                f"{self.label}: no whole period of the shear ({steps} steps) after the warm-up; "
+                "nothing will be told"
+            )
 
     def accumulator(self, case: Case) -> StressInTimeAccumulator:
         """An empty memory for it."""
@@ -176,9 +187,9 @@ class StressInTimeAccumulator:
             rows = np.flatnonzero(whole)
             sums = np.stack([one.sums[rows] / self.samples_of_window for one in every])
             weights = np.ones(len(every), np.int64)
-        flat = sums[:, rows].reshape(len(sums), -1)
         if not len(rows):
             return rows, Estimate(np.zeros(0), np.zeros((0, 0)), weights.astype(float))
+        flat = sums[:, rows].reshape(len(sums), -1)
         mean = flat.sum(axis=0) / weights.sum()
         residuals = (flat - np.multiply.outer(weights, mean)) / weights.sum()
         return rows, Estimate(mean, residuals, weights.astype(float))
