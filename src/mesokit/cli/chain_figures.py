@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from mesokit import theory
+from mesokit import __version__, theory
 from mesokit.cli.chains import Beads, Chain
 from mesokit.errors import CaseError
 
@@ -21,11 +21,10 @@ def velocity_modes(ax: Any, chains: Sequence[Chain], beads: Beads, wave: float, 
     """Size of the correlation of transverse velocity modes: dips are where it changes its sign."""
     if not chains:
         raise CaseError("--draw velocity-modes: expected --length, with --K or --stress-time")
-    from mesokit.report.style import COLOURS, LINES, legend_above
+    from mesokit.report.style import legend_above, looks
 
     k, time = 2 * math.pi / wave, np.linspace(0, end, POINTS)
-    looks = itertools.product(LINES, COLOURS)
-    for chain, (line, colour) in zip(chains, looks, strict=False):
+    for chain, (line, colour) in zip(chains, looks(), strict=False):
         elasticity = beads.density * beads.kT / (chain.length * beads.mass_density)
         curve = theory.transverse_correlation_chain(
             k, time, beads.viscosity, elasticity, chain.times.stress
@@ -35,18 +34,19 @@ def velocity_modes(ax: Any, chains: Sequence[Chain], beads: Beads, wave: float, 
         ax.semilogy(time, np.abs(curve), linestyle=line, color=colour, lw=1.2, label=label)
     ax.set(xlim=(0, end), ylim=(LEAST, 1.2))
     ax.set_xlabel(r"time lag $t$  [$\tau$]")
+    _say(ax, "Theory alone: Rouse chains in a simple fluid; approximate where tau follows from K")
     ax.set_ylabel(rf"$|C_v^T(k, t)|\,/\,C_v^T(k, 0)$ at $k = 2\pi/{wave:g}\,a^{{-1}}$")
     legend_above(ax)
 
 
 def bond_lengths(ax: Any, chains: Sequence[Chain], beads: Beads, radii: Sequence[float]) -> None:
     """Root mean square length of bonds in shear, against the shear rate."""
-    from mesokit.report.style import COLOURS, LINES, legend_above
+    from mesokit.report.style import legend_above, looks
 
     if not chains:
         raise CaseError("--draw bonds: expected --length, with --K or --stress-time")
-    looks = itertools.product(LINES, COLOURS)
-    for chain, radius in itertools.product(chains, radii):
+    several = itertools.product(chains, radii)
+    for (chain, radius), (line, colour) in zip(several, looks(), strict=False):
         friction = 6 * math.pi * beads.eta * radius
         try:
             lengths = [
@@ -55,7 +55,6 @@ def bond_lengths(ax: Any, chains: Sequence[Chain], beads: Beads, radii: Sequence
             ]
         except ValueError as error:
             raise CaseError(f"--length {chain.length}, radius {radius:.3g}: {error}") from None
-        line, colour = next(looks)
         label = rf"$n = {chain.length}$, $K = {chain.K:.3g}$, $R_H = {radius:.3g}\,a$"
         roots = np.sqrt([found.bond_squared for found in lengths])
         ax.loglog(RATES, roots, linestyle=line, color=colour, lw=1.2, label=label)
@@ -69,24 +68,28 @@ def spring_constants(
     """Springs that hold the bonds of trimers at a length, against the shear rate."""
     if tuple(lengths) != (3,) or bond is None:
         raise CaseError("--draw springs: expected --length 3, of trimers, and --bond-length")
-    from mesokit.report.style import COLOURS, LINES, legend_above
+    from mesokit.report.style import legend_above, looks
 
-    looks = itertools.product(LINES, COLOURS)
-    for radius in radii:
+    for radius, (line, colour) in zip(radii, looks(), strict=False):
         try:
             springs = [
                 theory.trimer_spring_constant(bond, g, beads.eta, radius, beads.kT) for g in RATES
             ]
         except ValueError as error:
             raise CaseError(f"--bond-length = {bond:g}: {error}") from None
-        line, colour = next(looks)
         label = rf"$l = {bond:g}\,a$, $R_H = {radius:.3g}\,a$"
         ax.loglog(RATES, springs, linestyle=line, color=colour, lw=1.2, label=label)
     _against_rate(ax, r"spring constant $K$  [$kT/a^2$]")
     legend_above(ax, columns=2)
 
 
+def _say(ax: Any, words: str) -> None:
+    """What a figure rests on, below it."""
+    ax.figure.supxlabel(f"{words}. mesokit {__version__}", x=0.01, ha="left", fontsize=8)
+
+
 def _against_rate(ax: Any, label: str) -> None:
+    _say(ax, "Theory alone: hydrodynamic interaction averaged over all directions, approximate")
     ax.set_xlim(RATES[0], RATES[-1])
     ax.set_xlabel(r"shear rate $\dot\gamma$  [$\tau^{-1}$]")
     ax.set_ylabel(label)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
 from typing import Any
 
 from mesokit.report.caption import mathematics, symbols
@@ -26,6 +28,18 @@ STYLE: Any = {
     "lines.markersize": 4,
     "savefig.dpi": 200,
 }
+
+
+def looks() -> Iterator[tuple[Any, str]]:
+    """Dash and colour of one curve after another, for pictures with many lines.
+
+    >>> [dash for dash, colour in itertools.islice(looks(), 3)]
+    ['-', '--', '-.']
+    >>> len(set(itertools.islice(looks(), 36)))
+    36
+    """
+    for i in itertools.count():
+        yield LINES[i % len(LINES)], COLOURS[(i + i // len(LINES)) % len(COLOURS)]
 
 
 def labelled(label: str, unit: str) -> str:
