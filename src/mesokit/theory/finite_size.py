@@ -30,7 +30,8 @@ def viscosity_renormalised(
 
     Raises ValueError for a value out of range.
 
-    Source: derived in docs/theory; rho = density * mass, modes from 2 pi/L to 2 pi/c,
+    Source: Forster, Nelson and Stephen (1977) for the logarithm in 2D; the factors are derived in
+    docs/theory; rho = density * mass, modes from 2 pi/L to 2 pi/c,
         2D: nu + kT/(16 pi rho) (1/nu + 1/Gamma) ln(L/c)
         3D: nu + kT/(pi^2 rho) (7/(60 nu) + 1/(30 Gamma)) (2 pi/c - 2 pi/L).
     Valid while the correction is small; the constant c is known to a factor of about 1.5. For
