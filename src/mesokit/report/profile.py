@@ -51,7 +51,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     raised = result.extra.get("raised")
     if raised is not None:
         percent = float(result.extra["raised_by"])
-        label = f"with fluctuations of 2D: viscosity +{percent:.1f} %"
+        label = f"2D fluctuations: viscosity +{percent:.1f} %"
         ax.plot(x, raised, ":", color=COLOURS[2], lw=2, label=label, zorder=3)
     if result.fit is not None:
         ax.plot(x, result.fit, "--", color=COLOURS[1], lw=1.3, label="fit", zorder=4)
