@@ -18,7 +18,7 @@ pytestmark = [
     pytest.mark.skipif(os.name == "nt", reason="no signals can be sent to a process"),
 ]
 
-KILLS = 10
+KILLS = 6
 STEPS = 8000
 LONG = ["--set", f"run.steps={STEPS}", "--set", "run.checkpoint_every=100"]
 SOURCE = str(Path(mesokit.__file__).parent.parent)
