@@ -13,6 +13,7 @@ from mesokit.method.mpcd.expected.molecules import (
     KIND,
     bond_in_shear,
     bonds_of,
+    group_of,
     molecule_of,
     of_fluid,
     shear_note,
@@ -47,15 +48,18 @@ class BondLengthAccumulator(MoleculeTensorAccumulator):
 
     def __init__(self, observable: BondLength, case: Case) -> None:
         observable.check(case)
-        super().__init__(observable, case, ("bonds",), observable.kind)
+        molecules = group_of(case, "beads", observable.kind).number
+        super().__init__(observable, case, ("bonds",), observable.kind, molecules)
+        self.molecules = molecules
         self.molecule = molecule_of(case, kind=observable.kind)
         self.bonds = bonds_of(case, observable.kind)
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         way = fluid.bond_vectors()[self.bonds]
-        products = np.einsum("ij,ik->jk", way, way) / len(way)
-        self.blocks.add(products[None])
+        of_each = way.reshape(self.molecules, -1, way.shape[1])
+        products = np.einsum("mij,mik->mjk", of_each, of_each) / of_each.shape[1]
+        self.note_own(products[:, None])
         square = way**2
         elements = np.einsum("ij,ik->jk", square, square) / len(way)
         self.note_squares(elements[None], (square.sum(axis=1) ** 2).mean(keepdims=True), len(way))
