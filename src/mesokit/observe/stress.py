@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 PARTS = ("kinetic", "collisional", "bond")  # the last one of molecules only
 ROUSE = "Rouse molecules, beads with the friction of free particles"
+IN_SHEAR, OF_PART = "no theory of such a fluid in shear", "no theory of this part"
 UNIT = {2: "m/tau^2", 3: "m/(a tau^2)"}  # force per area, by dimension
 
 
@@ -64,6 +65,8 @@ class StressAccumulator(TensorAccumulator):
     def result(self) -> Result:
         """Tensors, pressure and viscosities."""
         theory = "molecular chaos, ideal gas" + (" of molecules" if self.bonded_beads else "")
+        if self.case.box.steady_rate and self.bonded() is not None:
+            theory = "molecules in shear"
         return self.tensors("stress", "stress", UNIT[self.case.box.dimension], theory)
 
     def expected(self) -> Array:
@@ -87,7 +90,27 @@ class StressAccumulator(TensorAccumulator):
             for part, nu in zip((0, 1, -1), self.viscosities(), strict=True):
                 shear = nu * setting.mass_density(case) * rate if steady else np.nan
                 expected[part, 0, 1] = expected[part, 1, 0] = shear
+            self.put_bonds(expected)
         return expected
+
+    def put_bonds(self, expected: Array) -> None:
+        """Of molecules in steady shear: the total, and the part of the bonds."""
+        case, d = self.case, self.case.box.dimension
+        rate, bonded = case.box.steady_rate, self.bonded()
+        if not (rate and self.bonded_beads):
+            return
+        slow = bond_viscosity(case)
+        if slow is not None:
+            expected[2, 0, 1] = expected[2, 1, 0] = slow * rate
+        if bonded is None:
+            return
+        expected[-1, 0, 1] = expected[-1, 1, 0] = bonded.viscosity * rate
+        if not self.known():
+            return
+        for axis in range(d):
+            stretch = bonded.first if axis == 0 else 0.0
+            expected[2, axis, axis] = (self.carriers - self.wholes) * case.fluid.kT + stretch
+            expected[-1, axis, axis] = -self.wholes * case.fluid.kT + stretch
 
     def known(self) -> bool:
         """Whether the pressure is that of an ideal gas of known temperature."""
@@ -122,6 +145,8 @@ class StressAccumulator(TensorAccumulator):
                 nu, bonded = self.viscosities()[part], self.bonded()
                 if part < 0 and bonded is not None:
                     nu, note = bonded.viscosity / setting.mass_density(case), shear_note(case)
+                elif self.bonded_beads:
+                    note = IN_SHEAR if part < 0 else OF_PART
                 found.append(
                     Comparison(
                         f"{name} from the stress",
@@ -144,8 +169,9 @@ class StressAccumulator(TensorAccumulator):
         pressure, spread = self.summed(-1, -np.eye(d) / d)
         spread = setting.with_start(case, spread, ideal, self.blocks.series)
         ideal = ideal if known else np.nan
-        stretched = case.box.sheared and self.bonded_beads and self.case.fluid.molecule is not None
-        note = shear_note(case) if stretched else ""
+        note = ""
+        if case.box.sheared and self.bonded_beads:
+            note = shear_note(case) if np.isfinite(ideal) else IN_SHEAR
         found.append(Comparison("pressure", pressure, spread, ideal, UNIT[d], note))
         return found
 
