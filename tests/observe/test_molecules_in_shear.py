@@ -42,7 +42,7 @@ def test_stress(make_case, size, length):
 
 
 def test_stress_of_bonds_that_are_no_springs(make_case):
-    result, found = in_shear(make_case, (4, 4, 4), Stress(), length=2, bond=FENE(k=1 / 3, R0=6.0))
+    result, found = in_shear(make_case, (6, 6, 6), Stress(), length=2, bond=FENE(k=1 / 3, R0=6.0))
     expected = found["bond part from the stress"].expected
     assert result.expected[2, 0, 1] == pytest.approx(expected * 10 * RATE)
     assert np.isnan(result.expected[-1, 0, 1])
