@@ -20,6 +20,8 @@ def in_shear(make_case, size, observable, **molecule):
     accumulator, fluid = observable.accumulator(case), FakeFluid(case)
     shape = (len(size), len(size))
     fluid.stress = {part: np.ones(shape) for part in ("kinetic", "collisional", "bond")}
+    bonds = case.particles // molecule["length"] * (molecule["length"] - 1)
+    fluid.bond_vectors = lambda: np.ones((bonds, len(size)))
     for _ in range(4):
         accumulator.observe(fluid)
     result = accumulator.result()
