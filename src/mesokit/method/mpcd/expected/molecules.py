@@ -355,6 +355,16 @@ def least_times_of(case: Case, kind: int | str = 1) -> theory.RouseTimes | None:
     return mode_times_of(dataclasses.replace(alone, fluid=fluid), kind)[0]
 
 
+def springs_in(case: Case) -> list[tuple[int, theory.RouseTimes]]:
+    """Of all kinds of molecules whose times are known: how many there are, and these times."""
+    kinds: list[int | str] = [FLUID] if case.fluid.molecule is not None else []
+    if case.solutes is not None:
+        polymers = range(len(case.solutes.polymers))
+        kinds += [1 + k for k in polymers if case.solutes.molecule(k) is not None]
+    known = [(group_of(case, "beads", kind).number, least_times_of(case, kind)) for kind in kinds]
+    return [(number, times) for number, times in known if times is not None]
+
+
 FEW = 3  # beads of a molecule up to which the others do not screen what it drags along
 
 
