@@ -36,6 +36,11 @@ class Moved:
     def whole_positions(self, ids=None):
         return self.positions(ids, unwrapped=True)
 
+    def bond_vectors(self):
+        """Of chains."""
+        beads = self.r.reshape(-1, self.case.solutes.polymers[0].length, self.dimension)
+        return np.diff(beads, axis=1).reshape(-1, self.dimension)
+
     def velocities(self, ids=None):
         return self.v if ids is None else self.v[ids - self.case.particles]
 

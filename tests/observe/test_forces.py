@@ -29,6 +29,7 @@ from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.expected import recognise, setting
 from mesokit.method.mpcd.solutes import Polymer, Solutes
+from mesokit.observe.shared.molecule_tensor import kept
 from mesokit.simulation import Simulation
 
 PUSHED = {"force": Uniform((0.01, 0)), "thermostat": MaxwellBoltzmann()}
@@ -232,13 +233,46 @@ def test_flow_rate_counts_the_solids(make_case):
     found, share = by_name(result), free_volume(case) / 144
     mean = found["mean velocity along x"]
     assert mean.measured == pytest.approx(0.2 * share, abs=4 * mean.error)
-    assert mean.error == pytest.approx(share / np.sqrt(300 * case.particles), rel=0.4)
+    relaxation = 0.2 / 0.01  # the force gives that momentum in this time
+    assert "15 relaxation times" in mean.note and "lower bound" in mean.note
+    thermal = kept(300 / relaxation) / case.particles
+    assert mean.error == pytest.approx(share * np.sqrt(thermal), rel=0.02)
     rate = found["flow rate along x"]
     assert rate.measured == pytest.approx(12 * mean.measured)
     k = found["permeability along x"]
     assert k.measured == pytest.approx(setting.transport(case).viscosity * mean.measured / 0.01)
     assert k.expected == pytest.approx(theory.square_array_permeability(np.pi * 9 / 144, 12))
     assert len(result.value) == 300 and result.extra["mean"] == mean.measured
+
+
+class Slowing:
+    """A fluid whose momentum fluctuates, and is forgotten in a time, about the flow of a force."""
+
+    def __init__(self, case, time, push, seed):
+        self.rng, self.time = np.random.default_rng(seed), 0.0
+        self.mass, self.keep = case.particles, np.exp(-1.0 / time)
+        self.mean = self.mass * push * time
+        self.momentum = self.rng.normal() * self.mass**0.5
+
+    def totals(self):
+        self.time += 1.0
+        noise = np.sqrt((1 - self.keep**2) * self.mass) * self.rng.normal()
+        self.momentum = self.keep * self.momentum + noise
+        return self.mass, np.array([self.mean + self.momentum, 0.0]), 0.0
+
+
+@pytest.mark.parametrize("relaxations", [3, 12])
+def test_error_bars_of_flow_rates_hold_in_short_runs(make_case, relaxations):
+    case, runs = make_case((12, 12), [FlowRate()], [Disk(centre=[6, 6], radius=3)], **PUSHED), 60
+    values, errors = [], []
+    for seed in range(runs):
+        accumulator, fluid = FlowRate().accumulator(case), Slowing(case, 20.0, 0.01, seed)
+        for _ in range(20 * relaxations):
+            accumulator.observe(fluid)
+        mean = accumulator.result()["mean velocity along x"]
+        values.append(mean.measured)
+        errors.append(mean.error)
+    assert np.std(values) / np.mean(errors) == pytest.approx(1, abs=3 / np.sqrt(2 * runs))
 
 
 def expected_of(make_case, size, walls, **fluid):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from molecules_moved import case_with, followed
 
-from mesokit import MoleculeTracks
+from mesokit import BondLength, MoleculeHistogram, MoleculeSize, MoleculeTracks
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 
 TURN = np.radians(60)
@@ -64,3 +64,44 @@ def test_a_long_run_says_that_its_rows_are_means():
     assert not list(observable.warnings(case))
     [said] = observable.warnings(long)
     assert "every = 1: 20001 samples of 1000 molecules" in said
+
+
+def caught(observable, molecules, seed, samples=24):
+    """Chains of two beads whose ends (2D, of variance 1) stay as they start."""
+    ends = np.random.default_rng(seed).normal(size=(molecules, 2))
+    beads = np.stack([np.zeros_like(ends), ends], axis=1)
+    case = case_with(observable, number=molecules)
+    return followed(observable, case, np.arange(float(samples)), [beads] * samples)
+
+
+@pytest.mark.parametrize("molecules", [2, 3])
+def test_error_bars_of_few_molecules_hold(molecules):
+    """Two or three that do not change: their scatter is uncertain itself, and Student knows it."""
+    held = 0
+    for seed in range(400):
+        means = MeansOverMolecules(molecules, 1)
+        values = np.random.default_rng(seed).normal(size=(molecules, 1))
+        for _ in range(4):
+            means.add(values)
+        held += abs(means.mean()[0]) < means.error()[0]
+    assert abs(held / 400 - 0.683) < 3 * (0.683 * 0.317 / 400) ** 0.5
+
+
+@pytest.mark.parametrize("kind", [MoleculeTracks, MoleculeHistogram, MoleculeSize, BondLength])
+def test_two_molecules_scatter_in_every_observable_of_molecules(kind):
+    observable = kind(of="end-to-end") if kind is MoleculeHistogram else kind()
+    for molecules in (1, 2):
+        found = caught(observable, molecules, seed=5).result().comparisons
+        of_ends = next(c for c in found if any(word in c.what for word in ("end-to-end", "bond")))
+        if molecules == 2:
+            assert of_ends.error > 0.2
+        else:
+            assert "lower bound" in of_ends.note
+
+
+def test_what_two_molecules_were_goes_on_after_a_stop():
+    observable = MoleculeSize()
+    first = caught(observable, 2, seed=5)
+    again = caught(observable, 2, seed=6)
+    again.restore(first.state())
+    assert again.result() == first.result()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from laboratory import make_case
 
-from mesokit import SRD, BondLength, Harmonic, MaxwellBoltzmann, MoleculeSize
+from mesokit import SRD, BondLength, Harmonic, MaxwellBoltzmann, MoleculeSize, Stress
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.observe.shared.molecule_tensor import ENOUGH, kept
 
@@ -60,6 +60,27 @@ def test_error_bars_hold(kind, relaxations):
         compared = measured(kind, samples, seed).comparisons()[0]
         deviation.append(compared.deviation)
         assert "lower bound" in str(compared)
+    assert abs(np.std(deviation) - 1) < 3 / np.sqrt(2 * RUNS)
+
+
+@pytest.mark.parametrize("relaxations", [0.4, 1.5])
+def test_error_bars_of_the_pressure_hold(relaxations):
+    observable = Stress(every=1)
+    case = make_case((8, 8, 8), [observable], **DIMERS)
+    time = measured(BondLength, 1, 0).times.mode[0]
+    deviation = []
+    for seed in range(RUNS):
+        accumulator = observable.accumulator(case)
+        fluid = Dimers(measured(BondLength, 1, seed), seed)
+        for _ in range(round(relaxations * time / INTERVAL)):
+            bonds = 2 / 6 * fluid.bonds.T @ fluid.bonds / case.box.volume
+            flight = -case.fluid.density * np.eye(3)
+            fluid.stress = {"kinetic": flight, "collisional": 0 * flight, "bond": bonds}
+            accumulator.observe(fluid)
+            fluid.advance()
+        pressure = accumulator.result()["pressure"]
+        assert pressure.expected == 1.0 and "lower bound" in pressure.note
+        deviation.append(pressure.deviation)
     assert abs(np.std(deviation) - 1) < 3 / np.sqrt(2 * RUNS)
 
 

@@ -19,7 +19,7 @@ from mesokit import (
     StressInTime,
 )
 from mesokit.case.box import Box
-from mesokit.method.mpcd.expected.molecules import without_bonds
+from mesokit.method.mpcd.expected.molecules import springs_in, without_bonds
 
 OBSERVE = StressInTime(window=10)
 SPRING = Molecule(length=2, bond=Harmonic(K=0.5))
@@ -105,6 +105,24 @@ def test_theory_is_the_factor(sheared):
     jump = expected[4, 0] - expected[3, 0]
     assert jump == pytest.approx(viscosity * 10 * 0.1, rel=0.5)
     assert expected[0, 0] > 0.05 and (np.diff(expected[:4, 0]) < 0).all()
+
+
+def test_few_repetitions_that_agree_are_not_exact(sheared):
+    """Springs fluctuate, and a factor to theory with them: as often as its error bar says."""
+    case = sheared(StartUp(0.1, start=4.0, period=12.0), 4 * 120, **DIMERS)
+    agreeing = measured(case, 4 * 120, lambda step: 1.0).result()
+    quoted = agreeing["shear stress over theory"].error
+    assert (agreeing.error > 0).all()
+    [(number, times)] = springs_in(case)
+    theory, rng = np.repeat(agreeing.expected[:, 0], 10), np.random.default_rng(4)
+    kept = np.exp(-0.1 / float(times.stress[0]))
+    noise = np.sqrt(number) / case.box.volume * rng.normal(size=(1000, 4))
+    factors = np.zeros((1000, 4))
+    for line in theory:
+        fresh = np.sqrt(number * (1 - kept**2)) / case.box.volume * rng.normal(size=noise.shape)
+        noise = kept * noise + fresh
+        factors += noise * line / 10 / (agreeing.expected[:, 0] ** 2).sum()
+    assert factors.mean(axis=1).std() == pytest.approx(quoted, rel=0.1)
 
 
 @pytest.mark.parametrize(

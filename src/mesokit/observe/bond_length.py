@@ -11,8 +11,9 @@ from mesokit.engine import RunningFluid
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import (
     KIND,
-    bond_in_shear,
+    bonds_in_shear,
     bonds_of,
+    group_of,
     molecule_of,
     of_fluid,
     shear_note,
@@ -47,15 +48,18 @@ class BondLengthAccumulator(MoleculeTensorAccumulator):
 
     def __init__(self, observable: BondLength, case: Case) -> None:
         observable.check(case)
-        super().__init__(observable, case, ("bonds",), observable.kind)
+        molecules = group_of(case, "beads", observable.kind).number
+        super().__init__(observable, case, ("bonds",), observable.kind, molecules)
+        self.molecules = molecules
         self.molecule = molecule_of(case, kind=observable.kind)
         self.bonds = bonds_of(case, observable.kind)
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         way = fluid.bond_vectors()[self.bonds]
-        products = np.einsum("ij,ik->jk", way, way) / len(way)
-        self.blocks.add(products[None])
+        of_each = way.reshape(self.molecules, -1, way.shape[1])
+        products = np.einsum("mij,mik->mjk", of_each, of_each) / of_each.shape[1]
+        self.note_own(products[:, None])
         square = way**2
         elements = np.einsum("ij,ik->jk", square, square) / len(way)
         self.note_squares(elements[None], (square.sum(axis=1) ** 2).mean(keepdims=True), len(way))
@@ -63,6 +67,8 @@ class BondLengthAccumulator(MoleculeTensorAccumulator):
     def result(self) -> Result:
         """The products, and the mean square bond length beside that of Boltzmann."""
         theory = "Boltzmann's distribution of a bond at rest"
+        if self.in_shear() is not None:
+            theory = "molecules in shear"
         return self.tensors("bond-length", "products of bond components", "a^2", theory)
 
     def square(self) -> float:
@@ -81,23 +87,29 @@ class BondLengthAccumulator(MoleculeTensorAccumulator):
         return np.nan if found is None else found
 
     def expected(self) -> Array:
-        """Isotropic products."""
+        """Isotropic products, or those in shear."""
+        flowing = self.in_shear()
+        if flowing is not None:
+            return flowing[None]
         d = self.case.box.dimension
         return self.square() / d * np.eye(d)[None]
 
+    def in_shear(self) -> Array | None:
+        """Products (d, d) in a steady shear whose temperature is held; None without a theory."""
+        case = self.case
+        undisturbed = not case.walls and not case.fluid.force.acts
+        if not (case.box.steady_rate and undisturbed and setting.isothermal(case)):
+            return None
+        return bonds_in_shear(case)
+
     def comparisons(self) -> list[Comparison]:
         """Mean square and root mean square length."""
-        case, box = self.case, self.case.box
         mean, error = self.size(0)
-        expected, note = self.square(), ""
-        undisturbed = not case.walls and not case.fluid.force.acts
-        if box.steady_rate and undisturbed and setting.isothermal(case):
-            flowing = bond_in_shear(case)
-            if flowing is not None:
-                expected, note = flowing, shear_note(case)
+        expected = float(np.trace(self.expected()[0]))
+        note = "" if self.in_shear() is None else shear_note(self.case)
         root = max(mean, 0.0) ** 0.5
         note = "; ".join(filter(None, (note, self.short_run())))
-        error = setting.with_start(case, error, mean, self.blocks.series)
+        error = setting.with_start(self.case, error, mean, self.blocks.series)
         return [
             Comparison("mean square bond length", mean, error, expected, "a^2", note),
             Comparison(

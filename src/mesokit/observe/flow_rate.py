@@ -12,10 +12,13 @@ from mesokit import theory
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
 from mesokit.engine import RunningFluid
+from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.expected import recognise, setting
 from mesokit.observe.shared.estimate import Estimate, of_mean
+from mesokit.observe.shared.molecule_tensor import kept
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Comparison, Result
+from mesokit.observe.velocity_profile import ENOUGH
 from mesokit.statistics import Blocks, TimeSeries
 
 if TYPE_CHECKING:
@@ -108,18 +111,54 @@ class FlowRateAccumulator:
             samples=self.blocks.count,
             extra={
                 "mean": float(self.blocks.mean()),
-                "mean_error": float(self.blocks.error()),
+                "mean_error": self.error(),
                 "axis": AXES[self.axis],
             },
         )
 
+    def relaxation(self) -> float:
+        """The time in which the flow's momentum is forgotten; nan where no force tells it.
+
+        A force drives the flow to the momentum that it gives in that time: exact in slow flow, for
+        the response to a force is the integral of the momentum's correlation (Kubo 1957).
+        """
+        case, push = self.case, float(setting.acceleration(self.case)[self.axis])
+        time = float(self.blocks.mean()) * self.mass / (self.moving_mass() * push) if push else -1.0
+        return time if case.walls and time > 0 else np.nan
+
+    def moving_mass(self) -> float:
+        """Of fluid and solutes in the box."""
+        return setting.mass_density(self.case) * free_volume(self.case)
+
+    def length(self) -> float:
+        """Of a run, in relaxation times."""
+        steps = self.blocks.count / self.blocks.series * self.observable.every
+        return steps * self.case.fluid.timestep / self.relaxation()
+
+    def short_run(self) -> str:
+        """Where blocking cannot see how slowly the flow changes: a note."""
+        times = self.length()
+        if not times < ENOUGH:
+            return ""
+        return f"error bar is a lower bound: the run has {times:.2g} relaxation times"
+
+    def error(self) -> float:
+        """Standard error of the mean velocity: in a short run at least that of a thermal momentum,
+        of variance M kT, whose correlation falls as an exponential."""
+        error, times = float(self.blocks.error()), self.length()
+        if not times < ENOUGH:
+            return error
+        variance = self.moving_mass() * self.case.fluid.kT / self.mass**2
+        return float(np.maximum(error, (variance * kept(times) / self.blocks.series) ** 0.5))
+
     def comparisons(self, known: float, name: str) -> list[Comparison]:
         """Mean velocity, flow rate, permeability."""
         mean: Estimate = of_mean(self.blocks)
-        speed, error = float(mean.value), float(mean.error)
+        speed, error = float(mean.value), self.error()
         size, letter = np.array(self.case.box.size, float), AXES[self.axis]
         area = float(np.prod(size) / size[self.axis])
-        note = setting.caveat(self.case) or name
+        short = self.short_run()
+        note = "; ".join(filter(None, (setting.caveat(self.case) or name, short)))
         found = [
             Comparison(f"mean velocity along {letter}", speed, error, known, "a/tau", note),
             Comparison(
@@ -141,7 +180,7 @@ class FlowRateAccumulator:
                     abs(scale) * error,
                     scale * known,
                     "a^2",
-                    "; ".join(filter(None, [name, "viscosity of theory"])),
+                    "; ".join(filter(None, [name, "viscosity of theory", short])),
                 )
             )
         return found

@@ -212,7 +212,8 @@ class MoleculeHistogramAccumulator:
         square = ((away - length * np.rint(away / length)) ** 2)[None]
         value, error = float(self.means.mean(square)[0]), float(self.means.error(square)[0])
         what = f"mean square distance from the middle of the traps along {AXES[self.axis]}"
-        return Comparison(what, value, error, float(square[0] @ share), "a^2")
+        expected, note = float(square[0] @ share), self.means.caution()
+        return Comparison(what, value, error, expected, "a^2", note)
 
     def words(self) -> str:
         """What is counted."""
@@ -288,6 +289,7 @@ class MoleculeHistogramAccumulator:
         value, error = float(self.means.mean(middle)[0]), float(self.means.error(middle)[0])
         expected = np.nan if known is None else float(middle[0] @ np.diff(known))
         outside = 1 - float(self.means.mean().sum())
-        note = f"{100 * outside:.2g} % larger than largest are left out" if outside > 1e-9 else ""
+        left = f"{100 * outside:.2g} % larger than largest are left out" if outside > 1e-9 else ""
+        note = "; ".join(filter(None, (left, self.means.caution())))
         unit = "" if self.observable.of == "orientation" else "a"
         return [Comparison(f"mean {self.words()}", value, error, expected, unit, note)]

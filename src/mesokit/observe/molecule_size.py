@@ -53,22 +53,22 @@ class MoleculeSizeAccumulator(MoleculeTensorAccumulator):
     def __init__(self, observable: MoleculeSize, case: Case) -> None:
         self.molecule = molecule_of(case, observable.quantity, observable.kind)
         parts = PARTS if self.molecule.topology == "chain" else PARTS[:1]
-        super().__init__(observable, case, parts, observable.kind)
         self.beads = beads_of(case, observable.molecules, observable.kind)
+        super().__init__(observable, case, parts, observable.kind, len(self.beads))
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         r = fluid.whole_positions(self.beads.ravel()).reshape(*self.beads.shape, -1)
         each = gyration(r)
-        tensors, squares = [each.mean(axis=0)], [(each**2).mean(axis=0)]
+        tensors, squares = [each], [(each**2).mean(axis=0)]
         traces = [(np.trace(each, axis1=1, axis2=2) ** 2).mean()]
         if len(self.parts) > 1:
             end = r[:, -1] - r[:, 0]
             square = end**2
-            tensors.append(np.einsum("ma,mb->ab", end, end) / len(end))
+            tensors.append(np.einsum("ma,mb->mab", end, end))
             squares.append(np.einsum("ma,mb->ab", square, square) / len(end))
             traces.append((square.sum(axis=1) ** 2).mean())
-        self.blocks.add(np.stack(tensors))
+        self.note_own(np.stack(tensors, axis=1))
         self.note_squares(np.stack(squares), np.array(traces), len(r))
 
     def weights(self, part: int) -> Array:

@@ -171,12 +171,13 @@ class MoleculeTracksAccumulator:
                 "mean square end-to-end distance", mean[1], error[1], ends, "a^2", self.note()
             )
             what = f"orientation along {AXES[self.axis]}"
-            yield Comparison(what, mean[2], error[2], rest)
+            yield Comparison(what, mean[2], error[2], rest, note=self.note())
         for k in range(self.dimension):
             what = f"velocity of centres along {AXES[k]}"
-            yield Comparison(what, mean[3 + k], error[3 + k], rest, "a/tau")
+            yield Comparison(what, mean[3 + k], error[3 + k], rest, "a/tau", self.note())
 
     def note(self) -> str:
         """How many molecules are behind an error bar, where they are few."""
         few = self.number < self.group.number
-        return f"of {self.number} of {self.group.number} molecules" if few else ""
+        words = f"of {self.number} of {self.group.number} molecules" if few else ""
+        return "; ".join(filter(None, (words, self.means.caution())))

@@ -21,12 +21,14 @@ from mesokit.method.mpcd.expected.molecules import KIND, group_of
 from mesokit.observe.shared.durations import in_parts, ratio
 from mesokit.observe.shared.events import EventAccumulator, Words
 from mesokit.observe.shared.origins import GROUPS
-from mesokit.observe.shared.over_molecules import FEWEST, MeansOverMolecules
+from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+
+FEWEST = 8  # molecules that tell how far times differ from one to another
 
 
 @component
@@ -180,7 +182,9 @@ class ResidenceTimeAccumulator(EventAccumulator):
         yield Comparison("mean time until exit", value, error, expected, "tau", of_theory)
         yield self.counted()
         value, error = float(self.share.mean()[0]), float(self.share.error()[0])
-        yield Comparison("share of the time inside", value, error, self.volume())
+        yield Comparison(
+            "share of the time inside", value, error, self.volume(), note=self.share.caution()
+        )
 
     def exit_time(self) -> tuple[float, float]:
         """Mean time from any sample inside to the first one outside, and its standard error.
@@ -216,7 +220,7 @@ class ResidenceTimeAccumulator(EventAccumulator):
         rest = samples - stay
         until = stay - rest * (inverse[samples] - inverse[rest])
         sums = np.stack([self.interval * samples * until, stay], axis=1)
-        if len(self.beads) < 2 * FEWEST:
+        if len(self.beads) < FEWEST:
             return in_parts(events.span, np.append(events.ends, np.full(len(going), end)), sums)
         found = np.zeros((min(GROUPS, len(self.beads)), 2))
         np.add.at(found, np.append(events.who, going) * len(found) // len(self.beads), sums)

@@ -11,7 +11,13 @@ from mesokit.case.component import component, option, tag
 from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import bond_viscosity, shear_note, stress_in_shear
+from mesokit.method.mpcd.expected.molecules import (
+    bond_viscosity,
+    shear_note,
+    springs_in,
+    stress_in_shear,
+)
+from mesokit.observe.shared.molecule_tensor import ENOUGH, kept
 from mesokit.observe.shared.protocol import Observable
 from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.observe.shared.tensor import TensorAccumulator
@@ -21,6 +27,7 @@ if TYPE_CHECKING:
 
 PARTS = ("kinetic", "collisional", "bond")  # the last one of molecules only
 ROUSE = "Rouse molecules, beads with the friction of free particles"
+IN_SHEAR, OF_PART = "no theory of such a fluid in shear", "no theory of this part"
 UNIT = {2: "m/tau^2", 3: "m/(a tau^2)"}  # force per area, by dimension
 
 
@@ -52,8 +59,10 @@ class StressAccumulator(TensorAccumulator):
         observable.check(case)
         self.bonded_beads = case.fluid.molecule is not None or case.solutes is not None
         self.given = PARTS[: 3 if self.bonded_beads else 2]
+        self.every = observable.every
         # numbers per cell of all that carries momentum, and of what moves as one
         self.carriers, self.wholes = setting.carriers(case)
+        self.springs = springs_in(case)
         super().__init__(observable, case, (*self.given, "total"))
 
     def observe(self, fluid: RunningFluid) -> None:
@@ -64,7 +73,58 @@ class StressAccumulator(TensorAccumulator):
     def result(self) -> Result:
         """Tensors, pressure and viscosities."""
         theory = "molecular chaos, ideal gas" + (" of molecules" if self.bonded_beads else "")
+        if self.case.box.steady_rate and self.bonded() is not None:
+            theory = "molecules in shear"
         return self.tensors("stress", "stress", UNIT[self.case.box.dimension], theory)
+
+    def length(self) -> float:
+        """Of a run."""
+        return self.blocks.count / self.blocks.series * self.every * self.case.fluid.timestep
+
+    def short_run(self) -> str:
+        """Where blocking cannot see how slowly bonds change: a note."""
+        slowest = max((float(times.mode[0]) for _, times in self.springs), default=0.0)
+        if not 0 < self.length() < ENOUGH * slowest:
+            return ""
+        times = self.length() / slowest
+        return f"error bar is a lower bound: the run has {times:.2g} relaxation times"
+
+    def least(self, weight: Array) -> float:
+        """Least error of a sum of elements of the stress of bonds, and so of the total, with these
+        weights (d, d); 0 in a long run.
+
+        The stress of a mode of springs at rest has the moments of x x/V with a Gaussian x of
+        variance kT along each axis, and is forgotten in the stress time.
+        """
+        if not self.short_run():
+            return 0.0
+        squares = float((weight**2 + weight * weight.T).sum())
+        kept_of_modes = sum(
+            number * kept(self.length() / float(stress))
+            for number, times in self.springs
+            for stress in times.stress
+        )
+        scale = self.case.fluid.kT / self.case.box.volume
+        return scale * float(squares * kept_of_modes / self.blocks.series) ** 0.5
+
+    def summed(self, part: int, weight: Array) -> tuple[float, float]:
+        """Sum of the elements of a part with these weights (d, d), and its standard error."""
+        value, error = super().summed(part, weight)
+        return value, float(np.maximum(error, self.least(weight) if self.bonds_in(part) else 0.0))
+
+    def bonds_in(self, part: int) -> bool:
+        """Whether a part has the stress of bonds in it: that part, and the total."""
+        return self.bonded_beads and part % len(self.parts) >= 2
+
+    def errors(self) -> Array:
+        """Standard errors (parts, d, d)."""
+        found, d = self.blocks.error(), self.case.box.dimension
+        if not self.blocks.count or not self.bonded_beads:
+            return found
+        unit = np.eye(d * d).reshape(d, d, d, d)
+        least = np.array([[self.least(element) for element in row] for row in unit])
+        found[2:] = np.maximum(found[2:], least)
+        return found
 
     def expected(self) -> Array:
         """Pressure on the diagonal, eta gdot off it; nan where there is no theory."""
@@ -87,7 +147,27 @@ class StressAccumulator(TensorAccumulator):
             for part, nu in zip((0, 1, -1), self.viscosities(), strict=True):
                 shear = nu * setting.mass_density(case) * rate if steady else np.nan
                 expected[part, 0, 1] = expected[part, 1, 0] = shear
+            self.put_bonds(expected)
         return expected
+
+    def put_bonds(self, expected: Array) -> None:
+        """Of molecules in steady shear: the total, and the part of the bonds."""
+        case, d = self.case, self.case.box.dimension
+        rate, bonded = case.box.steady_rate, self.bonded()
+        if not (rate and self.bonded_beads):
+            return
+        slow = bond_viscosity(case)
+        if slow is not None:
+            expected[2, 0, 1] = expected[2, 1, 0] = slow * rate
+        if bonded is None:
+            return
+        expected[-1, 0, 1] = expected[-1, 1, 0] = bonded.viscosity * rate
+        if not self.known():
+            return
+        for axis in range(d):
+            stretch = bonded.first if axis == 0 else 0.0
+            expected[2, axis, axis] = (self.carriers - self.wholes) * case.fluid.kT + stretch
+            expected[-1, axis, axis] = -self.wholes * case.fluid.kT + stretch
 
     def known(self) -> bool:
         """Whether the pressure is that of an ideal gas of known temperature."""
@@ -105,7 +185,7 @@ class StressAccumulator(TensorAccumulator):
     def comparisons(self) -> list[Comparison]:
         """Pressure, and under shear the viscosity with its parts."""
         case, found = self.case, []
-        mean, error = self.blocks.mean(), self.blocks.error()
+        mean, error = self.blocks.mean(), self.errors()
         rate = case.box.steady_rate
         if rate:
             scale = setting.mass_density(case) * rate
@@ -122,6 +202,9 @@ class StressAccumulator(TensorAccumulator):
                 nu, bonded = self.viscosities()[part], self.bonded()
                 if part < 0 and bonded is not None:
                     nu, note = bonded.viscosity / setting.mass_density(case), shear_note(case)
+                elif self.bonded_beads:
+                    note = IN_SHEAR if part < 0 else OF_PART
+                note = self.cautioned(note, part)
                 found.append(
                     Comparison(
                         f"{name} from the stress",
@@ -144,14 +227,21 @@ class StressAccumulator(TensorAccumulator):
         pressure, spread = self.summed(-1, -np.eye(d) / d)
         spread = setting.with_start(case, spread, ideal, self.blocks.series)
         ideal = ideal if known else np.nan
-        stretched = case.box.sheared and self.bonded_beads and self.case.fluid.molecule is not None
-        note = shear_note(case) if stretched else ""
+        note = ""
+        if case.box.sheared and self.bonded_beads:
+            note = shear_note(case) if np.isfinite(ideal) else IN_SHEAR
+        note = self.cautioned(note)
         found.append(Comparison("pressure", pressure, spread, ideal, UNIT[d], note))
         return found
 
+    def cautioned(self, note: str, part: int = -1) -> str:
+        """A note on a part, and what to say of its error bar."""
+        short = self.short_run() if self.bonds_in(part) else ""
+        return "; ".join(filter(None, (note, short)))
+
     def bond_part(self, scale: float) -> Comparison:
         """What bonds add to the viscosity; `scale` is the mass density times the shear rate."""
-        value, error = self.blocks.mean()[2, 0, 1] / scale, self.blocks.error()[2, 0, 1] / scale
+        value, error = self.blocks.mean()[2, 0, 1] / scale, self.errors()[2, 0, 1] / scale
         known, expected, note = bond_viscosity(self.case), np.nan, ""
         if known is not None:
             expected = known / setting.mass_density(self.case)
@@ -159,6 +249,7 @@ class StressAccumulator(TensorAccumulator):
             if not self.bonded():
                 note = f"approximate: at zero shear rate; {ROUSE}"
         what = "bond part from the stress"
+        note = self.cautioned(note)
         return Comparison(what, float(value), float(abs(error)), expected, "a^2/tau", note)
 
     def bonded(self) -> theory.ShearStress | None:
@@ -179,7 +270,7 @@ class StressAccumulator(TensorAccumulator):
                     *self.summed(-1, weight),
                     known[which],
                     UNIT[d],
-                    shear_note(self.case) if bonded else "",
+                    self.cautioned(shear_note(self.case) if bonded else ""),
                 )
             )
         return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -16,6 +17,7 @@ from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import shear_note
 from mesokit.method.mpcd.expected.rheometer import modes_of_stress
 from mesokit.observe.shared.estimate import Estimate
+from mesokit.observe.shared.molecule_tensor import ENOUGH
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.observe.stress import UNIT
@@ -25,6 +27,8 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 NOISE = 1.0  # standard errors: the integral ends where G first falls below so many
+ROUGH = 0.2  # relative error that hides by how much a theory is approximate
+STRESS_TIMES = 4.0  # to which it goes where molecules relax as theory knows: all but 2 %
 FREQUENCIES = 40
 
 
@@ -32,7 +36,8 @@ FREQUENCIES = 40
 class StressAutocorrelation(Observable):
     """G(t) = V/kT <s(t) s(0)> of the shear stresses s of a fluid at rest (Green and Kubo).
 
-    Its integral is the viscosity; half of the value at lag 0 counts, as time is discrete.
+    Its integral is the viscosity; half of the value at lag 0 counts, as time is discrete. It ends
+    after four stress times of molecules, or, where these are not known, where G is lost in noise.
     """
 
     quantity: Literal["stress-autocorrelation"] = tag("stress-autocorrelation")
@@ -63,6 +68,7 @@ class StressAutocorrelationAccumulator:
         max_lag = None if observable.max_lag is None else observable.max_lag // observable.every
         d = case.box.dimension
         self.correlator = MultipleTau((d * (d - 1),), max_lag=max_lag, pooled=1)
+        self.runs = 1  # that were pooled
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample. Rules that do not conserve angular momentum have no symmetric stress."""
@@ -80,6 +86,7 @@ class StressAutocorrelationAccumulator:
     def pool(self, other: StressAutocorrelationAccumulator) -> None:
         """Take in the samples of an independent run of the same case: only to read."""
         self.correlator.pool(other.correlator)
+        self.runs += other.runs
 
     def modulus(self) -> tuple[Array, Estimate]:
         """Time (n,) and G(t) with what each block of time adds to it."""
@@ -129,11 +136,44 @@ class StressAutocorrelationAccumulator:
             extra=extra,
         )
 
+    def remembers(self) -> bool:
+        """Whether the stress lasts longer than collisions make it: in molecules and solutes."""
+        return self.case.fluid.molecule is not None or self.case.solutes is not None
+
+    def stress_time(self) -> float:
+        """The longest of the molecules, nan where it is not known."""
+        known = modes_of_stress(self.case)
+        return max(known[1], default=np.nan) if known else np.nan
+
+    def end(self, time: Array, modulus: Estimate) -> int:
+        """The first lag that the integral leaves out."""
+        slow = self.stress_time()
+        if slow == slow:
+            return max(2, int(np.searchsorted(time, STRESS_TIMES * slow, "right")))
+        quiet = np.flatnonzero(~(modulus.value > NOISE * modulus.error))
+        return int(quiet[0]) if len(quiet) else len(time)
+
+    def note(self, last: float, error: float) -> str:
+        """How far the integral goes, what that leaves out, and how good the theory is.
+
+        `error`: relative to theory; a large one says nothing about the theory.
+        """
+        if not self.remembers():
+            return setting.caveat(self.case)
+        slow, until = self.stress_time(), f"integral to t = {last:.3g} tau"
+        if np.isnan(slow):
+            return f"lower bound: {until}, where G is lost in noise"
+        length = self.correlator.count / self.runs * self.observable.every
+        times = length * self.case.fluid.timestep / slow
+        if last < 0.75 * STRESS_TIMES * slow:
+            until = f"lower bound: {until}, stress time {slow:.3g} tau"
+        elif times < ENOUGH:
+            until += f", error bar is a lower bound: the run has {times:.2g} stress times"
+        return until if error > ROUGH else f"{shear_note(self.case)}; {until}"
+
     def integrals(self, time: Array, modulus: Estimate) -> tuple[list[Comparison], dict[str, Any]]:
         """Viscosity, and moduli G' = w int G sin wt dt, G'' = w int G cos wt dt with errors."""
-        error = modulus.error
-        quiet = np.flatnonzero(~(modulus.value > NOISE * error))
-        end = quiet[0] if len(quiet) else len(time)
+        end = self.end(time, modulus)
         weight = np.zeros(len(time))
         weight[0] = (time[1] - time[0]) / 2 if end == 1 else 0.0
         weight[: end - 1] += np.diff(time[:end]) / 2
@@ -141,19 +181,21 @@ class StressAutocorrelationAccumulator:
         density = setting.mass_density(self.case)
         value, spread = modulus.scalar(weight @ modulus.value, weight)
         known = modes_of_stress(self.case)
-        molecules = self.case.fluid.molecule is not None
-        expected, note = np.nan, setting.caveat(self.case)
-        if known is not None:
-            note = shear_note(self.case) if molecules else note
-            expected = theory.apparent_viscosity(known[2], *known[:2]) / density
+        last = time[end - 1] if end > 1 else time[1]
+        expected = np.nan
+        if known is not None:  # the integral to the same time
+            bonds = sum(known[0] * tau * -math.expm1(-last / tau) for tau in known[1])
+            expected = (known[2] + bonds) / density
         found = [
             Comparison(
                 "viscosity from the integral", value / density, spread / density, expected,
-                "a^2/tau", note,
+                "a^2/tau", self.note(last, spread / density / expected),
             )
         ]  # fmt: skip
-        last = time[end - 1] if end > 1 else time[1]
-        frequency = np.geomspace(1 / last, 1 / time[1], FREQUENCIES)
+        longest = last if self.remembers() else time[-1]
+        if longest < 2 * time[1]:
+            return found, {}
+        frequency = np.geomspace(1 / longest, 1 / time[1], FREQUENCIES)
         extra: dict[str, Any] = {"frequency": frequency}
         for name, wave in (("storage", np.sin), ("loss", np.cos)):
             kernel = frequency[:, None] * wave(frequency[:, None] * time) * weight

@@ -13,18 +13,20 @@ from mesokit.case.component import component, option, param, show, tag
 from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import shear_note
+from mesokit.method.mpcd.expected.molecules import shear_note, springs_in
 from mesokit.method.mpcd.expected.rheometer import spreading_time, stress_of_history
 from mesokit.observe.shared.estimate import Estimate
+from mesokit.observe.shared.molecule_tensor import kept
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.observe.stress import UNIT
-from mesokit.statistics import Blocks
+from mesokit.statistics import Blocks, student
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 SHEAR, BONDS, FIRST = "shear stress", "shear stress of bonds", "first normal-stress difference"
+SQUARES = {SHEAR: 1.0, BONDS: 1.0, FIRST: 4.0}  # of x y and x x - y y, of Gaussians
 MOST_ROWS = 10_000  # windows kept in memory
 
 
@@ -33,7 +35,8 @@ class StressInTime(Observable):
     """Shear stress and first normal-stress difference as functions of time, averaged over windows.
 
     Where the shear has a period they are folded onto it, and repetitions give the error bars;
-    otherwise runs with other seeds that are pooled do, from four on.
+    otherwise runs with other seeds that are pooled do, from four on. Few of them may agree by
+    chance: error bars have Student's factor, and are at least what springs at rest fluctuate.
     """
 
     quantity: Literal["stress-in-time"] = tag("stress-in-time")
@@ -104,6 +107,7 @@ class StressInTimeAccumulator:
         self.mass = setting.mass_density(case) * case.box.volume
         self.components = (SHEAR, *((BONDS,) if self.bonded else ()), FIRST)
         self.period = steps_of_period(case)
+        self.springs = springs_in(case)
         self.rows = (self.period or case.run.warmup + case.run.steps) // observable.window
         self.sums = np.zeros((self.rows, len(self.components)))
         self.counts = np.zeros(self.rows, np.int64)
@@ -202,19 +206,23 @@ class StressInTimeAccumulator:
         history = self.case.box.history
         edges = (rows[:, None] + np.array([0, 1])) * self.window * timestep
         strain = np.zeros(edges.shape) if history is None else history.strain_at(edges)
-        many = len(flat.weights) > 3
+        many = len(flat.weights) > 3 and len(rows) > 0
+        error = np.full(shape, np.nan)
+        if many:
+            known = flat.error.reshape(shape) * student(len(flat.weights))
+            error = np.maximum(known, self.scatter(flat))
         return Result(
             quantity="stress-in-time",
             drawing="stress in time",
             name=self.name,
             x={"time": edges.mean(axis=1), "component": np.array(self.components)},
             value=flat.value.reshape(shape),
-            error=(flat.error if many and len(rows) else np.full(shape, np.nan)).reshape(shape),
+            error=error,
             label="stress",
             units={"value": UNIT[self.case.box.dimension], "time": "tau", "component": ""},
             expected=expected,
             theory="Newtonian fluid" if self.case.fluid.molecule is None else "Rouse",
-            comparisons=tuple(self.comparisons(flat, expected)) if many and len(rows) else (),
+            comparisons=tuple(self.comparisons(rows, flat, expected)) if many else (),
             samples=int(sum(one.samples[0] for one in (self, *self.others))),
             extra={
                 "rate": np.diff(strain, axis=1)[:, 0] / (self.window * timestep),
@@ -238,7 +246,39 @@ class StressInTimeAccumulator:
         windows = np.stack(columns, axis=1).reshape(last, self.window, -1).mean(axis=1)
         return np.asarray(windows[rows])
 
-    def comparisons(self, flat: Estimate, expected: Array | None) -> list[Comparison]:
+    def fluctuation(self, lag: Array) -> Array:
+        """Correlation of the shear stress of springs at rest, of windows that are a lag apart."""
+        scale = (self.case.fluid.kT / self.case.box.volume) ** 2
+        window = self.window * self.case.fluid.timestep
+        return scale * sum(
+            (
+                number * np.where(lag > 0, np.exp(-lag / tau), kept(window / tau))
+                for number, times in self.springs
+                for tau in times.stress.tolist()
+            ),
+            start=np.zeros(np.shape(lag)),
+        )
+
+    def scatter(self, flat: Estimate) -> Array:
+        """Least errors (components,) of single windows by how much springs at rest fluctuate."""
+        single = float(self.fluctuation(np.zeros(())))
+        repetitions = flat.weights.sum()
+        return np.array([(SQUARES[name] * single / repetitions) ** 0.5 for name in self.components])
+
+    def of_factor(self, rows: NDArray[np.int64], flat: Estimate, weight: Array, name: str) -> float:
+        """Least error of a sum of windows (rows,), of one component: few repetitions may agree by
+        chance."""
+        number = int(rows[-1]) + 1
+        regular = np.zeros(2 * number)  # the other half so that no end meets the other
+        regular[rows] = weight
+        pairs = np.fft.irfft(abs(np.fft.rfft(regular)) ** 2)[:number]
+        correlation = self.fluctuation(np.arange(number) * self.window * self.case.fluid.timestep)
+        variance = 2 * pairs @ correlation - pairs[0] * correlation[0]
+        return float(max(SQUARES[name] * variance / flat.weights.sum(), 0.0) ** 0.5)
+
+    def comparisons(
+        self, rows: NDArray[np.int64], flat: Estimate, expected: Array | None
+    ) -> list[Comparison]:
         """By which factor the curves differ from those of theory, by least squares."""
         if expected is None:
             return []
@@ -250,6 +290,8 @@ class StressInTimeAccumulator:
                 continue
             weight[:, k] = expected[:, k] / square
             value, error = flat.scalar(flat.value @ weight.ravel(), weight.ravel())
+            error *= student(len(flat.weights))
+            error = max(error, self.of_factor(rows, flat, weight[:, k], name))
             note = shear_note(self.case) if molecules else ""
             if name == FIRST:
                 note = (

@@ -158,6 +158,7 @@ class TransitTimeAccumulator(EventAccumulator):
         along = f"velocity of centres along {AXES[self.axis]}"
         sign = self.sign
         known = sign * speed if speed > 0 else np.nan
+        note = "; ".join(filter(None, (note, self.velocity.caution())))
         yield Comparison(along, sign * value, error, known, "a/tau", note)
         if value > 3 * error:
             over = self.length / value

@@ -83,11 +83,12 @@ def draw_memory(result: Result, figure: Any, ax: Any) -> None:
 def draw_modulus(result: Result, figure: Any, ax: Any) -> None:
     """Relaxation modulus, and what its Fourier transforms say is stored and lost."""
     right: Any = None
-    if ax is None:
+    if ax is None and "frequency" in result.extra:
         ax, right = figure.subplots(1, 2)
+    ax = figure.subplots() if ax is None else ax
     _logarithmic(result, ax)
     ax.set_ylabel(labelled("$|G(t)|$", result.units["value"]))
-    if right is None or "frequency" not in result.extra:
+    if right is None:
         return
     w = result.extra["frequency"]
     largest = 0.0
@@ -107,12 +108,13 @@ def draw_modulus(result: Result, figure: Any, ax: Any) -> None:
         line = result.extra.get(f"{name}_theory")
         if line is not None and (line > 0).any():
             right.plot(w, line, color="black", lw=1.2, label=None if k else "theory", zorder=3)
+            largest = max(largest, line.max())
         largest = max(largest, value.max(initial=0.0))
     right.set_xscale("log")
     right.set_yscale("log", nonpositive="mask")
     if largest > 0:
         noise = np.nanmedian(result.extra["storage_error"])
-        right.set_ylim(max(0.2 * noise, DEEPEST * largest), 3 * largest)
+        right.set_ylim(max(min(0.2 * noise, 0.1 * largest), DEEPEST * largest), 3 * largest)
     sparse_logarithm(right.xaxis, w[0], w[-1])
     right.set_xlabel(labelled(r"frequency $\omega$", "1/tau"))
     right.set_ylabel(labelled("modulus", result.units["value"]))

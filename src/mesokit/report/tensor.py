@@ -59,8 +59,8 @@ def _legend(figure: Any, panels: Any, ax: Any = None) -> None:
     for panel in panels:
         found, labels = panel.get_legend_handles_labels()
         handles |= dict(zip(labels, found, strict=True))
-    theory = handles.pop("theory", None)
-    handles |= {"theory": theory} if theory is not None else {}
+    for label in [label for label in handles if label.startswith("theory")]:
+        handles[label] = handles.pop(label)  # last
     if ax is not None:
         ax.legend(
             handles.values(), handles, loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=2
@@ -93,12 +93,18 @@ def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) 
             expected = np.array([result.expected[e] for e in chosen])
             if np.isfinite(expected).any():
                 ends = place - width / 2, place + width / 2
-                ax.hlines(expected, *ends, color="black", lw=1.5, label="theory")
+                ax.hlines(expected, *ends, color="black", lw=1.5, label=_theory(result))
     ax.set_xticks(range(len(inner)), [f"${name}$" for name in inner])
     ax.set_xlim(-0.6, len(inner) - 0.4)
     ax.set_title(title, fontsize=10)
     ax.margins(y=0.2)
     ax.set_ylabel(labelled(SYMBOLS.get(result.label, "force per area"), result.units["value"]))
+
+
+def _theory(result: Result) -> str:
+    """What its lines are called."""
+    rough = any(c.approximate and np.isfinite(c.expected) for c in result.comparisons)
+    return "theory, approximate" if rough else "theory"
 
 
 def _names(result: Result, entry: tuple[int, ...]) -> list[str]:

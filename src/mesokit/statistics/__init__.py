@@ -21,6 +21,7 @@ from mesokit.statistics.spectrum import (
     mean_spectrum,
     spectrum,
 )
+from mesokit.statistics.student import student
 from mesokit.statistics.time_series import TimeSeries
 
 __all__ = [
@@ -42,6 +43,7 @@ __all__ = [
     "ratio",
     "spectrum",
     "spread_ids",
+    "student",
     "weighted_line",
     "weighted_polynomial",
 ]

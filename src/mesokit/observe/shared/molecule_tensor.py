@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.method.mpcd.expected.molecules import least_times_of
+from mesokit.observe.shared.over_molecules import OwnMeans
 from mesokit.observe.shared.protocol import BlockAccumulator, Observable, State, pack, unpack
 from mesokit.observe.shared.result import Array
 from mesokit.observe.shared.tensor import TensorAccumulator
@@ -42,7 +43,12 @@ class MoleculeTensorAccumulator(TensorAccumulator):
     """Block averages of tensors of molecules, and how much these differ in one sample."""
 
     def __init__(
-        self, observable: Observable, case: Case, parts: tuple[str, ...], kind: int | str
+        self,
+        observable: Observable,
+        case: Case,
+        parts: tuple[str, ...],
+        kind: int | str,
+        molecules: int,
     ) -> None:
         super().__init__(observable, case, parts)
         self.every, self.kind = observable.every, kind
@@ -50,6 +56,12 @@ class MoleculeTensorAccumulator(TensorAccumulator):
         self.runs = 1  # that were pooled
         self.scatter = Blocks((len(parts), case.box.dimension**2 + 1))  # elements, and the trace
         self.times = least_times_of(case, kind)
+        self.own = OwnMeans(molecules, len(parts) * case.box.dimension**2)
+
+    def note_own(self, tensors: Array) -> None:
+        """Take the tensors (molecules, parts, d, d) of each molecule."""
+        self.blocks.add(tensors.mean(axis=0))
+        self.own.add(tensors.reshape(len(tensors), -1))
 
     def note_squares(self, elements: Array, traces: Array, number: int) -> None:
         """Take the means over `number` molecules of the squares of elements (parts, d, d) and of
@@ -59,12 +71,13 @@ class MoleculeTensorAccumulator(TensorAccumulator):
 
     def state(self) -> State:
         """All it has to remember."""
-        return pack(blocks=self.blocks, scatter=self.scatter, number=self.number)
+        return pack(blocks=self.blocks, scatter=self.scatter, own=self.own, number=self.number)
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Go on from `state()`."""
         self.blocks = Blocks.from_state(unpack(state, "blocks"))
         self.scatter = Blocks.from_state(unpack(state, "scatter"))
+        self.own.restore(unpack(state, "own"))
         self.number = int(state["number"])
 
     def pool(self, other: BlockAccumulator) -> None:
@@ -72,6 +85,7 @@ class MoleculeTensorAccumulator(TensorAccumulator):
         assert isinstance(other, MoleculeTensorAccumulator)
         super().pool(other)
         self.scatter.pool(other.scatter)
+        self.own.pool(other.own)
         self.number, self.runs = max(self.number, other.number), self.runs + other.runs
 
     def weights(self, part: int) -> Array:
@@ -92,16 +106,33 @@ class MoleculeTensorAccumulator(TensorAccumulator):
     def short_run(self) -> str:
         """Where blocking cannot see how slowly molecules change: a note."""
         times = self.relaxations()
+        if np.isnan(times):
+            return self.own.caution()
         if not 0 < times < ENOUGH:
             return ""
         most = "at most " * (self.case.solutes is not None and self.case.fluid.molecule is not None)
         return f"error bar is a lower bound: the run has {most}{times:.2g} relaxation times"
 
     def bounds(self, part: int) -> tuple[Array, float]:
-        """Least errors of the elements (d, d) of a part, and of its trace; 0 in a long run."""
+        """Least errors of the elements (d, d) of a part, and of its trace; 0 in a long run.
+
+        The scatter of the molecules' own means, which may be caught between walls however long the
+        run is; and where times are known, but blocks too short, that in one sample.
+        """
         d = self.case.box.dimension
-        if not self.short_run():
+        short = bool(self.short_run())
+        if not (short or np.isnan(self.relaxations()) or self.case.walls):
             return np.zeros((d, d)), 0.0
+        sums = np.zeros((d * d + 1, len(self.parts), d * d))
+        sums[:-1, part], sums[-1, part] = np.eye(d * d), np.eye(d).ravel()
+        bound = np.nan_to_num(self.own.error(sums.reshape(d * d + 1, -1)))
+        if self.times is not None and short:
+            bound = np.maximum(bound, self.scatter_in_samples(part))
+        return bound[:-1].reshape(d, d), float(bound[-1])
+
+    def scatter_in_samples(self, part: int) -> Array:
+        """Errors of the elements of a part, and of its trace, by how much molecules differ in one
+        sample and what a mean over the run keeps of that."""
         assert self.times is not None
         weight = self.weights(part) ** 2
         slow = float((weight * self.times.stress).sum() / weight.sum())  # of squares of modes
@@ -110,8 +141,7 @@ class MoleculeTensorAccumulator(TensorAccumulator):
         means = np.append(mean.ravel(), np.trace(mean))
         independent = self.number * self.runs
         variance = np.maximum(square - means**2, 0.0) * kept(length / slow) / independent
-        bound = np.sqrt(variance)
-        return bound[:-1].reshape(d, d), float(bound[-1])
+        return np.sqrt(variance)
 
     def errors(self) -> Array:
         """Standard errors (parts, d, d)."""

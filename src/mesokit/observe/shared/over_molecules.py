@@ -11,9 +11,70 @@ from numpy.typing import NDArray
 from mesokit.observe.shared.estimate import Array, of_mean
 from mesokit.observe.shared.origins import GROUPS
 from mesokit.observe.shared.protocol import State, pack, unpack
-from mesokit.statistics import Blocks
+from mesokit.statistics import Blocks, student
 
-FEWEST = 4  # groups of molecules that tell how far molecules scatter
+
+class OwnMeans:
+    """Each molecule's own mean over the run, of groups of them where there are many.
+
+    Their scatter sees what takes longer than the run, which blocks of time cannot see.
+
+    Parameters
+    ----------
+    molecules: how many.
+    width: numbers of each.
+    """
+
+    def __init__(self, molecules: int, width: int) -> None:
+        groups = min(GROUPS, molecules)
+        self._starts = np.arange(groups) * molecules // groups
+        self._sizes = np.diff(np.append(self._starts, molecules))
+        self._sums = np.zeros((groups, width))
+        self._samples = 0
+        self._others: list[NDArray[np.float64]] = []  # means of the groups of pooled runs
+
+    def add(self, each: Array) -> None:
+        """Take one sample, (molecules, width)."""
+        self._sums += np.add.reduceat(each, self._starts, axis=0)
+        self._samples += 1
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(sums=self._sums, samples=self._samples)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self._sums, self._samples = np.array(state["sums"], float), int(state["samples"])
+
+    def pool(self, other: OwnMeans) -> None:
+        """Take in the molecules of an independent run: only to read from then on."""
+        self._others += [other._own(), *other._others]
+
+    def _own(self) -> NDArray[np.float64]:
+        """Means (groups, width) of this run."""
+        return np.asarray(self._sums / (max(self._samples, 1) * self._sizes[:, None]))
+
+    @property
+    def number(self) -> int:
+        """How many groups there are, those of pooled runs included."""
+        return len(self._sums) + sum(map(len, self._others))
+
+    def error(self, combine: Array | None = None) -> Array:
+        """Standard errors of the mean over all, (width,) or of linear combinations (n, width).
+
+        As their number is small, so that their scatter is itself uncertain, with Student's factor;
+        nan of a single one.
+        """
+        groups = np.concatenate([self._own(), *self._others])
+        if combine is not None:
+            groups = groups @ combine.T
+        if len(groups) < 2:
+            return np.full(groups.shape[1], np.nan)
+        return student(len(groups)) * groups.std(axis=0, ddof=1) / np.sqrt(len(groups))
+
+    def caution(self) -> str:
+        """Where there is no scatter: a note."""
+        return "" if self.number > 1 else "error bar is a lower bound: of one molecule"
 
 
 class MeansOverMolecules:
@@ -31,46 +92,31 @@ class MeansOverMolecules:
     >>> means = MeansOverMolecules(8, 1)
     >>> for time in range(16):
     ...     means.add(np.arange(8.0)[:, None])  # each keeps its own for ever
-    >>> means.mean().tolist(), means.error().round(2).tolist()  # sqrt(6/8), not 0
-    ([3.5], [0.87])
+    >>> means.mean().tolist(), means.error().round(2).tolist()  # 1.08 sqrt(6/8), not 0
+    ([3.5], [0.93])
     """
 
     def __init__(self, molecules: int, width: int) -> None:
-        self.blocks = Blocks((width,))
-        groups = min(GROUPS, molecules)
-        self._starts = np.arange(groups) * molecules // groups
-        self._sizes = np.diff(np.append(self._starts, molecules))
-        self._sums = np.zeros((groups, width))
-        self._others: list[NDArray[np.float64]] = []  # means of the groups of pooled runs
+        self.blocks, self.own = Blocks((width,)), OwnMeans(molecules, width)
 
     def add(self, each: Array) -> None:
         """Take one sample, (molecules, width)."""
         self.blocks.add(each.mean(axis=0))
-        self._sums += np.add.reduceat(each, self._starts, axis=0)
+        self.own.add(each)
 
     def state(self) -> State:
         """All it has to remember."""
-        return pack(blocks=self.blocks, sums=self._sums)
+        return pack(blocks=self.blocks, own=self.own)
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Go on from `state()`."""
         self.blocks = Blocks.from_state(unpack(state, "blocks"))
-        self._sums = np.array(state["sums"], float)
+        self.own.restore(unpack(state, "own"))
 
     def pool(self, other: MeansOverMolecules) -> None:
         """Take in the samples of an independent run: only to read from then on."""
-        self._others += [other._of_groups(), *other._others]
-        self._own = self._of_groups()
+        self.own.pool(other.own)
         self.blocks.pool(other.blocks)
-
-    _own: NDArray[np.float64] | None = None  # as they were before others came
-
-    def _of_groups(self) -> NDArray[np.float64]:
-        """Means (groups, width) of this run."""
-        if self._own is not None:
-            return self._own
-        samples = max(self.blocks.count, 1)
-        return np.asarray(self._sums / (samples * self._sizes[:, None]))
 
     def mean(self, combine: Array | None = None) -> Array:
         """Means (width,), or linear combinations (n, width) of them; nan before the first."""
@@ -82,9 +128,11 @@ class MeansOverMolecules:
         if not self.blocks.count:
             return np.full(len(self.mean(combine)), np.nan)
         found = of_mean(self.blocks)
-        groups = np.concatenate([self._of_groups(), *self._others])
         if combine is not None:
-            found, groups = found.linear(combine), groups @ combine.T
-        if len(groups) < FEWEST:
-            return found.error
-        return np.maximum(found.error, groups.std(axis=0, ddof=1) / np.sqrt(len(groups)))
+            found = found.linear(combine)
+        error = found.error
+        return np.where(np.isnan(error), error, np.fmax(error, self.own.error(combine)))
+
+    def caution(self) -> str:
+        """What to say of error bars that blocks of time alone give."""
+        return self.own.caution()

@@ -355,6 +355,16 @@ def least_times_of(case: Case, kind: int | str = 1) -> theory.RouseTimes | None:
     return mode_times_of(dataclasses.replace(alone, fluid=fluid), kind)[0]
 
 
+def springs_in(case: Case) -> list[tuple[int, theory.RouseTimes]]:
+    """Of all kinds of molecules whose times are known: how many there are, and these times."""
+    kinds: list[int | str] = [FLUID] if case.fluid.molecule is not None else []
+    if case.solutes is not None:
+        polymers = range(len(case.solutes.polymers))
+        kinds += [1 + k for k in polymers if case.solutes.molecule(k) is not None]
+    known = [(group_of(case, "beads", kind).number, least_times_of(case, kind)) for kind in kinds]
+    return [(number, times) for number, times in known if times is not None]
+
+
 FEW = 3  # beads of a molecule up to which the others do not screen what it drags along
 
 
@@ -425,18 +435,18 @@ def bond_viscosity(case: Case) -> float | None:
     return theory.dumbbell_viscosity(molecules, friction, square / d)
 
 
-def bond_in_shear(case: Case) -> float | None:
-    """Mean square bond length in steady shear: Rouse, or with hydrodynamic interaction."""
-    few = few_in_shear(case)
-    if few is not None:
-        return few.bond_squared
-    if case.solutes is not None:
-        return None
-    times, bond = rouse_times_of(case), free_bond(case)
+def bonds_in_shear(case: Case) -> Array | None:
+    """Mean products (d, d) of the components of bonds in steady shear: Rouse, or with hydrodynamic
+    interaction."""
+    times, bond = times_in_shear(case), free_bond(case)
     if times is None or bond is None:
         return None
-    modes, dimension, rate = modes_of(molecule_of(case)), case.box.dimension, case.box.steady_rate
-    return theory.size_in_shear(modes, rate, float(times.stress[0]), bond, dimension).bond
+    d, number = case.box.dimension, len(molecule_of(case).bonds)
+    found = theory.bond_correlation(0.0, times.stress, bond, case.box.steady_rate, d, number)
+    products = float(found.yy) * np.eye(d)
+    products[0, 0] = float(found.xx)
+    products[0, 1] = products[1, 0] = float(found.xy)
+    return products
 
 
 def free_bond(case: Case, kind: int | str = 1) -> float | None:

@@ -183,7 +183,8 @@ def slip_length(case: Case) -> float | None:
 
 def isothermal(case: Case) -> bool:
     """Whether something holds the fluid at kT everywhere."""
-    return case.fluid.thermostat.acts or case.fluid.collision.isothermal
+    random = case.solutes is not None and case.solutes.solvent == "random"
+    return random or case.fluid.thermostat.acts or case.fluid.collision.isothermal
 
 
 def acceleration(case: Case) -> Array:
