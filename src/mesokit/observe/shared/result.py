@@ -105,7 +105,14 @@ def with_error(value: float, error: float) -> str:
 
     >>> with_error(0.8705, 0.0123), with_error(1234.5, 12), with_error(2.0, 0.0)
     ('0.871(12)', '1234(12)', '2.000')
+
+    A whole number of which no error is known is a count.
+
+    >>> with_error(2.0, math.nan)
+    '2'
     """
+    if math.isnan(error) and value % 1 == 0:
+        return f"{value:.0f}"
     if value == 0 and not error > 0:
         return "0"
     if not math.isfinite(value) or not error > 0 or not math.isfinite(error):
