@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from mesokit.case.describe.digits import two_digits
 from mesokit.observe.shared.result import Comparison, with_error
 
 MOST = 8  # comparisons below a figure; the table of the run has all
@@ -118,7 +119,7 @@ def _line(c: Comparison, shared: Sequence[str]) -> str:
     if c.expected == c.expected and (c.expected or c.error > 0):
         said.append(f"theory {c.expected:.4g}")
         if c.approximate and c.expected:
-            said[0] += f", {c.percent:+.2g} %"
+            said[0] += f", {two_digits(c.percent, sign='+')} %"
         elif c.error > 0 and not c.approximate:
             said[0] += f", {c.deviation:+.1f} s.e."
     said += [note] if note else []

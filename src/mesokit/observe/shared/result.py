@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.describe.digits import two_digits
 from mesokit.case.describe.shown import Shown
 from mesokit.observe.shared.named import find, key_of
 
@@ -94,7 +95,7 @@ class Comparison:
             if math.isfinite(self.percent):
                 text += f", {self.percent:+.1f} %"
         elif self.approximate and math.isfinite(self.percent):
-            text += f": {self.percent:+.2g} %"
+            text += f": {two_digits(self.percent, sign='+')} %"
         if self.note and (not math.isfinite(self.deviation) or "lower bound" in self.note):
             text += f" ({self.note})"
         return text
