@@ -23,7 +23,8 @@ _SYMBOLS = {
     "a^2/time": r"a^2/\tau", "a/tau^2": r"a/\tau^2", "1/a^2": "a^{-2}", "1/a^3": "a^{-3}",
     "m a^2/tau^2": r"m\,a^2/\tau^2", "m a/tau": r"m\,a/\tau", "m a/tau^2": r"m\,a/\tau^2",
     "m/tau^2": r"m/\tau^2", "a^3/tau": r"a^3/\tau", "m/(a tau^2)": r"m/(a\,\tau^2)",
-    "a^2/sums": "a^2", "kT": "k_BT", "kT/a^3": r"k_BT/a^3", "N kT": r"N\,k_BT",
+    "a^2/sums": "a^2", "kT": "k_BT", "kT/a": "k_BT/a", "kT/a^2": "k_BT/a^2", "kT/a^3": r"k_BT/a^3",
+    "N kT": r"N\,k_BT",
     "N m kT": r"N\,m\,k_BT", "N sqrt(m kT)": r"N\sqrt{m\,k_BT}", "m/a^2": "m/a^2", "m/a^3": "m/a^3",
 }  # fmt: skip
 _FORMULAS = (
@@ -38,6 +39,7 @@ _FORMULAS = (
     (r"(?<=[\d)]) a\^2/tau\b", r" $a^2/\\tau$"),
     (r"(?<=[\d)]) a/tau\b", r" $a/\\tau$"),
     (r"(?<=[\d)]) a\b(?![/^])", r" $a$"),
+    (r"\bU = K r\^2", r"$U=K\,r^2$"),
     (r"\bkT\b", r"$k_BT$"),
 )
 
