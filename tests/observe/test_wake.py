@@ -187,7 +187,7 @@ def test_probe_remembers_where_nobody_is(make_case):
 @pytest.mark.parametrize("phase", [0.0, -90.0])
 @pytest.mark.parametrize("walls", [[], [Plates("y")]], ids=["open", "slit"])
 def test_swing_with_a_force(make_case, walls, phase):
-    """Amplitude and lag of a velocity that is known, whatever the phase of the force; and theory."""
+    """Amplitude and lag of a known velocity, whatever the phase of the force; and theory."""
     frequency, size, lag = 0.3, 0.4, 50.0
     force = OscillatingForce(Uniform((0.05, 0)), frequency, phase)
     case = make_case((16, 8), walls=walls, force=force, thermostat=MaxwellBoltzmann())
