@@ -321,8 +321,11 @@ class Study(Shown):
     def save_picture(self, x: str, y: str, fit: str | None = None) -> Path:
         """Draw one number against one varied value into a file of the folder."""
         from mesokit.report import save_figure
+        from mesokit.report.finish.origin import Origin
 
         figure, names = self.plot(x, y, fit), short_names(self.keys)
+        title = self.base.case(self.runs[0].point, self.runs[0].seed).title
+        figure.origin = Origin(", ".join(filter(None, [title, f"study {self.path.name}"])))
         number = next(row.name for row in find_rows(self.table(), y))
         file = self.path / f"{number}-against-{names[self.keys.index(self.key(x))]}.png"
         return save_figure(figure, file)

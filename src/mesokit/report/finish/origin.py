@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 class Origin(NamedTuple):
     """The title and digest of a case, its seed, and the name of the folder of the run, if any.
 
-    Figures of theory alone have a title only.
+    Figures of theory alone, and of studies, have a title only.
     """
 
     title: str
