@@ -11,6 +11,7 @@ import numpy as np
 from common import BLUE, GREEN, GREY, PURPLE, RED, Page, plt
 
 from mesokit import Case, Comparison, theory
+from mesokit.cli.chain_figures import size_with_zeros
 from mesokit.method.mpcd.expected.molecules import without_bonds
 
 COLOURS, MARKS = (BLUE, RED, GREY), ("o", "s", "^")
@@ -175,11 +176,12 @@ def theory_panels(measured: dict[str, tuple[Case, float, Curve]]) -> Any:
     fig, axes = plt.subplots(2, 3, figsize=(13, 7))
     for column, (name, lines) in enumerate(choices.items()):
         top, below = axes[:, column]
-        for (label, springs, tau), colour in zip(lines, (BLUE, RED, GREEN, PURPLE), strict=True):
+        looks = zip((BLUE, RED, GREEN, PURPLE), ("-", "--", "-.", ":"), strict=True)
+        for (label, springs, tau), (colour, line) in zip(lines, looks, strict=True):
             modes = theory.linear_modes(springs + 1)
             times = theory.rouse_times_from_slowest(modes, stress_time=tau).stress
             c = theory.transverse_correlation_chain(k, t, nu, 1 / (springs + 1), times)
-            top.semilogy(t, np.abs(c), color=colour, label=label)
+            top.semilogy(*size_with_zeros(t, c), line, color=colour, label=label)
         top.set(title=f"figure {name}, theory at $k = 2\\pi/30$", ylim=(1e-4, 1.2), xlim=(0, 100))
         top.set(xlabel="time", ylabel="$|C(k, t)|/C(k, 0)$")
         top.legend(loc="upper right", ncols=2)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from channel import PLACE, Flow, begun, fluid, inflow, viscosity_of_theory
 from common import BLUE, RED, Page, found, long, main, plt
+from matplotlib.colors import TwoSlopeNorm
 from shedding import shedding
 
 import mesokit
@@ -17,6 +18,7 @@ ROOM = 8  # height of the channel over the diameter, as in the reference values
 LENGTH = 4  # of the periodic box over the height
 STEADY = (Flow(10, 8, 0.5, 4e4), Flow(20, 12, 1.0, 6e3), Flow(30, 16, 1.0, 1e4))
 DRAG = {10: 3.29, 20: 2.23, 30: 1.83}  # about, to choose the force
+SPEEDS = TwoSlopeNorm(0, -0.25, 1.5)  # over that in the middle: colours of maps, white at rest
 EXCESS = 1.15  # of the viscosity over that of theory, about, to choose the velocity
 
 
@@ -232,7 +234,7 @@ def draw(axis: Any, field: Any, d: int, title: str, top: float) -> None:
     part = abs(y - middle) < 2 * d
     u, v = (field.value[some][:, part, k].T / top for k in (0, 1))
     xs, ys = (x[some] - place) / d, (y[part] - middle) / d
-    picture = axis.pcolormesh(xs, ys, u, cmap="RdBu_r", vmin=-1, vmax=1, shading="nearest")
+    picture = axis.pcolormesh(xs, ys, u, cmap="RdBu_r", norm=SPEEDS, shading="nearest")
     axis.streamplot(xs, ys, np.nan_to_num(u), np.nan_to_num(v), color="k", linewidth=0.4,
                     arrowsize=0.5, density=1.2)  # fmt: skip
     corner = (-0.5, -0.5)
@@ -240,7 +242,8 @@ def draw(axis: Any, field: Any, d: int, title: str, top: float) -> None:
     solid.set(color="0.6", zorder=5)
     axis.add_patch(solid)
     axis.set(title=title, xlabel="x/D", ylabel="y/D", aspect="equal", xlim=(-2, 5))
-    axis.figure.colorbar(picture, ax=axis, shrink=0.8)
+    bar = axis.figure.colorbar(picture, ax=axis, shrink=0.8, ticks=[-0.25, 0, 0.5, 1, 1.5])
+    bar.set_label("$v_x\\,/\\,U$")
 
 
 def make() -> int:

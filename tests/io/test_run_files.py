@@ -257,3 +257,8 @@ def test_folders_that_are_refused(tmp_path, make_case):
     with pytest.raises(RunError, match="holds no run"):
         mesokit.open(tmp_path / "empty")
     RunDirectory.create(tmp_path / "empty", case)  # an empty folder is welcome
+
+
+def test_several_folders_are_no_run():
+    with pytest.raises(RunError, match=r"^[^\n]*mesokit.merge[^\n]*$"):
+        mesokit.open(["a", "b"])

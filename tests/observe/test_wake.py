@@ -11,15 +11,18 @@ from mesokit import (
     Cylinder,
     Disk,
     MaxwellBoltzmann,
+    OscillatingForce,
     Plates,
     Probe,
     Rectangle,
     Sphere,
     Uniform,
     Wake,
+    theory,
 )
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import recognise
+from mesokit.method.mpcd.expected.setting import transport
 from mesokit.observe.wake import Standing
 
 PUSHED = {"force": Uniform((0.01, 0)), "thermostat": MaxwellBoltzmann()}
@@ -179,3 +182,43 @@ def test_probe_remembers_where_nobody_is(make_case):
     result = shaken(case, Probe(size=(0.05, 0.05)), 0.02, samples=100)
     assert np.isfinite(result.extra["velocity"]).all()
     assert len(np.unique(result.extra["velocity"][:, 0])) < 20
+
+
+@pytest.mark.parametrize("phase", [0.0, -90.0])
+@pytest.mark.parametrize("walls", [[], [Plates("y")]], ids=["open", "slit"])
+def test_swing_with_a_force(make_case, walls, phase):
+    """Amplitude and lag of a known velocity, whatever the phase of the force; and theory."""
+    frequency, size, lag = 0.3, 0.4, 50.0
+    force = OscillatingForce(Uniform((0.05, 0)), frequency, phase)
+    case = make_case((16, 8), walls=walls, force=force, thermostat=MaxwellBoltzmann())
+    probe = Probe(size=[16, 4])
+    accumulator = probe.accumulator(case)
+
+    def field(r):
+        v = np.zeros(r.shape)
+        v[:, 0] = 0.1 + size * np.cos(frequency * fluid.time + np.radians(phase - lag))
+        return v
+
+    fluid = FakeFluid(case, 3, field=field)
+    for _ in range(1500):
+        fluid.jump(10)
+        accumulator.observe(fluid)
+    found = by_name(accumulator.result())
+    amplitude, behind_it = (found[f"{w} of v_x {x} the force"] for w, x in
+                            (("amplitude", "with"), ("lag", "behind")))  # fmt: skip
+    assert amplitude.measured == pytest.approx(size, abs=4 * amplitude.error)
+    assert behind_it.measured == pytest.approx(lag, abs=4 * behind_it.error)
+    assert amplitude.error < 0.02 and behind_it.error < 2
+    if not walls:
+        assert np.isnan(amplitude.expected) and np.isnan(behind_it.expected)
+        return
+    nu = transport(case).viscosity
+    y = np.linspace(2, 6, 4001)
+    chi = 0.05 * theory.oscillating_slit_response(y, 8, nu, frequency).mean()
+    assert amplitude.expected == pytest.approx(abs(chi), rel=1e-3)
+    assert behind_it.expected == pytest.approx(-np.angle(chi, deg=True), abs=0.1)
+
+
+def test_nothing_swings_with_a_steady_force(make_case):
+    found = by_name(watched(make_case((8, 8), **PUSHED), Probe(), lambda r: np.zeros(r.shape)))
+    assert not any("force" in what for what in found)

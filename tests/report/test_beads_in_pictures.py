@@ -13,6 +13,7 @@ from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.report.flow import picture
 from mesokit.report.flow.beads import BeadFrames
+from mesokit.report.flow.fluid_bonds import FluidBonds
 from mesokit.report.style import COLOURS
 
 RING = Polymer(topology="ring", length=4)
@@ -152,3 +153,32 @@ def test_chains_of_one_kind_are_told_apart_and_those_behind_are_paler():
     assert set(back.get_ydata()) == {2.0} and set(front.get_ydata()) == {6.0}
     assert front.get_color() == COLOURS[2] and back.get_color() not in COLOURS
     assert figure.legends == []
+
+
+@pytest.mark.parametrize("rate", [0.0, 0.5])
+def test_bonds_of_the_fluid_are_short_and_drawn_at_both_ends_of_the_box(rate):
+    """Also where images above and below have slid; particles come in any order."""
+    case = make_case((8, 8), density=4 / 64, molecule=DIMERS, shear_rate=rate)
+    ids, time = np.array([2, 0, 3, 1]), 0.5
+    slid = case.box.displacement(time)
+    assert slid == rate * 8 * time
+    position = np.array([[3, 7.5], [1, 1], [(3.25 + 8 - slid) % 8, 0.25], [1.5, 1]])
+    lines = FluidBonds(case, ids, [0, 1]).at(position, time)
+    inside = [[[1, 1], [1.5, 1]]]
+    over = [[[3, 7.5], [3.25, 8.25]], [[3 - slid, -0.5], [3.25 - slid, 0.25]]]
+    images = (np.array(sorted(lines.tolist())) - np.array(sorted(inside + over)))[..., 0]
+    np.testing.assert_allclose(np.sort(lines[..., 1], axis=None), [-0.5, 0.25, 1, 1, 7.5, 8.25])
+    np.testing.assert_allclose(images % 8, 0, atol=1e-12)
+    assert FluidBonds(case, ids[:1], [0, 1]).at(position[:1], time) is None
+
+
+@pytest.mark.parametrize(("number", "drawn"), [(40, True), (4000, False)])
+def test_bonds_of_the_fluid_are_drawn_where_they_are_few(number, drawn):
+    case = make_case((8, 8), density=number / 64, molecule=DIMERS)
+    r = np.random.default_rng(1).uniform(0, 8, (number, 2))
+    frames = Frames(
+        frames=[r], time=np.zeros(1), id=np.arange(number), species=np.zeros(number, int),
+        mass=np.ones(number),
+    )  # fmt: skip
+    axes = picture(case, {}, frames, "particles").axes[0]
+    assert bool(axes.collections) == drawn

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import itertools
 
 import numpy as np
 import pytest
@@ -301,3 +302,80 @@ def case_share(case):
     from mesokit.geometry.solids.solids import solids_of
 
     return solids_of(case).open_share((0, 1), tuple(case.box.size[:2]))
+
+
+def energies(time):
+    """A conservation result with rounding errors of momentum, and energies that cancel."""
+    names = ["number", "momentum_x", "momentum_y", "potential_energy", "kinetic_energy"]
+    swing = 3 * np.sin(time)
+    value = np.stack(
+        [0 * time + 900, 2e-10 * time, -1e-10 * time, 50 + swing, 850 - swing, 1 + 0.01 * swing],
+        axis=1,
+    )
+    still = np.where(np.arange(6) < 3, value[0], np.nan * value)
+    units = {n: "m a^2/tau^2" if "energy" in n else "m a/tau" for n in names}
+    return Result(
+        "conservation", "conservation",
+        {"time": time, "component": np.array([*names, "temperature"])}, value, np.nan * value,
+        "conserved quantities",
+        units | {"value": "", "time": "tau", "number": "", "temperature": "m a^2/tau^2"},
+        expected=still, samples=len(time),
+        extra={"conserves_momentum": 1}, drawing="series",
+    )  # fmt: skip
+
+
+def test_conserved_quantities_with_a_potential_have_their_total():
+    """And no label runs into another or out of the figure."""
+    figure = plot(energies(np.linspace(0, 20, 60)))
+    figure.draw_without_rendering()
+    labels = [ax.yaxis.label.get_window_extent() for ax in figure.axes]
+    assert len(labels) == 6
+    for above, below in itertools.pairwise(labels):
+        assert not above.overlaps(below)
+    assert all(box.x0 >= 0 and box.y0 >= 0 and box.y1 <= figure.bbox.y1 for box in labels)
+    parts, total = figure.axes[3:5]
+    assert [text.get_text() for text in parts.get_legend().get_texts()] == ["kinetic", "potential"]
+    assert "total" in total.get_ylabel() and r"m\,a/\tau" in figure.axes[1].get_ylabel()
+    np.testing.assert_allclose(total.lines[0].get_ydata(), 0, atol=1e-12)
+
+
+def test_a_legend_above_is_no_wider_than_its_axes():
+    from matplotlib.figure import Figure
+
+    from mesokit.report.style import legend_above
+
+    figure = Figure(figsize=(6.4, 4.8), layout="constrained")
+    ax = figure.subplots()
+    for name in ("theory: Taylor-Couette, no slip", "measured, one standard error", "fit"):
+        ax.plot([0, 1], label=name)
+    legend_above(ax)
+    figure.draw_without_rendering()
+    assert ax.get_legend().get_window_extent().x1 <= figure.bbox.x1
+    assert ax.bbox.width > 0.8 * figure.bbox.width
+
+
+def test_theory_of_several_curves_says_which_it_is_of():
+    time = np.arange(3.0)
+    value = np.stack([1 - 0.2 * time, 0.5 - 0.1 * time], axis=1)
+    result = Result(
+        "bond-correlation", "bonds", {"time": time, "component": np.array(["xx", "xy"])}, value,
+        0.1 + 0 * value, "bond correlation", {"value": "a^2"}, expected=value, theory="Rouse",
+        samples=9,
+    )  # fmt: skip
+    lines = [x for x in plot(result).axes[0].lines if x.get_label().startswith("theory")]
+    assert [x.get_label() for x in lines] == ["theory: Rouse, xx", "theory: Rouse, xy"]
+    assert lines[0].get_linestyle() != lines[1].get_linestyle()
+
+
+@pytest.mark.parametrize("lasted", [[2.0], [3.0, 3.0]])
+def test_events_of_one_duration_are_one_bar(lasted):
+    """Not one that is too thin to be seen, about a time that no axis can show."""
+    from mesokit.observe.shared.durations import Durations
+
+    events = Durations()
+    for time in range(64):
+        events.look(time)
+    events.add(60.0, np.array(lasted), np.arange(len(lasted)))
+    edges, density, _ = events.histogram()
+    assert len(density) == 1 and density[0] * np.diff(edges)[0] == pytest.approx(1)
+    assert 0.05 < np.diff(edges)[0] / lasted[0] < 0.2

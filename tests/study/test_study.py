@@ -110,6 +110,7 @@ def test_pictures(study):
         and labels[1].startswith("fit: $y = ")
         and "3 runs" in labels[2]
     )
+    assert figure.axes[0].get_xlabel() == r"acceleration  [$a/\tau^2$]"
     x = np.array([1.0, 2.0, 4.0, 8.0])
     curve = Curve("", x, 3 * x**-0.5, 0.01 * x, np.full(4, np.nan))
     found = fitted(curve, "power")
@@ -125,6 +126,20 @@ def test_pictures(study):
         study.plot("acceleration", "flow-rate.man-velocity-along-x")
     with pytest.raises(CaseError, match=r"fit = 'cubic': expected 'line' or 'power'"):
         study.plot("acceleration", "flow-rate.mean", fit="cubic")
+
+
+@pytest.mark.parametrize(("log", "power", "joined"), [
+    (False, 1, True), (True, 2, True), (False, 2, False), (True, 0, True), (False, 0, True),
+])  # fmt: skip
+def test_theory_is_drawn_between_points_where_it_is_straight(log, power, joined):
+    """Elsewhere straight pieces would be what no theory says."""
+    from mesokit.study.dependence import Curve, draw
+
+    x = np.array([1.0, 2.0, 4.0, 8.0])
+    curve = Curve("", x, 3 * x**power, 0.1 * x, 3 * x**power)
+    ax = draw([curve], ("x", ""), ("y", ""), log=log).axes[0]
+    theory = next(line for line in ax.lines if line.get_label() == "theory")
+    assert (theory.get_linestyle() != "None") == joined
 
 
 def test_another_case_in_its_place_is_refused(study, case_file, tmp_path):

@@ -8,13 +8,15 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from mesokit import __version__, theory
+from mesokit import theory
 from mesokit.cli.chains import Beads, Chain
 from mesokit.errors import CaseError
 
 RATES = np.geomspace(1e-3, 100, 300)
 POINTS, LEAST = 1500, 1e-4  # of a curve; the smallest correlation that is shown
+FLOOR = 1e-6  # what zero is drawn as: below all that is shown
 
 
 def velocity_modes(ax: Any, chains: Sequence[Chain], beads: Beads, wave: float, end: float) -> None:
@@ -31,12 +33,27 @@ def velocity_modes(ax: Any, chains: Sequence[Chain], beads: Beads, wave: float, 
         )
         springs = "1 spring" if chain.length == 2 else f"{chain.length - 1} springs"
         label = rf"{springs}, $\tau_1 = {chain.times.stress[0]:.3g}\,\tau$"
-        ax.semilogy(time, np.abs(curve), linestyle=line, color=colour, lw=1.2, label=label)
+        ax.semilogy(
+            *size_with_zeros(time, curve), linestyle=line, color=colour, lw=1.2, label=label
+        )
     ax.set(xlim=(0, end), ylim=(LEAST, 1.2))
     ax.set_xlabel(r"time lag $t$  [$\tau$]")
     _say(ax, "Theory alone: Rouse chains in a simple fluid; approximate where tau follows from K")
     ax.set_ylabel(rf"$|C_v^T(k, t)|\,/\,C_v^T(k, 0)$ at $k = 2\pi/{wave:g}\,a^{{-1}}$")
     legend_above(ax)
+
+
+def size_with_zeros(time: NDArray[Any], curve: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Times and sizes of a curve, with a point at each change of sign: all dips reach the floor.
+
+    >>> time, size = size_with_zeros(np.array([0.0, 1, 2]), np.array([1.0, 0.5, -0.5]))
+    >>> time.tolist(), size.tolist()
+    ([0.0, 1.0, 1.5, 2.0], [1.0, 0.5, 1e-06, 0.5])
+    """
+    before = np.flatnonzero(curve[:-1] * curve[1:] < 0)
+    step = (time[before + 1] - time[before]) / (curve[before] - curve[before + 1])
+    time = np.insert(time, before + 1, time[before] + step * curve[before])
+    return time, np.maximum(np.abs(np.insert(curve, before + 1, 0.0)), FLOOR)
 
 
 def bond_lengths(ax: Any, chains: Sequence[Chain], beads: Beads, radii: Sequence[float]) -> None:
@@ -85,7 +102,7 @@ def spring_constants(
 
 def _say(ax: Any, words: str) -> None:
     """What a figure rests on, below it."""
-    ax.figure.supxlabel(f"{words}. mesokit {__version__}", x=0.01, ha="left", fontsize=8)
+    ax.figure.supxlabel(words, x=0.01, ha="left", fontsize=8)
 
 
 def _against_rate(ax: Any, label: str) -> None:

@@ -178,10 +178,11 @@ def _require_plot(figure: dict[str, Any]) -> None:
 def _draw(figure: dict[str, Any], lengths: tuple[int, ...], chains: Any, beads: Any) -> Any:
     """Draw it, and say into which file."""
     import matplotlib as mpl
-    from matplotlib.figure import Figure
 
     from mesokit.cli import chain_figures
     from mesokit.report import save_figure
+    from mesokit.report.finish.origin import Origin
+    from mesokit.report.notebook import ShownFigure
     from mesokit.report.style import HEIGHT, STYLE, WIDTH
 
     radii = figure["radii"] or (beads.radius,)
@@ -189,7 +190,7 @@ def _draw(figure: dict[str, Any], lengths: tuple[int, ...], chains: Any, beads: 
     if kind != "velocity-modes" and beads.dimension == 2:
         raise CaseError(f"--draw {kind}: expected --dimension 3, as hydrodynamics are those of 3D")
     with mpl.rc_context(STYLE):
-        drawn = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
+        drawn = ShownFigure(figsize=(WIDTH, HEIGHT), layout="constrained")
         ax = drawn.subplots()
         if kind == "velocity-modes":
             wave, end = figure["wave_length"] or 30.0, figure["until"] or 100.0
@@ -198,4 +199,6 @@ def _draw(figure: dict[str, Any], lengths: tuple[int, ...], chains: Any, beads: 
             chain_figures.bond_lengths(ax, chains, beads, radii)
         else:
             chain_figures.spring_constants(ax, lengths, figure["bond_length"], beads, radii)
+    fluid = f"density {beads.density:g}, kinematic viscosity {beads.viscosity:.4g} a^2/tau"
+    drawn.origin = Origin(f"theory, {fluid}")
     return save_figure(drawn, figure["plot"])

@@ -339,5 +339,13 @@ class RunFiles(Shown, Mapping[str, "Result"]):
 
 
 def open(path: str | Path) -> RunFiles:
-    """What the run in the folder `path` has written. Raises RunError if there is no run."""
+    """What the run in the folder `path` has written. Raises RunError if there is no run.
+
+    Several runs of the same case become one by `mesokit.merge`.
+    """
+    if not isinstance(path, str | Path):
+        raise RunError(
+            f"open({show(path)}): expected the folder of one run; mesokit.merge(runs, output) "
+            "makes one of several of the same case"
+        )
     return RunFiles(path)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, show, tag
+from mesokit.case.describe.digits import two_digits
 from mesokit.case.describe.hints import Either
 from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
@@ -18,6 +19,8 @@ from mesokit.method.mpcd.expected import setting
 from mesokit.observe.shared.estimate import of_mean
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Array, Comparison, Result
+from mesokit.observe.shared.swing import Series, amplitudes, in_slit
+from mesokit.observe.shared.swing import comparisons as swings
 from mesokit.statistics import (
     Blocks,
     TimeSeries,
@@ -39,7 +42,8 @@ class Probe(Observable):
 
     The spectrum is of one component, by default that across the flow, in which the vortices of a
     wake show best. Where it has a clear peak the dominant frequency f is given, and with `speed` U
-    and `length` D the Strouhal number f D/U.
+    and `length` D the Strouhal number f D/U. Of a uniform force that oscillates, amplitude and lag
+    of the velocity along it are given, from whole periods, and beside theory in a slit.
     """
 
     quantity: Literal["probe"] = tag("probe")
@@ -185,6 +189,24 @@ class ProbeAccumulator:
             },
         )
 
+    def with_force(self) -> Iterator[Comparison]:
+        """Amplitude and lag of the velocity along a force that oscillates."""
+        swing = self.case.fluid.force.swing()
+        push = swing.of.uniform(self.dimension) if swing else None
+        if swing is None or push is None:
+            return
+        interval = self.observable.every * self.case.fluid.timestep
+        low, high = self.centre - self.half, self.centre + self.half
+        for k in np.flatnonzero(push):
+            series = [
+                Series(s.values()[:, k], float(s.time()[0]), interval * s.stride, s.stride)
+                for s in (self.series, *self.others)
+                if len(s.time())
+            ]
+            blocks = amplitudes(series, swing.frequency)
+            expected = in_slit(self.case, swing, int(k), low, high)
+            yield from swings(blocks, swing, AXES[k], expected)
+
     def comparisons(self, peak: Any) -> list[Comparison]:
         """Mean velocity, dominant frequency, Strouhal number."""
         mean: Any = of_mean(self.blocks)
@@ -194,9 +216,10 @@ class ProbeAccumulator:
                        unit="a/tau")
             for k, letter in enumerate(AXES[: self.dimension])
         ]  # fmt: skip
+        found += self.with_force()
         if peak is None:
             return found
-        note = f"peak {peak.contrast:.2g} times the power around it"
+        note = f"peak {two_digits(peak.contrast)} times the power around it"
         found.append(
             Comparison("dominant frequency", peak.value, peak.error, unit="1/tau", note=note)
         )

@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from mesokit.case.describe.digits import two_digits
 from mesokit.observe.shared.result import Comparison, with_error
 
 MOST = 8  # comparisons below a figure; the table of the run has all
@@ -20,9 +21,10 @@ _SYMBOLS = {
     "a": "a", "tau": r"\tau", "m": "m", "1/a": "a^{-1}", "1/tau": r"\tau^{-1}", "a^2": "a^2",
     "a/tau": r"a/\tau", "a^2/tau": r"a^2/\tau", "a^2/tau^2": r"a^2/\tau^2",
     "a^2/time": r"a^2/\tau", "a/tau^2": r"a/\tau^2", "1/a^2": "a^{-2}", "1/a^3": "a^{-3}",
-    "m a^2/tau^2": r"m a^2/\tau^2", "m a/tau": r"m a/\tau", "m a/tau^2": r"m a/\tau^2",
-    "m/tau^2": r"m/\tau^2", "a^3/tau": r"a^3/\tau", "m/(a tau^2)": r"m/(a\tau^2)",
-    "a^2/sums": "a^2", "kT": "k_BT", "kT/a^3": r"k_BT/a^3", "N kT": r"N\,k_BT",
+    "m a^2/tau^2": r"m\,a^2/\tau^2", "m a/tau": r"m\,a/\tau", "m a/tau^2": r"m\,a/\tau^2",
+    "m/tau^2": r"m/\tau^2", "a^3/tau": r"a^3/\tau", "m/(a tau^2)": r"m/(a\,\tau^2)",
+    "a^2/sums": "a^2", "kT": "k_BT", "kT/a": "k_BT/a", "kT/a^2": "k_BT/a^2", "kT/a^3": r"k_BT/a^3",
+    "N kT": r"N\,k_BT",
     "N m kT": r"N\,m\,k_BT", "N sqrt(m kT)": r"N\sqrt{m\,k_BT}", "m/a^2": "m/a^2", "m/a^3": "m/a^3",
 }  # fmt: skip
 _FORMULAS = (
@@ -37,6 +39,7 @@ _FORMULAS = (
     (r"(?<=[\d)]) a\^2/tau\b", r" $a^2/\\tau$"),
     (r"(?<=[\d)]) a/tau\b", r" $a/\\tau$"),
     (r"(?<=[\d)]) a\b(?![/^])", r" $a$"),
+    (r"\bU = K r\^2", r"$U=K\,r^2$"),
     (r"\bkT\b", r"$k_BT$"),
 )
 
@@ -118,7 +121,7 @@ def _line(c: Comparison, shared: Sequence[str]) -> str:
     if c.expected == c.expected and (c.expected or c.error > 0):
         said.append(f"theory {c.expected:.4g}")
         if c.approximate and c.expected:
-            said[0] += f", {c.percent:+.2g} %"
+            said[0] += f", {two_digits(c.percent, sign='+')} %"
         elif c.error > 0 and not c.approximate:
             said[0] += f", {c.deviation:+.1f} s.e."
     said += [note] if note else []

@@ -9,13 +9,13 @@ import numpy as np
 
 from mesokit.observe.shared.result import Result
 from mesokit.report.caption import mathematics
-from mesokit.report.style import COLOURS, MARKERS, labelled, legend_above
+from mesokit.report.style import COLOURS, LINES, MARKERS, labelled, legend_above
 
 SHOWN = 6  # curves
 
 
 def draw(result: Result, figure: Any, ax: Any) -> None:
-    """Data with error bars, and theory where there is one."""
+    """Data with error bars, and theory where there is one: of several curves each has its own."""
     ax = figure.subplots() if ax is None else ax
     if not result.x:
         ax.errorbar([0], result.value, result.error, fmt="o", mfc="white", color=COLOURS[0])
@@ -43,8 +43,10 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
             zorder=2,
         )
         if result.expected is not None and np.isfinite(result.expected[at]).any():
-            theory = mathematics(f"theory: {result.theory}") if i == 0 else None
-            ax.plot(places, result.expected[at], color="black", lw=1, label=theory)
+            of = ", ".join(str(result.x[name][k]) for name, k in zip(others, chosen, strict=True))
+            theory = mathematics(", ".join(filter(None, [f"theory: {result.theory}", of])))
+            look = {"color": COLOURS[i] if of else "black", "ls": LINES[i]}
+            ax.plot(places, result.expected[at], lw=1.2, label=theory, **look)
     if x.dtype.kind in "US":
         ax.set_xticks(places, [str(name) for name in x])
     ax.set_xlabel(labelled(axis, result.units.get(axis, "")))

@@ -10,39 +10,61 @@ import numpy as np
 
 from mesokit.observe.shared.result import Result
 from mesokit.report.caption import symbols
-from mesokit.report.style import COLOURS, LINES, labelled, legend_above
+from mesokit.report.style import COLOURS, HEIGHT, LINES, labelled, legend_above
 
-MORE = 2.0  # inches for five panels
+ROW = 1.25  # inches of a panel
 
 
 def draw(result: Result, figure: Any, ax: Any) -> None:
     """Number, momentum, energy and temperature in time; in given axes the temperature alone.
 
     Where momentum is conserved its change since the first sample is drawn, which is round-off.
+    With a potential energy that and the kinetic one share a panel, and their sum has its own.
     """
     time, names = result.x["time"], [str(name) for name in result.x["component"]]
     if ax is not None:
         _temperature(result, ax, names.index("temperature"))
         ax.set_xlabel(labelled("time $t$", result.units["time"]))
         return
-    figure.set_figheight(figure.get_figheight() + MORE)
-    panels = figure.subplots(5, 1, sharex=True)
+    bound = "potential_energy" in names
+    rows = 6 if bound else 5
+    figure.set_figheight(figure.get_figheight() + ROW * rows - HEIGHT)
+    panels = figure.subplots(rows, 1, sharex=True)
     panels[0].plot(time, result.value[:, names.index("number")], color=COLOURS[0], lw=1)
     panels[0].set_ylabel("particles\n$N$")
     panels[0].ticklabel_format(axis="y", useOffset=False)
     momenta = [i for i, name in enumerate(names) if name.startswith("momentum")]
     _momentum(result, panels[1], panels[2], momenta)
-    energy = result.value[:, names.index("kinetic_energy")]
-    first = energy[0] if len(energy) and energy[0] else 1.0
-    _scaled(panels[3], "kinetic energy\nrel. change", [(time, energy / first - 1, {})], "")
-    _temperature(result, panels[4], names.index("temperature"))
-    panels[4].set_xlabel(labelled("time $t$", result.units["time"]))
+    kinds = ("kinetic", "potential") if bound else ("kinetic",)
+    energies = [result.value[:, names.index(f"{kind}_energy")] for kind in kinds]
+    if bound:
+        _energies(result, panels[3], energies)
+    total = np.sum(energies, axis=0)
+    first = total[0] if len(total) and total[0] else 1.0
+    words = f"{'total' if bound else 'kinetic'} energy\nrel. change"
+    _scaled(panels[-2], words, [(time, (total - first) / abs(first), {})], "")
+    _temperature(result, panels[-1], names.index("temperature"))
+    panels[-1].set_xlabel(labelled("time $t$", result.units["time"]))
     if len(time) > 1:
-        panels[4].set_xlim(time[0], time[-1])
+        panels[-1].set_xlim(time[0], time[-1])
     for panel in panels:
         panel.yaxis.label.set_size(9)
         panel.locator_params(axis="y", nbins=4)
     figure.align_ylabels()
+
+
+def _energies(result: Result, ax: Any, energies: list[Any]) -> None:
+    """How the kinetic and the potential energy have changed since the first sample."""
+    curves = [
+        (
+            result.x["time"],
+            energy - energy[:1],
+            {"ls": LINES[k], "color": COLOURS[k], "label": word},
+        )
+        for k, (energy, word) in enumerate(zip(energies, ("kinetic", "potential"), strict=True))
+    ]
+    _scaled(ax, "energy\nchange", curves, result.units["kinetic_energy"])
+    _beside(ax)
 
 
 def _momentum(result: Result, above: Any, below: Any, columns: list[int]) -> None:
@@ -79,7 +101,10 @@ def _constant(expected: Any, columns: list[int]) -> bool:
 
 
 def _scaled(ax: Any, label: str, curves: Iterable[tuple[Any, Any, Any]], unit: str) -> None:
-    """Lines of numbers that are all very large or small, with the power of ten in the label."""
+    """Lines of numbers that are all very large or small, with the power of ten in the label.
+
+    That and the unit are a line of their own: panels are low.
+    """
     curves = list(curves)
     sizes = [abs(y[np.isfinite(y)]).max(initial=0.0) for _, y, _ in curves]
     largest = max(sizes, default=0.0)
@@ -89,7 +114,7 @@ def _scaled(ax: Any, label: str, curves: Iterable[tuple[Any, Any, Any]], unit: s
         ax.plot(x, y / 10.0**power, **{"color": COLOURS[0], "lw": 1, **style})
     times = rf"$10^{{{power}}}$" if power else ""
     words = " ".join(filter(None, (times, symbols(unit))))
-    ax.set_ylabel(f"{label} [{words}]" if words else label)
+    ax.set_ylabel(f"{label}\n[{words}]" if words else label)
 
 
 def _beside(ax: Any) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 from mesokit.report.caption import mathematics, symbols
 
 WIDTH, HEIGHT = 6.4, 4.8  # inches
-COLUMN = 2.0  # inches of a column of a legend
+WIDER = 1.1  # than axes are before margins are taken away, what a legend above may be
 MARKERS = "osD^v<>pP*X"
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)))
 # dark enough for white paper, and each of its own grey
@@ -48,10 +48,13 @@ def labelled(label: str, unit: str) -> str:
 
 
 def legend_above(ax: Any, columns: int = 3) -> None:
-    """A legend over the axes, where it hides no data."""
-    columns = min(columns, max(1, int(ax.figure.bbox.width / ax.figure.dpi / COLUMN)))
-    if ax.get_legend_handles_labels()[0]:
-        ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=columns, borderaxespad=0.2)
+    """A legend over the axes, where it hides no data, in as many columns as are no wider."""
+    if not ax.get_legend_handles_labels()[0]:
+        return
+    for number in range(columns, 0, -1):
+        legend = ax.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=number, borderaxespad=0.2)
+        if legend.get_window_extent().width <= WIDER * ax.bbox.width:
+            return
 
 
 def sparse_logarithm(axis: Any, least: float, most: float) -> None:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+from mesokit.case.describe.digits import two_digits
 from mesokit.observe.shared.result import Comparison, Result, with_error
 
 if TYPE_CHECKING:
@@ -54,5 +55,5 @@ def cells(c: Comparison) -> tuple[str, str, str, str, str, str]:
         if math.isfinite(c.percent) and c.expected:
             deviation += f" ({c.percent:+.1f} %)"
     elif c.approximate and math.isfinite(c.percent):
-        expected, deviation = f"about {expected}", f"{c.percent:+.2g} %"
+        expected, deviation = f"about {expected}", f"{two_digits(c.percent, sign='+')} %"
     return c.what, with_error(c.measured, c.error), expected, c.unit, deviation, c.note

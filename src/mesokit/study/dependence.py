@@ -24,6 +24,7 @@ from mesokit.report.style import (
 from mesokit.statistics import Fit, weighted_line
 
 FITS = ("line", "power")
+BENT = 0.01  # part of its height by which a straight line may miss a point
 DECADE = 8.0  # last over first value beyond which an axis is logarithmic
 
 
@@ -68,13 +69,13 @@ def draw(
     with mpl.rc_context(STYLE):
         figure = ShownFigure(figsize=(WIDTH, HEIGHT), layout="constrained")
         ax = figure.subplots()
-        for number, curve in enumerate(curves):
-            _draw(ax, curve, number, note, fit)
         wide = all(_spans(curve.x) for curve in curves)
         if log or (log is None and (wide or fit == "power")):
             ax.set_xscale("log")
         if log or (log is None and fit == "power"):
             ax.set_yscale("log")
+        for number, curve in enumerate(curves):
+            _draw(ax, curve, number, note, fit)
         for axis in (ax.xaxis, ax.yaxis):
             if axis.get_scale() == "log":
                 sparse_logarithm(axis, *axis.get_view_interval())
@@ -95,9 +96,10 @@ def _draw(ax: Any, curve: Curve, number: int, note: str, fit: str | None) -> Non
     if known.any():
         label = f"{curve.theory}, {curve.label}" if curve.label else curve.theory
         look = {"ls": LINES[number % len(LINES)], "color": "black", "lw": 1.3, "zorder": 2}
-        if known.sum() == 1:  # of one point there is no line
-            look |= {"marker": "_", "ms": 14}
-        ax.plot(curve.x[known], curve.expected[known], label=label, **look)
+        x, expected = curve.x[known], curve.expected[known]
+        if not _straight(ax, x, expected):  # between the points nobody has asked theory
+            look |= {"ls": "", "marker": "_", "ms": 14, "mew": 1.3}
+        ax.plot(x, expected, label=label, **look)
     if fit is not None:
         found = fitted(curve, fit)
         space = np.geomspace if fit == "power" else np.linspace
@@ -161,6 +163,20 @@ def fitted(curve: Curve, kind: str) -> Fitted:
     second = with_error(abs(slope), float(found.errors[1]))
     sign = "-" if slope < 0 else "+"
     return Fitted(curve.label, kind, found, f"y = {first} {sign} {second} x")
+
+
+def _straight(ax: Any, x: Array, y: Array) -> bool:
+    """Whether points (n,) of a curve lie on a line in these axes; one alone does not."""
+    if len(x) < 2:
+        return False
+    if np.ptp(y) <= BENT * abs(y).max():
+        return True
+    scales = ax.get_xscale(), ax.get_yscale()
+    if any(s == "log" and (z <= 0).any() for s, z in zip(scales, (x, y), strict=True)):
+        return False
+    u, v = (np.log(z) if s == "log" else z for s, z in zip(scales, (x, y), strict=True))
+    on_it = np.interp(u, [u[0], u[-1]], [v[0], v[-1]])
+    return len(x) > 2 and bool(abs(v - on_it).max() <= BENT * np.ptp(v))
 
 
 def _spans(x: Array) -> bool:

@@ -18,9 +18,10 @@ from mesokit.report.document.record import citation, install, origin_rows, timin
 from mesokit.report.document.template import render
 from mesokit.report.table import SUSPICIOUS
 from mesokit.study.axes import Axis
+from mesokit.study.names import called
 from mesokit.study.numbers import numbers, point_words, words_of
 from mesokit.study.plan import Base, Planned, by_point, short_names
-from mesokit.study.plot import drawable, find_rows, plot, unit_of
+from mesokit.study.plot import drawable, find_rows, plot
 from mesokit.study.table import Pooled
 
 HEADINGS = {  # of the sections that a study may have, in the order of the page
@@ -142,13 +143,13 @@ def _figures(study: Studied, rows: Sequence[Pooled]) -> list[Picture]:
     if not names:
         return found
     some = next(run for run in study.runs if run.ended)
-    unit = unit_of(some.files.case, study.keys[0])
+    words_of_key = called(some.files.case, study.keys[0])
     for name in names:
         each = find_rows(rows, name)
         runs = f"mean of {each[0].runs} runs" if each[0].runs > 1 else "one run"
         notes = dict.fromkeys(row.number.note for row in each if row.number.note)
         words = f"{each[0].number.what} against {study.keys[0]}, {runs} at each point"
-        figure = plot(rows, study.axes, study.keys[0], name, unit)
+        figure = plot(rows, study.axes, study.keys[0], name, words_of_key)
         found.append(Picture(name, drawn(figure), "; ".join([words, *list(notes)[:2]]) + "."))
     return found
 

@@ -23,20 +23,20 @@ def plot(
     axes: Sequence[Axis],
     key: str,
     number: str,
-    unit: str = "",
+    called: tuple[str, str] | None = None,
     fit: str | None = None,
     log: bool | None = None,
 ) -> Any:
     """A figure with error bars, what is expected, and a fit; a curve for each other value.
 
-    `rows` are the table of a study, `axes` what it varies, `key` what the
-    number is drawn against, in a `unit`.
+    `rows` are the table of a study, `axes` what it varies, `key` what the number is drawn against,
+    which is `called` so, in a unit.
     Raises CaseError for a number that is not there, or values that are no numbers.
     """
     drawn, first = curves_of(rows, axes, key, number), find_rows(rows, number)[0]
     note = f"mean of {first.runs} runs" if first.runs > 1 else "one run each"
     named = first.number.what, first.number.unit
-    return draw(drawn, x=(key, unit), y=named, fit=fit, log=log, note=note)
+    return draw(drawn, x=called or (key, ""), y=named, fit=fit, log=log, note=note)
 
 
 def curves_of(rows: Sequence[Pooled], axes: Sequence[Axis], key: str, number: str) -> list[Curve]:
@@ -101,24 +101,3 @@ def _theory(numbers: Sequence[Comparison]) -> str:
 
 def _word(value: Any) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
-
-
-def unit_of(case: Any, key: str) -> str:
-    """The unit of a key of a case, nothing if it has none.
-
-    >>> from mesokit import Box, Case, Run
-    >>> unit_of(Case(run=Run(steps=1), box=Box([8, 8])), "run.checkpoint_minutes")
-    'minutes'
-    """
-    *parents, last = key.split(".")
-    here = case
-    for part in parents:
-        if isinstance(here, tuple):
-            named = [item for item in here if part == getattr(item, "label", None)]
-            here = here[int(part) - 1] if part.isdecimal() else next(iter(named), None)
-        else:
-            fields = {key: field for field, key in case._method.keys.items()}
-            here = getattr(here, fields.get(part, part), None)
-    field = getattr(type(here), "__pydantic_fields__", {}).get(last)
-    unit = str((field.json_schema_extra or {}).get("unit", "")) if field else ""
-    return unit.replace("time", "tau")

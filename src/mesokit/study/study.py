@@ -25,9 +25,10 @@ from mesokit.study.drive import StudyReporter, Workers, drive, reporter_for
 from mesokit.study.here import Here
 from mesokit.study.local import Processes
 from mesokit.study.merge import merge
+from mesokit.study.names import called
 from mesokit.study.numbers import numbers, words_of
 from mesokit.study.plan import Base, Planned, by_point, make, planned, short_names
-from mesokit.study.plot import curves_of, drawable, find_rows, plot, unit_of
+from mesokit.study.plot import curves_of, drawable, find_rows, plot
 
 if TYPE_CHECKING:
     from mesokit.io.open import RunFiles
@@ -280,8 +281,8 @@ class Study(Shown):
         Raises CaseError for a key or number that is not there, with the nearest one.
         """
         key = self.key(x)
-        unit = unit_of(self.base.case(self.runs[0].point, self.runs[0].seed), key)
-        return plot(self.table(), self.axes, key, y, unit, fit, **look)
+        case = self.base.case(self.runs[0].point, self.runs[0].seed)
+        return plot(self.table(), self.axes, key, y, called(case, key), fit, **look)
 
     def fit(self, x: str, y: str, kind: str) -> list[Fitted]:
         """Fit y = a + b x ("line") or y = a x^b ("power") to each curve that `plot` draws.
@@ -320,8 +321,11 @@ class Study(Shown):
     def save_picture(self, x: str, y: str, fit: str | None = None) -> Path:
         """Draw one number against one varied value into a file of the folder."""
         from mesokit.report import save_figure
+        from mesokit.report.finish.origin import Origin
 
         figure, names = self.plot(x, y, fit), short_names(self.keys)
+        title = self.base.case(self.runs[0].point, self.runs[0].seed).title
+        figure.origin = Origin(", ".join(filter(None, [title, f"study {self.path.name}"])))
         number = next(row.name for row in find_rows(self.table(), y))
         file = self.path / f"{number}-against-{names[self.keys.index(self.key(x))]}.png"
         return save_figure(figure, file)

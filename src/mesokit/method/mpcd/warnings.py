@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from mesokit.case.box import AXES
 from mesokit.case.component import name_of
+from mesokit.case.describe.digits import two_digits
 from mesokit.case.warnings import run_warnings
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.solids.solids import solids_of
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 COMPRESSED = 0.2  # acceleration x length/(kT/m) of a fluid driven against solids
 SLIPPERY = 0.03  # slip length in cells
+RADIANS = 0.01  # an angle of no less may have been meant in radians
 STRONG = 0.3  # thermal velocities that a force may add in a timestep
 
 
@@ -40,8 +42,8 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
     angle = getattr(fluid.collision, "angle", 90.0)
     if angle < 7:
         yield (
-            f"fluid.collision.angle = {angle:g}: the angle is in degrees; "
-            f"{angle:g} rad is {math.degrees(angle):.2f}"
+            f"fluid.collision.angle = {angle:g}: the angle is in degrees"
+            + (f"; {angle:g} rad is {math.degrees(angle):.2f}" if angle > RADIANS else "")
         )
     if fluid.grid_shift < 1 and path < 0.5:
         yield (
@@ -204,7 +206,9 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
         most = numbers.heating_bound
         yield (
             f"no thermostat: friction raises the temperature by {'at most ' * most}"
-            f"{100 * numbers.heating:.2g} % over the run" + "; walls at kT cool the fluid" * most
+            f"{two_digits(100 * numbers.heating)} % over the run"
+            + "; walls at kT cool the fluid"
+            * most
         )
     if numbers.reynolds is not None:
         # as it is shown: 1.4 is not above 1.4

@@ -14,6 +14,7 @@ from mesokit.observe.shared.protocol import State, pack
 MOST = 2**16  # events kept; every other one is dropped when they are full
 PARTS = 64  # of the time of a run, for error bars
 FEWEST, MANY = 8, 40  # bins of a histogram
+ALIKE, ONE = 1e-3, 0.1  # of the longest: a spread that is none; width of the one bin then
 
 
 class Histogram(NamedTuple):
@@ -124,13 +125,18 @@ class Durations:
         return ratio(sums)
 
     def histogram(self) -> Histogram:
-        """The distribution, in some 8 to 40 bins from the shortest to the longest."""
+        """The distribution, in some 8 to 40 bins from the shortest to the longest.
+
+        One event, or those that all last for as long, are a single bin about that time.
+        """
         lasted = self.lasted
         if not len(lasted):
             return Histogram(np.zeros(1), np.zeros(0), np.zeros(0))
         bins = int(np.clip(3 * len(lasted) ** (1 / 3), FEWEST, MANY))
         least, most = float(lasted.min()), float(lasted.max())
-        margin = max((most - least) / (2 * bins), 1e-6 * most) or 0.5
+        margin = (most - least) / (2 * bins)
+        if most - least <= ALIKE * most:
+            bins, margin = 1, ONE / 2 * most or 0.5
         edges = np.linspace(max(least - margin, 0.0), most + margin, bins + 1)
         place = np.clip(np.searchsorted(edges, lasted, side="right") - 1, 0, bins - 1)
         within = (place[:, None] == np.arange(bins)).astype(float)

@@ -80,10 +80,10 @@ class EventAccumulator:
         """Whether so few events have ended that those which take long are missing."""
         if self.durations.number >= FEW * self.followed:
             return ""
-        return (
-            f"few: {self.durations.number} {self.words.events} of {self.followed} molecules; long "
-            "ones may not have ended"
-        )
+        number, molecules = self.durations.number, self.followed
+        events = self.words.events if number != 1 else self.words.events.removesuffix("s")
+        who = "molecules" if molecules != 1 else "molecule"
+        return f"few: {number} {events} of {molecules} {who}; long ones may not have ended"
 
     def made(
         self, comparisons: Iterable[Comparison], expected: Any = None, theory: str = ""

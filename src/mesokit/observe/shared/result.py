@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.describe.digits import two_digits
 from mesokit.case.describe.shown import Shown
 from mesokit.observe.shared.named import find, key_of
 
@@ -94,7 +95,7 @@ class Comparison:
             if math.isfinite(self.percent):
                 text += f", {self.percent:+.1f} %"
         elif self.approximate and math.isfinite(self.percent):
-            text += f": {self.percent:+.2g} %"
+            text += f": {two_digits(self.percent, sign='+')} %"
         if self.note and (not math.isfinite(self.deviation) or "lower bound" in self.note):
             text += f" ({self.note})"
         return text
@@ -105,7 +106,14 @@ def with_error(value: float, error: float) -> str:
 
     >>> with_error(0.8705, 0.0123), with_error(1234.5, 12), with_error(2.0, 0.0)
     ('0.871(12)', '1234(12)', '2.000')
+
+    A whole number of which no error is known is a count.
+
+    >>> with_error(2.0, math.nan)
+    '2'
     """
+    if math.isnan(error) and value % 1 == 0:
+        return f"{value:.0f}"
     if value == 0 and not error > 0:
         return "0"
     if not math.isfinite(value) or not error > 0 or not math.isfinite(error):

@@ -12,12 +12,15 @@ if TYPE_CHECKING:
 
 
 class Origin(NamedTuple):
-    """The title and digest of a case, its seed, and the name of the folder of the run, if any."""
+    """The title and digest of a case, its seed, and the name of the folder of the run, if any.
+
+    Figures of theory alone, and of studies, have a title only.
+    """
 
     title: str
-    run: str
-    seed: int
-    digest: str
+    run: str = ""
+    seed: int | None = None
+    digest: str = ""
 
     def line(self) -> str:
         """What is written below a figure.
@@ -25,13 +28,14 @@ class Origin(NamedTuple):
         >>> Origin("Channel", "run-3", 7, "0a" * 32).line().startswith("Channel, run run-3, seed 7")
         True
         """
-        words = [self.title, f"run {self.run}" * bool(self.run), f"seed {self.seed}"]
+        seed = "" if self.seed is None else f"seed {self.seed}"
+        words = [self.title, f"run {self.run}" * bool(self.run), seed]
         return ", ".join([*filter(None, words), f"mesokit {__version__}"])
 
     def metadata(self, kind: str) -> dict[str, str]:
         """Entries of a PNG, PDF, SVG, MP4 or GIF file, none for other kinds."""
         program, title = f"mesokit {__version__}", self.title or self.run
-        about = f"{self.line()}; case sha256 {self.digest}"
+        about = self.line() + f"; case sha256 {self.digest}" * bool(self.digest)
         known = {
             "png": {"Title": title, "Software": program, "Description": about},
             "pdf": {"Title": title, "Creator": program, "Subject": about},

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 SMALLEST = 1.6  # diameter, in points
 EDGE, BOND = 0.2, 0.45  # widths of the edge and of bonds, of the diameter
+RIM = 0.8  # points, the widest edge: that of a large bead would hide the fluid at its surface
 ABOVE = 6  # the solids
 MARKERS = "osD^vP"  # of kinds: in grey they look alike otherwise
 LAYERS, PALE = 6, 0.65  # of depth in 3D; how much of the colour the rearmost lacks
@@ -167,7 +168,7 @@ def draw(ax: Any, beads: Beads, region: Region) -> None:
                 marker,
                 color=colour,
                 markersize=size,
-                markeredgewidth=EDGE * size / 2,
+                markeredgewidth=min(EDGE * size / 2, RIM),
                 markeredgecolor="white",
                 zorder=ABOVE,
             )

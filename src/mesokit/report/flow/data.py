@@ -64,6 +64,7 @@ class Flow:
     lowest: density at which its colours start.
     smoothing: width over which the velocity is smoothed before its slope is taken, in bins.
     beads: of solutes, drawn over all, or None.
+    bonds: ends (m, 2, 2) of those between the `particles`, or None.
     """
 
     axes: tuple[str, str]
@@ -79,6 +80,7 @@ class Flow:
     lowest: float = 0.0
     smoothing: float = 0.0
     beads: Beads | None = None
+    bonds: Array | None = None
 
     @property
     def speed(self) -> Array:

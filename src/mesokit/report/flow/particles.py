@@ -1,4 +1,4 @@
-"""Particles as dots."""
+"""Particles as dots, and bonds between them as lines."""
 
 from __future__ import annotations
 
@@ -8,12 +8,14 @@ import numpy as np
 
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.region import Region
+from mesokit.report.style import COLOURS
 
 NEEDS = "particles"
 TITLE = "particles"
 MANY = 5000  # dots, beyond which a vector file holds an image of them
 COVERED = 0.08  # of the area by dots: less than hides where they are dense
 LARGEST, SMALLEST = 3.0, 0.5  # points
+THIN, CROWDED = 0.4, 0.4  # points of a bond; of the area by bonds: more cannot be told apart
 
 
 def reach(flow: Flow, region: Region) -> float:
@@ -26,7 +28,7 @@ def scale(flow: Flow, reach: float) -> None:
 
 
 def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
-    """Draw those in the region, smaller where they are many."""
+    """Draw those in the region, smaller where they are many, and bonds where these are few."""
     assert flow.particles is not None
     shown = flow.particles[region.holds(flow.particles)]
     box = ax.get_position()
@@ -35,6 +37,7 @@ def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
     size = float(
         np.clip(np.sqrt(COVERED * area / max(len(shown), 1) * 4 / np.pi), SMALLEST, LARGEST)
     )
+    _bonds(ax, flow, region, area)
     ax.plot(
         shown[:, 0],
         shown[:, 1],
@@ -44,3 +47,18 @@ def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
         markeredgewidth=0,
         rasterized=len(shown) > MANY,
     )
+
+
+def _bonds(ax: Any, flow: Flow, region: Region, area: float) -> None:
+    """Thin lines, unless they would cover more of the area (in square points) than can be read."""
+    from matplotlib.collections import LineCollection
+
+    if flow.bonds is None:
+        return
+    inside = region.holds(flow.bonds[:, 0]) | region.holds(flow.bonds[:, 1])
+    lines = flow.bonds[inside]
+    scale = np.sqrt(area / (np.ptp(ax.get_xlim()) * np.ptp(ax.get_ylim())))
+    length = scale * np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1).sum()
+    if THIN * length < CROWDED * area:
+        drawn = LineCollection(list(lines), colors=COLOURS[0], linewidths=THIN, zorder=1.5)
+        ax.add_collection(drawn, autolim=False)

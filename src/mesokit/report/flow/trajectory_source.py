@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from mesokit.method.protocol import method_of
 from mesokit.report.flow.data import Flow
+from mesokit.report.flow.fluid_bonds import FluidBonds
 from mesokit.report.flow.setting import Setting
 
 if TYPE_CHECKING:
@@ -26,6 +28,7 @@ class TrajectorySource:
         self.setting, self.kT = Setting.of(case, axes), thermal(case) if thermal else 0.0
         self.whole = np.arange(len(reader))
         self.rows = np.flatnonzero(reader.id < case.particles)
+        self.bonds = FluidBonds(case, reader.id[self.rows], self.setting.columns)
         known = {"particles"}
         if "velocity" in reader.fields and len(self.rows):
             known.add("velocity")
@@ -53,9 +56,11 @@ class TrajectorySource:
             mean = np.moveaxis(sums[2:] / sums[1], 0, -1)
             thermal = np.sqrt(self.kT / sums[1])[..., None]
         noise = np.random.default_rng(0).normal(size=mean.shape) * thermal
-        return self.setting.flow(
+        flow = self.setting.flow(
             density=sums[0] / (len(frames) * self.bin_volume) if "density" in self.gives else None,
             velocity=mean if "velocity" in self.gives else None,
             particles=place,
             noise=noise,
         )
+        bonds = self.bonds.at(read["position"][self.rows].astype(float), float(self.time[frame]))
+        return replace(flow, bonds=bonds)

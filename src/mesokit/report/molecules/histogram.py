@@ -35,7 +35,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         fmt="none",
         ecolor=COLOURS[0],
         elinewidth=0.9,
-        label=r"$\pm$ one standard error",
+        label=r"$\pm$ one standard error" if np.isfinite(result.error).any() else None,
     )
     if result.expected is not None and np.isfinite(result.expected).any():
         theory = mathematics(f"theory: {result.theory}")
@@ -43,6 +43,6 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     mean = result.extra.get("mean", np.nan)
     if np.isfinite(mean):
         ax.axvline(mean, color=COLOURS[1], ls="--", lw=1.2, label="mean")
-    ax.set_xlim(edges[0], edges[-1])
+    ax.set_xlim(*(edges[[0, -1]] if len(middle) > 1 else (0, edges[0] + edges[-1])))
     ax.set_ylim(bottom=0)
     legend_above(ax)

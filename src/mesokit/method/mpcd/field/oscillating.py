@@ -6,6 +6,7 @@ import math
 from typing import Literal, NamedTuple
 
 from mesokit.case.component import component, param, tag
+from mesokit.method.mpcd.field.protocol import Swing
 from mesokit.method.mpcd.field.varying import Varying, factor
 from mesokit.scalar.elementary import sincos_turn
 from mesokit.scalar.intrinsics import floor
@@ -27,6 +28,10 @@ class OscillatingForce(Varying):
     def at(self, time: float) -> float:
         """The factor at a time."""
         return math.cos(self.frequency * time + math.radians(self.phase))
+
+    def swing(self) -> Swing:
+        """The force that it is a cosine of."""
+        return Swing(self.of, self.frequency, math.radians(self.phase))
 
     def change(self) -> Cosine:
         """Parameters for the scalar function below."""

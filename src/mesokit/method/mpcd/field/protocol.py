@@ -30,6 +30,14 @@ class Driven(NamedTuple):
     profile: Callable[[Array], Array] | None
 
 
+class Swing(NamedTuple):
+    """A force times cos(frequency t + phase): angular frequency, phase in radians."""
+
+    of: Force
+    frequency: float
+    phase: float
+
+
 @family("body force", "rule", "mesokit.field", "SampledForce.from_function makes a force of one")
 @component
 class Force(ABC):
@@ -87,6 +95,10 @@ class Force(ABC):
     def drives(self, component: int) -> bool:
         """Whether it acts along this axis, if it is not uniform."""
         return True
+
+    def swing(self) -> Swing | None:
+        """What it is where it is a cosine in time; None for others."""
+        return None
 
     def instability(self, reynolds: float, size: tuple[int, ...], across: int) -> str:
         """Why its flow breaks up at this Reynolds number, "" if it does not."""
