@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 
+import numpy as np
 import pytest
 
 from mesokit import (
     FENE,
     SRD,
     BondLength,
+    Box,
     Cylinder,
     Disk,
     FlowRate,
@@ -20,12 +22,14 @@ from mesokit import (
     NoThermostat,
     Plates,
     Run,
+    StepStrain,
     Stress,
     Uniform,
     VelocityProfile,
     theory,
 )
 from mesokit.method.mpcd.derived import derive
+from mesokit.method.mpcd.expected.heating import temperature_rise
 from mesokit.method.mpcd.summary import summary
 
 PUSH = {"force": Uniform([0.02, 0])}
@@ -54,7 +58,7 @@ def test_the_flow_in_a_round_pipe_is_that_of_hagen_and_poiseuille(make_case):
     nu = found.transport.viscosity
     assert found.flow == "Hagen-Poiseuille"
     assert found.flow_speed == pytest.approx(0.01 * 100 / (4 * nu))
-    assert found.reynolds == pytest.approx(found.flow_speed * 20 / nu)
+    assert found.reynolds == pytest.approx(found.flow_speed / 2 * 20 / nu)  # of the mean
     assert found.steady_time == pytest.approx(100 / (5.783 * nu), rel=1e-3)
 
 
@@ -103,6 +107,75 @@ def test_heating_by_friction_is_a_bound_where_nobody_knows_what_walls_cool(make_
     found, (text,) = heating(make_case, virtual)
     assert found.heating_bound == (virtual == "top-up") == ("at most" in text and "cool" in text)
     assert found.heating == pytest.approx(10 * heating(make_case, virtual, 1000)[0].heating)
+
+
+def test_little_friction_heats_by_the_law_for_one_temperature(make_case):
+    """(rho g)^2 h^3 (h/5 + jump)/(3 eta k); more heats less than by the square of the force, as
+    the fluid is thin where it is warm."""
+
+    def rise(push):
+        case = make_case(
+            (20, 20), walls=[Plates("y")], thermostat=NoThermostat(), collision=SRD(angle=90),
+            density=8, timestep=0.2, force=Uniform([push, 0])
+        )  # fmt: skip
+        return temperature_rise(case)
+
+    fluid = {"angle": 90, "kT": 1.0}
+    eta = theory.transport("srd", 2, 8, 0.2, **fluid).dynamic_viscosity
+    k, jump = theory.heat_at_walls("srd", 2, 8, 0.2, **fluid)
+    expected = (8 * 1e-4) ** 2 * 10**3 * (10 / 5 + jump) / (3 * eta * k)
+    assert np.trapezoid(rise(1e-4)) / 400 == pytest.approx(expected, rel=1e-3)
+    assert 0.7 < rise(5e-3).mean() / (2500 * rise(1e-4).mean()) < 0.97
+
+
+def test_images_faster_than_sound_are_warned_of(make_case):
+    """A step strain of 0.5 in 0.5 at height 8, where sound goes at sqrt(kT/m)."""
+    ring = Molecule(length=4, topology="ring", bond=Harmonic(K=2.0))
+
+    def shocks(duration):
+        step = StepStrain(strain=0.5, duration=duration, start=10)
+        case = make_case((8, 8), thermostat=MaxwellBoltzmann(), molecule=ring)
+        case = dataclasses.replace(case, box=Box((8, 8), shear=step))
+        return [text for text in derive(case).warnings if "speed of sound" in text]
+
+    (text,) = shocks(0.5)
+    assert "up to 8 times the speed of sound" in text
+    assert len(shocks(1.9)) == 1 and not shocks(2.1)
+
+
+def test_the_warm_up_of_sheared_molecules_is_three_relaxation_times(make_case):
+    trimer = Molecule(length=3, bond=Harmonic(K=0.4))
+
+    def said(warmup, **shear):
+        case = make_case((8, 9), density=9, thermostat=MaxwellBoltzmann(), molecule=trimer,
+                         observe=[Stress()], **shear)  # fmt: skip
+        found = derive(dataclasses.replace(case, run=Run(steps=400, warmup=warmup)))
+        return found.relaxation_time, [text for text in found.warnings if "warmup" in text]
+
+    time, (text,) = said(0, shear_rate=0.1)
+    friction = (
+        1 / theory.transport("srd", 2, 9, 0.1, angle=130, thermostat="maxwell-boltzmann").diffusion
+    )
+    times = theory.rouse_times(theory.linear_modes(3), friction, K=0.4)
+    assert time == pytest.approx(times.mode[0], rel=1e-3)
+    steps = int(3 * time / 0.1) + 1
+    assert f"about {steps} steps" in text
+    assert not said(steps, shear_rate=0.1)[1] and not said(0)[1]
+
+
+def test_heat_in_a_round_pipe_is_the_work_of_the_force(make_case):
+    """A bound: nobody knows what round walls take."""
+    walls = [Cylinder([5, 7, 7], radius=6, axis="x", fluid="inside")]
+    case = make_case(
+        (10, 14, 14), walls=walls, thermostat=NoThermostat(), collision=SRD(),
+        force=Uniform([0.02, 0, 0])
+    )  # fmt: skip
+    found = derive(dataclasses.replace(case, run=Run(steps=100)))
+    mean = found.flow_speed / 2
+    time = 100 * case.fluid.timestep
+    assert found.heating == pytest.approx(2 / 3 * 0.02 * mean * time) and found.heating_bound
+    assert found.reynolds == pytest.approx(mean * 12 / found.transport.viscosity)
+    assert not [text for text in found.warnings if "solids repeat" in text]
 
 
 @pytest.mark.parametrize("rule", ["no-slip", "slip"])

@@ -17,6 +17,7 @@ from mesokit.execute.cpu.engine import CPU
 from mesokit.method.mpcd import collision
 from mesokit.method.mpcd.field.uniform import Uniform
 from mesokit.method.mpcd.fluid import Fluid
+from mesokit.method.mpcd.species import Species
 from mesokit.method.mpcd.start.fluid import start
 
 COLLIDING = [rule for rule in collision.RULES if rule.acts]
@@ -58,7 +59,11 @@ def make_case(
     size=(8, 8), observe=(), walls=(), trajectory=None, shear_rate=0.0, shear_frequency=0.0, seed=1,
     solutes=None, **fluid,
 ) -> Case:  # fmt: skip
-    """A case with one step to run."""
+    """A case with one step to run; of rules for two species with two that are alike."""
+    kinds = fluid["collision"].kinds if "collision" in fluid else None
+    if kinds and "species" not in fluid:
+        each = fluid.get("density", 10) / kinds
+        fluid["species"] = (Species(mass=1, density=each),) * kinds
     return Case(
         run=Run(steps=1, seed=seed),
         box=Box(size, shear_rate=shear_rate, shear_frequency=shear_frequency),

@@ -194,7 +194,9 @@ def test_any_number_of_threads_gives_the_same_bits():
 
 def test_what_has_no_physics_is_refused():
     three = (*TWO, Species(mass=1, density=1))
-    with pytest.raises(CaseError, match=r"fluid\.species: 3 of them; .*'demix' is for 2"):
-        make_fluid((8, 8), species=three, collision=Demix())
+    for species in ((), three):
+        words = rf"fluid\.species: {len(species)} of them; .*'demix' needs 2"
+        with pytest.raises(CaseError, match=words):
+            make_fluid((8, 8), species=species, collision=Demix())
     with pytest.raises(CaseError, match=r"box\.shear_rate = 0\.1: not with .*'demix'"):
         make_fluid((8, 8), species=TWO, collision=Demix(), shear_rate=0.1)

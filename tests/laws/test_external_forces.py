@@ -1,5 +1,7 @@
 """Beads that are pulled, trapped, or charged in a magnetic field."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from laboratory import make_fluid, mean
@@ -107,10 +109,11 @@ def test_observables_see_trapped_dimers_as_boltzmann_has_them():
         "moved": MeanSquareDisplacement(of="beads", every=300, max_lag=9000, components=["y"]),
     }
     found = {name: one.accumulator(fluid.case) for name, one in seen.items()}
+    short = dataclasses.replace(seen["moved"], max_lag=900).accumulator(fluid.case)
     fluid.advance(2000)
     for _ in range(60):
         fluid.advance(300)
-        for one in found.values():
+        for one in (*found.values(), short):
             one.observe(fluid)
     shape = theory.trapped_shape([(0, 1)], 2.0, [2.0, 0.0], [[11.5], [0.0]], [[0.0], [0.6]])
     assert shape.mean[:, 0].tolist() == pytest.approx([11.8, 12.1])
@@ -125,6 +128,9 @@ def test_observables_see_trapped_dimers_as_boltzmann_has_them():
     assert spread.expected == pytest.approx(0.625, rel=0.01) and spread.error < 0.05
     level = found["moved"].result()["mean square displacement"]
     assert level.expected == pytest.approx(2 * 0.75) and level.error < 0.15
+    # lags that are too short say so, and no theory is drawn
+    assert short.result().expected is None
+    assert "the longest here is 900" in short.result()["mean square displacement"].note
 
 
 def test_a_pulled_chain_is_stretched_by_the_sum_of_its_springs():

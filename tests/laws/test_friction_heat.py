@@ -10,8 +10,8 @@ from mesokit.method.mpcd.expected.heating import heating
 
 pytestmark = pytest.mark.long
 
-# The law holds to a part of the rise: of coefficients at one temperature, and molecular chaos.
-# Measured over seeds: -1.5 % (timestep 0.1), +3.4 % (0.5)
+# The law holds to a part of the rise, for molecular chaos. Measured over seeds: +2.8 % (timestep
+# 0.1, Mach number 0.3), +3.8 % (0.1, Mach number 0.6), +3.9 % (0.5)
 NEAR = 0.05
 
 
@@ -28,7 +28,8 @@ def slit(timestep, push, steps, warmup):
 
 
 @pytest.mark.parametrize(
-    ("timestep", "push", "steps"), [(0.1, 0.0193, 24_000), (0.5, 0.0091, 12_000)]
+    ("timestep", "push", "steps"),
+    [(0.1, 0.0193, 24_000), (0.1, 0.0386, 12_000), (0.5, 0.0091, 12_000)],
 )
 def test_plates_with_virtual_particles_are_as_warm_as_theory_says(timestep, push, steps):
     """Standard errors are 1 % of the rise. Without the jump at the plates theory would have 0.7 of
@@ -38,7 +39,7 @@ def test_plates_with_virtual_particles_are_as_warm_as_theory_says(timestep, push
     simulation.run()
     result = simulation["temperature-profile"]
     found, rise = result["mean temperature"], heating(case, 1).steady
-    assert 0.1 < rise < 0.2 and found.error < 0.02 * rise
+    assert 0.1 < rise < 0.5 and found.error < 0.02 * rise
     assert abs(found.measured - found.expected) < 3.5 * found.error + NEAR * rise, found
     # and where it is warm: the cells at the plates too
     error = abs(result.value - result.expected) - 3.5 * result.error

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
@@ -161,6 +162,8 @@ class MeanSquareDisplacementAccumulator:
             measured = moved.scalar(mean @ moved.value, mean)
             what = "mean square displacement, levelled off"
             comparisons.append(Comparison(what, *measured, expected[level].mean(), "a^2"))
+        elif np.isfinite(self.theory.level_from()) and len(steps) > 1:
+            comparisons.append(self.not_levelled(steps, moved))
         return Result(
             quantity="mean-square-displacement",
             drawing="displacement",
@@ -177,6 +180,18 @@ class MeanSquareDisplacementAccumulator:
             samples=self.origins.count,
             extra={"components": "".join("xyz"[axis] for axis in self.axes)},
         )
+
+    def not_levelled(self, steps: Integers, moved: Estimate) -> Comparison:
+        """The displacement at the longest lag, which is too short for the level of theory."""
+        last = np.zeros(len(steps))
+        last[-1] = 1.0
+        first = math.ceil(self.theory.level_from() / self.timestep)
+        note = (
+            f"theory knows the level, from lag {first} steps on; the longest here is {steps[-1]}: "
+            "a larger max_lag"
+        )
+        what = "mean square displacement at the longest lag"
+        return Comparison(what, *moved.scalar(last @ moved.value, last), math.nan, "a^2", note)
 
     def fit_diffusion(
         self,

@@ -63,7 +63,7 @@ def heat_at_walls(
 def slit_temperature_rise(
     heat: ArrayLike,
     height: float,
-    conductivity: float,
+    conductivity: ArrayLike,
     lower: float | None,
     upper: float | None,
 ) -> Array:
@@ -73,7 +73,7 @@ def slit_temperature_rise(
         heat: (n,) what friction heats per volume and time, at n evenly spaced heights from plate
             to plate.
         height: distance of the plates in cells.
-        conductivity: heat flux over gradient of kT.
+        conductivity: heat flux over gradient of kT, one number or (n,).
         lower, upper: length of the jump at each plate in cells, None for a plate that takes no
             heat (a slip plate, or one without virtual particles).
 
@@ -89,10 +89,16 @@ def slit_temperature_rise(
     >>> round(float(rise[0]), 3), round(float(np.trapezoid(rise, y)) / 10, 2)
     (10.417, 31.25)
     """
-    positive(height=height, conductivity=conductivity)
     heat = np.asarray(heat, float)
     if heat.ndim != 1 or len(heat) < 2:
         raise ValueError(f"heat: expected values at 2 heights or more, not of shape {heat.shape}")
+    if np.shape(conductivity) not in ((), heat.shape):
+        raise ValueError(
+            f"conductivity: expected one or {len(heat)} values, not of shape "
+            f"{np.shape(conductivity)}"
+        )
+    positive(height=height, conductivity=float(np.min(conductivity)))
+    k = np.broadcast_to(np.asarray(conductivity, float), heat.shape)
     jumps = [jump for jump in (lower, upper) if jump is not None]
     if not jumps:
         raise ValueError("lower = upper = None: no steady state; expected a plate that takes heat")
@@ -105,8 +111,9 @@ def slit_temperature_rise(
     elif upper is None:
         out = below[-1]
     else:
-        out = (upper * below[-1] + _integral(below, step)[-1]) / (lower + height + upper)
-    gradient = (out - below) / conductivity
+        resistance = lower / k[0] + _integral(1 / k, step)[-1] + upper / k[-1]
+        out = (upper * below[-1] / k[-1] + _integral(below / k, step)[-1]) / resistance
+    gradient = (out - below) / k
     at_plate = lower * gradient[0] if lower is not None else 0.0
     rise = at_plate + _integral(gradient, step)
     if lower is None and upper is not None:

@@ -13,7 +13,8 @@ from mesokit.case.trajectory import stored_bytes
 from mesokit.geometry.shape.plates import Plates
 from mesokit.method.mpcd.expected import recognise, setting
 from mesokit.method.mpcd.expected.heating import heating
-from mesokit.method.mpcd.numbers import Derived
+from mesokit.method.mpcd.expected.molecules import longest_rouse_time
+from mesokit.method.mpcd.numbers import PIPE, Derived
 from mesokit.method.mpcd.warnings import cautions
 from mesokit.running.cores import usable_cores
 
@@ -92,11 +93,12 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         flow_speed=speed,
         flow_bound=bound,
         flow_size=length,
-        reynolds=speed * length / nu if speed is not None and nu else None,
+        reynolds=_typical(speed, flow) * length / nu if speed is not None and nu else None,
         mach=speed / transport.sound_speed if speed is not None and transport else None,
         steady_time=_steady_time(case, across, nu)
         if nu and (speed or bound) and builds_up
         else None,
+        relaxation_time=longest_rouse_time(case),
         heating=heated[0] if heated else None,
         heating_bound=heated is not None and heated[1],
         seconds=case.particles * steps / rate + bead_seconds + _observe_seconds(case),
@@ -133,7 +135,7 @@ def _flow(case: Case) -> tuple[str, int, float | None]:
     """
     driven = _pipe_speed(case)
     if driven is not None:
-        return "Hagen-Poiseuille", 1, driven
+        return PIPE, 1, driven
     if setting.obstructed(case):
         plates = tuple(wall for wall in case.walls if isinstance(wall, Plates))
         if len(plates) == 1 and not plates[0].diffuse:
@@ -165,6 +167,11 @@ def _pipe_speed(case: Case) -> float | None:
     push = float(abs(setting.acceleration(case)[pipe.axis]))
     middle = theory.hagen_poiseuille_velocity(0.0, pipe.radius, push, coefficients.viscosity)
     return float(middle)
+
+
+def _typical(speed: float, flow: str) -> float:
+    """The speed in the Reynolds number: along pipes the mean, half of the largest; else that."""
+    return speed / 2 if flow == PIPE else speed
 
 
 def _length(case: Case, across: int) -> float:

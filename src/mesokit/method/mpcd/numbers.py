@@ -10,6 +10,7 @@ from mesokit import theory
 from mesokit.case.amounts import duration_text, number, size_text
 from mesokit.case.describe.shown import Shown
 
+PIPE = "Hagen-Poiseuille"  # the flow along a round pipe
 Row = tuple[str, str, str]  # what, its value, and a word on it
 
 
@@ -19,8 +20,10 @@ class Derived(Shown):
 
     `flow_speed` is the largest velocity that theory expects of the steady flow, `flow_bound` that
     of the empty channel where obstacles stand in the flow and nobody knows its speed beforehand,
-    `flow_size` the size across it, `reynolds` both over the viscosity, `mach` the speed over that
-    of sound; `steady_time` is the time in which the flow comes within 1/e of its steady state.
+    `flow_size` the size across it, `reynolds` both over the viscosity (in a round pipe the mean
+    velocity, as is the custom), `mach` the largest speed over that of sound; `steady_time` is the
+    time in which the flow comes within 1/e of its steady state, `relaxation_time` the longest of
+    the molecules of the fluid, by Rouse.
     `heating` is the relative rise of the temperature by friction at the end of the run,
     `heating_bound` says that walls keep it lower.
     `substeps` are those of the fluid's molecules, or else of solutes. `seconds` and `memory`
@@ -37,6 +40,7 @@ class Derived(Shown):
     reynolds: float | None
     mach: float | None
     steady_time: float | None
+    relaxation_time: float | None
     heating: float | None
     heating_bound: bool
     seconds: float
@@ -73,7 +77,7 @@ class Derived(Shown):
         elif self.flow_speed:
             rows = [
                 ("flow speed", number(self.flow_speed, "a/time"), self.flow),
-                ("Reynolds number", number(self.reynolds), ""),
+                ("Reynolds number", number(self.reynolds), self._reynolds_of()),
                 ("Mach number", number(self.mach), ""),
             ]
         else:
@@ -83,6 +87,9 @@ class Derived(Shown):
             steps += ", without obstacles" if self.flow_bound else ""
             rows.append(("time to build up", number(self.steady_time), steps))
         return rows
+
+    def _reynolds_of(self) -> str:
+        return "of the mean velocity and the diameter" if self.flow == PIPE else ""
 
     def rows(self) -> list[Row]:
         """All of it in words."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mesokit.case.amounts import duration_text, size_text
+from mesokit.case.amounts import duration_text, number, size_text
 from mesokit.case.kind import has_run
 from mesokit.method.mpcd.derived import compiling_memory, derive
 from mesokit.method.mpcd.numbers import Derived
@@ -44,6 +44,9 @@ def _particle_rows(case: Case, numbers: Derived) -> list[Row]:
     if molecule is not None:
         number_of = f"{numbers.particles // molecule.length:,}".replace(",", " ")
         rows.append(("molecules", number_of, f"{molecule.topology}s of {molecule.length}"))
+    if numbers.relaxation_time is not None:
+        steps = f"slowest mode, Rouse; {round(numbers.relaxation_time / case.fluid.timestep)} steps"
+        rows.append(("relaxation time", number(numbers.relaxation_time, "time"), steps))
     if numbers.substeps is not None:
         how = molecule.propagation if molecule is not None else "verlet"
         rows.append(("sub-steps", str(numbers.substeps), how))

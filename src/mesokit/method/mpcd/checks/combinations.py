@@ -107,8 +107,8 @@ def neighbours(case: Case) -> Iterator[str]:
     """What a rule that looks at neighbouring cells, or tells species apart, can have."""
     rule, species = case.fluid.collision, len(case.fluid.species)
     name = show(name_of(rule))
-    if rule.kinds is not None and species > rule.kinds:
-        yield f"fluid.species: {species} of them; collision rule {name} is for {rule.kinds}"
+    if rule.kinds is not None and species != rule.kinds:
+        yield f"fluid.species: {species} of them; collision rule {name} needs {rule.kinds}"
     if rule.gradient_of is None:
         return
     if case.box.sheared:

@@ -45,7 +45,7 @@ class CollisionRule(ABC):
     one_temperature: ClassVar[bool] = True  # of all kinds of particles in a mixture
     # which of its own sums `coefficients` is to have the gradient of, over neighbouring cells
     gradient_of: ClassVar[int | None] = None
-    kinds: ClassVar[int | None] = None  # how many species it is for; None for any number
+    kinds: ClassVar[int | None] = None  # how many species it is for, None for any number
     ideal: ClassVar[bool] = True  # whether any mixture is an ideal gas at rest
     # million particle-steps per second of one thread, by dimension: for estimates of the run time
     rates: ClassVar[Mapping[int, float]] = {2: 60.0, 3: 33.0}

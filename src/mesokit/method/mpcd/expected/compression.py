@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from mesokit.geometry.shape.array import Array
 from mesokit.geometry.shape.plates import Plates
-from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected import recognise, setting
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -29,10 +29,14 @@ def compression(case: Case) -> tuple[int, float] | None:
     The fluid's pressure is rho kT/m. What solids take of the force over a unit cell, at most
     rho times acceleration times length, they hand on as a difference of pressure; so the number is
     that of the density along the cell, over the density, were the fluid held altogether. None
-    without a force along one axis or without solids but plates.
+    without a force along one axis, without solids but plates, and in a straight pipe, whose wall
+    takes what the force does everywhere alike.
     """
     axis, fluid = setting.push_axis(case), case.fluid
     if axis is None or not setting.obstructed(case) or axis in setting.closed_axes(case):
+        return None
+    pipe = recognise.pipe(case)
+    if pipe is not None and pipe.axis == axis:
         return None
     push = abs(float(setting.acceleration(case)[axis]))
     return axis, push * unit_cell(case, axis) * fluid.mass / fluid.kT

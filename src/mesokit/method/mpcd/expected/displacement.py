@@ -112,12 +112,16 @@ class Displacement:
         return self.of != "particles" and trapped(self.case, self.kind)
 
     def level(self, time: Array) -> Array | None:
-        """Twice the variance of places in traps, at lags after which all is forgotten, else nan."""
+        """Twice the variance of places in traps, at lags after which all is forgotten, else nan;
+        None where all lags are shorter."""
         found = held(self.case, self.kind)
         if found is None or found.time is None or found.variance is None:
             return None
+        late = time >= self.level_from()
+        if not late.any():
+            return None
         variance = found.centre_variance if self.of == "centres" else float(found.variance.mean())
-        return np.where(time >= self.level_from(), 2 * len(self.axes) * variance, np.nan)
+        return np.where(late, 2 * len(self.axes) * variance, np.nan)
 
     def level_from(self) -> float:
         """The lag from which on it no longer grows: in traps, if that is known, else inf."""

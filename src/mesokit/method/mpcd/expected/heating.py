@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.case.box import AXES
 from mesokit.geometry.solids.solids import slit_of
-from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected import recognise, setting
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -21,6 +20,7 @@ Array = NDArray[np.floating[Any]]
 POINTS = 401  # across the flow
 FILLED = ("extrapolate", "fill")  # virtual particles as dense as the fluid
 CONVERGED, ROUNDS = 1e-4, 60
+NODES = 9  # temperatures between which coefficients are linear
 SETTLED = 5.0  # times in which the temperature comes within 1/e, until it is steady
 
 
@@ -56,10 +56,14 @@ def heating(case: Case, across: int) -> Heating | None:
     known = setting.transport(case)
     if setting.isothermal(case) or known is None:
         return None
-    heat, length = _friction(case, across, known.viscosity), float(case.box.size[across])
+    pipe, length = recognise.pipe(case), float(case.box.size[across])
+    if pipe is not None:
+        heat = _friction_in_pipe(case, pipe, known.viscosity)
+    else:
+        heat = float(np.mean(_friction(case, across, known.viscosity)))
     moved = known.viscosity * (setting.surface_speed(case) / length) ** 2
     fluid = case.fluid
-    mean = max(float(np.mean(heat)) / fluid.density, fluid.mass * moved)
+    mean = max(heat / fluid.density, fluid.mass * moved)
     rise = temperature_rise(case)
     steady = None if rise is None else float(np.mean(rise)) / fluid.kT
     return Heating(2 / case.box.dimension * mean / fluid.kT, steady)
@@ -68,7 +72,8 @@ def heating(case: Case, across: int) -> Heating | None:
 def temperature_rise(case: Case) -> Array | None:
     """Steady rise of kT at evenly spaced heights from plate to plate; None without a theory.
 
-    Viscosity, conductivity and flow are those of the mean temperature.
+    Density, viscosity and conductivity are those of the temperature at each height, at the same
+    pressure everywhere.
     """
     plates = slit_of(case)
     if plates is None or setting.isothermal(case) or setting.caveat(case):
@@ -77,20 +82,24 @@ def temperature_rise(case: Case) -> Array | None:
         return None
     taking = [surface.rule == "no-slip" for surface in (plates.lower, plates.upper)]
     across = AXES.index(plates.axis)
-    if not any(taking) or setting.acceleration(case)[across]:
+    flows = [setting.flow(case, i) for i in range(case.box.dimension)]
+    unknown = any(flow.profile is None for flow in flows)
+    if not any(taking) or setting.acceleration(case)[across] or unknown:
         return None
-    fluid, mean = case.fluid, 0.0
-    rise: Array | None = None
+    rise = np.zeros(POINTS)
     for _ in range(ROUNDS):
-        warmer = dataclasses.replace(fluid, kT=fluid.kT + mean)
-        bare = {"observe": (), "trajectory": None, "log": None}
-        rise = _rise(dataclasses.replace(case, fluid=warmer, **bare), across, taking)
-        if rise is None:
+        here = _local(case, case.fluid.kT + rise)
+        if here is None:
             return None
-        found = float(np.mean(rise))
-        if abs(found - mean) <= CONVERGED * fluid.kT:
-            return rise
-        mean = (mean + found) / 2
+        found = theory.slit_temperature_rise(
+            _work(case, across, taking, here),
+            float(case.box.size[across]),
+            here.conductivity,
+            *(jump if takes else None for jump, takes in zip(here.jumps, taking, strict=True)),
+        )
+        if np.abs(found - rise).max() <= CONVERGED * case.fluid.kT:
+            return found
+        rise = (rise + found) / 2
     return None
 
 
@@ -101,15 +110,65 @@ def settled(case: Case, across: int) -> bool:
     return found is not None and found.time is not None and warmup >= SETTLED * found.time
 
 
-def _rise(case: Case, across: int, taking: list[bool]) -> Array | None:
-    """Of a fluid with the properties that it has at kT."""
-    known, walls = setting.transport(case), case.fluid.collision.heat_at_walls(setting.gas(case))
-    if known is None or walls is None:
-        return None
-    height = float(case.box.size[across])
-    lower, upper = (walls.jump if takes else None for takes in taking)
-    heat = _friction(case, across, known.viscosity)
-    return theory.slit_temperature_rise(heat, height, walls.conductivity, lower, upper)
+class _Local(NamedTuple):
+    """Properties (POINTS,) of the fluid at evenly spaced heights, and the jumps at both plates."""
+
+    density: Array
+    viscosity: Array  # dynamic
+    conductivity: Array
+    jumps: tuple[float, float]
+
+
+def _local(case: Case, kT: Array) -> _Local | None:
+    """Of an ideal gas of these temperatures, as dense in the mean as the case has it; None
+    without a theory."""
+    fluid, rule = case.fluid, case.fluid.collision
+    density = 1 / kT
+    density *= fluid.density / (np.trapezoid(density) / (len(kT) - 1))
+    nodes = np.linspace(kT.min(), kT.max() * (1 + 1e-9), NODES)
+    known = []
+    for node in nodes:
+        at = setting.gas(case)._replace(kT=node, density=density[0] * kT[0] / node)
+        walls, coefficients = rule.heat_at_walls(at), rule.transport(at)
+        if walls is None or coefficients is None:
+            return None
+        known.append((coefficients.dynamic_viscosity, walls.conductivity, walls.jump))
+    viscosity, conductivity, jump = (np.interp(kT, nodes, values) for values in np.transpose(known))
+    return _Local(density, viscosity, conductivity, (float(jump[0]), float(jump[-1])))
+
+
+def _friction_in_pipe(case: Case, pipe: recognise.Pipe, viscosity: float) -> float:
+    """Mean heat per volume and time: what the force does to the mean flow of the pipe."""
+    push = abs(float(setting.acceleration(case)[pipe.axis]))
+    rate = theory.hagen_poiseuille_flow_rate(pipe.radius, push, viscosity)
+    return setting.mass_density(case) * push * rate / (math.pi * pipe.radius**2)
+
+
+def _work(case: Case, across: int, sticky: list[bool], here: _Local) -> Array:
+    """What friction heats, per volume and time: stress squared over viscosity.
+
+    The stress falls from plate to plate by the force on the fluid between; a slip plate takes
+    none, and of two that hold the fluid the velocities say how much each takes.
+    """
+    plates = slit_of(case)
+    assert plates is not None
+    step, heat = float(case.box.size[across]) / (POINTS - 1), np.zeros(POINTS)
+    for i, push in enumerate(setting.acceleration(case)):
+        if i == across:
+            continue
+        weight = _running(case.fluid.mass * here.density * push, step)
+        at_lower = weight[-1] if sticky[0] else 0.0
+        if all(sticky):
+            lower, upper = (setting.surface_velocity(s, i) for s in (plates.lower, plates.upper))
+            fluidity = _running(1 / here.viscosity, step)[-1]
+            at_lower = (upper - lower + _running(weight / here.viscosity, step)[-1]) / fluidity
+        heat += (at_lower - weight) ** 2 / here.viscosity
+    return heat
+
+
+def _running(values: Array, step: float) -> Array:
+    """Integral from the lower plate to each height, by the trapezoidal rule."""
+    return np.concatenate([[0.0], np.cumsum((values[1:] + values[:-1]) * step / 2)])
 
 
 def _friction(case: Case, across: int, viscosity: float) -> Array:

@@ -194,6 +194,14 @@ def rouse_times_of(case: Case, kind: int | str = 1) -> theory.RouseTimes | None:
     return theory.rouse_times(modes_of(molecule), friction, K=spring.K)
 
 
+def longest_rouse_time(case: Case) -> float | None:
+    """Of the molecules of the fluid, the time of the slowest normal mode; None without a theory."""
+    if case.fluid.molecule is None:
+        return None
+    times = rouse_times_of(case, FLUID)
+    return None if times is None else float(times.mode[0])
+
+
 def stirring_diffusion(case: Case, boxed: bool = False) -> float | None:
     """Diffusion coefficient of a particle of the fluid with the flow that it stirs up; None without
     a theory. In 3D that of a large box unless `boxed`, in 2D there is none but in this box.

@@ -181,6 +181,12 @@ def slip_length(case: Case) -> float | None:
         return None
 
 
+def sound_speed(case: Case) -> float:
+    """That of theory, or of an ideal gas at kT: fast sound does not feel soft bonds."""
+    known = transport(case)
+    return known.sound_speed if known else float((case.fluid.kT / case.fluid.mass) ** 0.5)
+
+
 def isothermal(case: Case) -> bool:
     """Whether something holds the fluid at kT everywhere."""
     random = case.solutes is not None and case.solutes.solvent == "random"
