@@ -8,11 +8,13 @@ from fake_fluid import FakeFluid
 
 from mesokit import (
     AT,
+    Demix,
     DensityField,
     DensityProfile,
     MaxwellBoltzmann,
     Plates,
     Sinusoidal,
+    Species,
     Surface,
     TemperatureProfile,
     Uniform,
@@ -238,6 +240,37 @@ def test_density_uniform_and_depleted(make_case):
         fluid.unwrapped[close & (fluid.rng.random(fluid.n) < 0.1), 1] += 3
         accumulator.observe(fluid)
     assert by_name(accumulator.result())["density in the cell at the lower plate"].deviation < -5
+
+
+def test_density_of_a_mixture_is_that_of_all_its_species(make_case):
+    """Beside theory all particles, or those of one species; of a fluid that demixes, nothing."""
+    kinds = (Species(1.0, 6.0), Species(4.0, 3.0))
+    case = make_case((8, 8), species=kinds)
+    for kind, density in ((None, 9.0), (1, 6.0), (2, 3.0)):
+        result = watched(case, DensityProfile(kind=kind), samples=100)
+        assert result.expected == pytest.approx(np.full(32, density))
+        assert result.value.mean() == pytest.approx(density)  # the offset: chi-square leaves it out
+    with pytest.raises(CaseError, match="kind = 3"):
+        make_case((8, 8), [DensityProfile(kind=3)], species=kinds)
+    even = (Species(1.0, 5.0), Species(1.0, 5.0))
+    apart = watched(make_case((8, 8), species=even, collision=Demix()), DensityProfile())
+    assert apart.expected is None and not apart.comparisons
+
+
+def test_chi_square_of_a_profile_that_forgets_slowly(make_case):
+    """Waves that outlast the blocks of a run are left out; without that it is about 2."""
+    case = make_case((16, 2))
+    found = []
+    for seed in range(10):
+        accumulator = DensityProfile("x").accumulator(case)
+        fluid = FakeFluid(case, seed, kept=0.6)  # diffusion coefficient 0.2
+        for _ in range(60):
+            fluid.advance(10)
+            accumulator.observe(fluid)
+        found.append(accumulator.result()["chi-square"])
+    assert all("longest modes" in c.note for c in found)
+    z = np.array([c.deviation for c in found])
+    assert abs(z.mean()) < 3 / len(z) ** 0.5
 
 
 def test_barometric_density_keeps_the_number(make_case):

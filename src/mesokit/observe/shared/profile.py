@@ -12,7 +12,8 @@ from mesokit.case.box import Axis
 from mesokit.case.component import component, param
 from mesokit.engine import RunningFluid
 from mesokit.method.mpcd.expected import setting
-from mesokit.observe.shared.estimate import Estimate, mode_chi_square
+from mesokit.observe.shared.estimate import Estimate
+from mesokit.observe.shared.mode_chi_square import mode_chi_square
 from mesokit.observe.shared.protocol import BlockAccumulator, Observable
 from mesokit.observe.shared.result import Comparison
 from mesokit.statistics import Blocks
@@ -60,16 +61,4 @@ class ProfileAccumulator(BlockAccumulator):
 
     def chi_square(self, estimate: Estimate, expected: Array, note: str) -> list[Comparison]:
         """Chi-square of the whole profile per degree of freedom, as a comparison with 1."""
-        found = mode_chi_square(estimate, expected, self.periodic)
-        if found is None:
-            return []
-        return [
-            Comparison(
-                "chi-square per degree of freedom",
-                found.chi2 / found.dof,
-                (2 / found.dof) ** 0.5,
-                1.0,
-                "",
-                f"{note}; p = {found.p:.2g}, {found.dof} degrees of freedom",
-            )
-        ]
+        return mode_chi_square(estimate, expected, self.periodic, note)

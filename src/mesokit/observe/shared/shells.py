@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.engine import RunningFluid
-from mesokit.observe.shared.estimate import Estimate, mode_chi_square, of_mean, of_ratio
+from mesokit.observe.shared.estimate import Estimate, of_mean, of_ratio
+from mesokit.observe.shared.mode_chi_square import mode_chi_square
 from mesokit.observe.shared.protocol import BlockAccumulator
 from mesokit.observe.shared.result import Comparison
 from mesokit.statistics import Blocks
@@ -84,16 +85,7 @@ class ShellAccumulator(BlockAccumulator):
         root = np.sqrt(self.crowd)
         _, samples = self.blocks.sums()
         scaled = Estimate(estimate.value * root, estimate.residuals * root, samples.astype(float))
-        found = mode_chi_square(scaled, expected * root, periodic=False)
-        if found is None:
-            return []
-        return [
-            Comparison(
-                "chi-square per degree of freedom", found.chi2 / found.dof,
-                (2 / found.dof) ** 0.5, 1.0, "",
-                f"{note}; p = {found.p:.2g}, {found.dof} degrees of freedom",
-            )
-        ]  # fmt: skip
+        return mode_chi_square(scaled, expected * root, periodic=False, note=note)
 
 
 def shell_edges(inner: float, outer: float, per_cell: int) -> Array:

@@ -200,9 +200,9 @@ def acceleration(case: Case) -> Array:
 
 
 def gathered(case: Case) -> bool:
-    """Whether a force that is not uniform may make the density uneven."""
-    force = case.fluid.force
-    return force.gathers and force.uniform(case.box.dimension) is None
+    """Whether a force that is not uniform, or species that demix, may make the density uneven."""
+    force, demixes = case.fluid.force, bool(case.fluid.species) and not case.fluid.collision.ideal
+    return demixes or (force.gathers and force.uniform(case.box.dimension) is None)
 
 
 def push_axis(case: Case) -> int | None:
