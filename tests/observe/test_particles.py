@@ -66,6 +66,19 @@ def test_autocorrelation(make_case):
     assert all(abs(found[name].deviation) < 4 for name in names)
 
 
+def test_displacement_and_autocorrelation_expect_the_same_diffusion(make_case):
+    """With what a particle stirs up: short flights, in 3D."""
+    case = make_case((8, 8, 8), timestep=0.1, density=5)
+    [found] = [
+        c
+        for c in watched(case, VelocityAutocorrelation(max_lag=20), 0.5, 60).comparisons
+        if c.what.startswith("diffusion")
+    ]
+    expected, note = Displacement(case, MeanSquareDisplacement()).coefficient()
+    assert (found.expected, found.note) == (expected, note) and found.approximate
+    assert expected > 1.1 * setting.transport(case).diffusion
+
+
 def test_particles_that_know_nothing_of_hydrodynamics_have_no_tail(make_case):
     case = make_case((32, 32), density=5)
     observable = VelocityAutocorrelation(particles=10_000, max_lag=80)

@@ -22,6 +22,7 @@ from mesokit import (
     Trap,
     theory,
 )  # fmt: skip
+from mesokit.method.mpcd.expected.traps import held
 
 PULLS = (Pull([-2.0, 1.0], bead=1), Pull([2.0, -1.0], bead=-1))
 K, BEADS, BOND = 1.5, 4, 2 / 3  # mean square of a bond without forces, 2D
@@ -67,10 +68,33 @@ def test_series_of_molecules_have_the_same_theory():
     [
         {"pulls": [Pull([1.0, 0.0], bead=1, kind=2)]},  # moves the fluid
         {"pulls": [Pull([1.0, 0.0], bead=1), Pull([-1.0, 0.0], bead=1, kind=2)]},
-        {"traps": [Trap([5.0, 5.0])]},
+        {"traps": [Trap([5.0, 5.0], kind=2)]},
         {"walls": (Plates("y"),)},
     ],
     ids=["one end", "two kinds", "trap", "walls"],
 )
 def test_elsewhere_there_is_none(changed):
     assert np.isnan(MoleculeSize(kind=2).accumulator(pulled(**changed)).expected()).all()
+
+
+def test_what_holds_another_kind_does_not_matter():
+    """A canonical fluid at rest: each ideal molecule has Boltzmann's distribution of its own."""
+    alone, beside = pulled(), pulled(traps=[Trap([5.0, 5.0], kind=1)])
+    expected = MoleculeSize(kind=2).accumulator(beside).expected()
+    np.testing.assert_array_equal(expected, MoleculeSize(kind=2).accumulator(alone).expected())
+    of = MoleculeHistogram(of="end-to-end", axis="x", kind=2).accumulator(beside)
+    assert of.cdf(of.edges) is not None
+    # nor does what pulls at chains matter to dimers, which are as at rest
+    free = MoleculeHistogram(of="end-to-end", kind=1).accumulator(alone)
+    assert free.cdf(free.edges) is not None
+    # a trapped kind that all of a force is left over on stays where it is
+    push = [*alone.solutes.pulls, Pull([1.0, 0.0], bead=1, kind=1)]
+    still = pulled(traps=[Trap([5.0, 5.0], kind=1)], pulls=push)
+    np.testing.assert_array_equal(MoleculeSize(kind=2).accumulator(still).expected(), expected)
+
+
+def test_traps_beside_chains_that_forces_stretch_keep_their_theory():
+    traps = [Trap([5.0, 5.0], kind=1)]
+    one, other = (pulled(traps=traps, **parts) for parts in ({"pulls": []}, {}))
+    assert held(other, 1).centre_variance == held(one, 1).centre_variance
+    assert held(pulled(traps=traps, pulls=[Pull([1.0, 0.0], bead=1, kind=2)]), 1) is None

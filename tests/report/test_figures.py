@@ -236,6 +236,24 @@ def test_a_mode_that_has_reached_noise_ends_with_its_theory():
     assert list(theory.get_xdata()) == [0, 1, 2] and r"e^{-t/\tau_p}" in theory.get_label()
 
 
+@pytest.mark.parametrize(("known", "drawn"), [(1.0, False), (1.2, True)])
+def test_a_displacement_shows_the_better_theory_of_its_diffusion(known, drawn):
+    """Molecular chaos is the curve; where the number below knows more, a line does too."""
+    time = np.array([0.0, 1.0, 10.0, 100.0])
+    found = Comparison("diffusion coefficient", 1.2, 0.01, known, "a^2/tau", "approximate: more")
+    result = Result(
+        "mean-square-displacement", "d", {"time": time}, 6 * 1.2 * time, 0.1 * time,
+        "mean square displacement", {"value": "a^2", "time": "tau"}, expected=6 * time,
+        fit=6 * 1.2 * time, theory="molecular chaos, approximate", comparisons=(found,),
+        drawing="displacement", extra={"components": "xyz"},
+    )  # fmt: skip
+    upper, lower = plot(result).axes
+    [*lines] = [line for line in upper.lines if line.get_label().startswith("theory: diffusion")]
+    assert len(lines) == drawn and "chaos" in lower.get_ylabel()
+    for line in lines:
+        np.testing.assert_allclose(line.get_ydata(), 6 * known * line.get_xdata())
+
+
 def test_a_displacement_without_a_curve_shows_the_diffusion_of_theory():
     time = np.array([0.0, 1, 10, 100])
     result = Result(

@@ -252,7 +252,8 @@ class MoleculeHistogramAccumulator:
             uneven = case.walls or setting.gathered(case)
             return None if uneven else (edges - edges[0]) / (edges[-1] - edges[0])
         if of == "orientation":
-            return theory.cosine_cdf(edges, d) if undisturbed(case) else None
+            quiet = undisturbed(case) or self.as_at_rest()
+            return theory.cosine_cdf(edges, d) if quiet else None
         bond = free_bond(case, kind)
         if bond is None or self.mean is None:
             return None
@@ -262,11 +263,15 @@ class MoleculeHistogramAccumulator:
             ends = theory.mean_square_end_to_end(molecule.length, bond)
             middle = (self.mean[-1] - self.mean[0])[self.axis]
             return np.asarray(ndtr((edges - middle) / (ends / d) ** 0.5))
-        if not undisturbed(case):
+        if not self.as_at_rest():
             return None
         if of == "gyration":
             return theory.gyration_cdf(edges, modes_of(molecule), bond, d)
         return theory.end_to_end_cdf(edges, theory.mean_square_end_to_end(molecule.length, bond), d)
+
+    def as_at_rest(self) -> bool:
+        """Whether ideal molecules have the shape that they have at rest."""
+        return self.mean is not None and not self.mean.any()
 
     def cdf_in_traps(self, edges: Array) -> Array | None:
         """Of the centres of molecules that traps hold, counted in a unit cell."""

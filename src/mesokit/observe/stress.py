@@ -192,9 +192,11 @@ class StressAccumulator(TensorAccumulator):
             notes = (
                 setting.caveat(case),
                 setting.chaos(
-                    case, "10 to 30 % low at mean free path 0.1, in 2D and with rules +a up to 85 %"
+                    case, "10 to 30 % low at mean free path 0.1, with rules +a in 2D half"
                 ),
-                setting.chaos(case, "1 to 2 % high at mean free path 0.1"),
+                setting.chaos(
+                    case, "1 to 2 % high at mean free path 0.1, with rules +a in 2D 10 %"
+                ),
             )
             for part, name, note in zip(
                 (-1, 0, 1), ("viscosity", "kinetic part", "collisional part"), notes, strict=True

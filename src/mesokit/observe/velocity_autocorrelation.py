@@ -13,6 +13,7 @@ from mesokit.case.component import component, option, param, tag
 from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import self_diffusion
 from mesokit.observe.shared.estimate import Estimate
 from mesokit.observe.shared.origins import Origins
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
@@ -159,14 +160,15 @@ class VelocityAutocorrelationAccumulator:
             trapezoid[1:] += widths / 2
             trapezoid[:-1] += widths / 2
             value, error = kept.scalar(trapezoid @ kept.value, trapezoid)
+            diffusion, note = self_diffusion(self.case)
             found.append(
                 Comparison(
                     f"diffusion coefficient up to {time[-1]:g} tau",
                     value,
                     error,
-                    coefficients.diffusion,
+                    diffusion,
                     "a^2/tau",
-                    setting.chaos(self.case, setting.STIRRED),
+                    note,
                 )
             )
         crossing = max(self.case.box.size) ** 2 / (4 * np.pi**2 * coefficients.viscosity)

@@ -12,6 +12,7 @@ from mesokit.report.caption import mathematics
 from mesokit.report.style import COLOURS, MARKERS, labelled, legend_above, sparse_logarithm
 
 SHOWN = 6  # curves in one figure
+ALIKE = 0.01  # how near a line is to a curve that tells the same
 DEEPEST = 1e-4  # of the largest modulus, the least that is drawn
 
 
@@ -41,6 +42,7 @@ def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
     if result.expected is not None:
         label = mathematics(f"theory: {result.theory}")
         ax.plot(t, result.expected[use], "-", color="black", label=label, zorder=3)
+        _better(result, ax, below)
     elif use.any():
         _straight(ax, result, t, result.value[use])
     if result.fit is not None:
@@ -57,8 +59,26 @@ def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
         ratio, error = result.value[use] / theory, result.error[use] / theory
         below.axhline(1, color="black", lw=1)
         below.errorbar(t, ratio, error, fmt="o", mfc="white", ms=3, color=COLOURS[0])
-        below.set_ylabel("measured\n/ theory")
+        rough = result.theory.endswith("approximate")
+        below.set_ylabel("measured\n/ chaos" if rough else "measured\n/ theory")
     (below or ax).set_xlabel(labelled("time lag $t$", result.units["time"]))
+
+
+def _better(result: Result, ax: Any, below: Any) -> None:
+    """Late lags of a diffusion coefficient that theory knows better than the curve."""
+    known = [c.expected for c in result.comparisons if c.what == "diffusion coefficient"]
+    time, curve, axes = result.x["time"], np.asarray(result.expected), result.extra["components"]
+    if result.fit is None or len(time) < 2 or not (known and np.isfinite(known[0])):
+        return
+    slope = 2 * len(axes) * known[0]
+    if abs((curve[-1] - curve[-2]) / (time[-1] - time[-2]) / slope - 1) < ALIKE:
+        return
+    late = np.isfinite(result.fit) & (time >= 0.1 * time[-1])
+    style: Any = {"ls": "-.", "color": COLOURS[2], "lw": 1.5, "zorder": 3}
+    label = mathematics(f"theory: diffusion coefficient, {known[0]:.3g} a^2/tau")
+    ax.plot(time[late], slope * time[late], label=label, **style)
+    if below is not None:
+        below.plot(time[late], slope * time[late] / curve[late], **style)
 
 
 def _straight(ax: Any, result: Result, t: Any, value: Any) -> None:

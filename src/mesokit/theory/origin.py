@@ -51,9 +51,11 @@ def origins(
         "mean_free_path": Origin("definition, timestep sqrt(kT/m)", "always"),
         "viscosity": Origin("sum of both parts", f"{full}, within 1 to 5 %{flat}"),
         "viscosity_kinetic": Origin(
-            source("(1)", published), f"{full}, {short} 10 to 30 % low{once}"
+            source("(1)", published), f"{full}, {short} 10 to 30 % low, in 2D with +a half{once}"
         ),
-        "viscosity_collisional": Origin(source("(3)", published), f"{full}, {short} 1 to 2 % high"),
+        "viscosity_collisional": Origin(
+            source("(3)", published), f"{full}, {short} 1 to 2 % high, in 2D with +a 10 %"
+        ),
         "dynamic_viscosity": Origin("definition, density m times kinematic", "as the viscosity"),
         "diffusion": Origin(source("(2)", published), f"{full}, {short} 10 to 18 % low{once}"),
         "schmidt": Origin("definition, viscosity / self-diffusion", "as both"),

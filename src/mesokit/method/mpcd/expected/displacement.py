@@ -18,8 +18,8 @@ from mesokit.method.mpcd.expected.molecules import (
     kirkwood,
     modes_of,
     rouse_note,
+    self_diffusion,
     springs_of,
-    stirring_diffusion,
     without_solutes,
 )
 from mesokit.method.mpcd.expected.traps import LEVEL, held, trapped
@@ -198,11 +198,7 @@ class Displacement:
         if molecule is None:
             if solutes is not None:
                 return alone, "molecular chaos, exact for a bead alone"
-            quiet = not self.case.walls and setting.mean_free_path(self.case) < 1
-            stirring = stirring_diffusion(self.case, boxed=True) if quiet else None
-            if stirring is None:
-                return alone, note
-            return stirring, f"approximate: {setting.STIRRING}"
+            return self_diffusion(self.case)
         if self.case.walls:
             return nothing, note
         friction = friction_of(self.case, self.kind)

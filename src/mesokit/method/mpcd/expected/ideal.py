@@ -20,6 +20,7 @@ from mesokit.method.mpcd.expected.molecules import (
     rouse_note,
     springs_of,
 )
+from mesokit.method.mpcd.expected.traps import at_rest, pulls_on, trapped
 from mesokit.potential.thermal import mean_square
 
 if TYPE_CHECKING:
@@ -34,28 +35,26 @@ def undisturbed(case: Case) -> bool:
 
 def mean_shape(case: Case, kind: int | str, group: Group) -> NDArray[np.float64] | None:
     """Mean places (beads, d) of an ideal molecule about its centre: all 0 at rest; with pulls that
-    cancel within each molecule where the springs hold them. None where there is no theory."""
+    cancel within each molecule where the springs hold them. None where there is no theory.
+
+    What holds or stretches other kinds does not matter to a molecule that does not feel them, as
+    long as it drives no flow: all are in equilibrium then, each by Boltzmann's distribution.
+    """
     molecule, d = group.molecule, case.box.dimension
     if molecule is None or free_bond(case, kind) is None:
         return None
     if undisturbed(case):
         return np.zeros((group.length, d))
     spring, solutes = springs_of(case, kind), case.solutes
-    if spring is None or solutes is None or not solutes.pulls or of_fluid(case, kind):
+    if spring is None or solutes is None or of_fluid(case, kind) or trapped(case, kind):
         return None
-    alone = dataclasses.replace(solutes, pulls=())
-    forces = np.zeros((solutes.beads, d))
-    for pull in solutes.pulls:
-        forces[pull.beads(solutes)] += pull.force
-    first = solutes.first_bead(solutes.index_of(kind))
-    here = forces[first : first + group.length]  # of one molecule, as of all others of its kind
-    cancels = np.abs(here.sum(axis=0)).max() <= 1e-9 * np.abs(here).sum()
-    elsewhere = (
-        np.abs(forces[:first]).sum() + np.abs(forces[first + group.number * len(here) :]).sum()
-    )
-    if elsewhere or not cancels or not undisturbed(dataclasses.replace(case, solutes=alone)):
+    alone = dataclasses.replace(solutes, pulls=(), traps=())
+    every = range(len(solutes.polymers))
+    balanced = all(at_rest(case, 1 + place) for place in every)
+    if not balanced or not undisturbed(dataclasses.replace(case, solutes=alone)):
         return None
-    return theory.pulled_shape(modes_of(molecule), here, spring.K)
+    pulled = pulls_on(case, solutes.index_of(kind))
+    return theory.pulled_shape(modes_of(molecule), pulled, spring.K)
 
 
 def ideal_sizes(case: Case, kind: int | str, group: Group) -> tuple[float, float]:

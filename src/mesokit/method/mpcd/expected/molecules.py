@@ -220,6 +220,17 @@ def stirring_diffusion(case: Case, boxed: bool = False) -> float | None:
     )
 
 
+def self_diffusion(case: Case) -> tuple[float, str]:
+    """Diffusion coefficient of a particle of a simple fluid in this box, nan without a theory, and
+    what to say of it: with the flow that it stirs up, or between walls molecular chaos."""
+    quiet = not case.walls and setting.mean_free_path(case) < 1
+    stirring = stirring_diffusion(case, boxed=True) if quiet else None
+    if stirring is not None:
+        return stirring, f"approximate: {setting.STIRRING}"
+    alone = free_diffusion(case)
+    return math.nan if alone is None else alone, setting.chaos(case, setting.STIRRED)
+
+
 def rouse_note(case: Case) -> str:
     """How good Rouse's theory is where beads are said to have the friction of free particles."""
     if case.solutes is not None and case.fluid.molecule is not None:

@@ -39,28 +39,45 @@ def trapped(case: Case, kind: int | str) -> bool:
     return any(solutes.index_of(trap.kind) == place for trap in solutes.traps)
 
 
+def pulls_on(case: Case, place: int) -> Array:
+    """Constant forces (beads, d) on a molecule of a kind (from 0), as on all others of it."""
+    solutes = case.solutes
+    assert solutes is not None
+    pulled = np.zeros((solutes.beads, case.box.dimension))
+    for pull in solutes.pulls:
+        pulled[pull.beads(solutes)] += pull.force
+    first = solutes.first_bead(place)
+    return pulled[first : first + solutes.polymers[place].length]
+
+
+def at_rest(case: Case, kind: int) -> bool:
+    """Whether solutes of a kind drive no flow: a trap holds them, or no force is left over."""
+    assert case.solutes is not None
+    pulled = pulls_on(case, case.solutes.index_of(kind))
+    left = np.abs(pulled.sum(axis=0)).max()
+    return trapped(case, kind) or bool(left <= 1e-9 * np.abs(pulled).sum())
+
+
 def held(case: Case, kind: int | str) -> Held | None:
     """Of solutes in traps; None without a theory: no traps, walls, flows, beads that repel."""
     solutes, fluid = case.solutes, case.fluid
     if solutes is None or not trapped(case, kind) or not fluid.thermostat.canonical:
         return None
     place, d = solutes.index_of(kind), case.box.dimension
-    elsewhere = any(solutes.index_of(pull.kind) != place for pull in solutes.pulls)
+    driving = any(not at_rest(case, 1 + other) for other in range(len(solutes.polymers)))
     crowded = solutes.solvent_pair is not None and solutes.beads > 1
-    if case.walls or case.box.sheared or fluid.force.acts or elsewhere or crowded:
+    if case.walls or case.box.sheared or fluid.force.acts or driving or crowded:
         return None
     if not solutes.ideal(place):
         return None
-    stiffness, pulled = np.zeros(solutes.beads), np.zeros((solutes.beads, d))
+    stiffness, pulled = np.zeros(solutes.beads), pulls_on(case, place)
     weighted = np.zeros((solutes.beads, d))
     for trap in solutes.traps:
         stiffness[trap.beads(solutes)] += trap.k
         weighted[trap.beads(solutes)] += trap.k * np.array(trap.centre)
-    for pull in solutes.pulls:
-        pulled[pull.beads(solutes)] += pull.force
     first, length = solutes.first_bead(place), solutes.polymers[place].length
     one = slice(first, first + length)  # as all others of its kind
-    k, total = stiffness[one], weighted[one] + pulled[one]
+    k, total = stiffness[one], weighted[one] + pulled
     molecule = solutes.molecule(place)
     spring = None if molecule is None else spring_of(molecule)
     if molecule is not None and spring is None:
