@@ -55,6 +55,9 @@ def refusal(capsys: Captured, *arguments: str, status: int = 2) -> str:
     return captured.err
 
 
+FAR = '[{ quantity = "mean-square-displacement", components = ["x"], max_lag = 90_000 }]'
+
+
 class TestNew:
     """`mesokit new`."""
 
@@ -119,6 +122,7 @@ class TestCheck:
             ({"fluid.force.acceleration": "[0, 0.1]"}, "presses the fluid"),
             ({"run.warmup": "10"}, "run.warmup = 10"),
             ({"run.steps": "5"}, "takes no sample"),
+            ({"observe": FAR}, "observe[#1].max_lag = 90000: more than run.steps"),
             ({"run.steps": "500"}, "one frame, of a window cut short"),
             ({"observe": "[]"}, "no [[observe]]"),
             ({"trajectory": "{ every = 1 }", "run.steps": "10_000_000"}, "trajectory takes about"),

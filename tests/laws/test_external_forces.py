@@ -25,6 +25,7 @@ from mesokit import (
 )  # fmt: skip
 from mesokit.errors import CaseError
 from mesokit.execute.beads.external import external_of, turned
+from mesokit.method.mpcd.derived import derive
 
 
 def in_random_solvent(*kinds, size=(12, 12), K=1.0, **parts):
@@ -152,6 +153,21 @@ def test_a_pulled_chain_is_stretched_by_the_sum_of_its_springs():
 
 
 @pytest.mark.parametrize(
+    ("pulls", "warned"),
+    [
+        ([Pull([0.0, 1], bead=1)], "along y, and"),
+        ([Pull([0.1, 0.3], bead=1), Pull([-0.1, -0.3], bead=-1)], ""),
+        ([Pull([-0.1, 1]), Pull([0.3, 0], bead=2)], "along y, and"),  # on each of three beads
+    ],
+)
+def test_forces_that_nothing_balances_are_warned_of(pulls, warned):
+    solutes = Solutes((Polymer(2, length=3),), bond=Harmonic(K=1), pulls=pulls)
+    case = Case(run=Run(steps=1), box=Box([8, 8]), fluid=Fluid(), solutes=solutes)
+    found = [text for text in derive(case).warnings if text.startswith("solutes.pulls")]
+    assert len(found) == bool(warned) and all(warned in text for text in found)
+
+
+@pytest.mark.parametrize(
     ("parts", "words"),
     [
         ({"pulls": [Pull([1.0, 0, 0])]}, "expected 2 numbers"),
@@ -159,6 +175,10 @@ def test_a_pulled_chain_is_stretched_by_the_sum_of_its_springs():
         ({"traps": [Trap([1.0, 0], kind=2)]}, "kind = 2"),
         ({"magnetic": [MagneticField([1.0, 0, 0])]}, r"expected \[0, 0, B\]"),
         ({"traps": [Trap([1.0, 0], k=1e6)]}, "unstable"),
+        (
+            {"traps": [Trap([1.0, 9])]},
+            r"centre = \[1, 9\]: outside the box along y",
+        ),
     ],
 )
 def test_what_does_not_fit_is_refused(parts, words):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mesokit import CaseError, DomainSize, Plates, Species
+from mesokit.report import plot
 
 SIZE, SMALL = (48, 32), (12, 8, 16)
 TWO = (Species(mass=1, density=5), Species(mass=1, density=5))
@@ -39,6 +40,7 @@ def test_a_wave_is_as_large_as_it_is_long(make_case, size, axis, waves):
     found = measured(make_case, places, size)
     assert found.value == pytest.approx(long, rel=0.02)
     assert found["size of domains"].measured == pytest.approx(long, rel=0.02)
+    assert plot(found).axes[0].get_legend_handles_labels()[1] == ["measured"]  # no error bars
 
 
 def test_waves_are_weighed_by_their_power(make_case):

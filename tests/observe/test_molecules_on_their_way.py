@@ -190,6 +190,11 @@ def test_events_of_pooled_runs_are_those_of_all():
     [
         (ResidenceTime(region=[[0, 5]]), "expected \\[from, to\\] along each of the 2 axes"),
         (ResidenceTime(region=[[5, 0], [0, 20]]), "expected from < to"),
+        (ResidenceTime(region=[[30, 35], [0, 20]]), r"\[30, 35\] lies outside the box"),
+        (
+            TranslocationTime(axis="x", position=50),
+            "position = 50: outside the box",
+        ),
         (ResidenceTime(), "there is no solid to be near"),
         (ResidenceTime(region=[[0, 5], [0, 20]], solid="post"), "no effect with a region"),
         (MoleculeHistogram(of="gyration", axis="x"), "axis: no effect"),

@@ -253,6 +253,7 @@ def test_resistances_of_rings_and_stars():
         (RadialDistribution(reach=5), {}, "reach = 5: expected at most 4, half of the shortest"),
         (RadialDistribution(of="beads"), {}, "needs molecules"),
         (RadialDistribution(kinds=(1, 1)), {}, "expected two different ones"),
+        (RadialDistribution(kinds=(1, 2)), {}, r"kinds = \[1, 2\]: only with"),
     ],
 )
 def test_refused(observable, parts, said):

@@ -73,6 +73,7 @@ class FromContents:
         return CaseError(f"file = {show(self.file, 500)}: {reason}")
 
 
+MANY = 12  # names, more than which are not listed where one of them is near
 TAGS = ("rule", "shape", "quantity", "substance")
 
 
@@ -316,7 +317,10 @@ def _is_unknown(entry: Any) -> bool:
 
 
 def _choice(given: Any, known: Sequence[str]) -> str:
-    return f"expected {one_of(known)}{nearest(str(given), known)}"
+    near = nearest(str(given), known)
+    if near and len(known) > MANY:
+        return near.removeprefix("; ")
+    return f"expected {one_of(known)}{near}"
 
 
 def _names_key_of(here: Any, words: str) -> bool:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mesokit.case.amounts import size_text
 
@@ -26,6 +27,12 @@ def run_warnings(case: Case, memory: int, trajectory: int) -> Iterator[str]:
                 f"{observable.label} takes no sample"
             )
         else:
+            longest, usual = getattr(observable, "max_lag", None), _usual(observable, "max_lag")
+            if longest is not None and longest != usual and longest > run.steps:
+                yield (
+                    f"observe[#{i + 1}].max_lag = {longest}: more than run.steps = {run.steps}, "
+                    "beyond which there are no lags"
+                )
             yield from (f"observe[#{i + 1}].{text}" for text in observable.warnings(case))
     if case.log is not None and case.log.every > run.warmup + run.steps:
         yield f"log.every = {case.log.every}: more than the steps of the run; one line, of step 0"
@@ -44,6 +51,12 @@ def run_warnings(case: Case, memory: int, trajectory: int) -> Iterator[str]:
         yield (
             f"the run needs {size_text(memory)} of memory, this machine has {size_text(available)}"
         )
+
+
+def _usual(part: Any, name: str) -> Any:
+    """The default of a parameter, None without one."""
+    defaults = {field.name: field.default for field in dataclasses.fields(part)}
+    return getattr(defaults.get(name), "default", defaults.get(name))
 
 
 def _machine_memory() -> int | None:

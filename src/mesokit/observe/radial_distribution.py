@@ -74,7 +74,11 @@ class RadialDistribution(Observable):
         of = default_of(case, self.of)
         if not self.kinds:
             return groups_of(case, of), []
-        first, *others = (groups_of(case, of, kind) for kind in self.kinds)
+        try:
+            first, *others = (groups_of(case, of, kind) for kind in self.kinds)
+        except CaseError as error:  # which speaks of one kind
+            known = str(error).partition(": ")[2]
+            raise CaseError(f"kinds = {show(self.kinds)}: {known}") from None
         return first, others[0] if others else []
 
     def accumulator(self, case: Case) -> RadialDistributionAccumulator:

@@ -83,6 +83,11 @@ class ResidenceTime(Observable):
                     f"region = {show(self.region)}: expected from < to, no more than the box "
                     f"({length:g}) apart; not [{low:g}, {high:g}]"
                 )
+            if high <= 0 or low >= length:
+                raise CaseError(
+                    f"region = {show(self.region)}: [{low:g}, {high:g}] lies outside the box; "
+                    f"expected a part between 0 and {length:g}"
+                )
 
     def solids(self, case: Case) -> Solids:
         """Those to be near. Raises CaseError where there is none."""

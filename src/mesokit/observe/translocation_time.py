@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
-from mesokit.case.box import Axis
+from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
 from mesokit.engine import RunningFluid
+from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.compression import unit_cell
 from mesokit.method.mpcd.expected.ideal import flow_axis, flow_sign
 from mesokit.method.mpcd.expected.molecules import KIND, molecule_of
@@ -48,7 +49,13 @@ class TranslocationTime(Observable):
     def check(self, case: Case) -> None:
         """Raise CaseError without molecules, and for an axis along which images slide."""
         molecule_of(case, self.quantity, self.kind)
-        require_still(case, self.axis_of(case), "axis")
+        axis = self.axis_of(case)
+        require_still(case, axis, "axis")
+        if not 0 <= self.position <= case.box.size[axis]:
+            raise CaseError(
+                f"position = {self.position:g}: outside the box; expected 0 to "
+                f"{case.box.size[axis]:g}, its length along {AXES[axis]}"
+            )
 
     def axis_of(self, case: Case) -> int:
         """Number of the axis."""

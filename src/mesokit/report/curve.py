@@ -12,6 +12,7 @@ from mesokit.report.caption import mathematics
 from mesokit.report.style import COLOURS, LINES, MARKERS, labelled, legend_above
 
 SHOWN = 6  # curves
+BARS = r"measured, $\pm$ one standard error"
 
 
 def draw(result: Result, figure: Any, ax: Any) -> None:
@@ -39,7 +40,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
             mfc="white",
             lw=0.8,
             color=COLOURS[i],
-            label=label or r"measured, $\pm$ one standard error",
+            label=label or (BARS if np.isfinite(result.error[at]).any() else "measured"),
             zorder=2,
         )
         if result.expected is not None and np.isfinite(result.expected[at]).any():

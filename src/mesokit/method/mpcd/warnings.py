@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from mesokit.case.box import AXES
 from mesokit.case.component import name_of
 from mesokit.case.describe.digits import two_digits
@@ -213,6 +215,7 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
                     f"fluid.force.acceleration along {axis} presses the fluid on a plate: its "
                     f"density falls by a factor {math.exp(min(drop, 99)):.3g} across the slit"
                 )
+    yield from _net_pull(case)
     if numbers.flow == "plug" and numbers.flow_speed is None:
         yield "fluid.force.acceleration: slip plates hold nothing: the fluid speeds up for ever"
     if numbers.heating is not None and numbers.heating > 0.01:
@@ -244,6 +247,22 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
                 "steady state; observables will average over the start"
             )
     yield from _start_of_shear(case, numbers)
+
+
+def _net_pull(case: Case) -> Iterator[str]:
+    """Forces on solutes that nothing balances."""
+    solutes = case.solutes
+    if solutes is None or case.walls or solutes.traps or solutes.solvent == "random":
+        return
+    forces = [len(pull.beads(solutes)) * np.array(pull.force) for pull in solutes.pulls]
+    total = np.sum(forces, axis=0) if forces else np.zeros(case.box.dimension)
+    size = max((float(np.abs(force).max()) for force in forces), default=0.0)
+    along = [axis for axis, f in zip(case.box.axes, total, strict=True) if abs(f) > 1e-9 * size]
+    if along:
+        yield (
+            f"solutes.pulls: together they pull along {' and '.join(along)}, and nothing holds the "
+            "fluid: without walls or a second force the whole box speeds up for ever"
+        )
 
 
 def _start_of_shear(case: Case, numbers: Derived) -> Iterator[str]:

@@ -28,6 +28,13 @@ def external(case: Case, given: Solutes) -> Iterator[str]:
                 value = getattr(part, vector, None)
                 if value is not None and len(value) != d:
                     yield f"{key}.{vector} = {show(value)}: expected {d} numbers, one for each axis"
+            centre = getattr(part, "centre", ())
+            for axis, place, length in zip(case.box.axes, centre, case.box.size, strict=False):
+                if axis not in case.box.open and not 0 <= place <= length:
+                    yield (
+                        f"{key}.centre = {show(centre)}: outside the box along {axis}; expected 0 "
+                        f"to {length:g}"
+                    )
             if name != "pulls" and case.box.sheared:
                 yield f"{key}: not in a sheared box, whose images move"
             if given.coupling == "potential":

@@ -21,7 +21,9 @@ class Polymer:
     topology: links.Topology = param("chain", doc="how the beads are linked")
     arms: int | None = param(None, doc="arms of a star, all of one length", ge=1)
     name: str | None = param(
-        None, doc="what observables and files call this kind (polymer-1, ... unless said)"
+        None,
+        doc="what observables and files call this kind, two letters or more (polymer-1, ... unless "
+        "said)",
     )
     mass: float | None = param(
         None, doc="mass of its beads (that of all unless said)", unit="m", ge=1e-3, le=1e6
