@@ -175,8 +175,8 @@ class TestWhenSolutesDiffuse:
 
     def test_in_a_random_solvent_only_inertia_counts(self):
         alone = theory.bead_diffusion("srd", 3, 10, 0.1, 130.0, 10.0)
-        for kind in (1, 2):
-            assert self.first("centres", kind, "random") == pytest.approx(50 * alone)
+        for kind in (1, 2):  # that of beads is lower by 2 %, as they meet others
+            assert self.first("centres", kind, "random") == pytest.approx(50 * alone, rel=0.03)
         assert self.first("beads", 2, "random") > 100
 
 
@@ -192,8 +192,12 @@ class TestHowSolutesDiffuse:
         """Viscosity of the fluid alone, however many beads are in it."""
         eta = theory.transport("srd", 3, 10, 0.1, 130.0).dynamic_viscosity
         friction = 1 / theory.bead_diffusion("srd", 3, 10, 0.1, 130.0, 10.0)
-        for of, kind, length in (("beads", 1, 1), ("centres", 2, 20)):
-            free = theory.kirkwood_in_cells(length, friction, eta, 1.0)
+        solutes = TestWhenSolutesDiffuse.CHAINS
+        (chains, length), beads = ((solutes.polymers[1].number, 20), solutes.polymers[0].number)
+        others = [((beads - 1) / 16**3, 10.0), (chains * length / 16**3, 10.0)]
+        among = 1 / theory.bead_diffusion("srd", 3, 10, 0.1, 130.0, 10.0, others=others)
+        for of, kind, length, zeta in (("beads", 1, 1, among), ("centres", 2, 20, friction)):
+            free = theory.kirkwood_in_cells(length, zeta, eta, 1.0)
             found, note = self.coefficient(of, kind)
             assert found == pytest.approx(theory.diffusion_in_box(free, 16, eta))
             assert note.startswith("Kirkwood")

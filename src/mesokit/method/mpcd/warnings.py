@@ -16,7 +16,7 @@ from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.compression import compression, unit_cell
-from mesokit.method.mpcd.expected.molecules import spring_of, without_bonds
+from mesokit.method.mpcd.expected.molecules import spring_of, without_bonds, without_solutes
 from mesokit.method.mpcd.molecule import COARSE
 from mesokit.method.mpcd.numbers import PIPE
 
@@ -105,11 +105,13 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
 def _without_theory(case: Case) -> str:
     """Which plots lack theory where transport coefficients do; "" if those of a case have it.
 
-    Molecules of springs have theories of their own, of all but flows between walls and of waves
-    and velocities of single beads.
+    Solutes and molecules of springs have theories of their own, of all but flows between walls and
+    of waves and velocities of single beads.
     """
     molecule, sheared = case.fluid.molecule, bool(case.box.sheared)
-    if molecule is None or spring_of(molecule) is None or without_bonds(case) is None:
+    springs = molecule is not None and spring_of(molecule) is not None
+    known = without_solutes(case) if molecule is None else springs and without_bonds(case)
+    if not known or (molecule is None and case.solutes is None):
         return "plots of what needs them lack theory"
     names = [one.label for one in case.observe if one.asks_transport and not sheared]
     if not names:

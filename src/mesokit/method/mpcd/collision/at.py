@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, ClassVar, Literal, NamedTuple
 
 from mesokit import theory
@@ -50,10 +51,12 @@ class AT(CollisionRule):
         """The name by which `mesokit.theory` knows it."""
         return {"rule": "at"}
 
-    def bead_diffusion(self, gas: Gas, mass: float) -> float:
-        """Diffusion coefficient of a bead of this mass alone in the gas."""
+    def bead_diffusion(
+        self, gas: Gas, mass: float, others: Sequence[tuple[float, float]] = ()
+    ) -> float:
+        """Diffusion coefficient of a bead of this mass in the gas, among others."""
         return theory.bead_diffusion(
-            "at", gas.dimension, gas.density, gas.timestep, None, mass, gas.kT, gas.mass
+            "at", gas.dimension, gas.density, gas.timestep, None, mass, gas.kT, gas.mass, others
         )
 
 

@@ -9,7 +9,7 @@ The first argument is the rule's NamedTuple of parameters; its class picks the i
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar, NamedTuple
 
 from mesokit import theory
@@ -105,8 +105,11 @@ class CollisionRule(ABC):
             mean_free_path,
         )
 
-    def bead_diffusion(self, gas: Gas, mass: float) -> float | None:
-        """Diffusion coefficient of a bead of this mass alone in the gas; None without a theory."""
+    def bead_diffusion(
+        self, gas: Gas, mass: float, others: Sequence[tuple[float, float]] = ()
+    ) -> float | None:
+        """Diffusion coefficient of a bead of this mass in the gas, among `others`: how many of each
+        kind in a cell, and their mass. None without a theory."""
         return None
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
@@ -86,12 +86,14 @@ class SRD(CollisionRule):
         del given["thermostat"]
         return theory.heat_at_walls(**self.in_theory(), **given)
 
-    def bead_diffusion(self, gas: Gas, mass: float) -> float:
-        """Diffusion coefficient of a bead of this mass alone in the gas."""
+    def bead_diffusion(
+        self, gas: Gas, mass: float, others: Sequence[tuple[float, float]] = ()
+    ) -> float:
+        """Diffusion coefficient of a bead of this mass in the gas, among others."""
         # the cosine of an angle of 90 degrees is the mean of that of uniform ones
         angle = self.angle if self.angle_distribution == "fixed" else 90.0
         return theory.bead_diffusion(
-            "srd", gas.dimension, gas.density, gas.timestep, angle, mass, gas.kT, gas.mass
+            "srd", gas.dimension, gas.density, gas.timestep, angle, mass, gas.kT, gas.mass, others
         )
 
 

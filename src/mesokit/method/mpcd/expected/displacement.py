@@ -11,6 +11,7 @@ from mesokit import theory
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import (
+    crowd_note,
     free_diffusion,
     friction_of,
     group_of,
@@ -58,7 +59,8 @@ class Displacement:
             return "level in traps, by Boltzmann"
         if self.ballistic():
             return "free flight"
-        label = setting.chaos_label(self.case)
+        forgets = self.dissolved and self.alone() is not None  # a random solvent
+        label = "molecular chaos" if forgets else setting.chaos_label(self.case)
         return label if self.molecule is None else label.replace("molecular chaos", "Rouse")
 
     @property
@@ -72,7 +74,7 @@ class Displacement:
         return solutes.masses[solutes.index_of(self.kind)]
 
     def alone(self) -> float | None:
-        """Diffusion coefficient of one bead alone; None where what it drags along drags it."""
+        """Diffusion coefficient of one bead; None where what it drags along drags it."""
         if self.case.solutes is None:
             return free_diffusion(self.case)
         if not self.dissolved:
@@ -192,12 +194,15 @@ class Displacement:
                 return nothing, "no theory of such beads in a fluid"
             if solutes.solvent_pair is not None:
                 return dragged, "approximate: Enskog and Stokes with slip, less what images take"
-            return dragged, "Kirkwood, smeared over cells, less what images of the box take"
+            note = "Kirkwood, smeared over cells, less what images of the box take"
+            if molecule is None and crowd_note(self.case, self.kind).startswith("approximate"):
+                return dragged, f"approximate: {note}; so many others also make the fluid thicker"
+            return dragged, note
         if alone is None:
             return nothing, note
         if molecule is None:
             if solutes is not None:
-                return alone, "molecular chaos, exact for a bead alone"
+                return alone, crowd_note(self.case, self.kind)
             return self_diffusion(self.case)
         if self.case.walls:
             return nothing, note

@@ -13,6 +13,7 @@ from mesokit import theory
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import (
     Group,
+    crowd_note,
     free_bond,
     free_diffusion,
     modes_of,
@@ -94,9 +95,10 @@ def drift_of(case: Case, group: Group, kind: int | str = 1) -> Drift | None:
     """How centres of solutes move in a random solvent that is the same everywhere; None elsewhere.
 
     A force drives a bead to force/friction, friction = kT/D (Einstein): exact for a bead whose
-    velocity is forgotten by a factor at each collision, whatever the timestep.
+    velocity is forgotten by a factor at each collision, whatever the timestep. Beads that share a
+    cell are driven alike, and hand over to one another what they lose: each is as if alone.
     """
-    solutes, alone = case.solutes, free_diffusion(case, kind=kind)
+    solutes, alone = case.solutes, free_diffusion(case, kind=kind, alone=True)
     if solutes is None or solutes.solvent != "random" or alone is None or case.walls:
         return None
     place = solutes.index_of(kind)
@@ -104,8 +106,10 @@ def drift_of(case: Case, group: Group, kind: int | str = 1) -> Drift | None:
         return None
     mobility = solutes.masses[place] * alone / case.fluid.kT
     single = group.molecule is None
-    note = "molecular chaos, exact for a bead alone" if single else rouse_note(case)
-    return Drift(setting.acceleration(case) * mobility, alone / group.length, note)
+    note = crowd_note(case, kind) if single else rouse_note(case)
+    spread = free_diffusion(case, kind=kind) if single else alone / group.length
+    assert spread is not None
+    return Drift(setting.acceleration(case) * mobility, spread, note)
 
 
 def flow_axis(case: Case) -> int:

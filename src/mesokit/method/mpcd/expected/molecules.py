@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.case.component import show
 from mesokit.errors import CaseError
+from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.molecule import FLUID
 from mesokit.statistics import spread_ids
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 
 Array = NDArray[np.floating[Any]]
+CROWDED = 0.03  # of D: what pairs of beads take, from which on those of three matter
 KIND = (
     "which molecules: name or number, from 1, of solutes.polymers; 'fluid': those of the fluid, "
     "which are also 1 where there are no solutes"
@@ -255,21 +257,49 @@ def friction_of(case: Case, kind: int | str = 1) -> float | None:
     return None if diffusion is None else case.fluid.kT / diffusion
 
 
-def free_diffusion(case: Case, of: str = "beads", kind: int | str | None = None) -> float | None:
-    """Diffusion coefficient of a particle or bead alone by molecular chaos; None if unknown.
+def free_diffusion(
+    case: Case, of: str = "beads", kind: int | str | None = None, alone: bool = False
+) -> float | None:
+    """Diffusion coefficient of a particle or bead by molecular chaos; None if unknown.
 
-    In a fluid of molecules it is that in the same fluid without bonds.
+    In a fluid of molecules it is that in the same fluid without bonds. Beads that are bound to none
+    meet the others unless they are to be `alone`; those of molecules are as if alone.
     """
     fluid, solutes = case.fluid, case.solutes
     if solutes is None or of == "particles" or of_fluid(case, kind):
-        alone = without_solutes(case)
-        return None if alone is None else alone.diffusion
+        fluid_alone = without_solutes(case)
+        return None if fluid_alone is None else fluid_alone.diffusion
     if fluid.species or not fluid.thermostat.canonical:
         return None
     if solutes.solvent_pair is not None:
         return fluid.kT / hits_of(case, kind)
-    mass = solutes.masses[solutes.index_of(1 if kind is None else kind)]
-    return fluid.collision.bead_diffusion(setting.gas(case), mass)
+    place = solutes.index_of(1 if kind is None else kind)
+    lonely = alone or solutes.molecule(place) is not None
+    others = [] if lonely else others_of(case, place)
+    return fluid.collision.bead_diffusion(setting.gas(case), solutes.masses[place], others)
+
+
+def others_of(case: Case, place: int) -> list[tuple[float, float]]:
+    """How many other beads there are in a cell, kind by kind, for a bead of one, and their mass."""
+    solutes = case.solutes
+    assert solutes is not None
+    numbers = [polymer.number * polymer.length for polymer in solutes.polymers]
+    numbers[place] -= 1
+    volume = free_volume(case)
+    found = zip(numbers, solutes.masses, strict=True)
+    return [(number / volume, mass) for number, mass in found if number]
+
+
+def crowd_note(case: Case, kind: int | str) -> str:
+    """What to say of the diffusion coefficient of beads alone that share cells with others."""
+    assert case.solutes is not None
+    place = case.solutes.index_of(kind)
+    if not case.solutes.ideal(place):
+        return "approximate: molecular chaos; as if beads felt no others"
+    alone, among = free_diffusion(case, kind=kind, alone=True), free_diffusion(case, kind=kind)
+    if alone is not None and among is not None and among < (1.0 - CROWDED) * alone:
+        return "approximate: molecular chaos; beads that share cells two at a time"
+    return "molecular chaos; beads that share cells two at a time"
 
 
 def hits_of(case: Case, kind: int | str | None = None) -> float:
