@@ -28,7 +28,7 @@ COMPRESSED = 0.2  # acceleration x length/(kT/m) of a fluid driven against solid
 SLIPPERY = 0.03  # slip length in cells
 RADIANS = 0.01  # an angle of no less may have been meant in radians
 TURBULENT = 2000  # Reynolds number of a pipe, of the mean velocity and the diameter
-SHOCK = 2.0  # speeds of sound at which images may move; measured: 1.6 follow theory, 8 do not
+SHOCK = 2.0  # speeds of sound at which images may move; those of 8 do not follow theory
 STRONG = 0.3  # thermal velocities that a force may add in a timestep
 
 
