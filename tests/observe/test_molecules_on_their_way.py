@@ -132,7 +132,8 @@ def test_walkers_that_drift_pass_planes_as_schroedinger_says(steps):
     found = walk(observable, case, steps, number)
     for what in ("mean transit time", "velocity", "length over velocity"):
         assert found[what].error < 0.03 * abs(found[what].measured)
-    assert abs(found["velocity"].deviation) < 3.5, found
+    velocity = found["velocity"]  # its theory is approximate among so many, but that of the walkers
+    assert abs(velocity.measured - velocity.expected) < 3.5 * velocity.error, found
     time = found["mean transit time"]
     assert abs(time.deviation) < 3.5, time
     # 7000 transits that scatter by 0.58 of their mean: 0.7 %; those that have ended are 4 % short

@@ -59,6 +59,20 @@ def agrees(result):
     assert all(abs(c.deviation) < 4 for c in result.comparisons if np.isfinite(c.deviation))
 
 
+def test_neighbours_say_that_a_run_is_short_and_have_no_error_where_nothing_changes():
+    """A run of less than 100 times 9/(2 d (D + D)), in which two beads diffuse over 3 cells."""
+    case, rng = solution(RadialDistribution(reach=3), (9, 8), Polymer(2)), np.random.default_rng(3)
+    D = theory.bead_diffusion("srd", 2, 10, 0.1, 130, 1.0, others=[(1 / 72, 1.0)])
+    for samples in (40, int(110 * 9 / (8 * D))):  # a sample is one time unit
+        found = sampled(case.observe[0], case, rng.random((samples, 2, 1, 2)) * 5).result()
+        note = found["neighbours"].note
+        assert ("lower bound" in note) == (samples == 40), note
+    fixed = sampled(case.observe[0], case, np.tile([[[1.0, 1.0]], [[2.0, 2.0]]], (31, 1, 1, 1)))
+    found = fixed.result()["neighbours"]
+    assert found.measured == pytest.approx(1.0) and np.isnan(found.error)
+    assert "(" not in str(found).split("(r <")[0]
+
+
 @pytest.mark.parametrize("size", SIZES)
 def test_pairs_are_counted_once_and_through_the_bounds(size):
     rng, box, edges = np.random.default_rng(1), np.array(size, float), np.linspace(0, 2.5, 6)

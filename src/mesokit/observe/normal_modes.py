@@ -19,6 +19,7 @@ from mesokit.method.mpcd.expected.molecules import (
     modes_of,
     molecule_of,
     springs_of,
+    substep_of,
 )
 from mesokit.observe.shared.decay import fit_curve, normalised
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
@@ -154,17 +155,22 @@ class NormalModesAccumulator:
             square = correlator.correlation()
             if len(square.value):
                 d = self.case.box.dimension
-                stiff = spring.k * self.eigenvalues[p] if spring else np.nan
                 found.append(
                     Comparison(
                         f"mean square of mode {p + 1}",
                         d * float(square.value[0]),
                         d * float(square.error[0]),
-                        d * self.case.fluid.kT / stiff,
+                        d * self.mean_square(spring.k * self.eigenvalues[p]) if spring else np.nan,
                         "a^2",
+                        "equipartition, as sub-steps swing",
                     )
                 )
         return found
+
+    def mean_square(self, stiffness: float) -> float:
+        """Of a mode along one axis: equipartition, and what sub-steps of velocity Verlet add."""
+        swing = theory.verlet_swing(stiffness, *substep_of(self.case, self.observable.kind))
+        return self.case.fluid.kT / stiffness * swing
 
     def relaxation_time(self, correlator: MultipleTau) -> tuple[float, float] | None:
         """From an exponential through the correlation, as far as it is above noise; its error."""

@@ -11,7 +11,7 @@ from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Many
 from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
-from mesokit.method.mpcd.expected.molecules import Group
+from mesokit.method.mpcd.expected.molecules import Group, free_diffusion, kind_of
 from mesokit.observe.shared.estimate import of_mean
 from mesokit.observe.shared.pair_counts import count_pairs, count_within, shells
 from mesokit.observe.shared.protocol import BlockAccumulator, Observable
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 Ids = NDArray[np.int64]
 FARTHEST = 5.0  # unless a reach is given
+ENOUGH = 100.0  # times of diffusion over the reach, for error bars
+ROUNDING = 1e-12
 
 
 @component
@@ -149,13 +151,13 @@ class RadialDistributionAccumulator(BlockAccumulator):
 
     def result(self) -> Result:
         """g(r), beside 1 where nobody knows of others."""
-        expected = self.expected()
+        expected, found = self.expected(), of_mean(self.blocks)
         return Result(
             quantity="radial-distribution",
             name=self.name,
             x={"r": (self.edges[1:] + self.edges[:-1]) / 2},
             value=self.blocks.mean(),
-            error=self.blocks.error(),
+            error=_unless_fixed(found.value, found.error),
             label="g(r)",
             units={"value": "", "r": "a"},
             expected=None if expected is None else np.full(len(self.shells), expected),
@@ -181,15 +183,49 @@ class RadialDistributionAccumulator(BlockAccumulator):
         density = about * (1 if self.second else 2) / float(self.box.prod())
         weights = density * self.shells
         value, error = found.scalar(weights @ found.value, weights)
+        error = float(_unless_fixed(value, error))
         known = np.nan if expected is None else expected * float(weights.sum())
-        r = self.edges[-1]
-        listed = [Comparison("neighbours within the reach", value, error, known, "", f"r < {r:g}")]
+        short = self.short_run()
+        note = "; ".join(filter(None, (f"r < {self.edges[-1]:g}", short)))
+        listed = [Comparison("neighbours within the reach", value, error, known, "", note)]
         if expected is None:
             top = int(np.argmax(found.value))
             note = f"at r = {(self.edges[top] + self.edges[top + 1]) / 2:.3g}"
-            height, error = float(found.value[top]), float(found.error[top])
+            note = "; ".join(filter(None, (note, short)))
+            height = float(found.value[top])
+            error = float(_unless_fixed(height, found.error[top]))
             listed.append(Comparison("largest g(r)", height, error, note=note))
         return listed
+
+    def times(self) -> float:
+        """How often in a run two of them diffuse over the reach, after which their distance is
+        forgotten: R^2/(2 d D), D the sum of their coefficients; nan where these are not known."""
+        case, of = self.case, default_of(self.case, self.observable.of)
+        centres = [self.diffusion(group, of) for group in self.first + self.second]
+        if any(found is None for found in centres):
+            return np.nan
+        slowest = min(found for found in centres[: len(self.first)] if found)
+        other = min([found for found in centres[len(self.first) :] if found], default=slowest)
+        run = self.blocks.count / self.blocks.series * self.observable.every * case.fluid.timestep
+        reach = float(self.edges[-1])
+        return run * 2 * case.box.dimension * (slowest + other) / reach**2
+
+    def diffusion(self, group: Group, of: str) -> float | None:
+        """Coefficient of the molecules of a group, by molecular chaos: Rouse's."""
+        alone = free_diffusion(self.case, of, kind_of(self.case, group))
+        return None if alone is None else alone / group.length
+
+    def short_run(self) -> str:
+        """Where blocking cannot see how slowly neighbours change: a note."""
+        times = self.times()
+        if not 0 < times < ENOUGH:
+            return ""
+        return f"error bar is a lower bound: the run has {times:.2g} diffusion times of the reach"
+
+
+def _unless_fixed(value: Array | float, error: Array | float) -> Array:
+    """The error, nan where it is that of rounding: a number that never changed."""
+    return np.where(np.asarray(error) > ROUNDING * np.abs(value), error, np.nan)
 
 
 def _sample(case: Case, group: Group, most: int) -> Ids:

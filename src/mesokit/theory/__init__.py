@@ -122,6 +122,7 @@ from mesokit.theory.velocity_autocorrelation import (
     vacf_molecular_chaos,
     vacf_tail,
 )
+from mesokit.theory.verlet_swing import verlet_swing
 from mesokit.theory.virtual_gas_slip import virtual_gas_slip
 from mesokit.theory.water import (
     water_density,
@@ -252,6 +253,7 @@ __all__ = [
     "vacf_modes",
     "vacf_molecular_chaos",
     "vacf_tail",
+    "verlet_swing",
     "virtual_gas_slip",
     "viscosity_renormalised",
     "water_density",

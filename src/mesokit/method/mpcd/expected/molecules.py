@@ -233,6 +233,17 @@ def self_diffusion(case: Case) -> tuple[float, str]:
     return math.nan if alone is None else alone, setting.chaos(case, setting.STIRRED)
 
 
+def substep_of(case: Case, kind: int | str = 1) -> tuple[float, float]:
+    """Time of a sub-step in which the beads of molecules move, and their mass."""
+    fluid, solutes, d = case.fluid, case.solutes, case.box.dimension
+    if solutes is None or of_fluid(case, kind):
+        molecule = molecule_of(case, kind=kind)
+        number = molecule.number_of_substeps(d, fluid.timestep, fluid.kT, fluid.mass)
+        return fluid.timestep / number, fluid.mass
+    mass = solutes.masses[solutes.index_of(kind)]
+    return fluid.timestep / solutes.number_of_substeps(d, fluid), mass
+
+
 def rouse_note(case: Case) -> str:
     """How good Rouse's theory is where beads are said to have the friction of free particles."""
     if case.solutes is not None and case.fluid.molecule is not None:
