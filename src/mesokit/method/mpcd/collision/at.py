@@ -56,7 +56,7 @@ class AT(CollisionRule):
     ) -> float:
         """Diffusion coefficient of a bead of this mass in the gas, among others."""
         return theory.bead_diffusion(
-            "at", gas.dimension, gas.density, gas.timestep, None, mass, gas.kT, gas.mass, others
+            "at", gas.dimension, gas.density, gas.timestep, None, mass, gas.kT, gas.mass, *others
         )
 
 

@@ -93,7 +93,7 @@ class SRD(CollisionRule):
         # the cosine of an angle of 90 degrees is the mean of that of uniform ones
         angle = self.angle if self.angle_distribution == "fixed" else 90.0
         return theory.bead_diffusion(
-            "srd", gas.dimension, gas.density, gas.timestep, angle, mass, gas.kT, gas.mass, others
+            "srd", gas.dimension, gas.density, gas.timestep, angle, mass, gas.kT, gas.mass, *others
         )
 
 
