@@ -213,7 +213,7 @@ class TestRandomSolvent:
             squares.append(((fluid.solutes.places - before) ** 2).sum(axis=1).mean())
         found = mean(squares)
         angle = getattr(rule, "angle", None)
-        D = theory.bead_diffusion(rule.rule, 3, 6, 0.2, angle, 4.0, others=[(2e-3, 4.0)])
+        D = theory.bead_diffusion(rule.rule, 3, 6, 0.2, angle, 4.0, 1.0, 1.0, (2e-3, 4.0))
         # exact for steps of velocities that decay by a share at each collision
         kept = 1.0 - 1.0 / (D * 4.0 / 0.2 + 0.5)
         n = 100

@@ -195,7 +195,7 @@ class TestHowSolutesDiffuse:
         solutes = TestWhenSolutesDiffuse.CHAINS
         (chains, length), beads = ((solutes.polymers[1].number, 20), solutes.polymers[0].number)
         others = [((beads - 1) / 16**3, 10.0), (chains * length / 16**3, 10.0)]
-        among = 1 / theory.bead_diffusion("srd", 3, 10, 0.1, 130.0, 10.0, others=others)
+        among = 1 / theory.bead_diffusion("srd", 3, 10, 0.1, 130.0, 10.0, 1.0, 1.0, *others)
         for of, kind, length, zeta in (("beads", 1, 1, among), ("centres", 2, 20, friction)):
             free = theory.kirkwood_in_cells(length, zeta, eta, 1.0)
             found, note = self.coefficient(of, kind)

@@ -62,7 +62,7 @@ def agrees(result):
 def test_neighbours_say_that_a_run_is_short_and_have_no_error_where_nothing_changes():
     """A run of less than 100 times 9/(2 d (D + D)), in which two beads diffuse over 3 cells."""
     case, rng = solution(RadialDistribution(reach=3), (9, 8), Polymer(2)), np.random.default_rng(3)
-    D = theory.bead_diffusion("srd", 2, 10, 0.1, 130, 1.0, others=[(1 / 72, 1.0)])
+    D = theory.bead_diffusion("srd", 2, 10, 0.1, 130, 1.0, 1.0, 1.0, (1 / 72, 1.0))
     for samples in (40, int(110 * 9 / (8 * D))):  # a sample is one time unit
         found = sampled(case.observe[0], case, rng.random((samples, 2, 1, 2)) * 5).result()
         note = found["neighbours"].note

@@ -34,7 +34,7 @@ def test_of_another_bead_it_finds_what_that_hands_back(dimension, masses):
     pair, error = by_collisions(dimension, density, turned, masses, places)
     given = ("srd", dimension, density, dt, 130.0, masses[0])
     alone = theory.bead_diffusion(*given)
-    among = theory.bead_diffusion(*given, others=[(crowd, masses[1])])
+    among = theory.bead_diffusion(*given, 1.0, 1.0, (crowd, masses[1]))
     unit = dt / masses[0]
     expected = 2**dimension * (unit * (pair - 0.5) - alone)  # of D, for one other bead per cell
     slope = (among - alone) / crowd
@@ -45,7 +45,7 @@ def test_of_another_bead_it_finds_what_that_hands_back(dimension, masses):
 def test_others_are_no_others_where_they_are_few_or_light():
     given = ("at", 3, 10.0, 0.1, None, 10.0)
     alone = theory.bead_diffusion(*given)
-    assert theory.bead_diffusion(*given, others=[(1e-9, 10.0)]) == pytest.approx(alone)
-    assert theory.bead_diffusion(*given, others=[(0.1, 1e-4)]) == pytest.approx(alone, rel=1e-4)
+    assert theory.bead_diffusion(*given, 1.0, 1.0, (1e-9, 10.0)) == pytest.approx(alone)
+    assert theory.bead_diffusion(*given, 1.0, 1.0, (0.1, 1e-4)) == pytest.approx(alone, rel=1e-4)
     with pytest.raises(ValueError, match="crowd"):
-        theory.bead_diffusion(*given, others=[(-0.1, 1.0)])
+        theory.bead_diffusion(*given, 1.0, 1.0, (-0.1, 1.0))

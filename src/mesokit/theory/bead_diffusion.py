@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -20,7 +19,8 @@ def bead_diffusion(
     angle: float | None,
     mass: float,
     kT: float = 1.0,
-    others: Sequence[tuple[float, float]] = (),
+    solvent_mass: float = 1.0,
+    *others: tuple[float, float],
 ) -> float:
     """Diffusion coefficient of a bead where nothing that it gives the fluid comes back.
 
@@ -45,7 +45,7 @@ def bead_diffusion(
 
     >>> round(bead_diffusion("srd", 3, density=10, timestep=0.1, angle=130, mass=10), 6)
     0.013741
-    >>> round(bead_diffusion("srd", 2, 10, 0.1, 130, 10, others=[(0.15, 10.0)]), 6)
+    >>> round(bead_diffusion("srd", 2, 10, 0.1, 130, 10, 1.0, 1.0, (0.15, 10.0)), 6)
     0.007184
     """
     dimension_two_or_three(dimension)

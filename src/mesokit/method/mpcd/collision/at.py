@@ -55,9 +55,9 @@ class AT(CollisionRule):
         self, gas: Gas, mass: float, others: Sequence[tuple[float, float]] = ()
     ) -> float:
         """Diffusion coefficient of a bead of this mass in the gas, among others."""
-        given = "at", gas.dimension, gas.density, gas.timestep
-        others = [(crowd, other / gas.mass) for crowd, other in others]
-        return theory.bead_diffusion(*given, None, mass / gas.mass, gas.kT / gas.mass, others)
+        return theory.bead_diffusion(
+            "at", gas.dimension, gas.density, gas.timestep, None, mass, gas.kT, gas.mass, *others
+        )
 
 
 class AT2(NamedTuple):

@@ -92,9 +92,9 @@ class SRD(CollisionRule):
         """Diffusion coefficient of a bead of this mass in the gas, among others."""
         # the cosine of an angle of 90 degrees is the mean of that of uniform ones
         angle = self.angle if self.angle_distribution == "fixed" else 90.0
-        given = "srd", gas.dimension, gas.density, gas.timestep
-        others = [(crowd, other / gas.mass) for crowd, other in others]
-        return theory.bead_diffusion(*given, angle, mass / gas.mass, gas.kT / gas.mass, others)
+        return theory.bead_diffusion(
+            "srd", gas.dimension, gas.density, gas.timestep, angle, mass, gas.kT, gas.mass, *others
+        )
 
 
 class SRD2(NamedTuple):

@@ -13,7 +13,6 @@ from mesokit import theory
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import (
     Group,
-    crowd_note,
     free_bond,
     free_diffusion,
     modes_of,
@@ -96,7 +95,7 @@ def drift_of(case: Case, group: Group, kind: int | str = 1) -> Drift | None:
 
     A force drives a bead to force/friction, friction = kT/D (Einstein): exact for a bead whose
     velocity is forgotten by a factor at each collision, whatever the timestep. Beads that share a
-    cell are driven alike, and hand over to one another what they lose: each is as if alone.
+    cell are driven alike and keep more of it together; that is left out.
     """
     solutes, alone = case.solutes, free_diffusion(case, kind=kind, alone=True)
     if solutes is None or solutes.solvent != "random" or alone is None or case.walls:
@@ -106,7 +105,7 @@ def drift_of(case: Case, group: Group, kind: int | str = 1) -> Drift | None:
         return None
     mobility = solutes.masses[place] * alone / case.fluid.kT
     single = group.molecule is None
-    note = crowd_note(case, kind) if single else rouse_note(case)
+    note = "molecular chaos, exact for a bead alone" if single else rouse_note(case)
     spread = free_diffusion(case, kind=kind) if single else alone / group.length
     assert spread is not None
     return Drift(setting.acceleration(case) * mobility, spread, note)
