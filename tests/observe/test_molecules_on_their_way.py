@@ -132,8 +132,7 @@ def test_walkers_that_drift_pass_planes_as_schroedinger_says(steps):
     found = walk(observable, case, steps, number)
     for what in ("mean transit time", "velocity", "length over velocity"):
         assert found[what].error < 0.03 * abs(found[what].measured)
-    velocity = found["velocity"]  # its theory is approximate among so many, but that of the walkers
-    assert abs(velocity.measured - velocity.expected) < 3.5 * velocity.error, found
+    assert abs(found["velocity"].deviation) < 3.5, found
     time = found["mean transit time"]
     assert abs(time.deviation) < 3.5, time
     # 7000 transits that scatter by 0.58 of their mean: 0.7 %; those that have ended are 4 % short
@@ -191,11 +190,6 @@ def test_events_of_pooled_runs_are_those_of_all():
     [
         (ResidenceTime(region=[[0, 5]]), "expected \\[from, to\\] along each of the 2 axes"),
         (ResidenceTime(region=[[5, 0], [0, 20]]), "expected from < to"),
-        (ResidenceTime(region=[[30, 35], [0, 20]]), r"\[30, 35\] lies outside the box"),
-        (
-            TranslocationTime(axis="x", position=50),
-            "position = 50: outside the box",
-        ),
         (ResidenceTime(), "there is no solid to be near"),
         (ResidenceTime(region=[[0, 5], [0, 20]], solid="post"), "no effect with a region"),
         (MoleculeHistogram(of="gyration", axis="x"), "axis: no effect"),

@@ -35,11 +35,11 @@ def bead_diffusion(
     the pair; each kind of other beads adds the friction that follows from its mean over r.
 
     Parameters: `rule` "srd" or "at"; `dimension` 2 or 3; `density`, fluid particles per cell;
-    `timestep`; `angle` in degrees (SRD); `mass` M of the bead over that of a particle; `kT` over
-    that mass; `others`, (beads per cell, their mass) of each kind of other beads, which lie
-    anywhere. Raises ValueError for a value out of range. Source: M. Ripoll, K. Mussawisade,
-    R. G. Winkler and G. Gompper, Phys. Rev. E 72, 016701 (2005), with the number of
-    particles not averaged before; among other beads derived in docs/theory.md. Valid for random-solvent MPCD, and for short times
+    `timestep`; `angle` in degrees (SRD); `mass` M of the bead; `kT`; `solvent_mass`; `others`,
+    (beads per cell, their mass) of each kind of other beads, which lie anywhere. Raises
+    ValueError for a value out of range. Source: M. Ripoll, K. Mussawisade, R. G. Winkler and
+    G. Gompper, Phys. Rev. E 72, 016701 (2005), with the number of particles not averaged before;
+    among other beads derived in docs/theory.md. Valid for random-solvent MPCD, and for short times
     in a fluid; with others that fly less than a cell until they have forgotten their velocity, and
     for few of them: three in a cell take another tenth to a third of what pairs take.
 
@@ -50,33 +50,33 @@ def bead_diffusion(
     """
     dimension_two_or_three(dimension)
     one_of(("srd", "at"), rule=rule)
-    positive(density=density, timestep=timestep, mass=mass, kT=kT)
+    positive(density=density, timestep=timestep, mass=mass, kT=kT, solvent_mass=solvent_mass)
     turned = 1.0
     if rule == "srd":
         if angle is None:
             raise ValueError("angle: missing; srd needs one")
         turned = 2.0 / dimension * (1.0 - math.cos(math.radians(angle)))
-    inverse = _inverse_mass(mass, density)
+    inverse = _inverse_mass(mass, density, solvent_mass)
     steps = 1.0 / (turned * (1.0 - mass * inverse))  # until the velocity is forgotten
     unit = kT * timestep / mass
     free, friction = unit * (steps - 0.5), 0.0
     for crowd, other in others:
         positive(crowd=crowd, other=other)
-        lone = turned * (1.0 - other * _inverse_mass(other, density))
-        both = turned * _inverse_mass(mass + other, density)
+        lone = turned * (1.0 - other * _inverse_mass(other, density, solvent_mass))
+        both = turned * _inverse_mass(mass + other, density, solvent_mass)
         met = _together((1.0 / steps, lone), turned, (mass * both, other * both), dimension)
         friction -= crowd * unit * met / free**2
     return 1.0 / (1.0 / free + friction)
 
 
-def _inverse_mass(mass: float, density: float) -> float:
+def _inverse_mass(mass: float, density: float, solvent_mass: float) -> float:
     """Mean of 1/(mass + M') over Poisson numbers: the integral of <exp(-(mass + M') x)> over x."""
     from scipy.integrate import quad
 
-    scale, empty = mass + density, math.exp(-density)
+    scale, empty = mass + density * solvent_mass, math.exp(-density)
 
     def mean(x: float) -> float:
-        with_some = math.exp(density * math.expm1(-x / scale)) - empty
+        with_some = math.exp(density * math.expm1(-solvent_mass * x / scale)) - empty
         return math.exp(-mass * x / scale) * with_some
 
     return empty / mass + float(quad(mean, 0.0, math.inf, epsabs=1e-11)[0]) / scale
