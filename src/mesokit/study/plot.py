@@ -94,9 +94,9 @@ def _theory(numbers: Sequence[Comparison]) -> str:
     """What is expected, in a few words."""
     if any(number.approximate for number in numbers):
         return "theory, approximate"
-    note = numbers[0].note
-    name = note if note and len(note) < SHORT and "lower bound" not in note else ""
-    return f"theory: {name}" if name else "theory"
+    parts = numbers[0].note.split("; ")
+    name = "; ".join(part for part in parts if "lower bound" not in part)
+    return f"theory: {name}" if 0 < len(name) < SHORT else "theory"
 
 
 def _word(value: Any) -> str:
