@@ -112,16 +112,18 @@ def pooled(
     seeds = chi_square(values, np.full(n, mean), errors, fitted=1) if known else None
     first = each[0]
     expected = float(share @ np.array([c.expected for c in each]))
-    notes = {c.note for c in each}
-    note = first.note if len(notes) == 1 or first.approximate else _shared(notes)
+    notes = [c.note for c in each]
+    note = first.note if len({*notes}) == 1 or first.approximate else _shared(notes)
     return Comparison(first.what, mean, error, expected, first.unit, note), spread, seeds
 
 
-def _shared(notes: set[str]) -> str:
+def _shared(notes: Sequence[str]) -> str:
     """What the notes of several runs say alike, up to the numbers in them."""
+    each = [note.split("; ") for note in notes]
+    alike = [part for part in each[0] if part and all(part in parts for parts in each)]
     if any("lower bound" in note for note in notes):
-        return "error bar is a lower bound"
-    return ""
+        alike.append("error bar is a lower bound")
+    return "; ".join(dict.fromkeys(alike))
 
 
 def dataframe(rows: Sequence[Pooled]) -> Any:
