@@ -46,6 +46,7 @@ from mesokit.geometry.shape_protocol import Shape as Shape
 from mesokit.geometry.shape_protocol import Simple as Simple
 from mesokit.geometry.solids.solids import Solids as Solids
 from mesokit.geometry.surface import Surface as Surface
+from mesokit.geometry.surface_contact import SurfaceContact as SurfaceContact
 from mesokit.io.open import RunFiles as RunFiles
 from mesokit.io.open import open as open
 from mesokit.method.mpcd.collision.at import AT as AT
@@ -139,5 +140,8 @@ from mesokit.running.callbacks import Callback as Callback
 from mesokit.running.callbacks import StopRun as StopRun
 from mesokit.running.callbacks import every as every
 from mesokit.simulation import Simulation as Simulation
+from mesokit.spheres.kinds import SphereKind as SphereKind
+from mesokit.spheres.start.lattice import LatticeStart as LatticeStart
+from mesokit.spheres.start.protocol import SphereStart as SphereStart
 from mesokit.study.merge import merge as merge
 from mesokit.study.study import Study as Study

@@ -44,6 +44,7 @@ ROWS = {
     "case/": ("case", "errors", "=method", "scalar", "theory"),
     "geometry/": ("case", "errors", "geometry", "scalar"),
     "potential/": ("case", "errors", "potential", "scalar", "theory"),
+    "spheres/": ("case", "errors", "scalar", "spheres"),
     "method/__init__.py": (),
     "method/protocol.py": ("case", "engine", "=method"),
     "method/mpcd/": MPCD,

@@ -107,7 +107,7 @@ def test_the_only_part_need_not_be_named(validator: jsonschema.Draft7Validator) 
         ("run.seed", "run.seed", "whole number at least 0, below 2^56, default 1"),
         ("fluid.force.sinusoidal", "fluid.force.sinusoidal", '"x", "y" or "z", default "y"'),
         ("wall.2.surface.rule", "wall.", '"no-slip", "slip" or "diffuse", default "no-slip"'),
-        ("box", "box", "list of whole numbers [a], required"),
+        ("box", "box", "list of numbers [a], required"),
     ],
 )
 def test_explanations(path: str, where: str, words: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from pydantic import field_validator
 
@@ -18,13 +18,20 @@ from mesokit.scalar.jit import generic, scalar
 
 Axis = Literal["x", "y", "z"]
 AXES: tuple[Axis, ...] = ("x", "y", "z")
+if TYPE_CHECKING:
+    Length = int  # where a method has cells: the case then asks for whole numbers
+else:
+    Length = float
 
 
 @component
 class Box:
-    """A rectangular box of whole cells; two sizes make it 2D. Periodic where no wall closes it."""
+    """A rectangular box; two sizes make it 2D. Periodic where no wall closes it.
 
-    size: Many[int] = param(doc="length along each axis: two numbers (2D) or three", unit="a")
+    Sizes are whole numbers of cells for methods that have cells.
+    """
+
+    size: Many[Length] = param(doc="length along each axis: two numbers (2D) or three", unit="a")
     shear_rate: float = param(
         0.0,
         doc="Lees-Edwards shear: flow along x, gradient along y",
@@ -48,12 +55,12 @@ class Box:
 
     @field_validator("size")
     @classmethod
-    def _two_or_three_lengths(cls, size: tuple[int, ...]) -> tuple[int, ...]:
+    def _two_or_three_lengths(cls, size: tuple[float, ...]) -> tuple[float, ...]:
         if len(size) not in (2, 3):
             raise ValueError("expected two lengths (2D) or three (3D)")
         if min(size) < 2:
             raise ValueError("expected at least 2 cells along each axis")
-        return size
+        return tuple(int(length) if length == int(length) else length for length in size)
 
     @field_validator("open")
     @classmethod
@@ -88,7 +95,7 @@ class Box:
 
     @property
     def volume(self) -> int:
-        """Number of cells."""
+        """Area or volume: the number of cells where there are cells."""
         cells = 1
         for length in self.size:
             cells *= length

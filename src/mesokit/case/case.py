@@ -88,6 +88,8 @@ class Case(Shown):
             )
         if self.units is not None and method.si is None:
             raise CaseError(f"units: method {show(method.name)} does not know them in SI")
+        if method.whole_cells:
+            checks.whole_cells(self.box)
         method.check(self)
         checks.check(self, method.name, method.observables, self.groups)
         if self.log is not None:

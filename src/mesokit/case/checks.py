@@ -111,3 +111,10 @@ def trajectory(case: Any, groups: Sequence[Group]) -> Iterator[str]:
         yield f"trajectory.subset = {given.subset}: there are only {number} particles"
     if len(set(given.fields)) < len(given.fields):
         yield f"trajectory.fields = {show(given.fields)}: expected each field once"
+
+
+def whole_cells(box: Any) -> None:
+    """Raise CaseError for a length that is no whole number, where the method has cells."""
+    for i, length in enumerate(box.size):
+        if length != int(length):
+            raise CaseError(f"box.size[#{i + 1}] = {show(length)}: expected a whole number")

@@ -8,6 +8,7 @@ from pydantic import field_validator
 
 from mesokit.case.component import component, param
 from mesokit.case.describe.hints import Either
+from mesokit.geometry.surface_contact import SurfaceContact
 
 FASTEST = 1e6  # a surface's speed and rate of rotation: beyond it is a slip of the pen
 
@@ -29,6 +30,9 @@ class Surface:
         doc="rate of rotation, in radians: a number, about z in 2D or about the shape's own axis, "
         "or a vector in 3D",
         unit="1/time",
+    )
+    contact: SurfaceContact | None = param(
+        None, doc="what it does to spheres (as between two of them unless said)"
     )
 
     @field_validator("velocity")

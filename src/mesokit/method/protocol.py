@@ -80,6 +80,8 @@ class Method:
         The engine, with nothing in it yet.
     start : function of an engine and a first state
         Fills the engine.
+    whole_cells : bool, optional
+        Whether the lengths of its box are whole numbers of cells; True unless said.
     keys : mapping, optional
         Names of sections as they are in a file where these differ from those in Python: of a list
         of tables, `[[wall]]` for `walls`.
@@ -120,6 +122,7 @@ class Method:
     first_state: Callable[[Case, Mapping[str, Any]], Any]
     engine: Callable[[Case, int, Sequence[str]], Engine]
     start: Callable[[Any, Any], None]
+    whole_cells: bool = True
     keys: Mapping[str, str] = field(default_factory=dict)
     arrays: tuple[str, ...] = ()
     expected: Mapping[str, Callable[[Case, Any], Any]] = field(default_factory=dict)

@@ -23,7 +23,7 @@ from numba.core.registry import CPUDispatcher
 
 from mesokit.scalar.part import part
 
-COMPILED = ("scalar", "case", "geometry", "potential", "method", "execute")
+COMPILED = ("scalar", "case", "geometry", "potential", "spheres", "method", "execute")
 
 
 @functools.cache

@@ -14,7 +14,7 @@ from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.method.mpcd.checks.free_flight import free_flight, open_box
 from mesokit.method.mpcd.checks.kernels import kernels
 from mesokit.method.mpcd.checks.solutes import solutes
-from mesokit.method.mpcd.checks.walls import moving_surfaces, room, surfaces, walls
+from mesokit.method.mpcd.checks.walls import contacts, moving_surfaces, room, surfaces, walls
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.molecule import COARSE, MOST_SUBSTEPS, UNSTABLE
 from mesokit.potential.thermal import mean_square
@@ -241,6 +241,7 @@ RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
     vectors,
     walls,
     room,
+    contacts,
     moving_surfaces,
     size,
     mean_free_path,

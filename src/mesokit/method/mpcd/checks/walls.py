@@ -57,6 +57,13 @@ def _shape(cls: type) -> str:
     return found[1]
 
 
+def contacts(case: Case) -> Iterator[str]:
+    """What a surface does to spheres."""
+    for key, surface, _ in surfaces(case):
+        if surface.contact is not None:
+            yield f"{key}.contact: not with method 'mpcd', whose particles have no size"
+
+
 def moving_surfaces(case: Case) -> Iterator[str]:
     """Surfaces that move along themselves."""
     for key, surface, wall in surfaces(case):

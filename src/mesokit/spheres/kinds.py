@@ -1,0 +1,66 @@
+"""Kinds of spheres: how large, how heavy, how many."""
+
+from __future__ import annotations
+
+import math
+
+from pydantic import model_validator
+
+from mesokit.case.component import component, param
+
+
+@component
+class SphereKind:
+    """Spheres (disks in 2D) of one distribution of diameters, all of the same material.
+
+    Examples
+    --------
+    >>> SphereKind(diameter=2.0, density=1.0).mean_mass(2) == math.pi
+    True
+    """
+
+    diameter: float = param(1.0, doc="diameter, or the middle of them", unit="a", ge=1e-3, le=1e6)
+    share: float = param(1.0, doc="how many, in proportion to other kinds", gt=0, le=1e9)
+    spread: float = param(
+        0.0, doc="diameters are uniform within this part of the middle on both sides", ge=0, lt=1
+    )
+    mass: float | None = param(
+        None, doc="mass of a sphere of that diameter (1 unless said)", unit="m", gt=0, le=1e9
+    )
+    density: float | None = param(
+        None, doc="mass per volume, or per area in 2D, in place of the mass", unit="m/a^d", gt=0
+    )
+    name: str | None = param(None, doc="name in results and files", min_length=1)
+
+    @model_validator(mode="after")
+    def _one_of_both(self) -> SphereKind:
+        if self.mass is not None and self.density is not None:
+            raise ValueError("expected a mass or a density, not both")
+        return self
+
+    def mean_mass(self, dimension: int) -> float:
+        """Mass of a sphere of the middle diameter."""
+        if self.density is not None:
+            return self.density * ball_volume(dimension, self.diameter)
+        return 1.0 if self.mass is None else self.mass
+
+    def mean_power(self, power: int) -> float:
+        """Mean of a power of the diameter.
+
+        >>> round(SphereKind(diameter=2.0, spread=0.5).mean_power(2), 6)
+        4.333333
+        """
+        low, high = 1.0 - self.spread, 1.0 + self.spread
+        if self.spread == 0.0:
+            return self.diameter**power
+        mean = (high ** (power + 1) - low ** (power + 1)) / ((power + 1) * 2 * self.spread)
+        return mean * self.diameter**power
+
+
+def ball_volume(dimension: int, diameter: float) -> float:
+    """Area of a disk, or volume of a sphere.
+
+    >>> ball_volume(3, 2.0) == 4 * math.pi / 3
+    True
+    """
+    return math.pi * diameter**dimension / (4 if dimension == 2 else 6)

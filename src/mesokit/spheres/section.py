@@ -1,0 +1,130 @@
+"""The keys of the section `[spheres]` that all methods of spheres share."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+from pydantic import field_validator, model_validator
+
+from mesokit.case.box import Box
+from mesokit.case.component import component, param, show
+from mesokit.case.describe.hints import Many
+from mesokit.errors import CaseError
+from mesokit.spheres.kinds import SphereKind, ball_volume
+from mesokit.spheres.start import SphereStart
+from mesokit.spheres.start.lattice import LatticeStart
+
+USUAL_FRACTION = 0.3  # of the box that spheres fill, unless anything is said
+MOST_PARTICLES = 2**31 - 1  # numbers of random words are 32-bit
+STRONGEST = 1e9  # gravity beyond which it is a slip of the pen
+
+
+@component
+class Spheres:
+    """Spheres: how many of which kinds, and where they start from.
+
+    Their number follows from `number`, `density` or `packing_fraction`. Where the packing fraction
+    is given beside one of the others, diameters are scaled so that both hold.
+    """
+
+    number: int | None = param(None, doc="how many", ge=1, le=MOST_PARTICLES)
+    density: float | None = param(None, doc="number per area or volume", unit="1/a^d", gt=0)
+    packing_fraction: float | None = param(
+        None,
+        doc="part of the box that they fill",
+        unless_said=USUAL_FRACTION,
+        gt=0,
+        lt=1,
+    )
+    kinds: Many[SphereKind] = param(
+        (SphereKind(),), doc="their kinds, in the order of their numbers", min_length=1
+    )
+    kT: float = param(1.0, doc="thermal energy of the start", unit="kT", ge=0, le=1e9)
+    gravity: Many[float] = param(
+        (), doc="acceleration of all, one number for each axis (none unless said)", unit="a/time^2"
+    )
+    start: SphereStart = param(LatticeStart(), doc="where they are at first")
+
+    @model_validator(mode="after")
+    def _not_twice(self) -> Spheres:
+        if self.number is not None and self.density is not None:
+            raise ValueError("expected a number or a density, not both")
+        return self
+
+    @field_validator("gravity")
+    @classmethod
+    def _sane(cls, gravity: tuple[float, ...]) -> tuple[float, ...]:
+        if gravity and len(gravity) not in (2, 3):
+            raise ValueError("expected one number for each axis")
+        if any(abs(x) > STRONGEST for x in gravity):
+            raise ValueError(f"expected numbers of at most {STRONGEST:g}")
+        return gravity if any(gravity) else ()
+
+    def check(self, box: Box) -> None:
+        """Raise CaseError for what does not fit the box."""
+        d = box.dimension
+        if self.gravity and len(self.gravity) != d:
+            raise CaseError(
+                f"spheres.gravity = {show(self.gravity)}: expected {d} numbers, one for each axis"
+            )
+        if not 1 <= self.count(box) <= MOST_PARTICLES:
+            raise CaseError(f"spheres: {self.count(box)} in this box; expected at least 1")
+        if self.fraction(box) >= 1:
+            raise CaseError(
+                f"spheres: {self.count(box)} of these diameters would fill "
+                f"{self.fraction(box):.3g} of the box; expected less than 1"
+            )
+
+    def count(self, box: Box) -> int:
+        """How many there are.
+
+        >>> Spheres(number=870).count(Box([32, 32]))
+        870
+        """
+        if self.number is not None:
+            return self.number
+        if self.density is not None:
+            return round(self.density * box.volume)
+        wanted = USUAL_FRACTION if self.packing_fraction is None else self.packing_fraction
+        return round(wanted * box.volume / self._mean_volume(box.dimension))
+
+    def counts(self, box: Box) -> list[int]:
+        """How many there are of each kind.
+
+        >>> Spheres(number=10, kinds=[SphereKind(share=2), SphereKind()]).counts(Box([9, 9]))
+        [7, 3]
+        """
+        total = math.fsum(kind.share for kind in self.kinds)
+        ends, up_to = [0], 0.0
+        for kind in self.kinds:
+            up_to += kind.share / total
+            ends.append(round(self.count(box) * up_to))
+        return [after - before for before, after in itertools.pairwise(ends)]
+
+    def scale(self, box: Box) -> float:
+        """The factor of all diameters, 1 unless number and packing fraction are both given.
+
+        >>> disks = Spheres(number=870, packing_fraction=0.67)
+        >>> round(disks.scale(Box([32, 32])) ** 2 * 870 * math.pi / 4 / 32**2, 12)
+        0.67
+        """
+        given = self.number is not None or self.density is not None
+        if not given or self.packing_fraction is None:
+            return 1.0
+        filled = self._filled(box)
+        return float((self.packing_fraction * box.volume / filled) ** (1 / box.dimension))
+
+    def fraction(self, box: Box) -> float:
+        """The packing fraction, by the mean volume of each kind."""
+        return float(self._filled(box) * self.scale(box) ** box.dimension / box.volume)
+
+    def _filled(self, box: Box) -> float:
+        unit = ball_volume(box.dimension, 1.0)
+        pairs = zip(self.kinds, self.counts(box), strict=True)
+        return unit * math.fsum(n * kind.mean_power(box.dimension) for kind, n in pairs)
+
+    def _mean_volume(self, dimension: int) -> float:
+        total = math.fsum(kind.share for kind in self.kinds)
+        mean = math.fsum(kind.share * kind.mean_power(dimension) for kind in self.kinds) / total
+        return ball_volume(dimension, 1.0) * mean

@@ -1,0 +1,10 @@
+"""Where spheres start from. A new start is a file here."""
+
+from __future__ import annotations
+
+from mesokit.case.registry import parts_in
+from mesokit.spheres.start.protocol import Placed, SphereStart
+
+STARTS = parts_in(__path__, __name__, SphereStart)
+
+__all__ = ["STARTS", "Placed", "SphereStart"]
