@@ -30,6 +30,7 @@ from mesokit.theory.dumbbell_shear import (
     fene_p_thinning,
     pair_friction,
 )
+from mesokit.theory.enskog_rate import contact_value, enskog_rate
 from mesokit.theory.finite_size import viscosity_renormalised
 from mesokit.theory.gamma import cell_energy_cdf, cell_energy_pdf, cell_energy_variance
 from mesokit.theory.gaussian_structure_factor import gaussian_structure_factor
@@ -37,6 +38,7 @@ from mesokit.theory.hagen_poiseuille import (
     hagen_poiseuille_flow_rate,
     hagen_poiseuille_velocity,
 )
+from mesokit.theory.hard_sphere_pressure import compressibility
 from mesokit.theory.harmonic_spring import Spring, mean_square_bond, spring, spring_of_bond
 from mesokit.theory.harmonic_trap import TrappedShape, normal_in_box, trapped_shape
 from mesokit.theory.heat_at_walls import HeatAtWalls, heat_at_walls, slit_temperature_rise
@@ -164,6 +166,8 @@ __all__ = [
     "chain_exponents",
     "channel_cylinder",
     "complex_viscosity",
+    "compressibility",
+    "contact_value",
     "cosine_cdf",
     "couette_velocity",
     "cubic_array_drag",
@@ -176,6 +180,7 @@ __all__ = [
     "dimer_oscillation_range",
     "dumbbell_thinning",
     "dumbbell_viscosity",
+    "enskog_rate",
     "end_to_end_cdf",
     "enskog_friction",
     "fene_p_thinning",
