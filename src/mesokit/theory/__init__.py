@@ -34,6 +34,7 @@ from mesokit.theory.enskog_rate import contact_value, enskog_rate
 from mesokit.theory.finite_size import viscosity_renormalised
 from mesokit.theory.gamma import cell_energy_cdf, cell_energy_pdf, cell_energy_variance
 from mesokit.theory.gaussian_structure_factor import gaussian_structure_factor
+from mesokit.theory.haff import haff_temperature, haff_time
 from mesokit.theory.hagen_poiseuille import (
     hagen_poiseuille_flow_rate,
     hagen_poiseuille_velocity,
@@ -68,6 +69,7 @@ from mesokit.theory.mean_square_displacement import (
     decorrelation_from_diffusion,
     msd_molecular_chaos,
 )
+from mesokit.theory.mixture_pressure import mixture_compressibility
 from mesokit.theory.normal_modes import (
     NormalModes,
     linear_modes,
@@ -188,6 +190,8 @@ __all__ = [
     "gaussian_stress_kernel",
     "gaussian_structure_factor",
     "gyration_cdf",
+    "haff_temperature",
+    "haff_time",
     "hagen_poiseuille_flow_rate",
     "hagen_poiseuille_velocity",
     "heat_at_walls",
@@ -210,6 +214,7 @@ __all__ = [
     "mean_square_bond",
     "mean_square_end_to_end",
     "mean_square_gyration",
+    "mixture_compressibility",
     "msd_molecular_chaos",
     "msd_rouse_beads",
     "network_modes",
