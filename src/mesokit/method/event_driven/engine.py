@@ -63,6 +63,7 @@ class EventDriven:
                 rules,
                 pair.contact_time,
                 window(self.case),
+                reach=pair.reach,
             )
         )
 
