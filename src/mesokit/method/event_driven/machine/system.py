@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -31,7 +31,7 @@ class Given(NamedTuple):
     """What a system is made of: lengths (d,) of the box, which axes are closed (d,), acceleration
     (d,), diameters, masses and moments of inertia (n,), walls (walls, 14), rules, the time within
     which collisions lose nothing, the length of a window, relative growth of diameters per time, and how far spheres feel one another in
-    diameters."""
+    diameters, and what changes velocities (n, d) by particle number at the end of a window."""
 
     size: Sequence[float]
     closed: Sequence[bool]
@@ -45,6 +45,7 @@ class Given(NamedTuple):
     window: float
     growth: float = 0.0
     reach: float = 1.0
+    turn: Callable[[Array, int], None] | None = None
 
 
 class System:
@@ -204,9 +205,17 @@ class System:
             synchronise(self.world, self.spheres, self.window)
             self.tally.sums[groups.BEGAN] -= self.window
             self.now = 0.0
+            if self.given.turn is not None:
+                self._turn(self.given.turn)
             self.begin_window(self.windows + 1)
         self._run(now)
         self.now = now
+
+    def _turn(self, turn: Callable[[Array, int], None]) -> None:
+        columns = slice(groups.VELOCITY, groups.VELOCITY + self.d)
+        velocities = self.by_number(self.spheres.state[:, columns])
+        turn(velocities, self.windows)
+        self.spheres.state[:, columns] = velocities[self.spheres.number]
 
     def _run(self, end: float) -> None:
         while True:
