@@ -175,7 +175,7 @@ def test_a_gas_cools_by_the_law_of_haff():
         expected = float(theory.haff_temperature(engine.time, haff))
         assert kT == pytest.approx(expected, rel=tolerance), turn
         collisions = 2 * engine.collisions[0] / engine.n
-        assert kT == pytest.approx(math.exp(-(1 - e**2) * collisions / 2), rel=0.015)
+        assert kT == pytest.approx(math.exp(-(1 - e**2) * collisions / 2), rel=tolerance)
 
 
 def test_kicks_hold_a_temperature():

@@ -18,10 +18,12 @@ from mesokit.method.event_driven.walls import room_of, wall_rows
 from mesokit.method.event_driven.window import instant, window
 from mesokit.spheres.made import made
 
+Array = NDArray[np.float64]
+
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.engine import Array, Integers, State
-    from mesokit.spheres.start.protocol import Placed
+    from mesokit.engine import Integers, State
+    from mesokit.spheres.start.protocol import Started
 
 
 class EventDriven:
@@ -74,7 +76,7 @@ class EventDriven:
         motion = Motion(velocities, self.made.masses, self.case.run.seed, turn)
         self.case.spheres.heating.act(motion, self.system.window)
 
-    def start(self, placed: Placed) -> None:
+    def start(self, placed: Started) -> None:
         """Put the spheres where they start from."""
         if placed.diameters is not None:
             self.system = self._system(placed.diameters)

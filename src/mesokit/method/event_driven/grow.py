@@ -74,7 +74,7 @@ def grown(
         system.run_to(windows, until - windows * window)
     except RunError:
         raise CaseError(
-            f"spheres: they jam before they fill {fraction:.3g} of the box; expected fewer or smaller"
+            f"spheres: they jam before they fill {fraction:.3g} of the box; expected fewer"
         ) from None
     return system.read()[0]
 

@@ -1,4 +1,4 @@
-"""The walls of a case as rows of numbers for the machinery. Raises CaseError for what it cannot do."""
+"""The walls of a case as rows of numbers for the machinery."""
 
 from __future__ import annotations
 
@@ -44,7 +44,8 @@ def room_of(case: Case) -> Room:
 def wall_rows(case: Case) -> WallRows:
     """All walls of a case."""
     room = room_of(case)
-    rows, contacts, surface, names = [], [], [], []
+    rows, contacts, surface = [], [], []
+    names: list[str] = []
     for i, wall in enumerate(case.walls):
         if not wall.closed_axes and any(length != int(length) for length in case.box.size):
             raise CaseError(

@@ -26,7 +26,9 @@ def collision_rate(case: Case) -> float:
     phi, number = min(section.fraction(box), 0.7), section.count(box)
     rates = [0.0]
     if section.kT > 0:
-        rate = theory.enskog_rate(number / box.volume, diameter, section.kT / mass, phi, box.dimension)
+        rate = theory.enskog_rate(
+            number / box.volume, diameter, section.kT / mass, phi, box.dimension
+        )
         rates.append(rate)
         rates.append(math.sqrt(section.kT / mass) / max(box.size))
     if section.gravity:
@@ -35,9 +37,9 @@ def collision_rate(case: Case) -> float:
 
 
 def window(case: Case) -> float:
-    """A power of two, about 500 mean times between collisions, or a quarter of one where velocities are changed
-    at the end of each; it does not depend on the timestep, so that the length of a step changes no
-    bit."""
+    """A power of two, about 500 mean times between collisions, or a quarter of one where velocities
+    are changed at the end of each. It does not depend on the timestep, so that the length of a step
+    changes no bit."""
     rate, heating = collision_rate(case), case.spheres.heating
     if heating is not None and heating.interval is not None:
         return float(heating.interval)

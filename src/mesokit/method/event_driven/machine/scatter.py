@@ -88,10 +88,7 @@ def fits(world, cells, head, following, radii, places, r, radius):
         distance, _ = outward(world, w, r)
         if distance < radius:
             return False
-    steps = 1
-    for k in range(len(r)):
-        steps *= 3
-    for step in range(steps):
+    for step in range(9 if len(r) == 2 else 27):
         cell, rest = 0, step
         for k in range(len(r)):
             here = min(int(r[k] / world.size[k] * cells[k]), cells[k] - 1)

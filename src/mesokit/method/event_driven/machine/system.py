@@ -28,10 +28,14 @@ KEPT = ("state", "body", "boxes", "hits")
 
 
 class Given(NamedTuple):
-    """What a system is made of: lengths (d,) of the box, which axes are closed (d,), acceleration
-    (d,), diameters, masses and moments of inertia (n,), walls (walls, 14), rules, the time within
-    which collisions lose nothing, the length of a window, a time that is none, relative growth of diameters per time, and how far spheres feel one another in
-    diameters, and what changes velocities (n, d) by particle number at the end of a window."""
+    """What a system is made of.
+
+    size, closed, gravity (d,): lengths of the box, which axes walls close, acceleration; diameters,
+    masses, inertia (n,); walls (walls, 14); rules; lasting: a collision sooner than this after
+    another loses nothing; window: the length of one; instant: a time that is none; growth of
+    diameters, relative per time; reach: how far spheres feel one another, in diameters; turn: what
+    changes velocities (n, d) by particle number at the end of a window.
+    """
 
     size: Sequence[float]
     closed: Sequence[bool]

@@ -14,11 +14,10 @@ from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
-# columns: kind, place of three, unit vector of three (normal of a plane, axis of a cylinder), radius,
-# velocity of three, amplitude, frequency, phase at the start of the window
-KIND, PLACE, AXIS, ROUND, MOVES, AMPLITUDE, FREQUENCY, PHASE, COLUMNS = (
-    0, 1, 4, 7, 8, 11, 12, 13, 14,
-)  # fmt: skip
+# columns: kind, place of three, unit vector of three (normal of a plane, axis of a cylinder),
+# radius, velocity of three, amplitude, frequency, phase at the start of the window
+KIND, PLACE, AXIS, ROUND, MOVES = 0, 1, 4, 7, 8
+AMPLITUDE, FREQUENCY, PHASE, COLUMNS = 11, 12, 13, 14
 PLANE, OUTSIDE, INSIDE = 0.0, 1.0, -1.0  # kinds: a plane; fluid outside or inside of a round wall
 CLOSE = 1e-13  # of the radius of a sphere: it touches
 STEPS = 1_000_000
