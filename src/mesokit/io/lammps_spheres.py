@@ -28,8 +28,10 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
         kinds = " ".join(particles.names)
         file.write(f"spheres of mesokit at step {now.step}, time {now.time:.9g}: {kinds}\n\n")
         file.write(f"{n} atoms\n{len(particles.names)} atom types\n\n")
-        for axis, length in zip("xyz", particles.size.tolist(), strict=True):
-            file.write(f"0 {length:.17g} {axis}lo {axis}hi\n")
+        low = np.zeros(3)
+        low[particles.dimension :] = -0.5  # LAMMPS wants the plane of disks inside its box
+        for axis, start, length in zip("xyz", low.tolist(), particles.size.tolist(), strict=True):
+            file.write(f"{start:.17g} {start + length:.17g} {axis}lo {axis}hi\n")
         if now.tilt:
             file.write(f"{now.tilt:.17g} 0 0 xy xz yz\n")
         columns = [numbers, particles.kind + 1, particles.diameter, density, now.position, image]
