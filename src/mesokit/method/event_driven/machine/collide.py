@@ -21,7 +21,7 @@ from mesokit.method.event_driven.machine.groups import (
 )
 from mesokit.method.event_driven.machine.motion import bring_to, entries, nearest_image, put_entries
 from mesokit.method.event_driven.machine.walls import MOVES, outward, vibration
-from mesokit.scalar.jit import by_type, scalar, seldom
+from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.random import METHOD, Counter, normals, unit, words
 from mesokit.scalar.vector import added_scaled, dot, outer, scaled
 
@@ -99,7 +99,7 @@ def surface_velocity(spheres, i, v, lever):
     return added_scaled(v, 1.0, rolled(spin_of(spheres.body, i, v), lever))
 
 
-@seldom
+@scalar
 def collide_pair(world, rules, spheres, tally, i, j, time):
     """Two spheres touch: their velocities and spins change at once."""
     if spheres.number[j] < spheres.number[i]:
@@ -143,7 +143,7 @@ def turning(state, body, i):
     return state[i, RADIUS] * state[i, RADIUS] / body[i, INERTIA]
 
 
-@seldom
+@scalar
 def collide_wall(world, rules, spheres, tally, i, w, time):
     """A sphere touches a wall."""
     state, body, walls = spheres.state, spheres.body, world.walls

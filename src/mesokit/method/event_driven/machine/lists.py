@@ -8,7 +8,7 @@ import math
 
 from mesokit.method.event_driven.machine.groups import RADIUS
 from mesokit.method.event_driven.machine.motion import entries, nearest_image, put_entries
-from mesokit.scalar.jit import scalar, seldom
+from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import added_scaled, dot
 
 
@@ -57,7 +57,7 @@ def forget(lists, i):
     lists.count[i] = 0
 
 
-@seldom
+@scalar
 def renew(world, lists, state, i, r):
     """Make the list of i anew about r, in the box; whether all lists had room."""
     unlink(lists, i)

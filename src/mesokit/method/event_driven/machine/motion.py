@@ -1,6 +1,7 @@
 """Free flight: where a sphere is at a time, and when two of them touch."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -67,25 +68,51 @@ def bring_to(world, spheres, i, time):
     return r, v
 
 
+class Mover(NamedTuple):
+    """A sphere at its own time: place, velocity (d,), that time and its radius."""
+
+    r: tuple[float, ...]
+    v: tuple[float, ...]
+    time: float
+    radius: float
+
+
 @scalar
-def meeting(world, state, i, j, now):
-    """The time at which spheres i and j touch, infinite if they do not.
+def mover(state, i, like):
+    """Sphere i as it is in memory."""
+    r, v = entries(state, i, 0, like), entries(state, i, VELOCITY, like)
+    return Mover(r, v, state[i, TIME], state[i, RADIUS])
+
+
+@scalar
+def meeting(world, one, other, now):
+    """The time at which two spheres touch, infinite if they do not.
 
     It follows from the states of both at the later of their own times, and does not depend on when
     it is asked for. Of their images those are meant that are nearest `now`. Spheres that overlap by
     rounding and come nearer touch at once (Bannerman, Strobl, Formella and Poeschel 2014).
     """
-    since = max(state[i, TIME], state[j, TIME])
-    apart = added_scaled(place_at(world, state, i, since), -1.0, place_at(world, state, j, since))
-    v = added_scaled(
-        velocity_at(world, state, i, since), -1.0, velocity_at(world, state, j, since)
+    g, since = world.gravity, max(one.time, other.time)
+    mine, its = since - one.time, since - other.time
+    apart = added_scaled(
+        fallen(one.r, mine, one.v, g), -1.0, fallen(other.r, its, other.v, g)
     )
-    for k in range(len(apart)):
-        then = mul_add(now - since, v[k], apart[k])
-        boxes = rint(then * world.inverse[k])
-        apart = with_item(apart, k, apart[k] - boxes * world.size[k])
-    radii = state[i, RADIUS] + state[j, RADIUS]
-    return since + touching(apart, v, mul_add(radii * world.growth, since, radii), radii * world.growth)
+    v = added_scaled(
+        added_scaled(one.v, mine, g), -1.0, added_scaled(other.v, its, g)
+    )
+    apart = meant_image(world, apart, v, now - since)
+    reach = one.radius + other.radius
+    growth = reach * world.growth
+    return since + touching(apart, v, mul_add(growth, since, reach), growth)
+
+
+@scalar
+def meant_image(world, r, v, tau):
+    """The image that is nearest after a time."""
+    for k in range(len(r)):
+        boxes = rint(mul_add(tau, v[k], r[k]) * world.inverse[k])
+        r = with_item(r, k, r[k] - boxes * world.size[k])
+    return r
 
 
 @scalar
@@ -94,10 +121,10 @@ def touching(r, v, reach, growth):
     a = dot(v, v) - growth * growth
     b = dot(r, v) - reach * growth
     c = dot(r, r) - reach * reach
-    if c <= 0.0:
-        return 0.0 if b < 0.0 else math.inf
     square = b * b - a * c
-    if square < 0.0 or (b >= 0.0 and a >= 0.0):
+    if b >= 0.0:
+        late = c > 0.0 and a < 0.0 and square >= 0.0
+        return (b + math.sqrt(square)) / -a if late else math.inf
+    if square < 0.0:
         return math.inf
-    root = math.sqrt(square)
-    return c / (root - b) if b < 0.0 else (b + root) / -a
+    return max(c, 0.0) / (math.sqrt(square) - b)

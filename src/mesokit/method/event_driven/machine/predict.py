@@ -12,23 +12,25 @@ from mesokit.method.event_driven.machine.lists import time_to_leave
 from mesokit.method.event_driven.machine.motion import (
     entries,
     meeting,
+    mover,
     place_at,
     velocity_at,
 )
 from mesokit.method.event_driven.machine.walls import time_to_wall
-from mesokit.scalar.jit import seldom
+from mesokit.scalar.jit import scalar
 
 
-@seldom
+@scalar
 def predict(world, spheres, lists, queue, tally, i, now):
     """Find the next event of sphere i, and write it down; the queue is told by the caller."""
     state, number = spheres.state, spheres.number
     r, v = place_at(world, state, i, now), velocity_at(world, state, i, now)
     leaves = time_to_leave(world, lists, r, v, entries(lists.centre, i, 0, r))
     best, partner = now + leaves, LEAVES if leaves < math.inf else NOTHING
+    one = mover(state, i, r)
     for a in range(lists.count[i]):
         j = lists.near[i, a]
-        time = meeting(world, state, i, j, now)
+        time = meeting(world, one, mover(state, j, r), now)
         if time < best or (time == best and partner >= 0 and number[j] < number[partner]):
             best, partner = time, j
     for w in range(len(world.walls)):

@@ -3,7 +3,7 @@
 Putting in, taking out and finding the next cost a time that does not depend on how many there are.
 """
 
-from mesokit.scalar.jit import scalar, seldom
+from mesokit.scalar.jit import scalar
 
 HEAP, CURRENT, SIZE = -1, 0, 1
 FAR = 2.0**52
@@ -115,7 +115,7 @@ def remove(queue, number, i):
             queue.first[b] = after
 
 
-@seldom
+@scalar
 def next_event(queue, number, end):
     """Whose event is next, -1 if it is not before the end."""
     bins = len(queue.first)

@@ -26,7 +26,7 @@ from mesokit.method.event_driven.machine.predict import predict
 from mesokit.method.event_driven.machine.queue import insert, next_event, remove
 from mesokit.scalar.cache import kernel
 from mesokit.scalar.intrinsics import floor, with_item
-from mesokit.scalar.jit import scalar, seldom
+from mesokit.scalar.jit import scalar
 
 ROUND = 100  # collisions of each sphere after which it is asked how long they took
 STALLED = 1e-9  # of the usual time: time stands still
@@ -35,22 +35,17 @@ STALLED = 1e-9  # of the usual time: time stands still
 @kernel
 def advance(world, rules, spheres, lists, queue, tally, end):
     """Do all events before a time; how it ended: DONE, FULL lists or COLLAPSED."""
-    return events(world, rules, spheres, lists, queue, tally, end)
-
-
-@seldom
-def events(world, rules, spheres, lists, queue, tally, end):
-    """The loop itself."""
     number, n = spheres.number, len(spheres.number)
     while True:
         i = next_event(queue, number, end)
         if i < 0:
             return DONE
         now, partner = queue.time[i], queue.partner[i]
+        other = i  # whose next event is to be found as well
         if partner >= 0:
             if spheres.hits[partner] == queue.partner_hits[i]:
                 collide_pair(world, rules, spheres, tally, i, partner, now)
-                predict_again(world, spheres, lists, queue, tally, partner, now)
+                other = partner
                 if stalls(tally, n, now):
                     return COLLAPSED
         elif partner == LEAVES:
@@ -61,15 +56,12 @@ def events(world, rules, spheres, lists, queue, tally, end):
             collide_wall(world, rules, spheres, tally, i, FIRST_WALL - partner, now)
             if stalls(tally, n, now):
                 return COLLAPSED
-        predict_again(world, spheres, lists, queue, tally, i, now)
-
-
-@scalar
-def predict_again(world, spheres, lists, queue, tally, i, now):
-    """The next event of i takes the place of the one that it had."""
-    remove(queue, spheres.number, i)
-    predict(world, spheres, lists, queue, tally, i, now)
-    insert(queue, spheres.number, i)
+        for k in (i, other):
+            remove(queue, number, k)
+            predict(world, spheres, lists, queue, tally, k, now)
+            insert(queue, number, k)
+            if other == i:
+                break
 
 
 @scalar

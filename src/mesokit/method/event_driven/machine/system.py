@@ -14,6 +14,7 @@ from mesokit.method.event_driven.machine import groups
 from mesokit.method.event_driven.machine.collide import Rules
 from mesokit.method.event_driven.machine.groups import Lists, Queue, Spheres, Tally, World
 from mesokit.method.event_driven.machine.run import advance, read, rebuild, synchronise
+from mesokit.method.event_driven.machine.walls import FREQUENCY, PHASE
 
 if TYPE_CHECKING:
     from mesokit.engine import State
@@ -23,6 +24,7 @@ WANTED = {2: 10.0, 3: 14.0}  # spheres on a list: more are looked at longer, few
 CLOSEST = 0.1  # of the largest diameter: the smallest shell
 ROOM = 24  # entries of a list, at first
 PER_BIN = 4.0  # events
+KEPT = ("state", "body", "boxes", "hits")
 
 
 class Given(NamedTuple):
@@ -79,12 +81,13 @@ class System:
         body[:, groups.LAST] = -np.inf
         spins = np.asarray(spins).reshape(self.n, -1)
         body[:, groups.SPIN : groups.SPIN + spins.shape[1]] = spins
-        self.begin_window()
+        synchronise(self.world, self.spheres, 0.0)
+        self.begin_window(0)
 
-    def begin_window(self) -> None:
-        """Bring all to now, sort them in memory, predict everything."""
-        synchronise(self.world, self.spheres, self.now)
-        self.now = 0.0
+    def begin_window(self, windows: int) -> None:
+        """Sort the spheres in memory and predict everything, in the window after so many."""
+        self.windows = windows
+        self.walls[:, PHASE] = self.walls[:, FREQUENCY] * (windows * self.window)
         self.sort()
         self.prepare()
 
@@ -110,7 +113,6 @@ class System:
         places = self.spheres.state[:, : self.d]
         side = np.maximum(1, np.array(self.given.size) // self.widest(0.0)).astype(int)
         cell = np.minimum((places * (side / np.array(self.given.size))).astype(int), side - 1)
-        cell[:, 0::2] = cell[:, 0::2]
         code = np.ravel_multi_index(tuple(np.clip(cell, 0, None).T), tuple(side))
         order = np.lexsort((self.spheres.number, code))
         for array in self.spheres:
@@ -186,14 +188,10 @@ class System:
         """Do all events up to a time within a window. Raises RunError for inelastic collapse."""
         while self.windows < windows:
             self._run(self.window)
-            self.now = self.window
-            self.walls[:, 13] += self.walls[:, 12] * self.window
             synchronise(self.world, self.spheres, self.window)
-            self.windows += 1
-            self.now = 0.0
             self.tally.sums[groups.BEGAN] -= self.window
-            self.sort()
-            self.prepare()
+            self.now = 0.0
+            self.begin_window(self.windows + 1)
         self._run(now)
         self.now = now
 
@@ -205,10 +203,21 @@ class System:
             if ended == groups.DONE:
                 return
             if ended == groups.COLLAPSED:
-                raise RunError("inelastic collapse")
+                raise RunError(self._collapse())
             self.room *= 2
             self.now = float(self.queue.time[self.queue.heap[0]])
             self.prepare()
+
+    def _collapse(self) -> str:
+        """Who collides without end, and when."""
+        i = int(self.queue.heap[0])
+        now = self.windows * self.window + float(self.queue.time[i])
+        many = np.argsort(-self.spheres.hits, kind="stable")[:2]
+        who = " and ".join(str(number) for number in sorted(self.spheres.number[many]))
+        return (
+            f"inelastic collapse at t = {now:.9g}: spheres {who} collide without end; set "
+            "spheres.collision.contact_time"
+        )
 
     def read(self) -> tuple[Array, Array]:
         """Places, not brought into the box, and velocities (n, d) now, by particle number."""
@@ -217,6 +226,31 @@ class System:
         boxes = np.empty_like(self.spheres.boxes)
         boxes[self.spheres.number] = self.spheres.boxes
         return places + boxes * np.array(self.given.size, float), velocities
+
+    def by_number(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Rows in the order of particle numbers."""
+        found = np.empty_like(values)
+        found[self.spheres.number] = values
+        return found
+
+    # --- checkpoints ----------------------------------------------------------------------------
+
+    def state(self) -> State:
+        """All that the next event depends on, by particle number."""
+        kept = {name: self.by_number(getattr(self.spheres, name)) for name in KEPT}
+        tally = {f"tally/{name}": array.copy() for name, array in self.tally._asdict().items()}
+        clock = {"windows": np.array(self.windows), "now": np.array(self.now)}
+        return {**kept, **tally, **clock}
+
+    def restore(self, state: State) -> None:
+        """Go on from a state."""
+        for name in KEPT:
+            getattr(self.spheres, name)[:] = state[name]
+        self.spheres.number[:] = np.arange(self.n)
+        for name, array in self.tally._asdict().items():
+            array[:] = state[f"tally/{name}"]
+        self.now = float(state["now"])
+        self.begin_window(int(state["windows"]))
 
 
 def aligned(n: int, width: int) -> Any:
