@@ -71,7 +71,8 @@ ROWS = {
         "report",
     ),
     "report/": ("case", "errors", "geometry", "io", "method.protocol", "observe", "report"),
-    "report/flow/state.py": ("case", "engine"),
+    "report/flow/state.py": ("case", "method.protocol"),
+    "report/flow/shaded.py": ("report", "scalar.cache"),
     "study/": (
         "case", "errors", "io", "method.protocol", "observe.shared", "report", "running",
         "simulation", "statistics", "study",

@@ -7,7 +7,7 @@ import numpy as np
 from mesokit.case.component import param
 from mesokit.method.protocol import Method, Summary
 from mesokit.observe import Observable
-from mesokit.spheres.groups import groups
+from mesokit.spheres.groups import FIELDS, groups
 from mesokit.spheres.made import made
 from mesokit.spheres.section import Spheres
 from mesokit.spheres.start.thermal import spins, velocities
@@ -91,7 +91,7 @@ METHOD = Method(
     engine=lambda case, threads, measures: Flying(case),
     start=Flying.start,
     whole_cells=False,
-    fields=("position", "velocity", "spin", "image", "id"),
+    fields=FIELDS,
     spheres=True,
     picture="disks",
 )

@@ -9,11 +9,11 @@
 /results     what each observable measured: value, error, expected, fit, x, comparisons
 
 What readers want decides three things. Coordinates on disk always have three columns, in 2D with
-z = 0 in a box one cell high (`dimension` of the group says 2); disks spin about z. Lengths and times are in units that
-have no SI name; their attribute is `reduced_unit`, as readers refuse a `unit` that they do not
-know (MDAnalysis: convert_units=False). Readers take row i of an observable to belong to frame i,
-so that profiles and correlations are kept under /results, and /observables leaves out what was
-not sampled at every frame.
+z = 0 in a box one cell high (`dimension` of the group says 2); disks spin about z. Lengths and
+times are in units that have no SI name; their attribute is `reduced_unit`, as readers refuse a
+`unit` that they do not know (MDAnalysis: convert_units=False). Readers take row i of an observable
+to belong to frame i, so that profiles and correlations are kept under /results, and /observables
+leaves out what was not sampled at every frame.
 
 Under Lees-Edwards shear the box is written as a triclinic one, whose second edge leans by how far
 the images have slid: that of the nearest image, between -L/2 and L/2.

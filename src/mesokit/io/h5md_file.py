@@ -1,8 +1,8 @@
 """Trajectories as H5MD for other programs: what they ask for beside what the standard does.
 
 MDAnalysis wants the group to be called `trajectory`, takes what it does not know of particles from
-`observables`, where spins are therefore linked to, and wants units that it knows: a cell is an angstrom
-here and a unit of time a picosecond, as all files are read that name no units.
+`observables`, where spins are therefore linked to, and wants units that it knows: a cell is an
+angstrom here and a unit of time a picosecond, as all files are read that name no units.
 """
 
 from __future__ import annotations

@@ -11,11 +11,11 @@ Array = NDArray[Any]
 
 
 class Particles(NamedTuple):
-    """What does not change from frame to frame: (n,) numbers from 0, kinds from 0, masses, diameters.
+    """What does not change from frame to frame: (n,) numbers from 0, kinds from 0, and masses.
 
-    `names` of the kinds; `molecule` (n,) from 0, -1 for single particles; `bonds` (b, 2) of rows;
-    `size` (3,) of the box, one cell deep in 2D; `closed` axes. `spheres`: whether they are of the
-    diameters, and not only drawn so.
+    `names` of the kinds; `diameter` (n,); `molecule` (n,) from 0, -1 for single particles; `bonds`
+    (b, 2) of rows; `size` (3,) of the box, one cell deep in 2D; `closed` axes. `spheres`: whether
+    particles are of these diameters, and not only drawn so.
     """
 
     number: NDArray[np.int64]

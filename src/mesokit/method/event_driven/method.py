@@ -11,7 +11,7 @@ from mesokit.method.event_driven.section import KEYS, Sections
 from mesokit.method.event_driven.summary import summary
 from mesokit.method.protocol import Columns, Method
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
-from mesokit.spheres.groups import groups
+from mesokit.spheres.groups import FIELDS, groups
 from mesokit.spheres.made import made
 from mesokit.spheres.start.first_state import ARRAYS, first_state, missing_files, starts
 
@@ -46,6 +46,9 @@ METHOD = Method(
     sections=Sections,
     keys=KEYS,
     whole_cells=False,
+    fields=FIELDS,
+    spheres=True,
+    picture="disks",
     observables=(MeanSquareDisplacement,),
     check=check,
     groups=groups,
