@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
+from mesokit.method.event_driven.heating.protocol import Motion
 from mesokit.method.event_driven.machine import groups
 from mesokit.method.event_driven.machine.collide import Rules
 from mesokit.method.event_driven.machine.system import Given, System
@@ -63,8 +64,14 @@ class EventDriven:
                 rules,
                 pair.contact_time,
                 window(self.case),
+                reach=pair.reach,
+                turn=self._heat if section.heating is not None else None,
             )
         )
+
+    def _heat(self, velocities: Array, turn: int) -> None:
+        motion = Motion(velocities, self.made.masses, self.case.run.seed, turn)
+        self.case.spheres.heating.act(motion, self.system.window)
 
     def start(self, placed: Placed) -> None:
         """Put the spheres where they start from."""

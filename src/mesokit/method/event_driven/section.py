@@ -7,6 +7,7 @@ from mesokit.case.describe.hints import Many
 from mesokit.geometry.shape import Wall
 from mesokit.method.event_driven.collision import SphereCollision
 from mesokit.method.event_driven.collision.hard import HardCollision
+from mesokit.method.event_driven.heating import Heating
 from mesokit.spheres.section import Spheres
 
 KEYS = {"walls": "wall"}  # field -> key in the file, where they differ: one [[wall]] each
@@ -28,6 +29,9 @@ class HardSpheres(Spheres):
     timestep: float = param(0.1, doc="time of a step", unit="time", ge=1e-9, le=1e9)
     collision: SphereCollision = param(
         HardCollision(), doc="what two spheres do to one another when they touch"
+    )
+    heating: Heating | None = param(
+        None, doc="what puts energy in, or takes it out, at fixed times (nothing unless said)"
     )
     spin_kT: float | None = param(
         None,

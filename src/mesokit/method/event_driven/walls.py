@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import show
 from mesokit.errors import CaseError
-from mesokit.geometry.region import Part, Room
+from mesokit.geometry.region import Part, Room, Term
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.surface import Surface
 from mesokit.method.event_driven.machine import walls as columns
@@ -45,6 +46,11 @@ def wall_rows(case: Case) -> WallRows:
     room = room_of(case)
     rows, contacts, surface, names = [], [], [], []
     for i, wall in enumerate(case.walls):
+        if not wall.closed_axes and any(length != int(length) for length in case.box.size):
+            raise CaseError(
+                f"wall[#{i + 1}]: solids other than plates need a box of whole lengths, not "
+                f"box.size = {show(list(case.box.size))}"
+            )
         if wall.virtual != "extrapolate":
             raise CaseError(f"wall[#{i + 1}].virtual = {show(wall.virtual)}: spheres need none")
         for body in wall.bodies(room, f"{type(wall).__name__.lower()}-{i + 1}"):
@@ -78,9 +84,9 @@ def _check(surface: Surface, i: int, case: Case) -> None:
 def _parts(body: Any, room: Room, i: int) -> Iterator[Part]:
     """The planes and round surfaces of a body, each once."""
     for piece in body.pieces:
-        if len(piece.term) != 1:
+        part = _alone(piece.term, room)
+        if part is None:
             raise CaseError(f"wall[#{i + 1}]: not with method 'event-driven'; {ALLOWED}")
-        (part,) = piece.term
         vibrates = body.surface.contact is not None and body.surface.contact.amplitude > 0
         if vibrates and part.kind != "half_space":
             raise CaseError(f"wall[#{i + 1}]: contact.amplitude: only plates vibrate")
@@ -89,10 +95,32 @@ def _parts(body: Any, room: Room, i: int) -> Iterator[Part]:
         elif part.kind == "half_space" and part.sign > 0:
             yield part
         elif part.kind in ROUND:
-            if all(0 <= x < length for x, length in zip(part.numbers, room.size, strict=False)):
+            if _in_box(part, room):
                 yield part  # its images are found by the nearest one
         else:
             raise CaseError(f"wall[#{i + 1}]: not with method 'event-driven'; {ALLOWED}")
+
+
+def _alone(term: Term, room: Room) -> Part | None:
+    """The one part of a term, its images aside; None of several parts."""
+    if len(term) == 1:
+        return term[0]
+    part = next((part for part in term if _in_box(part, room)), None)
+    if part is None or part.sign > 0 or part.kind not in ROUND:
+        return None
+    for other in term:  # images that do not overlap
+        way = [a - b for a, b in zip(other.numbers[:3], part.numbers[:3], strict=True)]
+        if any(x % length for x, length in zip(way, room.size, strict=False)):
+            return None
+        if other is not part and math.hypot(*way) < 2 * part.numbers[6]:
+            return None
+        if other.numbers[3:] != part.numbers[3:] or other.kind != part.kind:
+            return None
+    return part
+
+
+def _in_box(part: Part, room: Room) -> bool:
+    return all(0 <= x < length for x, length in zip(part.numbers, room.size, strict=False))
 
 
 def _sides(part: Part, dimension: int) -> Iterator[Part]:

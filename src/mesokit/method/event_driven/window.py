@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 COLLISIONS = 500.0  # of each sphere in a window, about
+BETWEEN_TURNS = 0.25  # collisions of a sphere
 LONGEST, SHORTEST = 2.0**20, 2.0**-20
 
 
@@ -33,10 +34,13 @@ def collision_rate(case: Case) -> float:
 
 
 def window(case: Case) -> float:
-    """A power of two, about 500 mean times between collisions; it does not depend on the timestep,
-    so that the length of a step changes no bit."""
-    rate = collision_rate(case)
+    """A power of two, about 500 mean times between collisions, or a quarter of one where velocities are changed
+    at the end of each; it does not depend on the timestep, so that the length of a step changes no
+    bit."""
+    rate, heating = collision_rate(case), case.spheres.heating
+    if heating is not None and heating.interval is not None:
+        return float(heating.interval)
     if rate == 0.0:
         return 1024.0
-    wanted = 2.0 ** round(math.log2(COLLISIONS / rate))
+    wanted = 2.0 ** round(math.log2((COLLISIONS if heating is None else BETWEEN_TURNS) / rate))
     return min(max(wanted, SHORTEST), LONGEST)

@@ -7,6 +7,7 @@ from typing import Any
 
 from mesokit.case.component import component, option
 from mesokit.case.registry import family
+from mesokit.method.event_driven.machine.touching import touching
 from mesokit.scalar.jit import generic
 
 
@@ -53,6 +54,11 @@ class SphereCollision(ABC):
         """Whether it keeps energy."""
 
     @property
+    def reach(self) -> float:
+        """Distance in diameters at which two spheres first feel one another."""
+        return 1.0
+
+    @property
     def rough(self) -> bool:
         """Whether it changes spins."""
         return self.tangential > -1.0 and self.friction != 0.0
@@ -61,3 +67,21 @@ class SphereCollision(ABC):
 @generic
 def restitution(rule, speed):
     """Normal velocity after over minus that before, of spheres that meet at this speed."""
+
+
+@generic
+def next_contact(rule, r, v, reach, growth):
+    """The time after which something happens between two spheres, infinite if nothing does.
+
+    r and v lead from one to the other; their surfaces meet at the distance reach + growth t.
+    """
+
+
+@generic
+def step_of_energy(rule, distance, reach):
+    """How much less energy the pair has nearer than this distance, and whether there is such a step
+    and not a collision of surfaces."""
+
+
+next_contact.otherwise(lambda rule, r, v, reach, growth: touching(r, v, reach, growth))
+step_of_energy.otherwise(lambda rule, distance, reach: (0.0, False))

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mesokit.method.event_driven.collision.protocol import restitution
+from mesokit.method.event_driven.collision.protocol import restitution, step_of_energy
 from mesokit.method.event_driven.machine.groups import (
     ELASTIC,
     INERTIA,
@@ -15,6 +15,7 @@ from mesokit.method.event_driven.machine.groups import (
     PAIRS,
     RADIUS,
     SPIN,
+    STEPS,
     VELOCITY,
     VIRIAL,
     WALLS,
@@ -108,7 +109,19 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
     r_i, v_i = bring_to(world, spheres, i, time)
     r_j, v_j = bring_to(world, spheres, j, time)
     apart = nearest_image(world, added_scaled(r_i, -1.0, r_j))
-    n = scaled(1.0 / math.sqrt(dot(apart, apart)), apart)
+    distance = math.sqrt(dot(apart, apart))
+    n = scaled(1.0 / distance, apart)
+    spheres.hits[i] += 1
+    spheres.hits[j] += 1
+    energy, is_step = step_of_energy(rules.pair, distance, state[i, RADIUS] + state[j, RADIUS])
+    if is_step:
+        masses = 1.0 / body[i, MASS] + 1.0 / body[j, MASS]
+        total = scaled(over_step(masses, dot(added_scaled(v_i, -1.0, v_j), n), energy), n)
+        put_entries(state, i, VELOCITY, added_scaled(v_i, 1.0 / body[i, MASS], total))
+        put_entries(state, j, VELOCITY, added_scaled(v_j, -1.0 / body[j, MASS], total))
+        tally.counts[STEPS] += 1
+        tally.sums[VIRIAL] += dot(apart, total)
+        return
     lever_i, lever_j = scaled(-state[i, RADIUS], n), scaled(state[j, RADIUS], n)
     u = added_scaled(
         surface_velocity(spheres, i, v_i, lever_i),
@@ -130,11 +143,21 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
     push(world, spheres, i, v_i, total, lever_i)
     push(world, spheres, j, v_j, scaled(-1.0, total), lever_j)
     body[i, LAST] = body[j, LAST] = time
-    spheres.hits[i] += 1
-    spheres.hits[j] += 1
     tally.counts[PAIRS] += 1
     tally.sums[VIRIAL] += dot(apart, total)
     tally.sums[LOST_ENERGY] += 0.5 * (1.0 - e * e) * closing * closing / masses
+
+
+@scalar
+def over_step(masses, parting, energy):
+    """The impulse along the line of centres at a step of the potential, which is lower by `energy`
+    within; `masses` is the sum of inverse masses, `parting` the velocity along the line."""
+    square = parting * parting
+    if parting < 0.0:
+        after = square + 2.0 * energy * masses
+        return (-math.sqrt(after) - parting) / masses if after > 0.0 else -2.0 * parting / masses
+    after = square - 2.0 * energy * masses
+    return (math.sqrt(after) - parting) / masses if after > 0.0 else -2.0 * parting / masses
 
 
 @scalar

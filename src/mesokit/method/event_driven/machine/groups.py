@@ -94,5 +94,5 @@ class Tally(NamedTuple):
 
 
 # places in `Tally.counts`, and in `Tally.sums`
-PAIRS, WALLS, ELASTIC, RENEWALS, PREDICTIONS, SINCE, COUNTS = 0, 1, 2, 3, 4, 5, 8
+PAIRS, WALLS, ELASTIC, STEPS, RENEWALS, PREDICTIONS, SINCE, COUNTS = 0, 1, 2, 3, 4, 5, 6, 8
 VIRIAL, LOST_ENERGY, BEGAN, USUAL, SUMS = 0, 1, 2, 3, 8

@@ -1,15 +1,15 @@
 """Free flight: where a sphere is at a time, and when two of them touch."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
+from mesokit.method.event_driven.collision.protocol import next_contact
 from mesokit.method.event_driven.machine.groups import RADIUS, TIME, VELOCITY
 from mesokit.scalar.elementary import rint
 from mesokit.scalar.intrinsics import floor, mul_add, with_item
 from mesokit.scalar.jit import elementwise, for_each, scalar
-from mesokit.scalar.vector import added_scaled, dot
+from mesokit.scalar.vector import added_scaled
 
 
 @elementwise
@@ -85,8 +85,8 @@ def mover(state, i, like):
 
 
 @scalar
-def meeting(world, one, other, now):
-    """The time at which two spheres touch, infinite if they do not.
+def meeting(world, rule, one, other, now):
+    """The time at which something happens between two spheres, infinite if nothing does.
 
     It follows from the states of both at the later of their own times, and does not depend on when
     it is asked for. Of their images those are meant that are nearest `now`. Spheres that overlap by
@@ -103,7 +103,7 @@ def meeting(world, one, other, now):
     apart = meant_image(world, apart, v, now - since)
     reach = one.radius + other.radius
     growth = reach * world.growth
-    return since + touching(apart, v, mul_add(growth, since, reach), growth)
+    return since + next_contact(rule, apart, v, mul_add(growth, since, reach), growth)
 
 
 @scalar
@@ -113,18 +113,3 @@ def meant_image(world, r, v, tau):
         boxes = rint(mul_add(tau, v[k], r[k]) * world.inverse[k])
         r = with_item(r, k, r[k] - boxes * world.size[k])
     return r
-
-
-@scalar
-def touching(r, v, reach, growth):
-    """The time after which |r + v t| = reach + growth t from above, infinite if never."""
-    a = dot(v, v) - growth * growth
-    b = dot(r, v) - reach * growth
-    c = dot(r, r) - reach * reach
-    square = b * b - a * c
-    if b >= 0.0:
-        late = c > 0.0 and a < 0.0 and square >= 0.0
-        return (b + math.sqrt(square)) / -a if late else math.inf
-    if square < 0.0:
-        return math.inf
-    return max(c, 0.0) / (math.sqrt(square) - b)

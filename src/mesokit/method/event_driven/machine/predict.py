@@ -21,7 +21,7 @@ from mesokit.scalar.jit import scalar
 
 
 @scalar
-def predict(world, spheres, lists, queue, tally, i, now):
+def predict(world, rules, spheres, lists, queue, tally, i, now):
     """Find the next event of sphere i, and write it down; the queue is told by the caller."""
     state, number = spheres.state, spheres.number
     r, v = place_at(world, state, i, now), velocity_at(world, state, i, now)
@@ -30,7 +30,7 @@ def predict(world, spheres, lists, queue, tally, i, now):
     one = mover(state, i, r)
     for a in range(lists.count[i]):
         j = lists.near[i, a]
-        time = meeting(world, one, mover(state, j, r), now)
+        time = meeting(world, rules.pair, one, mover(state, j, r), now)
         if time < best or (time == best and partner >= 0 and number[j] < number[partner]):
             best, partner = time, j
     for w in range(len(world.walls)):

@@ -58,7 +58,7 @@ def advance(world, rules, spheres, lists, queue, tally, end):
                 return COLLAPSED
         for k in (i, other):
             remove(queue, number, k)
-            predict(world, spheres, lists, queue, tally, k, now)
+            predict(world, rules, spheres, lists, queue, tally, k, now)
             insert(queue, number, k)
             if other == i:
                 break
@@ -87,7 +87,7 @@ def stalls(tally, n, now):
 
 
 @kernel
-def rebuild(world, spheres, lists, queue, tally, now):
+def rebuild(world, rules, spheres, lists, queue, tally, now):
     """All lists and all predictions anew, from the states as they are; whether lists had room."""
     n, room = len(spheres.number), True
     lists.head[:] = -1
@@ -103,7 +103,7 @@ def rebuild(world, spheres, lists, queue, tally, now):
     queue.now[0] = int(now * queue.per_time)
     queue.now[1] = 0
     for i in range(n):
-        predict(world, spheres, lists, queue, tally, i, now)
+        predict(world, rules, spheres, lists, queue, tally, i, now)
         insert(queue, spheres.number, i)
     return True
 

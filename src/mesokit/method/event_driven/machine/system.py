@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -30,7 +30,8 @@ KEPT = ("state", "body", "boxes", "hits")
 class Given(NamedTuple):
     """What a system is made of: lengths (d,) of the box, which axes are closed (d,), acceleration
     (d,), diameters, masses and moments of inertia (n,), walls (walls, 14), rules, the time within
-    which collisions lose nothing, the length of a window, relative growth of diameters per time."""
+    which collisions lose nothing, the length of a window, relative growth of diameters per time, and how far spheres feel one another in
+    diameters, and what changes velocities (n, d) by particle number at the end of a window."""
 
     size: Sequence[float]
     closed: Sequence[bool]
@@ -43,6 +44,8 @@ class Given(NamedTuple):
     lasting: float
     window: float
     growth: float = 0.0
+    reach: float = 1.0
+    turn: Callable[[Array, int], None] | None = None
 
 
 class System:
@@ -121,7 +124,12 @@ class System:
     def widest(self, shell: float) -> float:
         """How far apart centres of neighbours may be."""
         largest = 2.0 * float(self.spheres.state[:, groups.RADIUS].max())
-        return largest * (1.0 + self.growth * self.window) + 2.0 * shell
+        return largest * self.swelling + 2.0 * shell
+
+    @property
+    def swelling(self) -> float:
+        """How far two spheres feel one another at the end of a window, in diameters of now."""
+        return self.given.reach * (1.0 + self.growth * self.window)
 
     def prepare(self) -> None:
         """Lists and queue for the spheres as they are; larger ones where they did not suffice."""
@@ -136,9 +144,15 @@ class System:
     def _predict_all(self) -> None:
         while True:
             self.lists, self.queue = self._lists(), self._queue()
-            if rebuild(self.world, self.spheres, self.lists, self.queue, self.tally, self.now):
+            if self._rebuild():
                 break
             self.room *= 2
+
+    def _rebuild(self) -> bool:
+        rules, spheres = self.given.rules, self.spheres
+        return bool(
+            rebuild(self.world, rules, spheres, self.lists, self.queue, self.tally, self.now)
+        )
 
     def _lists(self) -> Lists:
         n, d, size = self.n, self.d, np.array(self.given.size, float)
@@ -153,7 +167,7 @@ class System:
         cells = tuple(min(c, max(1, int(4 * n ** (1 / d)))) for c in cells)
         return Lists(
             float(shell),
-            1.0 + self.growth * self.window,
+            self.swelling,
             cells,
             tuple(c / length for c, length in zip(cells, size, strict=True)),
             np.zeros((n, 4)),
@@ -191,9 +205,17 @@ class System:
             synchronise(self.world, self.spheres, self.window)
             self.tally.sums[groups.BEGAN] -= self.window
             self.now = 0.0
+            if self.given.turn is not None:
+                self._turn(self.given.turn)
             self.begin_window(self.windows + 1)
         self._run(now)
         self.now = now
+
+    def _turn(self, turn: Callable[[Array, int], None]) -> None:
+        columns = slice(groups.VELOCITY, groups.VELOCITY + self.d)
+        velocities = self.by_number(self.spheres.state[:, columns])
+        turn(velocities, self.windows)
+        self.spheres.state[:, columns] = velocities[self.spheres.number]
 
     def _run(self, end: float) -> None:
         while True:
