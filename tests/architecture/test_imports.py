@@ -45,6 +45,7 @@ ROWS = {
     "geometry/": ("case", "errors", "geometry", "scalar"),
     "potential/": ("case", "errors", "potential", "scalar", "theory"),
     "spheres/": ("case", "errors", "scalar", "spheres"),
+    "spheres/walls.py": ("case", "geometry"),
     "method/__init__.py": (),
     "method/protocol.py": ("case", "engine", "=method"),
     "method/mpcd/": MPCD,

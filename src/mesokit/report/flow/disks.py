@@ -20,7 +20,7 @@ EDGE, RIM = 0.04, 0.6  # its width, of the diameter; points at most
 SIGNED = 9.0  # points of a mean diameter, from which on disks show which way they turn
 MARK = 0.22  # of the diameter: the size of that mark
 PLAIN = "#7d9cc0"  # of all, where colours mean nothing
-DPI = 240  # of an image of spheres
+DPI = 200  # of an image of spheres, as figures are saved
 
 
 def reach(flow: Flow, region: Region) -> float:
