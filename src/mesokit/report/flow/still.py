@@ -104,7 +104,8 @@ def _spheres(flow: Flow) -> list[str]:
 def _few(case: Case, panels: Sequence[Panel], flows: Sequence[Flow]) -> str:
     """How many particles are shown, if not all."""
     for panel, flow in zip(panels, flows, strict=True):
-        if panel.NEEDS == "particles" and flow.particles is not None:
-            shown = len(flow.particles)
+        found = flow.particles if flow.spheres is None else flow.spheres.places
+        if panel.NEEDS in AT_ONCE and found is not None:
+            shown = len(found)
             return f"{shown} of {case.particles} particles" if 0 < shown < case.particles else ""
     return ""
