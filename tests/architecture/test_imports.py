@@ -45,6 +45,8 @@ ROWS = {
     "geometry/": ("case", "errors", "geometry", "scalar"),
     "potential/": ("case", "errors", "potential", "scalar", "theory"),
     "spheres/": ("case", "errors", "scalar", "spheres"),
+    "spheres/start/from_file.py": ("case", "errors", "io.snapshot_file", "spheres"),
+    "spheres/start/from_run.py": ("case", "errors", "io.earlier_spheres", "spheres"),
     "spheres/walls.py": ("case", "geometry"),
     "method/__init__.py": (),
     "method/protocol.py": ("case", "engine", "=method"),

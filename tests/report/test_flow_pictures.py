@@ -367,7 +367,7 @@ class TestRefusals:
             picture(case, results_of(case, 5), kind="vorticity", axes=("x", "z"))
 
     def test_runs_without_data_say_what_to_add(self, make_case):
-        for kind in KINDS:
+        for kind in OF_FLUIDS:
             with pytest.raises(RunError, match='\\[\\[observe\\]\\] quantity = "flow-frames"'):
                 picture(make_case(SIZE), {}, kind=kind)
 

@@ -384,5 +384,7 @@ def test_plates_stand_where_they_are_in_a_box_of_any_lengths():
     solids = Solids([Plates("y")], Box([9.3, 7.5]))
     points = np.array([[9.2, 7.4], [0.1, 7.6], [5.0, 1.0], [3.3, -0.5]])
     assert solids.distance(points) == pytest.approx([0.1, -0.1, 1.0, -0.5])
-    with pytest.raises(CaseError, match=r"wall\[#1\]: solids other than plates need a box of whole"):
+    with pytest.raises(
+        CaseError, match=r"wall\[#1\]: solids other than plates need a box of whole"
+    ):
         Solids([mesokit.Disk(centre=(4, 4), radius=1)], Box([9.3, 7.5]))

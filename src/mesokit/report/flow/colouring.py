@@ -97,7 +97,9 @@ def _speeds(case: Case, reach: float) -> Scale:
 def _spins(case: Case, reach: float) -> Scale:
     if case.box.dimension == 3:
         return Scale(0.0, reach, "viridis", labelled("angular speed", "1/tau"))
-    return Scale(-reach, reach, "RdBu_r", labelled(r"angular velocity ($\cdot$ > 0, $\times$ < 0)", "1/tau"))
+    return Scale(
+        -reach, reach, "RdBu_r", labelled(r"angular velocity ($\cdot$ > 0, $\times$ < 0)", "1/tau")
+    )
 
 
 def _counts(case: Case, reach: float) -> Scale:
