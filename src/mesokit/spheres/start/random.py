@@ -30,4 +30,6 @@ class RandomStart(SphereStart):
         walls = wall_rows(case).rows
         fraction = case.spheres.fraction(case.box)
         closed = room_of(case).closed
-        return Placed(grown(case.box.size, closed, made.diameters, walls, fraction, case.run.seed))
+        return Placed(
+            grown(case.box.size, closed, made.diameters, walls, fraction, case.run.seed)
+        )
