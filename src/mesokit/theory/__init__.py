@@ -52,6 +52,7 @@ from mesokit.theory.hookean_shear import (
     shear_heating,
     size_in_shear,
 )
+from mesokit.theory.kicked_temperature import kicked_temperature
 from mesokit.theory.kolmogorov import (
     kolmogorov_onset_time,
     kolmogorov_velocity,
@@ -195,6 +196,7 @@ __all__ = [
     "hagen_poiseuille_flow_rate",
     "hagen_poiseuille_velocity",
     "heat_at_walls",
+    "kicked_temperature",
     "kirkwood_diffusion",
     "kirkwood_in_cells",
     "kolmogorov_onset_time",
