@@ -66,9 +66,13 @@ def test_the_trajectory_has_sizes_masses_and_spins(ended):
         np.testing.assert_array_equal(group["spin/value"][-1], spins_of(engine))
 
 
-def test_a_run_made_longer_keeps_them(ended, flying):
+def test_a_run_made_longer_keeps_them(ended, flying, tmp_path):
     path = ended.directory.path
-    Simulation.resume(path, steps=40).run()
+    simulation = Simulation.resume(path, steps=40)
+    there = read_snapshot(str(mesokit.open(path).export(tmp_path / "a.gsd")))  # of segments again
+    np.testing.assert_allclose(there.diameters, ended.engine.diameters(), rtol=1e-7)
+    np.testing.assert_allclose(there.masses, ended.engine.masses(), rtol=1e-7)
+    simulation.run()
     frames = mesokit.open(path).trajectory
     assert len(frames) == 5
     np.testing.assert_array_equal(frames.diameter, ended.engine.diameters())

@@ -247,12 +247,12 @@ class TestColours:
         assert len(np.unique(fills, axis=0)) == 1  # none is near enough
 
     def test_neighbours_are_counted_by_both_radii(self, case_of):
-        places, diameters = [[2, 2], [3.7, 2], [6, 2]], [2.0, 1.0, 2.0]
-        frames = frames_of(places, diameter=diameters)
-        # gaps: 1.7 < 1.2 * 1.5, 2.3 > 1.2 * 1.5, and 4 across the edge
-        _, fills, ends = self.numbers(case_of((8, 5), number=3), frames, "neighbours")
+        places, diameters = [[2, 2], [3.7, 2], [7, 2], [8.9, 2]], [2.0, 1.0, 2.0, 1.0]
+        frames = frames_of(places, diameter=diameters)  # 1.7 is less than 1.2 * 1.5, 1.9 is more
+        _, fills, ends = self.numbers(case_of((12, 5), number=4), frames, "neighbours")
         assert ends == (-0.5, 1.5)
-        assert (fills[0] == fills[1]).all() and (fills[0] != fills[2]).any()
+        assert (fills[0] == fills[1]).all() and (fills[2] == fills[3]).all()
+        assert (fills[0] != fills[2]).any()
 
     def test_many_neighbours_share_a_colour(self, case_of):
         angle = np.arange(14) * 2 * np.pi / 14
