@@ -249,7 +249,7 @@ class TestColours:
     def test_neighbours_are_counted_by_both_radii(self, case_of):
         places, diameters = [[2, 2], [3.7, 2], [7, 2], [8.9, 2]], [2.0, 1.0, 2.0, 1.0]
         frames = frames_of(places, diameter=diameters)  # 1.7 is less than 1.2 * 1.5, 1.9 is more
-        _, fills, ends = self.numbers(case_of((12, 5), number=4), frames, "neighbours")
+        _, fills, ends = self.numbers(case_of((12, 8), number=4), frames, "neighbours")
         assert ends == (-0.5, 1.5)
         assert (fills[0] == fills[1]).all() and (fills[2] == fills[3]).all()
         assert (fills[0] != fills[2]).any()
