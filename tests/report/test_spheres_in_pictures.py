@@ -303,7 +303,7 @@ class TestWhatIsDrawn:
         assert len(drawn_disks(figure)[0]) >= 30
         for words in (
             ["plot", files.path, "--kind", "disks", "--colour", "spin", "--output", "a.png"],
-            ["plot", files.path, "--kind", "disks", "--region", "0:4,0:5", "--output", "b.svg"],
+            ["plot", files.path, "--region", "0:4,0:5", "--output", "b.svg"],
             ["animate", files.path, "--output", "a.gif", "--quiet"],
             ["check", files.path / "case.toml", "--picture", "c.png"],
         ):

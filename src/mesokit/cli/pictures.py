@@ -87,14 +87,20 @@ def _choices(command: Any) -> Any:
 @click.option("--width", type=click.FloatRange(2, 20), help="Inches; a column has 3.4.  [6.4]")
 @click.option("--output", type=FILE, help="The file of one picture: PNG, PDF or SVG.")
 def plot(run: Path, output: Path | None, width: float | None, **given: Any) -> None:
-    """Draw the results of RUN again, one of them, or with --kind a picture of the flow."""
+    """Draw the results of RUN again, one of them, or with --kind a picture of the flow.
+
+    Of spheres a --region or a --colour is enough to ask for one.
+    """
     import mesokit
+    from mesokit.method.protocol import method_of
 
     kind, name = given.pop("kind"), given.pop("result")
     ending = f".{given.pop('kind_of_file') or 'png'}"
-    _require_one(kind, name, output, given)
     require_run(run)
     files = mesokit.open(run)
+    if kind is None and name is None and any(value is not None for value in given.values()):
+        kind = method_of(files.case).picture or None
+    _require_one(kind, name, output, given)
     if not files.ended and files.results:
         say(f"{run}: the run {files.state}; what is drawn is so far")
     if kind is not None:

@@ -141,8 +141,12 @@ class Canvas:
 
 def _ticks(bar: Any, scale: Scale, most: int) -> None:
     """A few round numbers, or names of the whole ones."""
+    from matplotlib.ticker import FuncFormatter
+
     if scale.names:
         bar.set_ticks(range(len(scale.names)), labels=scale.names)
         bar.ax.minorticks_off()
-    else:
-        bar.ax.locator_params(nbins=most)
+        return
+    bar.ax.locator_params(nbins=most)
+    if bar.orientation == "horizontal":  # a power beside the bar would stand over its numbers
+        bar.ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
