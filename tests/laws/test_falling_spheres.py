@@ -128,7 +128,7 @@ def test_a_vibrating_floor_is_never_crossed():
         heights.append(height)
         gaps.append(height - amplitude * math.sin(frequency * engine.time))
     assert min(gaps) > -1e-10
-    assert engine.collisions[1] > 8
+    assert engine.collisions[1] > 4
     assert max(heights[2000:]) > 0.2  # it does not come to rest
 
 

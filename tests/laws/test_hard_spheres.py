@@ -42,7 +42,11 @@ def test_elastic_spheres_keep_momentum_and_energy_and_never_overlap(dimension):
 def test_perfectly_rough_spheres_keep_energy_and_turn_as_hot_as_they_fly(dimension):
     rough = HardCollision(1.0, tangential=1.0)
     engine = gas(
-        [14] * dimension, packing_fraction=0.3, timestep=0.5, collision=rough, spin_kT=0.0
+        [36 - 8 * dimension] * dimension,
+        packing_fraction=0.3,
+        timestep=0.5,
+        collision=rough,
+        spin_kT=0.0,
     ).engine
     first = sum(engine.energies().values())
     engine.advance(20)
@@ -156,18 +160,22 @@ def test_pressure_and_collision_rate(size, fraction, kinds):
 
 
 def test_a_gas_cools_by_the_law_of_haff():
-    e = 0.9
-    engine = gas([60, 60], packing_fraction=0.1, timestep=1.0, collision=HardCollision(e)).engine
-    engine.advance(20)  # from the lattice
-    before, first = engine.collisions[0], engine.totals()[2] / (engine.n - 1)
-    rate = theory.enskog_rate(engine.n / 3600, 1.0, first, engine.n * math.pi / 4 / 3600, 2)
-    engine.advance(30)
-    last = engine.totals()[2] / (engine.n - 1)
-    assert last / first == pytest.approx(
-        float(theory.haff_temperature(30.0, theory.haff_time(e, rate, 2))), rel=0.03
-    )
-    collisions = (engine.collisions[0] - before) / engine.n
-    assert last / first == pytest.approx(math.exp(-(1 - e**2) * collisions / 2), rel=0.015)
+    e, haff = 0.9, 39.51
+    engine = gas(
+        [177.25, 177.25],
+        number=4000,
+        timestep=haff / 2,
+        collision=HardCollision(e),
+        start=RandomStart(),
+    ).engine
+    # clustering makes it some percent hotter later on; 0.4482(18), 0.2537(11) from other programs
+    for turn, tolerance in ((1, 0.015), (2, 0.03)):
+        engine.advance(1)
+        kT = engine.totals()[2] / (engine.n - 1)
+        expected = float(theory.haff_temperature(engine.time, haff))
+        assert kT == pytest.approx(expected, rel=tolerance), turn
+        collisions = 2 * engine.collisions[0] / engine.n
+        assert kT == pytest.approx(math.exp(-(1 - e**2) * collisions / 2), rel=0.015)
 
 
 def test_kicks_hold_a_temperature():
@@ -206,10 +214,11 @@ def test_the_bath_of_andersen_has_a_temperature():
 
 def test_slow_collisions_of_viscoelastic_spheres_are_elastic():
     rule = Viscoelastic(0.1)
-    for speed, e in ((1e-10, 1 - 0.1e-2 + 0.6e-6), (1.0, 0.906)):
+    for speed, e in ((1e-5, 1 - 0.1e-1 + 0.6e-4), (1.0, 0.906)):
         engine = gas(
             [8, 8],
             number=2,
+            kT=speed**2,
             timestep=2.0 / speed,
             collision=rule,
             given={

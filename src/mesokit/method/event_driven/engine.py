@@ -15,7 +15,7 @@ from mesokit.method.event_driven.machine import groups
 from mesokit.method.event_driven.machine.collide import Rules
 from mesokit.method.event_driven.machine.system import Given, System
 from mesokit.method.event_driven.walls import room_of, wall_rows
-from mesokit.method.event_driven.window import window
+from mesokit.method.event_driven.window import instant, window
 from mesokit.spheres.made import made
 
 if TYPE_CHECKING:
@@ -64,6 +64,7 @@ class EventDriven:
                 rules,
                 pair.contact_time,
                 window(self.case),
+                instant=instant(self.case),
                 reach=pair.reach,
                 turn=self._heat if section.heating is not None else None,
             )
@@ -102,8 +103,8 @@ class EventDriven:
     def end_warmup(self) -> None:
         """Forget counts of events, and what walls have taken."""
         tally = self.system.tally
-        tally.counts[: groups.SINCE] = 0
-        tally.sums[: groups.BEGAN] = 0
+        tally.counts[: groups.IN_A_ROW] = 0
+        tally.sums[:] = 0
         tally.impulse[:] = 0
 
     @property

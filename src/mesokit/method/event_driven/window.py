@@ -11,8 +11,9 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 COLLISIONS = 500.0  # of each sphere in a window, about
+INSTANT = 1e-12  # of the mean time between two collisions
 BETWEEN_TURNS = 0.25  # collisions of a sphere
-LONGEST, SHORTEST = 2.0**20, 2.0**-20
+LONGEST, SHORTEST = 2.0**60, 2.0**-60
 
 
 def collision_rate(case: Case) -> float:
@@ -44,3 +45,10 @@ def window(case: Case) -> float:
         return 1024.0
     wanted = 2.0 ** round(math.log2((COLLISIONS if heating is None else BETWEEN_TURNS) / rate))
     return min(max(wanted, SHORTEST), LONGEST)
+
+
+def instant(case: Case) -> float:
+    """A time between two collisions that is none: where it comes many times in a row, time stands
+    still."""
+    rate = collision_rate(case)
+    return INSTANT / rate if rate > 0 else 0.0

@@ -29,7 +29,7 @@ def scattered(
     n, d = len(diameters), len(size)
     lengths = tuple(float(length) for length in size)
     inverse = tuple(0.0 if shut else 1.0 / x for shut, x in zip(closed, lengths, strict=True))
-    world = World(lengths, inverse, (0.0,) * d, 0.0, walls, 0.0)
+    world = World(lengths, inverse, (0.0,) * d, 0.0, walls, 0.0, 0.0)
     cells = tuple(int(max(1, x // diameters.max())) for x in lengths)
     cells = tuple(min(c, max(1, int(4 * n ** (1 / d)))) for c in cells)
     head, following = np.full(cells, -1, np.int32).ravel(), np.zeros(n, np.int32)

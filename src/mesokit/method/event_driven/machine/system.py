@@ -30,7 +30,7 @@ KEPT = ("state", "body", "boxes", "hits")
 class Given(NamedTuple):
     """What a system is made of: lengths (d,) of the box, which axes are closed (d,), acceleration
     (d,), diameters, masses and moments of inertia (n,), walls (walls, 14), rules, the time within
-    which collisions lose nothing, the length of a window, relative growth of diameters per time, and how far spheres feel one another in
+    which collisions lose nothing, the length of a window, a time that is none, relative growth of diameters per time, and how far spheres feel one another in
     diameters, and what changes velocities (n, d) by particle number at the end of a window."""
 
     size: Sequence[float]
@@ -43,6 +43,7 @@ class Given(NamedTuple):
     rules: Rules
     lasting: float
     window: float
+    instant: float = 0.0
     growth: float = 0.0
     reach: float = 1.0
     turn: Callable[[Array, int], None] | None = None
@@ -109,7 +110,8 @@ class System:
             0.0 if shut else 1.0 / length for shut, length in zip(given.closed, size, strict=True)
         )
         gravity = tuple(float(g) for g in given.gravity) or (0.0,) * self.d
-        return World(size, inverse, gravity, self.growth, self.walls, given.lasting)
+        lasting, instant = given.lasting, given.instant
+        return World(size, inverse, gravity, self.growth, self.walls, lasting, instant)
 
     def sort(self) -> None:
         """Neighbours in space become neighbours in memory; changes no bit of the motion."""
@@ -203,7 +205,6 @@ class System:
         while self.windows < windows:
             self._run(self.window)
             synchronise(self.world, self.spheres, self.window)
-            self.tally.sums[groups.BEGAN] -= self.window
             self.now = 0.0
             if self.given.turn is not None:
                 self._turn(self.given.turn)

@@ -117,7 +117,20 @@ def approach(world, state, i, w, tau):
         else:  # for as long as it does not come nearer to the middle than a quarter
             bend += (square + 0.5 * pull * size) / (0.25 * size)
             longest = parabola(0.25 * size, math.sqrt(square), pull)
+    elif walls[w, KIND] == OUTSIDE:  # until it may have come to another image of the wall
+        between = next_image(world, w) - 2.0 * (walls[w, ROUND] + radius)
+        longest = parabola(max(gap, between - gap), math.sqrt(dot(moving, moving)), pull)
     return gap, closing, bend, longest
+
+
+@scalar
+def next_image(world, w):
+    """How far away the nearest image of a round wall is, infinite if there is none."""
+    nearest = math.inf
+    for k in range(len(world.size)):
+        if world.inverse[k] > 0.0 and abs(world.walls[w, AXIS + k]) < 0.999:
+            nearest = min(nearest, world.size[k])
+    return nearest
 
 
 @scalar
