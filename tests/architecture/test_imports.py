@@ -53,6 +53,10 @@ ROWS = {
     "method/mpcd/start/": START,
     "method/mpcd/start/first_state.py": (*MPCD, "execute", "io"),
     "method/mpcd/method.py": (*MPCD, "engine", "execute", "io", "method.protocol", "observe"),
+    "method/flock/": (
+        "case", "engine", "errors", "execute.cpu.threads", "geometry", "io", "method.flock",
+        "method.protocol", "observe", "running.cores", "scalar", "statistics", "theory",
+    ),
     "method/brownian/": (
         "case", "engine", "errors", "method.brownian", "method.protocol", "observe",
         "running.cores", "scalar", "statistics",
