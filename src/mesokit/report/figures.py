@@ -15,6 +15,7 @@ from mesokit.report import (
     correlation,
     curve,
     field,
+    flocks,
     forces,
     probe,
     profile,
@@ -57,6 +58,9 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "signal": probe.draw,
     "tracks": tracks.draw,
     "histogram": histogram.draw,
+    "order": flocks.draw_order,
+    "bands": flocks.draw_bands,
+    "clusters": flocks.draw_clusters,
 }
 MAPS = ("map", "frames")
 LEAST_HEIGHT, LEAST_FONT = 0.7, 0.75  # of the usual, however narrow a figure is

@@ -15,6 +15,7 @@ from mesokit.geometry.solids.solids import Solids, solids_of
 from mesokit.method.flock.checks import check
 from mesokit.method.flock.displacement import Displacement
 from mesokit.method.flock.engine.flocks import Flocks, engine
+from mesokit.method.flock.observe import OBSERVABLES
 from mesokit.method.flock.section import KEYS, Sections
 from mesokit.method.flock.start import FirstState, first_state
 from mesokit.method.flock.summary import summary
@@ -74,7 +75,7 @@ METHOD = Method(
     sections=Sections,
     keys=KEYS,
     whole_cells=False,
-    observables=(MeanSquareDisplacement,),
+    observables=(MeanSquareDisplacement, *OBSERVABLES),
     expected={"mean-square-displacement": Displacement},
     check=check,
     groups=groups,

@@ -42,7 +42,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     rows: list[Row] = [
         ("birds", f"{case.particles:,}".replace(",", " "), ""),
         ("density", number(density, case.box.density_unit), ""),
-        ("birds in reach", number(in_reach), "mean where they are evenly spread, itself included"),
+        ("birds in reach", number(in_reach), "others, where birds are spread at random"),
         ("way of a step", number(way, "a"), f"{way / given.radius:.3g} of the reach"),
         ("order without order", number(theory.disordered_order(case.particles, d)), "chance alone"),
     ]
