@@ -59,6 +59,7 @@ def draw_bands(result: Result, figure: Any, ax: Any) -> None:
         panel.set_ylabel(label)
         panel.set_ylim(bottom=0)
     ax.axhline(1, color="black", lw=1, ls=":")
+    ax.set_xlim(0, along[0] + along[-1])
     legend_above(ax)
     (below or ax).set_xlabel(
         labelled("place along the flight, crest in the middle", result.units["along"])
