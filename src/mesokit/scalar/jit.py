@@ -26,7 +26,7 @@ def scalar(function: Callable) -> Any:
     >>> kinetic_energy(1.0, 2.0)
     2.0
     """
-    return part(function, forceinline=True)
+    return part(function, forceinline=True, _nrt=False)
 
 
 def seldom(function: Callable) -> Any:

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.scalar.cache import kernel
-from mesokit.scalar.random import METHOD, Counter, unit, words
+from mesokit.spheres.draws import uniform_rows
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 Array = NDArray[np.float64]
-SIZES = METHOD + np.uint64(1000)  # purpose of the random numbers of diameters
+SIZES = 1000  # purpose of the random numbers of diameters, above METHOD
 INERTIA = {2: 1 / 8, 3: 1 / 10}  # moment of inertia over m diameter^2 of a disk and a sphere
 
 
@@ -35,19 +34,10 @@ def made(case: Case) -> Made:
     section, box = case.spheres, case.box
     d, counts = box.dimension, section.counts(box)
     kinds = np.repeat(np.arange(len(counts)), counts)
-    uniform = np.empty(len(kinds))
-    draw(Counter(np.uint64(case.run.seed), np.uint64(0)), uniform)
+    uniform = uniform_rows(case.run.seed, 0, SIZES, len(kinds))
     middle = np.array([kind.diameter for kind in section.kinds])[kinds]
     spread = np.array([kind.spread for kind in section.kinds])[kinds]
     relative = 1 + spread * (2 * uniform - 1)
     mass = np.array([kind.mean_mass(d) for kind in section.kinds])[kinds] * relative**d
     diameters = middle * relative * section.scale(box)
     return Made(diameters, mass, INERTIA[d] * mass * diameters**2, kinds)
-
-
-@kernel
-def draw(counter, numbers):
-    """Uniform random numbers, one for each sphere."""
-    for i in range(len(numbers)):
-        high, low, _, _ = words(counter, SIZES, i, 0)
-        numbers[i] = unit(high, low)

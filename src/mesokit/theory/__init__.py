@@ -30,13 +30,16 @@ from mesokit.theory.dumbbell_shear import (
     fene_p_thinning,
     pair_friction,
 )
+from mesokit.theory.enskog_rate import contact_value, enskog_rate
 from mesokit.theory.finite_size import viscosity_renormalised
 from mesokit.theory.gamma import cell_energy_cdf, cell_energy_pdf, cell_energy_variance
 from mesokit.theory.gaussian_structure_factor import gaussian_structure_factor
+from mesokit.theory.haff import haff_temperature, haff_time
 from mesokit.theory.hagen_poiseuille import (
     hagen_poiseuille_flow_rate,
     hagen_poiseuille_velocity,
 )
+from mesokit.theory.hard_sphere_pressure import compressibility
 from mesokit.theory.harmonic_spring import Spring, mean_square_bond, spring, spring_of_bond
 from mesokit.theory.harmonic_trap import TrappedShape, normal_in_box, trapped_shape
 from mesokit.theory.heading_memory import angular_memory, vectorial_memory
@@ -67,6 +70,7 @@ from mesokit.theory.mean_square_displacement import (
     decorrelation_from_diffusion,
     msd_molecular_chaos,
 )
+from mesokit.theory.mixture_pressure import mixture_compressibility
 from mesokit.theory.normal_modes import (
     NormalModes,
     linear_modes,
@@ -168,6 +172,8 @@ __all__ = [
     "chain_exponents",
     "channel_cylinder",
     "complex_viscosity",
+    "compressibility",
+    "contact_value",
     "cosine_cdf",
     "couette_velocity",
     "cubic_array_drag",
@@ -182,6 +188,7 @@ __all__ = [
     "disordered_order",
     "dumbbell_thinning",
     "dumbbell_viscosity",
+    "enskog_rate",
     "end_to_end_cdf",
     "enskog_friction",
     "fene_p_thinning",
@@ -189,6 +196,8 @@ __all__ = [
     "gaussian_stress_kernel",
     "gaussian_structure_factor",
     "gyration_cdf",
+    "haff_temperature",
+    "haff_time",
     "hagen_poiseuille_flow_rate",
     "hagen_poiseuille_velocity",
     "heat_at_walls",
@@ -212,6 +221,7 @@ __all__ = [
     "mean_square_end_to_end",
     "mean_square_gyration",
     "mean_square_order",
+    "mixture_compressibility",
     "msd_molecular_chaos",
     "msd_persistent_walk",
     "msd_rouse_beads",

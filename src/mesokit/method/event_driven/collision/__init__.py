@@ -1,0 +1,10 @@
+"""What two hard spheres do to one another. A new rule is a file here."""
+
+from __future__ import annotations
+
+from mesokit.case.registry import parts_in
+from mesokit.method.event_driven.collision.protocol import SphereCollision
+
+RULES = parts_in(__path__, __name__, SphereCollision)
+
+__all__ = ["RULES", "SphereCollision"]

@@ -1,0 +1,53 @@
+"""Spheres that lose more the faster they meet."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal, NamedTuple
+
+from mesokit.case.component import component, param, tag
+from mesokit.method.event_driven.collision.protocol import SphereCollision, restitution
+
+
+@component
+class Viscoelastic(SphereCollision):
+    """e(v) = 1 - A v^(1/5) + (3/5) A^2 v^(2/5), the first terms of viscoelastic spheres.
+
+    After Schwager and Poeschel (1998), Phys. Rev. E 57, 650, eq. 20; not below `least`. Slow
+    collisions are elastic.
+
+    Examples
+    --------
+    >>> Viscoelastic(dissipation=0.1).elastic
+    False
+    """
+
+    rule: Literal["viscoelastic"] = tag("viscoelastic")
+    dissipation: float = param(0.1, doc="A", unit="(a/time)^(-1/5)", gt=0, le=1e3)
+    least: float = param(
+        0.0, doc="coefficient of restitution below which it does not fall", ge=0, le=1
+    )
+
+    @property
+    def elastic(self) -> bool:
+        """Whether it keeps energy."""
+        return False
+
+    def kernel(self) -> Falling:
+        """Parameters for the scalar function below."""
+        return Falling(self.dissipation, self.least)
+
+
+class Falling(NamedTuple):
+    """A, and the least value."""
+
+    dissipation: float
+    least: float
+
+
+@restitution.register(Falling)
+def _(rule, speed):
+    x = rule.dissipation * math.pow(speed, 0.2)
+    # the series has its minimum at x = 5/6, beyond which it means nothing
+    x = min(x, 5.0 / 6.0)
+    return max(1.0 - x + 0.6 * x * x, rule.least)

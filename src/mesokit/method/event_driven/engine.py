@@ -1,0 +1,199 @@
+"""The engine of event-driven dynamics, as a simulation and its observables know it."""
+
+from __future__ import annotations
+
+import math
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import RunError
+from mesokit.method.event_driven.heating.protocol import Motion
+from mesokit.method.event_driven.machine import groups
+from mesokit.method.event_driven.machine.collide import Rules
+from mesokit.method.event_driven.machine.system import Given, System
+from mesokit.method.event_driven.walls import room_of, wall_rows
+from mesokit.method.event_driven.window import window
+from mesokit.spheres.made import made
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.engine import Array, Integers, State
+    from mesokit.spheres.start.protocol import Placed
+
+
+class EventDriven:
+    """Engine of event-driven dynamics (`mesokit.engine.Engine`).
+
+    One thread: events have an order. Places and velocities at the end of a step are read off,
+    nothing is brought there.
+    """
+
+    def __init__(self, case: Case, threads: int = 1) -> None:
+        section, box = case.spheres, case.box
+        self.case, self.made = case, made(case)
+        self.n, self.dimension = len(self.made.diameters), box.dimension
+        self.box, self.timestep = np.array(box.size, float), section.timestep
+        self.walls, self.step = wall_rows(case), 0
+        self.system = self._system(self.made.diameters)
+        self.seconds = {"events": 0.0}
+        self._seen: tuple[Array, Array] | None = None
+
+    def _system(self, diameters: Array) -> System:
+        section, own = self.case.spheres, self.made
+        pair = section.collision
+        friction = math.inf if pair.friction is None else pair.friction
+        rules = Rules(
+            pair.kernel(),
+            pair.tangential,
+            friction,
+            self.walls.contacts,
+            np.uint64(self.case.run.seed),
+        )
+        return System(
+            Given(
+                tuple(self.box),
+                room_of(self.case).closed,
+                section.gravity,
+                diameters,
+                own.masses,
+                own.inertia * (diameters / own.diameters) ** 2,
+                self.walls.rows,
+                rules,
+                pair.contact_time,
+                window(self.case),
+                reach=pair.reach,
+                turn=self._heat if section.heating is not None else None,
+            )
+        )
+
+    def _heat(self, velocities: Array, turn: int) -> None:
+        motion = Motion(velocities, self.made.masses, self.case.run.seed, turn)
+        self.case.spheres.heating.act(motion, self.system.window)
+
+    def start(self, placed: Placed) -> None:
+        """Put the spheres where they start from."""
+        if placed.diameters is not None:
+            self.system = self._system(placed.diameters)
+        self.system.fill(placed.positions, placed.velocities, placed.spins)
+        self._seen = None
+
+    def advance(self, steps: int, measure_stress: bool = False) -> None:
+        """Do the events of some steps. Raises RunError for inelastic collapse."""
+        began = perf_counter()
+        self._seen = None
+        self.system.run_to(*self._clock(self.step + steps))
+        self.step += steps
+        self.seconds["events"] += perf_counter() - began
+
+    def _clock(self, step: int) -> tuple[int, float]:
+        """How many windows are over after so many steps, and the time since the last of them."""
+        time, length = step * self.timestep, self.system.window
+        windows = math.floor(time / length)
+        return windows, time - windows * length
+
+    def check(self) -> None:
+        """Raise RunError if numbers are none any more."""
+        if not np.isfinite(self._read()[1]).all():
+            raise RunError("velocities are no numbers any more")
+
+    def end_warmup(self) -> None:
+        """Forget counts of events, and what walls have taken."""
+        tally = self.system.tally
+        tally.counts[: groups.SINCE] = 0
+        tally.sums[: groups.BEGAN] = 0
+        tally.impulse[:] = 0
+
+    @property
+    def time(self) -> float:
+        """Time since the start of the warm-up."""
+        return self.step * self.timestep
+
+    # --- what observables may ask ---------------------------------------------------------------
+
+    def _read(self) -> tuple[Array, Array]:
+        if self._seen is None:
+            self._seen = self.system.read()
+        return self._seen
+
+    def positions(self, ids: Integers | None = None, unwrapped: bool = False) -> Array:
+        """Places (n, d), in the box or where the spheres have gone to."""
+        places = self._read()[0][_chosen(ids)]
+        return places.copy() if unwrapped else self._inside(places)
+
+    def _inside(self, places: Array) -> Array:
+        inside = places - np.floor(places / self.box) * self._repeats * self.box
+        return np.where((inside >= self.box) & (self._repeats > 0), 0.0, inside)
+
+    @property
+    def _repeats(self) -> Array:
+        return np.array([float(not shut) for shut in self.system.given.closed])
+
+    def images(self, ids: Integers | None = None) -> NDArray[np.int32]:
+        """How many boxes away the spheres are, (n, d)."""
+        places = self._read()[0][_chosen(ids)]
+        return (np.floor(places / self.box) * self._repeats).astype(np.int32)
+
+    def velocities(self, ids: Integers | None = None) -> Array:
+        """Velocities (n, d)."""
+        return self._read()[1][_chosen(ids)].copy()
+
+    def masses(self, ids: Integers | None = None) -> Array:
+        """Masses (n,)."""
+        return self.made.masses[_chosen(ids)]
+
+    def diameters(self, ids: Integers | None = None) -> Array:
+        """Diameters (n,)."""
+        return self.system.given.diameters[_chosen(ids)]
+
+    def spins(self, ids: Integers | None = None) -> Array:
+        """Angular velocities, (n,) in 2D and (n, 3) in 3D."""
+        columns = slice(groups.SPIN, groups.SPIN + (1 if self.dimension == 2 else 3))
+        found = self.system.by_number(self.system.spheres.body[:, columns])[_chosen(ids)]
+        return found[:, 0] if self.dimension == 2 else found
+
+    def energies(self) -> dict[str, float]:
+        """Kinetic energy of translation and of rotation, and potential energy in gravity."""
+        v, spins = self._read()[1], self.spins().reshape(self.n, -1)
+        gravity = np.array(self.case.spheres.gravity or (0.0,) * self.dimension)
+        places = self.positions(unwrapped=True)
+        return {
+            "translation": 0.5 * float(self.made.masses @ (v * v).sum(axis=1)),
+            "rotation": 0.5 * float(self.system.given.inertia @ (spins * spins).sum(axis=1)),
+            "potential": -float(self.made.masses @ (places @ gravity)),
+        }
+
+    def totals(self) -> tuple[int, Array, float]:
+        """Number, momentum (d,) and kinetic energy of translation."""
+        v = self._read()[1]
+        return self.n, self.made.masses @ v, self.energies()["translation"]
+
+    @property
+    def collisions(self) -> tuple[int, int, int]:
+        """Collisions of pairs and with walls since the warm-up, and how many of both the contact
+        time has made elastic."""
+        counts = self.system.tally.counts
+        return int(counts[groups.PAIRS]), int(counts[groups.WALLS]), int(counts[groups.ELASTIC])
+
+    @property
+    def virial(self) -> float:
+        """Sum of r.dp over collisions of pairs since the warm-up."""
+        return float(self.system.tally.sums[groups.VIRIAL])
+
+    # --- checkpoints ----------------------------------------------------------------------------
+
+    def state(self) -> State:
+        """Everything that the next event depends on, by particle number."""
+        return {**self.system.state(), "step": np.array(self.step)}
+
+    def restore(self, state: State) -> None:
+        """Go on from a state."""
+        self.system.restore({name: array for name, array in state.items() if name != "step"})
+        self.step = int(state["step"])
+        self._seen = None
+
+
+def _chosen(ids: Integers | None) -> Any:
+    return slice(None) if ids is None else ids

@@ -1,0 +1,71 @@
+"""Dense, disordered starts: spheres grow while they move (Lubachevsky and Stillinger 1990)."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import CaseError
+from mesokit.method.event_driven.collision.hard import Constant
+from mesokit.method.event_driven.machine.collide import Rules
+from mesokit.method.event_driven.machine.groups import RADIUS, VELOCITY
+from mesokit.method.event_driven.machine.scatter import scattered
+from mesokit.method.event_driven.machine.system import Given, System
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+Array = NDArray[np.float64]
+DILUTE = {2: 0.20, 3: 0.10}  # packing fraction of the spheres that begin to grow
+SPEED = 0.05  # of growth of a mean diameter, in thermal velocities
+IN_WINDOW = 0.05  # relative growth
+
+
+def grown(
+    size: Sequence[float],
+    closed: Sequence[bool],
+    diameters: Array,
+    walls: Array,
+    fraction: float,
+    seed: int,
+) -> Array:
+    """Places (n, d) of spheres of these diameters (n,), none on another.
+
+    They are put in small, at random, and grow while they fly and collide until they have their
+    size. Raises CaseError where there is no room for them.
+    """
+    d, n = len(size), len(diameters)
+    small = min(1.0, (DILUTE[d] / fraction) ** (1 / d))
+    places = scattered(size, closed, small * diameters, walls, seed)
+    if small == 1.0:
+        return places
+    growth = SPEED / (small * float(diameters.mean()))
+    wall_rules = np.tile([1.0, -1.0, 0.0, 0.0], (len(walls), 1))
+    rules = Rules(Constant(1.0), -1.0, 0.0, wall_rules, np.uint64(seed))
+    inertia = np.ones(n)
+    window = IN_WINDOW / growth
+    given = Given(size, closed, (), small * diameters, np.ones(n), inertia, walls, rules, 0.0, window, growth)
+    system = System(given)
+    v = np.random.default_rng(seed).normal(size=(n, d))
+    system.fill(places, v / math.sqrt((v * v).mean()), np.zeros((n, 1 if d == 2 else 3)))
+    until = (1 / small - 1) / growth
+    windows = math.floor(until / window)
+    for k in range(windows):
+        system.run_to(k + 1, 0.0)
+        _cool(system)
+    system.run_to(windows, until - windows * window)
+    places, _ = system.read()
+    if float(system.spheres.state[:, RADIUS].max()) <= 0 or not np.isfinite(places).all():
+        raise CaseError("spheres.start: no room for them")
+    return places
+
+
+def _cool(system: System) -> None:
+    """What growing puts in is taken out."""
+    columns = slice(VELOCITY, VELOCITY + system.d)
+    v = system.spheres.state[:, columns]
+    v /= math.sqrt((v * v).mean())
+    system.prepare()

@@ -1,0 +1,10 @@
+"""What puts energy into hard spheres, or takes it out. A new one is a file here."""
+
+from __future__ import annotations
+
+from mesokit.case.registry import parts_in
+from mesokit.method.event_driven.heating.protocol import Heating
+
+HEATINGS = parts_in(__path__, __name__, Heating)
+
+__all__ = ["HEATINGS", "Heating"]

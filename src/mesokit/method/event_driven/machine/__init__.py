@@ -1,0 +1,1 @@
+"""The compiled machinery: spheres in memory, who is near whom, what comes next, what happens then."""

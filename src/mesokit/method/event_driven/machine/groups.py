@@ -1,0 +1,98 @@
+"""What the compiled functions work on, by name.
+
+Spheres lie in memory in an order of their own (places); `number` is the particle number of each.
+All times are since the start of the window in which the run is.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+# columns of `Spheres.state`, a row of 64 bytes for each
+TIME, VELOCITY, RADIUS, WIDTH = 3, 4, 7, 8
+# columns of `Spheres.body`
+MASS, INERTIA, LAST, SPIN, BODY_WIDTH = 0, 1, 2, 3, 6
+# what a sphere's next event is with, where it is with no other sphere
+LEAVES, NOTHING = -1, -2  # the surroundings of its list; never
+FIRST_WALL = -3  # and below: walls, -3 - number
+# how `advance` ends
+DONE, FULL, COLLAPSED, LOST = 0, 1, 2, 3
+
+
+class World(NamedTuple):
+    """What does not change: lengths (d,) of the box, their inverses (d,; 0 along closed axes),
+    acceleration (d,), relative rate at which diameters grow, walls (walls, 16), and `lasting`:
+    collisions less than this after another are elastic."""
+
+    size: tuple[float, ...]
+    inverse: tuple[float, ...]
+    gravity: tuple[float, ...]
+    growth: float
+    walls: Any
+    lasting: float
+
+
+class Spheres(NamedTuple):
+    """state (n, 8): place, own time, velocity, radius; body (n, 6): mass, moment of inertia, time
+    of the last collision, spin; boxes (n, d) away; number (n,); hits (n,): collisions so far."""
+
+    state: Any
+    body: Any
+    boxes: Any
+    number: Any
+    hits: Any
+
+
+class Lists(NamedTuple):
+    """Who may meet whom before one of them is `shell` away from where its list was made.
+
+    centre (n, 4): these places, and how far one may go; cells (d,), per_length (d,): of the grid;
+    cell (n,), head (cells,), following (n,), before (n,): the centres of each cell, linked;
+    count (n,), near (n, most): the lists.
+    """
+
+    shell: float
+    widest: float
+    cells: tuple[int, ...]
+    per_length: tuple[float, ...]
+    centre: Any
+    cell: Any
+    head: Any
+    following: Any
+    before: Any
+    count: Any
+    near: Any
+
+
+class Queue(NamedTuple):
+    """The next event of each sphere (Paul 2007): bins of equal time, the current one as a heap.
+
+    time (n,), partner (n,), partner_hits (n,): the events; per_time: bins in a unit of time;
+    first (bins,), after (n,), previous (n,): the events of a bin, linked; bin_of (n,): -1 in the
+    heap; heap (n,), place (n,) in it; now (2,): current bin, size of the heap.
+    """
+
+    per_time: float
+    time: Any
+    partner: Any
+    partner_hits: Any
+    first: Any
+    after: Any
+    previous: Any
+    bin_of: Any
+    heap: Any
+    place: Any
+    now: Any
+
+
+class Tally(NamedTuple):
+    """What has happened: numbers (8,) and momentum that each wall has taken (walls, d)."""
+
+    counts: Any
+    sums: Any
+    impulse: Any
+
+
+# places in `Tally.counts`, and in `Tally.sums`
+PAIRS, WALLS, ELASTIC, STEPS, RENEWALS, PREDICTIONS, SINCE, COUNTS = 0, 1, 2, 3, 4, 5, 6, 8
+VIRIAL, LOST_ENERGY, BEGAN, USUAL, SUMS = 0, 1, 2, 3, 8

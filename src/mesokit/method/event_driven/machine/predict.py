@@ -1,0 +1,42 @@
+"""What happens to a sphere next."""
+
+import math
+
+from mesokit.method.event_driven.machine.groups import (
+    FIRST_WALL,
+    LEAVES,
+    NOTHING,
+    PREDICTIONS,
+)
+from mesokit.method.event_driven.machine.lists import time_to_leave
+from mesokit.method.event_driven.machine.motion import (
+    entries,
+    meeting,
+    mover,
+    place_at,
+    velocity_at,
+)
+from mesokit.method.event_driven.machine.walls import time_to_wall
+from mesokit.scalar.jit import scalar
+
+
+@scalar
+def predict(world, rules, spheres, lists, queue, tally, i, now):
+    """Find the next event of sphere i, and write it down; the queue is told by the caller."""
+    state, number = spheres.state, spheres.number
+    r, v = place_at(world, state, i, now), velocity_at(world, state, i, now)
+    leaves = time_to_leave(world, lists, r, v, entries(lists.centre, i, 0, r))
+    best, partner = now + leaves, LEAVES if leaves < math.inf else NOTHING
+    one = mover(state, i, r)
+    for a in range(lists.count[i]):
+        j = lists.near[i, a]
+        time = meeting(world, rules.pair, one, mover(state, j, r), now)
+        if time < best or (time == best and partner >= 0 and number[j] < number[partner]):
+            best, partner = time, j
+    for w in range(len(world.walls)):
+        time = time_to_wall(world, state, i, w, best)
+        if time < best:
+            best, partner = time, FIRST_WALL - w
+    queue.time[i], queue.partner[i] = best, partner
+    queue.partner_hits[i] = spheres.hits[partner] if partner >= 0 else 0
+    tally.counts[PREDICTIONS] += 1

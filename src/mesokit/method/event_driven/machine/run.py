@@ -1,0 +1,127 @@
+"""The loops: all events up to a time, and all predictions made anew."""
+
+from mesokit.method.event_driven.machine.collide import collide_pair, collide_wall
+from mesokit.method.event_driven.machine.groups import (
+    BEGAN,
+    COLLAPSED,
+    DONE,
+    FIRST_WALL,
+    FULL,
+    LAST,
+    LEAVES,
+    RADIUS,
+    RENEWALS,
+    SINCE,
+    TIME,
+    USUAL,
+)
+from mesokit.method.event_driven.machine.lists import find, link, renew
+from mesokit.method.event_driven.machine.motion import (
+    bring_to,
+    place_at,
+    put_entries,
+    velocity_at,
+)
+from mesokit.method.event_driven.machine.predict import predict
+from mesokit.method.event_driven.machine.queue import insert, next_event, remove
+from mesokit.scalar.cache import kernel
+from mesokit.scalar.intrinsics import floor, with_item
+from mesokit.scalar.jit import scalar
+
+ROUND = 100  # collisions of each sphere after which it is asked how long they took
+STALLED = 1e-9  # of the usual time: time stands still
+
+
+@kernel
+def advance(world, rules, spheres, lists, queue, tally, end):
+    """Do all events before a time; how it ended: DONE, FULL lists or COLLAPSED."""
+    number, n = spheres.number, len(spheres.number)
+    while True:
+        i = next_event(queue, number, end)
+        if i < 0:
+            return DONE
+        now, partner = queue.time[i], queue.partner[i]
+        other = i  # whose next event is to be found as well
+        if partner >= 0:
+            if spheres.hits[partner] == queue.partner_hits[i]:
+                collide_pair(world, rules, spheres, tally, i, partner, now)
+                other = partner
+                if stalls(tally, n, now):
+                    return COLLAPSED
+        elif partner == LEAVES:
+            tally.counts[RENEWALS] += 1
+            if not renew(world, lists, spheres.state, i, boxed(world, spheres.state, i, now)):
+                return FULL
+        elif partner <= FIRST_WALL:
+            collide_wall(world, rules, spheres, tally, i, FIRST_WALL - partner, now)
+            if stalls(tally, n, now):
+                return COLLAPSED
+        for k in (i, other):
+            remove(queue, number, k)
+            predict(world, rules, spheres, lists, queue, tally, k, now)
+            insert(queue, number, k)
+            if other == i:
+                break
+
+
+@scalar
+def boxed(world, state, i, now):
+    """Where sphere i is, in the box."""
+    r = place_at(world, state, i, now)
+    for k in range(len(r)):
+        r = with_item(r, k, r[k] - floor(r[k] * world.inverse[k]) * world.size[k])
+    return r
+
+
+@scalar
+def stalls(tally, n, now):
+    """Whether collisions have become so many that time stands still."""
+    tally.counts[SINCE] += 1
+    if tally.counts[SINCE] < ROUND * max(n, 100):
+        return False
+    took, usual = now - tally.sums[BEGAN], tally.sums[USUAL]
+    tally.counts[SINCE] = 0
+    tally.sums[BEGAN] = now
+    tally.sums[USUAL] = max(usual, took)
+    return took < STALLED * usual
+
+
+@kernel
+def rebuild(world, rules, spheres, lists, queue, tally, now):
+    """All lists and all predictions anew, from the states as they are; whether lists had room."""
+    n, room = len(spheres.number), True
+    lists.head[:] = -1
+    lists.count[:] = 0
+    for i in range(n):
+        r = boxed(world, spheres.state, i, now)
+        put_entries(lists.centre, i, 0, r)
+        room &= find(world, lists, spheres.state, i, r)
+        link(lists, i, r)
+    if not room:
+        return False
+    queue.first[:] = -1
+    queue.now[0] = int(now * queue.per_time)
+    queue.now[1] = 0
+    for i in range(n):
+        predict(world, rules, spheres, lists, queue, tally, i, now)
+        insert(queue, spheres.number, i)
+    return True
+
+
+@kernel
+def synchronise(world, spheres, time):
+    """Bring all to the end of a window, which is the start of the next; their diameters too."""
+    for i in range(len(spheres.number)):
+        bring_to(world, spheres, i, time)
+        spheres.state[i, TIME] = 0.0
+        spheres.state[i, RADIUS] *= 1.0 + world.growth * time
+        spheres.body[i, LAST] -= time
+
+
+@kernel
+def read(world, spheres, now, places, velocities):
+    """Where all are now, not brought into the box, and how fast, by particle number; their states
+    stay as they are."""
+    for i in range(len(spheres.number)):
+        put_entries(places, spheres.number[i], 0, place_at(world, spheres.state, i, now))
+        put_entries(velocities, spheres.number[i], 0, velocity_at(world, spheres.state, i, now))

@@ -1,0 +1,62 @@
+"""Event-driven dynamics, as the rest of the package knows it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from mesokit.method.event_driven.checks import check
+from mesokit.method.event_driven.engine import EventDriven
+from mesokit.method.event_driven.section import KEYS, Sections
+from mesokit.method.event_driven.summary import summary
+from mesokit.method.protocol import Columns, Method
+from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
+from mesokit.spheres.groups import groups
+from mesokit.spheres.made import made
+from mesokit.spheres.start.first_state import ARRAYS, first_state, missing_files, starts
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.spheres.start.protocol import Placed
+
+
+def _first_state(case: Case, arrays: Mapping[str, Any]) -> Placed:
+    own = made(case)
+    return first_state(case, own, arrays, case.spheres.first_spin_kT)
+
+
+def _engine(case: Case, threads: int, measures: Sequence[str]) -> EventDriven:
+    return EventDriven(case, threads)
+
+
+def columns(case: Case) -> Columns:
+    """Energies and numbers of collisions, of which the log of a run may tell."""
+    names = ("translation", "rotation", "potential", "collisions", "wall collisions")
+
+    def read(engine: Any, wanted: Collection[str]) -> dict[str, float]:
+        pairs, walls, _ = engine.collisions
+        known = {**engine.energies(), "collisions": pairs, "wall collisions": walls}
+        return {name: float(known[name]) for name in wanted}
+
+    return Columns(names, ("translation", "collisions"), read)
+
+
+METHOD = Method(
+    name="event-driven",
+    sections=Sections,
+    keys=KEYS,
+    whole_cells=False,
+    observables=(MeanSquareDisplacement,),
+    check=check,
+    groups=groups,
+    timestep=lambda case: float(case.spheres.timestep),
+    kT=lambda case: float(case.spheres.kT),
+    summary=summary,
+    starts=starts,
+    missing_files=missing_files,
+    arrays=ARRAYS,
+    first_state=_first_state,
+    engine=_engine,
+    start=EventDriven.start,
+    log=columns,
+)

@@ -1,0 +1,172 @@
+"""The walls of a case as rows of numbers for the machinery. Raises CaseError for what it cannot do."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.component import show
+from mesokit.errors import CaseError
+from mesokit.geometry.region import Part, Room, Term
+from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.geometry.surface import Surface
+from mesokit.method.event_driven.machine import walls as columns
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+Array = NDArray[np.float64]
+ROUND = {"ball": columns.OUTSIDE, "rod": columns.OUTSIDE}
+ALLOWED = "expected plates, or something round, or a rectangle or cuboid with fluid = 'inside'"
+
+
+class WallRows(NamedTuple):
+    """rows (walls, 14) for the machinery; contacts (walls, 4): restitution (-1: as a pair has),
+    tangential, friction and temperature (0: none); surface (walls,): number of each one's surface;
+    names of the surfaces."""
+
+    rows: Array
+    contacts: Array
+    surface: NDArray[np.int64]
+    names: tuple[str, ...]
+
+
+def room_of(case: Case) -> Room:
+    """The box, and which of its axes plates close."""
+    shut = closed_axes(case.walls)
+    return Room(case.box.size, tuple(axis in shut for axis in case.box.axes))
+
+
+def wall_rows(case: Case) -> WallRows:
+    """All walls of a case."""
+    room = room_of(case)
+    rows, contacts, surface, names = [], [], [], []
+    for i, wall in enumerate(case.walls):
+        if not wall.closed_axes and any(length != int(length) for length in case.box.size):
+            raise CaseError(
+                f"wall[#{i + 1}]: solids other than plates need a box of whole lengths, not "
+                f"box.size = {show(list(case.box.size))}"
+            )
+        if wall.virtual != "extrapolate":
+            raise CaseError(f"wall[#{i + 1}].virtual = {show(wall.virtual)}: spheres need none")
+        for body in wall.bodies(room, f"{type(wall).__name__.lower()}-{i + 1}"):
+            _check(body.surface, i, case)
+            for part in _parts(body, room, i):
+                rows.append(_row(part, body.surface, case.box.dimension))
+                contacts.append(_contact(case, body.surface))
+                surface.append(len(names))
+            names.append(body.name)
+    return WallRows(
+        np.array(rows, float).reshape(-1, columns.COLUMNS),
+        np.array(contacts, float).reshape(-1, 4),
+        np.array(surface, np.int64),
+        tuple(names),
+    )
+
+
+def _check(surface: Surface, i: int, case: Case) -> None:
+    key = f"wall[#{i + 1}]"
+    if surface.rotation is not None:
+        raise CaseError(f"{key}: rotation: not with method 'event-driven'")
+    contact = surface.contact
+    if contact is None:
+        return
+    if contact.temperature is not None and surface.rule != "diffuse":
+        raise CaseError(f"{key}: contact.temperature: only with rule = 'diffuse'")
+    if (contact.amplitude == 0) != (contact.frequency == 0):
+        raise CaseError(f"{key}: contact: a vibration has an amplitude and a frequency")
+
+
+def _parts(body: Any, room: Room, i: int) -> Iterator[Part]:
+    """The planes and round surfaces of a body, each once."""
+    for piece in body.pieces:
+        part = _alone(piece.term, room)
+        if part is None:
+            raise CaseError(f"wall[#{i + 1}]: not with method 'event-driven'; {ALLOWED}")
+        vibrates = body.surface.contact is not None and body.surface.contact.amplitude > 0
+        if vibrates and part.kind != "half_space":
+            raise CaseError(f"wall[#{i + 1}]: contact.amplitude: only plates vibrate")
+        if part.kind == "brick" and part.sign < 0:
+            yield from _sides(part, room.dimension)
+        elif part.kind == "half_space" and part.sign > 0:
+            yield part
+        elif part.kind in ROUND:
+            if _in_box(part, room):
+                yield part  # its images are found by the nearest one
+        else:
+            raise CaseError(f"wall[#{i + 1}]: not with method 'event-driven'; {ALLOWED}")
+
+
+def _alone(term: Term, room: Room) -> Part | None:
+    """The one part of a term, its images aside; None of several parts."""
+    if len(term) == 1:
+        return term[0]
+    part = next((part for part in term if _in_box(part, room)), None)
+    if part is None or part.sign > 0 or part.kind not in ROUND:
+        return None
+    for other in term:  # images that do not overlap
+        way = [a - b for a, b in zip(other.numbers[:3], part.numbers[:3], strict=True)]
+        if any(x % length for x, length in zip(way, room.size, strict=False)):
+            return None
+        if other is not part and math.hypot(*way) < 2 * part.numbers[6]:
+            return None
+        if other.numbers[3:] != part.numbers[3:] or other.kind != part.kind:
+            return None
+    return part
+
+
+def _in_box(part: Part, room: Room) -> bool:
+    return all(0 <= x < length for x, length in zip(part.numbers, room.size, strict=False))
+
+
+def _sides(part: Part, dimension: int) -> Iterator[Part]:
+    """The faces of a rectangle or cuboid from within, as planes that look inwards."""
+    centre, half = np.array(part.numbers[:3]), part.numbers[3:6]
+    cos, sin = part.numbers[6], part.numbers[7]
+    axes = np.array([(cos, sin, 0.0), (-sin, cos, 0.0), (0.0, 0.0, 1.0)])
+    for k in range(dimension):
+        for sign in (1.0, -1.0):
+            place = centre + sign * half[k] * axes[k]
+            yield Part("half_space", (*place, *(-sign * axes[k])))
+
+
+def _row(part: Part, surface: Surface, dimension: int) -> Array:
+    row = np.zeros(columns.COLUMNS)
+    row[columns.PLACE : columns.PLACE + 3] = part.numbers[:3]
+    if part.kind == "half_space":
+        row[columns.KIND] = columns.PLANE
+        row[columns.AXIS : columns.AXIS + 3] = part.numbers[3:6]
+    else:
+        row[columns.KIND] = part.sign  # +1: solid within, spheres outside
+        row[columns.ROUND] = part.numbers[6]
+        if part.kind == "rod":
+            row[columns.AXIS : columns.AXIS + 3] = part.numbers[3:6]
+    row[columns.MOVES : columns.MOVES + dimension] = surface.velocity or 0.0
+    if surface.contact is not None:
+        row[columns.AMPLITUDE] = surface.contact.amplitude
+        row[columns.FREQUENCY] = surface.contact.frequency
+    return row
+
+
+def _contact(case: Case, surface: Surface) -> tuple[float, float, float, float]:
+    """Restitution, tangential restitution, friction and temperature of a surface."""
+    pair, own = case.spheres.collision, surface.contact
+    given = own.restitution if own is not None else None
+    tangential = own.tangential if own is not None else None
+    friction = own.friction if own is not None else None
+    tangential = pair.tangential if tangential is None else tangential
+    friction = pair.friction if friction is None else friction
+    temperature = 0.0
+    if surface.rule == "diffuse":
+        own_kT = own.temperature if own is not None else None
+        temperature = float(case.spheres.kT if own_kT is None else own_kT)
+    return (
+        -1.0 if given is None else given,
+        -1.0 if surface.rule == "slip" else tangential,
+        np.inf if friction is None else friction,
+        temperature,
+    )

@@ -1,0 +1,46 @@
+"""How long a window is: the time after which all spheres are brought to one time."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from mesokit import theory
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+COLLISIONS = 500.0  # of each sphere in a window, about
+BETWEEN_TURNS = 0.25  # collisions of a sphere
+LONGEST, SHORTEST = 2.0**20, 2.0**-20
+
+
+def collision_rate(case: Case) -> float:
+    """Collisions of a sphere per time at the start, estimated (Enskog; kinds as one); or, at rest,
+    the inverse time to fall by a diameter."""
+    section, box = case.spheres, case.box
+    kinds = section.kinds
+    diameter = max(kind.diameter for kind in kinds) * section.scale(box)
+    mass = min(kind.mean_mass(box.dimension) for kind in kinds)
+    phi, number = min(section.fraction(box), 0.7), section.count(box)
+    rates = [0.0]
+    if section.kT > 0:
+        rate = theory.enskog_rate(number / box.volume, diameter, section.kT / mass, phi, box.dimension)
+        rates.append(rate)
+        rates.append(math.sqrt(section.kT / mass) / max(box.size))
+    if section.gravity:
+        rates.append(math.sqrt(math.hypot(*section.gravity) / diameter))
+    return max(rates)
+
+
+def window(case: Case) -> float:
+    """A power of two, about 500 mean times between collisions, or a quarter of one where velocities are changed
+    at the end of each; it does not depend on the timestep, so that the length of a step changes no
+    bit."""
+    rate, heating = collision_rate(case), case.spheres.heating
+    if heating is not None and heating.interval is not None:
+        return float(heating.interval)
+    if rate == 0.0:
+        return 1024.0
+    wanted = 2.0 ** round(math.log2((COLLISIONS if heating is None else BETWEEN_TURNS) / rate))
+    return min(max(wanted, SHORTEST), LONGEST)

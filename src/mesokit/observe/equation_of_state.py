@@ -1,0 +1,171 @@
+"""Pressure and collision rate of hard spheres."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.case.component import component, tag
+from mesokit.errors import CaseError
+from mesokit.observe.shared.estimate import Estimate, of_mean
+from mesokit.observe.shared.protocol import Observable, State, pack, unpack
+from mesokit.observe.shared.result import Comparison, Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.engine import RunningSpheres
+
+TRUSTED = {2: 0.6, 3: 0.494}  # packing fraction above which theory is not that of the fluid
+
+
+@component
+class EquationOfState(Observable):
+    """Z = P/(n kT) of elastic hard spheres, by the virial and by the collision rate.
+
+    By the virial Z = 1 + sum of r.dp over collisions/(d N kT t), where d (N - 1) kT is twice the
+    kinetic energy, as the momentum is zero. Spheres of one size collide at a rate that says the same
+    (Enskog): (Z - 1) 2 d/(diameter sqrt(pi m/kT)).
+    """
+
+    quantity: Literal["equation-of-state"] = tag("equation-of-state")
+    methods: ClassVar[tuple[str, ...]] = ("event-driven",)
+    needs_fluid: ClassVar[bool] = False
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError where there is no pressure of a uniform fluid."""
+        if case.walls or case.spheres.gravity:
+            raise CaseError("equation-of-state: not beside a wall or with gravity")
+        if not case.spheres.collision.elastic:
+            raise CaseError("equation-of-state: expected collisions that keep energy")
+
+    def accumulator(self, case: Case) -> EquationOfStateAccumulator:
+        """An empty memory for it."""
+        return EquationOfStateAccumulator(self, case)
+
+
+class EquationOfStateAccumulator:
+    """Block averages of what collisions do between two samples."""
+
+    def __init__(self, observable: EquationOfState, case: Case) -> None:
+        observable.check(case)
+        self.name, self.case, self.every = observable.label, case, observable.every
+        self.blocks = Blocks((3,))  # virial and collisions per time, twice the kinetic energy
+        self.before = np.full(3, np.nan)  # time, virial, collisions at the last sample
+
+    def observe(self, spheres: RunningSpheres) -> None:
+        """Take one sample: of what has happened since the last."""
+        now = np.array([spheres.time, spheres.virial, spheres.collisions[0]])
+        if np.isfinite(self.before[0]) and now[0] > self.before[0]:
+            rates = (now[1:] - self.before[1:]) / (now[0] - self.before[0])
+            self.blocks.add([*rates, 2 * spheres.totals()[2]])
+        self.before = now
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks, before=self.before)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        self.before = np.array(state["before"])
+
+    def pool(self, other: EquationOfStateAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.blocks.pool(other.blocks)
+
+    def result(self) -> Result:
+        """Z by the virial and, of equal spheres, by the rate of collisions."""
+        pressures, rate = self.measured()
+        expected, theory_name = self.expected()
+        names = ["virial", "collision rate"][: len(pressures)]
+        values = np.array([value for value, _ in pressures])
+        errors = np.array([error for _, error in pressures])
+        note = self.note()
+        listed = [
+            Comparison(f"Z by the {name}", *found, expected, "", note)
+            for name, found in zip(names, pressures, strict=True)
+        ]
+        if self.blocks.count:
+            listed.append(Comparison("collision rate", *rate, self.expected_rate(), "1/time", note))
+        return Result(
+            quantity="equation-of-state",
+            drawing="curve",
+            name=self.name,
+            x={"measured by": np.array(names)},
+            value=values,
+            error=errors,
+            label="compressibility $P/(n k_B T)$",
+            units={"value": "", "measured by": ""},
+            expected=np.full(len(names), expected),
+            theory=theory_name,
+            comparisons=tuple(listed) if self.blocks.count else (),
+            samples=self.blocks.count,
+            extra={"packing_fraction": self.case.spheres.fraction(self.case.box)},
+        )
+
+    def measured(self) -> tuple[list[tuple[float, float]], tuple[float, float]]:
+        """Z with its error by each way, and the collisions of a sphere per time."""
+        case, n = self.case, self.case.particles
+        d = case.box.dimension
+        if not self.blocks.count:
+            none = (math.nan, math.nan)
+            return [none] * (2 if self.equal else 1), none
+        found: Estimate = of_mean(self.blocks)
+        virial, events, twice = found.value
+        kT = twice / (d * (n - 1))  # momentum is zero
+        gradient = np.array([1 / (d * n * kT), 0.0, -virial / (d * n * kT * twice)])
+        pressures = [found.scalar(1 + virial / (d * n * kT), gradient)]
+        if self.equal:
+            kind, box = case.spheres.kinds[0], case.box
+            mass = kind.mean_mass(d)
+            factor = kind.diameter * case.spheres.scale(box) * math.sqrt(math.pi * mass / kT)
+            factor *= 2 / n / (2 * d)
+            gradient = np.array([0.0, factor, -0.5 * factor * events / twice])
+            pressures.append(found.scalar(1 + factor * events, gradient))
+        return pressures, found.scalar(2 * events / n, np.array([0.0, 2 / n, 0.0]))
+
+    @property
+    def equal(self) -> bool:
+        """Whether all spheres are alike."""
+        kinds = self.case.spheres.kinds
+        return len(kinds) == 1 and kinds[0].spread == 0
+
+    def expected(self) -> tuple[float, str]:
+        """Z of the fluid in equilibrium, and whose law that is."""
+        section, box = self.case.spheres, self.case.box
+        phi, d = section.fraction(box), box.dimension
+        if self.equal:
+            name = "virial series" if d == 2 else "Kolafa"
+            return theory.compressibility(phi, d), name
+        counts, scale = section.counts(box), section.scale(box)
+        total = sum(counts)
+        moments = [
+            sum(n * kind.mean_power(p) * scale**p for n, kind in zip(counts, section.kinds, strict=True))
+            / total
+            for p in range(1, d + 1)
+        ]
+        name = "Santos, Yuste, Lopez de Haro" if d == 2 else "Boublik, Mansoori et al."
+        return theory.mixture_compressibility(phi, moments, d), name
+
+    def expected_rate(self) -> float:
+        """Collisions of a sphere per time that belong to that Z, nan for mixtures."""
+        if not self.equal:
+            return math.nan
+        case, d = self.case, self.case.box.dimension
+        kind = case.spheres.kinds[0]
+        diameter = kind.diameter * case.spheres.scale(case.box)
+        kT = self.blocks.mean()[2] / (d * (case.particles - 1))
+        excess = self.expected()[0] - 1
+        return float(2 * d * excess / (diameter * math.sqrt(math.pi * kind.mean_mass(d) / kT)))
+
+    def note(self) -> str:
+        """Where theory is not to be trusted."""
+        phi = self.case.spheres.fraction(self.case.box)
+        most = TRUSTED[self.case.box.dimension]
+        return "approximate: the law is that of the fluid, far from freezing" if phi > most else ""

@@ -1,0 +1,35 @@
+"""Spheres at random places."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from mesokit.case.component import component, tag
+from mesokit.spheres.start.protocol import Placed, SphereStart
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.spheres.made import Made
+
+
+@component
+class RandomStart(SphereStart):
+    """Anywhere, none on another, off the walls.
+
+    Where they are too many to be put in one by one, they begin small and grow while they fly and
+    collide (Lubachevsky and Stillinger 1990): a disordered start at any packing fraction of a fluid.
+    """
+
+    rule: Literal["random"] = tag("random")
+
+    def place(self, case: Case, made: Made) -> Placed:
+        """Places for all. Raises CaseError where there is no room."""
+        from mesokit.method.event_driven.grow import grown
+        from mesokit.method.event_driven.walls import room_of, wall_rows
+
+        walls = wall_rows(case).rows
+        fraction = case.spheres.fraction(case.box)
+        closed = room_of(case).closed
+        return Placed(
+            grown(case.box.size, closed, made.diameters, walls, fraction, case.run.seed)
+        )

@@ -1,0 +1,59 @@
+"""How often hard disks and spheres collide (Enskog)."""
+
+from __future__ import annotations
+
+import math
+
+
+def contact_value(packing_fraction: float, dimension: int) -> float:
+    """Pair distribution of equal hard disks or spheres at contact.
+
+    Disks after Henderson (1975), spheres after Carnahan and Starling (1969); the disks' is 0.2 % too
+    high at 0.4 and 1.2 % at 0.6.
+
+    Parameters
+    ----------
+    packing_fraction : float
+        Part of the area or volume that they fill.
+    dimension : int
+        2 or 3.
+
+    Examples
+    --------
+    >>> round(contact_value(0.5, 2), 4), round(contact_value(0.3, 3), 4)
+    (3.125, 2.4781)
+    """
+    phi = packing_fraction
+    if dimension == 2:
+        return (1 - 7 * phi / 16) / (1 - phi) ** 2
+    return (1 - phi / 2) / (1 - phi) ** 3
+
+
+def enskog_rate(
+    density: float, diameter: float, kT_over_m: float, packing_fraction: float, dimension: int
+) -> float:
+    """Collisions of a sphere per time in equilibrium.
+
+    Parameters
+    ----------
+    density : float
+        Number per area or volume, in 1/a^d.
+    diameter : float
+        In a.
+    kT_over_m : float
+        Thermal energy over mass, in (a/time)^2.
+    packing_fraction, dimension
+        As in `contact_value`.
+
+    Examples
+    --------
+    Disks that fill a fifth of the area.
+
+    >>> import math
+    >>> round(enskog_rate(0.2 * 4 / math.pi, 1.0, 1.0, 0.2, 2), 4)
+    1.2871
+    """
+    chi = contact_value(packing_fraction, dimension)
+    factor = 2.0 if dimension == 2 else 4.0
+    speed = math.sqrt(math.pi * kT_over_m)
+    return factor * density * diameter ** (dimension - 1) * chi * speed
