@@ -45,6 +45,7 @@ ROWS = {
     "geometry/": ("case", "errors", "geometry", "scalar"),
     "potential/": ("case", "errors", "potential", "scalar", "theory"),
     "spheres/": ("case", "errors", "scalar", "spheres"),
+    "spheres/walls.py": ("case", "geometry"),
     "method/__init__.py": (),
     "method/protocol.py": ("case", "engine", "=method"),
     "method/mpcd/": MPCD,
@@ -75,7 +76,8 @@ ROWS = {
         "report",
     ),
     "report/": ("case", "errors", "geometry", "io", "method.protocol", "observe", "report"),
-    "report/flow/state.py": ("case", "engine"),
+    "report/flow/state.py": ("case", "method.protocol"),
+    "report/flow/shaded.py": ("report", "scalar.cache"),
     "study/": (
         "case", "errors", "io", "method.protocol", "observe.shared", "report", "running",
         "simulation", "statistics", "study",
