@@ -49,7 +49,10 @@ def draw_bands(result: Result, figure: Any, ax: Any) -> None:
     if ax is None:
         ax, below = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
     along = result.x["along"]
-    for panel, column, label in ((ax, 0, "density / its mean"), (below, 1, "heading\nalong the axis")):
+    for panel, column, label in (
+        (ax, 0, "density / its mean"),
+        (below, 1, "heading\nalong the axis"),
+    ):
         if panel is None:
             continue
         panel.errorbar(

@@ -54,4 +54,3 @@ def vectorial_memory(strength: float, dimension: int) -> float:
     parameter = 4.0 * strength / (1.0 + strength) ** 2
     e, k = float(ellipe(parameter)), float(ellipk(parameter))
     return (2.0 / math.pi) * (e + 0.5 * (k - e) * (1.0 - strength))
-

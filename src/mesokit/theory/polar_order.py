@@ -50,4 +50,3 @@ def disordered_binder(dimension: int) -> float:
     """
     dimension_two_or_three(dimension)
     return 1 - (2 if dimension == 2 else 5 / 3) / 3
-

@@ -27,9 +27,13 @@ class Displacement:
 
     def __init__(self, case: Case, observable: Any) -> None:
         if observable.of != "particles":
-            raise CaseError(f"of = {show(observable.of)}: expected 'particles'; birds are no molecules")
+            raise CaseError(
+                f"of = {show(observable.of)}: expected 'particles'; birds are no molecules"
+            )
         if observable.kind is not None:
-            raise CaseError(f"kind = {show(observable.kind)}: there is one kind of birds; leave it out")
+            raise CaseError(
+                f"kind = {show(observable.kind)}: there is one kind of birds; leave it out"
+            )
         shut = closed_axes(case.walls)
         free = [axis for axis in case.box.axes if axis not in shut]
         self.axes = tuple(

@@ -37,7 +37,9 @@ class FlockStart:
 class Flock:
     """Birds that fly at one speed, as the mean of those in reach, and err (Vicsek et al. 1995)."""
 
-    density: float | None = param(None, doc="birds per cell", unit="1/a^d", gt=0, unless_said=DENSITY)
+    density: float | None = param(
+        None, doc="birds per cell", unit="1/a^d", gt=0, unless_said=DENSITY
+    )
     number: int | None = param(None, doc="birds in all, in place of the density", ge=1)
     radius: float = param(1.0, doc="reach of a bird's sight", unit="a", gt=0)
     speed: float = param(0.5, doc="of all birds", unit="a/time", gt=0, le=1e6)
@@ -54,7 +56,9 @@ class Flock:
     @model_validator(mode="after")
     def _number_or_density(self) -> Flock:
         if self.number is not None and self.density is not None:
-            raise ValueError(f"number = {show(self.number)}: not with density beside; leave one out")
+            raise ValueError(
+                f"number = {show(self.number)}: not with density beside; leave one out"
+            )
         return self
 
     def birds(self, box: Box) -> int:

@@ -63,14 +63,19 @@ def first_state(case: Case, arrays: Mapping[str, Any]) -> FirstState:
         raise CaseError("flock.start.headings: not with velocities beside; leave it out")
     return FirstState(
         drawn_places(case) if positions is None else _places(case, keys["positions"], positions),
-        drawn_headings(case) if velocities is None else _headings(case, keys["velocities"], velocities),
+        drawn_headings(case)
+        if velocities is None
+        else _headings(case, keys["velocities"], velocities),
     )
 
 
 def drawn_places(case: Case) -> Array:
     """Places uniform in the box, outside of solids. Raises CaseError if there is no room."""
     size = tuple(float(length) for length in case.box.size)
-    counter, places = Counter(np.uint64(case.run.seed), np.uint64(0)), np.zeros((case.particles, len(size)))
+    counter, places = (
+        Counter(np.uint64(case.run.seed), np.uint64(0)),
+        np.zeros((case.particles, len(size))),
+    )
     left, draw = np.arange(case.particles), 0
     while len(left):
         if draw == TRIES:
@@ -169,8 +174,12 @@ def _snapshot(case: Case, path: str) -> tuple[Any, Any]:
     there, d = read_snapshot(path), case.box.dimension
     lengths, wanted = there.lengths[:d], np.array(case.box.size, float)
     if not np.allclose(lengths, wanted, rtol=ROUNDING) or there.tilts.any():
-        raise CaseError(f"it has a box of {show(lengths.tolist())}, this case {show(wanted.tolist())}")
+        raise CaseError(
+            f"it has a box of {show(lengths.tolist())}, this case {show(wanted.tolist())}"
+        )
     if len(there.positions) != case.particles:
-        raise CaseError(f"it has {len(there.positions)} particles, this case {case.particles} birds")
+        raise CaseError(
+            f"it has {len(there.positions)} particles, this case {case.particles} birds"
+        )
     places = (there.positions - there.low)[:, :d]
     return places, None if there.velocities is None else there.velocities[:, :d]

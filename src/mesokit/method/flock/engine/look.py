@@ -69,9 +69,7 @@ def add_to(sums, first, i, values):
 @for_each
 def bring(near, j, seen, i, like):
     """Place and heading of bird i become those of bird j near."""
-    return (
-        "near[{k}, j] = seen.places[{k}, i]; near[len(like) + {k}, j] = seen.headings[{k}, i]"
-    )
+    return "near[{k}, j] = seen.places[{k}, i]; near[len(like) + {k}, j] = seen.headings[{k}, i]"
 
 
 @by_type

@@ -115,9 +115,7 @@ class Scratch(NamedTuple):
     runs: NDArray[np.int64]
 
 
-def axes_of(
-    size: Sequence[float], closed: Sequence[bool], side: float, most: int
-) -> Axes:
+def axes_of(size: Sequence[float], closed: Sequence[bool], side: float, most: int) -> Axes:
     """The axes of a box with cells of at least this side, about as many as `most` at most."""
     d = len(size)
     side = max(side * SKIN, (math.prod(size) / max(most, 1)) ** (1 / d))

@@ -79,7 +79,7 @@ def move(physics, counter, birds, sums, strip, side, first, count, like):
         for i in range(count):
             strip[(place + k) * STRIP + i] = places[k, past(first, i)]
     for i in range(count):
-        strip[number * STRIP + i] = float(numbers[ past(first, i)])
+        strip[number * STRIP + i] = float(numbers[past(first, i)])
     turn(physics, counter, strip, rows, count, like)
     fly(physics, strip, rows, count, like)
     for k in range(d):

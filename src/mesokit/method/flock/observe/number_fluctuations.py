@@ -59,7 +59,9 @@ class NumberFluctuations(FlockObservable):
             within(sides, 1e-3, float(min(case.box.size)), "sides")
         number = math.prod(int(length / sides[0]) for length in case.box.size)
         if number > MOST:
-            raise CaseError(f"sides = {show(list(sides))}: {number} squares; expected at most {MOST}")
+            raise CaseError(
+                f"sides = {show(list(sides))}: {number} squares; expected at most {MOST}"
+            )
 
     def accumulator(self, case: Case) -> NumberFluctuationsAccumulator:
         """An empty memory for it."""
