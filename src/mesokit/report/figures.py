@@ -15,7 +15,6 @@ from mesokit.report import (
     correlation,
     curve,
     field,
-    flocks,
     forces,
     probe,
     profile,
@@ -29,7 +28,7 @@ from mesokit.report.finish.saving import save_figure
 from mesokit.report.finish.several import add
 from mesokit.report.flow.layout import page_width
 from mesokit.report.molecules import histogram, tracks
-from mesokit.report.particles import histograms, snapshots, structure_factor
+from mesokit.report.particles import flocks, histograms, snapshots, structure_factor
 from mesokit.report.rheology import stress_in_time
 from mesokit.report.style import HEIGHT, STYLE, WIDTH
 

@@ -26,9 +26,9 @@ def mean_square_order(memory: float, number: int) -> float:
     """Mean square of the polar order of N birds that all see one another: a^2 + (1 - a^2)/N.
 
     Parameters: `memory` a, the mean cosine by which the noise turns a bird from the common
-    direction (`angular_memory`); `number` N. It is exact for any N, as birds turn from one direction
-    each on its own. Raises ValueError for a memory that is not from 0 to 1, or no bird. Source:
-    derived here, for T. Vicsek et al., Phys. Rev. Lett. 75, 1226 (1995).
+    direction (`angular_memory`); `number` N. It is exact for any N, as birds turn from one
+    direction each on its own. Raises ValueError for a memory that is not from 0 to 1, or no bird.
+    Source: derived here, for T. Vicsek et al., Phys. Rev. Lett. 75, 1226 (1995).
 
     >>> mean_square_order(0.5, 100), mean_square_order(0.0, 100)
     (0.2575, 0.01)

@@ -47,13 +47,13 @@ def _birds(case: Case) -> Iterator[str]:
     steps = case.run.warmup + case.run.steps
     if way * steps > MOST_BOXES * least:
         yield (
-            f"flock.speed = {show(given.speed)}: in {steps} steps birds go so far that boxes cannot "
-            "be counted; expected less"
+            f"flock.speed = {show(given.speed)}: in {steps} steps birds go so far that boxes "
+            "cannot be counted; expected less"
         )
     if given.radius > math.hypot(*case.box.size):
         yield (
-            f"flock.radius = {show(given.radius)}: longer than the diagonal of the box; expected at "
-            f"most {math.hypot(*case.box.size):.4g}, where all see one another"
+            f"flock.radius = {show(given.radius)}: longer than the diagonal of the box; expected "
+            f"at most {math.hypot(*case.box.size):.4g}, where all see one another"
         )
     cohesion = given.cohesion
     if cohesion is not None and cohesion.attraction > given.radius:
@@ -87,12 +87,17 @@ def _walls(case: Case) -> Iterator[str]:
             if axis in seen:
                 yield f"{key}.axis = {show(axis)}: wall[#{seen[axis]}] closes it already"
             seen[axis] = i + 1
+        if wall.virtual != "extrapolate":
+            yield f"{key}.virtual = {show(wall.virtual)}: birds need no such; leave it out"
         if names[i] in names[:i]:
             yield f"{key}.name: {show(names[i])} is also the name of another wall; rename one"
         for name, surface in wall.surfaces().items():
             where = f"{key}.{name}"
             if surface.rule == "diffuse":
-                yield f"{where}.rule = 'diffuse': birds have no temperature; expected 'slip' or 'no-slip'"
+                yield (
+                    f"{where}.rule = 'diffuse': birds have no temperature; expected 'slip' or "
+                    "'no-slip'"
+                )
             if surface.moves:
                 moved = "velocity" if any(surface.velocity or ()) else "rotation"
                 yield f"{where}.{moved}: birds of method 'flock' need walls at rest; leave it out"
@@ -114,4 +119,4 @@ def _room(case: Case) -> Iterator[str]:
     if solids.free_volume < 1:
         yield f"wall: the solids leave {solids.free_volume:.3g} cells to the birds"
     for i in solids.without_surface():
-        yield f"wall[#{i + 1}]: no surface in the box {show(case.box.size)}; expected it to reach in"
+        yield f"wall[#{i + 1}]: no surface in the box {show(case.box.size)}; expected one"

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-
 from mesokit import theory
 from mesokit.case.component import show
 from mesokit.errors import CaseError

@@ -70,8 +70,8 @@ def _warnings(case: Case, in_reach: float) -> Iterator[str]:
     way = given.speed * given.timestep
     if in_reach < FEW:
         yield (
-            f"flock.radius = {show(given.radius)}: {in_reach:.3g} birds in reach on average: hardly "
-            "any two meet"
+            f"flock.radius = {show(given.radius)}: {in_reach:.3g} birds in reach on average: "
+            "hardly any two meet"
         )
     if way > given.radius:
         yield (

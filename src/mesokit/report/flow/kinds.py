@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 class Panel(Protocol):
     """How one panel is drawn: a module.
 
-    NEEDS: "velocity", "density", "particles", "spheres" or "headings"; TITLE: its name where several are side
-    by side.
+    NEEDS: "velocity", "density", "particles", "spheres" or "headings"; TITLE: its name where
+    several are side by side.
     """
 
     NEEDS: str

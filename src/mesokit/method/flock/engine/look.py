@@ -1,7 +1,7 @@
 """What each bird sees: sums over all birds in reach, in whole numbers.
 
-The birds of a cell see those of the cells around. These are brought together in one small stretch of
-memory, for all birds of the cell; the loop over them has no branch and adds up whole numbers, so
+The birds of a cell see those of the cells around. These are brought together in one small stretch
+of memory, for all birds of the cell; the loop over them has no branch and adds up whole numbers, so
 that neither the order of birds nor cells nor threads changes a bit.
 """
 

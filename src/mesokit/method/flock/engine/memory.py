@@ -148,18 +148,23 @@ def make(n: int, threads: int, axes: Axes, cohesion: bool) -> tuple[Birds, Seen,
     """Arrays for so many birds; fill the first of `Birds` before a step."""
     d, cells = len(axes.size), math.prod(axes.cells)
     birds = Birds(
-        np.zeros((2, d, n)), np.zeros((2, d, n)), np.zeros((2, d, n), np.int32),
+        np.zeros((2, d, n)),
+        np.zeros((2, d, n)),
+        np.zeros((2, d, n), np.int32),
         np.zeros((2, n), np.int32),
-    )  # fmt: skip
+    )
     seen = Seen(
-        np.zeros((d, n), np.int32), np.zeros((d, n), np.int32),
+        np.zeros((d, n), np.int32),
+        np.zeros((d, n), np.int32),
         np.zeros((rows_of(d, cohesion), n), np.int64),
-    )  # fmt: skip
+    )
     found = Cells(
-        np.zeros(n, np.int32), np.zeros((threads, cells), np.int32),
-        np.zeros(cells + 1, np.int64), np.zeros(cells + 1, np.int64),
+        np.zeros(n, np.int32),
+        np.zeros((threads, cells), np.int32),
+        np.zeros(cells + 1, np.int64),
+        np.zeros(cells + 1, np.int64),
         np.zeros((threads, 2), np.int64),
-    )  # fmt: skip
+    )
     scratch = Scratch(
         np.zeros((threads, 2 * d + 1, CHUNK + LANES), np.int32),
         np.zeros((threads, (rows_of(d, cohesion) + 3 * d + 1) * STRIP)),

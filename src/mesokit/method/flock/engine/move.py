@@ -12,7 +12,7 @@ from mesokit.method.flock.engine.walls import flown
 from mesokit.method.flock.noise.protocol import turned
 from mesokit.scalar.cache import inner
 from mesokit.scalar.fixed_point import ROUNDER, ROUNDER_BITS, bits
-from mesokit.scalar.intrinsics import floor
+from mesokit.scalar.intrinsics import floor  # noqa: F401  in the text of `boxes_away`
 from mesokit.scalar.jit import by_type, elementwise, for_each, scalar
 from mesokit.scalar.vector import added, chosen, dot, scaled
 
@@ -64,8 +64,9 @@ def wish(physics, strip, i, like):
 
 
 @inner
-def move(physics, counter, birds, sums, strip, side, first, count, like):
+def move(physics, counter, birds, sums, strip, side, first, count):
     """Turn and move `count` birds from the bird `first` on."""
+    like = physics.axes.size
     d, rows = len(like), sum_rows(physics)
     headings, places = birds.headings[side], birds.places[side]
     images, numbers = birds.images[side], birds.numbers[side]

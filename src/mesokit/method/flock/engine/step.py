@@ -9,8 +9,8 @@ from mesokit.method.flock.engine.look import look, next_place, place_of_cell
 from mesokit.method.flock.engine.memory import STRIP
 from mesokit.method.flock.engine.move import move
 from mesokit.method.flock.engine.sort import cells_of, sort
-from mesokit.scalar.cache import inner, kernel
 from mesokit.method.flock.noise.protocol import FIRST_HEADING, unit_vector
+from mesokit.scalar.cache import inner, kernel
 from mesokit.scalar.random import METHOD, Counter, unit, words
 
 START = METHOD + np.uint64(2)  # purpose of random numbers
@@ -19,7 +19,7 @@ START = METHOD + np.uint64(2)  # purpose of random numbers
 @kernel
 def step(team, counter, steps, side, physics, groups):
     """So many steps; birds lie on `side` before and, if they are even in number, after them."""
-    birds, seen, cells, scratch = groups
+    birds, seen, cells, _ = groups
     for done in range(steps):
         now = Counter(counter.seed, counter.step + np.uint64(done))
         sort(team, physics.axes, birds, seen, cells, side)  # places, headings at t
@@ -43,7 +43,7 @@ def look_and_move(team, now, physics, groups, side):
         place = next_place(physics.axes, place)
         while looked - done >= STRIP or (cell == end - 1 and looked > done):
             count = min(looked - done, STRIP)
-            move(physics, now, birds, seen.sums, strip, side, done, count, like)
+            move(physics, now, birds, seen.sums, strip, side, done, count)
             done += count
 
 

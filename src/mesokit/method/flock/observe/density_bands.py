@@ -27,8 +27,8 @@ class DensityBands(FlockObservable):
     """Profile of density and local order along the axis of the box nearest to the mean heading.
 
     At each sample it is turned so that the flock flies to the right, and moved so that the first
-    Fourier mode of the density has its crest in the middle: bands are then seen at rest. The size of
-    that mode alone tells bands from chance.
+    Fourier mode of the density has its crest in the middle: bands are then seen at rest. The size
+    of that mode alone tells bands from chance.
     """
 
     quantity: Literal["density-bands"] = tag("density-bands")
@@ -43,8 +43,8 @@ class DensityBands(FlockObservable):
             case.box.index(self.axis)
         elif len(set(case.box.size)) > 1:
             raise CaseError(
-                f"axis: missing; the sides of the box {show(list(case.box.size))} differ, and so do "
-                "the profiles along them"
+                f"axis: missing; the sides of the box {show(list(case.box.size))} differ, and so "
+                "do the profiles along them"
             )
 
     def accumulator(self, case: Case) -> DensityBandsAccumulator:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,8 +32,8 @@ MANY = 30  # birds, from which on their sum at random is as good as normal
 class PolarOrder(FlockObservable):
     """Polar order phi, the length of the mean heading of all birds, in time.
 
-    Beside its mean are the mean of its square, the Binder cumulant 1 - <phi^4>/(3 <phi^2>^2) and the
-    susceptibility N (<phi^2> - <phi>^2).
+    Beside its mean are the mean of its square, the Binder cumulant 1 - <phi^4>/(3 <phi^2>^2) and
+    the susceptibility N (<phi^2> - <phi>^2).
     """
 
     quantity: Literal["polar-order"] = tag("polar-order")
@@ -41,6 +41,15 @@ class PolarOrder(FlockObservable):
     def accumulator(self, case: Case) -> PolarOrderAccumulator:
         """An empty memory for it."""
         return PolarOrderAccumulator(self, case)
+
+
+class Known(NamedTuple):
+    """Mean, mean square and Binder cumulant by theory, nan where it has none, and what it says."""
+
+    order: float = math.nan
+    square: float = math.nan
+    cumulant: float = math.nan
+    why: str = ""
 
 
 class PolarOrderAccumulator:
@@ -98,44 +107,49 @@ class PolarOrderAccumulator:
 
     def comparisons(self) -> list[Comparison]:
         """Mean, mean square, Binder cumulant and susceptibility."""
-        case, number = self.case, self.case.particles
+        number = self.case.particles
         means = of_mean(self.blocks)
         order, square, fourth = map(float, means.value)
         cumulant = 1 - fourth / (3 * square**2) if square > 0 else math.nan
         slope = np.array([0.0, 2 * fourth / (3 * square**3), -1 / (3 * square**2)])
         known = self.known()
+        only = np.eye(3)
         return [
             Comparison(
-                "mean polar order", *means.scalar(order, np.array([1.0, 0, 0])), known[0], "", known[3]
+                "mean polar order", *means.scalar(order, only[0]), known.order, "", known.why
             ),
             Comparison(
                 "mean square polar order",
-                *means.scalar(square, np.array([0, 1.0, 0])),
-                known[1], "", known[3],
+                *means.scalar(square, only[1]),
+                known.square,
+                "",
+                known.why,
             ),
-            Comparison("Binder cumulant", *means.scalar(cumulant, slope), known[2], "", known[3]),
+            Comparison(
+                "Binder cumulant", *means.scalar(cumulant, slope), known.cumulant, "", known.why
+            ),
             Comparison(
                 "susceptibility",
                 *means.scalar(
                     number * (square - order**2), number * np.array([-2 * order, 1.0, 0])
                 ),
-                math.nan, "", f"number of birds times the variance of the order, {number} birds",
+                note=f"number of birds times the variance of the order, {number} birds",
             ),
-        ]  # fmt: skip
+        ]
 
-    def known(self) -> tuple[float, float, float, str]:
-        """Mean, mean square and cumulant that theory knows, nan where it does not, and why."""
+    def known(self) -> Known:
+        """What theory knows."""
         case, d = self.case, self.case.box.dimension
         noise, number = case.flock.noise, case.particles
         if case.flock.cohesion is not None:
-            return math.nan, math.nan, math.nan, "no theory with cohesion"
+            return Known(why="no theory with cohesion")
         if blind(noise, d):
             square, why = 1 / number, "directions at random"
             if number < MANY:
-                return math.nan, square, math.nan, why
+                return Known(square=square, why=why)
             order, cumulant = theory.disordered_order(number, d), theory.disordered_binder(d)
-            return order, square, cumulant, why
+            return Known(order, square, cumulant, why)
         crowd = noise.crowd_order(d)
         if crowd is not None and all_see_all(case):
-            return math.nan, theory.mean_square_order(crowd, number), math.nan, "all see all"
-        return math.nan, math.nan, math.nan, "no theory but simulation"
+            return Known(square=theory.mean_square_order(crowd, number), why="all see all")
+        return Known(why="no theory but simulation")

@@ -56,9 +56,17 @@ def draw_bands(result: Result, figure: Any, ax: Any) -> None:
         if panel is None:
             continue
         panel.errorbar(
-            along, result.value[:, column], result.error[:, column], fmt="o", mfc="white", ms=3,
-            lw=0.8, capsize=0, color=COLOURS[0], label=MEASURED,
-        )  # fmt: skip
+            along,
+            result.value[:, column],
+            result.error[:, column],
+            fmt="o",
+            mfc="white",
+            ms=3,
+            lw=0.8,
+            capsize=0,
+            color=COLOURS[0],
+            label=MEASURED,
+        )
         panel.set_ylabel(label)
         panel.set_ylim(bottom=0)
     ax.axhline(1, color="black", lw=1, ls=":")
