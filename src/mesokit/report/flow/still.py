@@ -78,7 +78,7 @@ def picture(
     notes = [section.note(how), mean, note(flows[0]), _few(case, panels, flows), when]
     notes += [text for flow in flows for text in _spheres(flow)]
     if any(panel.NEEDS == "headings" for panel in panels):
-        notes.append(rf"at $t = {flows[0].time:.4g}\,\tau$")
+        notes.append(rf"at $t = {flows[0].time:.6g}\,\tau$")
     drawn = Canvas(panels, flows, reaches, shown, section, notes=notes)
     drawn.show(flows)
     return drawn.figure

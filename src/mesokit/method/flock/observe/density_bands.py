@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, show, tag
@@ -18,17 +19,21 @@ from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.engine import Array
 
 MOST_BINS = 2**16
+WAVES = 8  # the longest, that tell where the crest is
+FINE = 1024  # places among which it is found
 
 
 @component
 class DensityBands(FlockObservable):
     """Profile of density and local order along the axis of the box nearest to the mean heading.
 
-    At each sample it is turned so that the flock flies to the right, and moved so that the first
-    Fourier mode of the density has its crest in the middle: bands are then seen at rest. The size
-    of that mode alone tells bands from chance.
+    At each sample it is turned so that the flock flies to the right, and moved so that the crest of
+    the density, of its longest waves together, is in the middle: that band is then seen at rest,
+    others where they mostly are. A crest there is always; how large the waves are tells bands from
+    chance.
     """
 
     quantity: Literal["density-bands"] = tag("density-bands")
@@ -53,14 +58,16 @@ class DensityBands(FlockObservable):
 
 
 class DensityBandsAccumulator(BlockAccumulator):
-    """Block averages of number and heading in each bin, and of the first mode."""
+    """Block averages of number and heading in each bin, and of the longest waves."""
 
     def __init__(self, observable: DensityBands, case: Case) -> None:
         observable.check(case)
         self.case, self.name, self.bins = case, observable.label, observable.bins
         self.axis = None if observable.axis is None else AXES.index(observable.axis)
         self.length = float(case.box.size[self.axis or 0])
-        self.blocks = Blocks(2 * self.bins + 2)
+        self.blocks = Blocks(2 * self.bins + 1)
+        wave = np.arange(1, WAVES + 1)[:, None]
+        self.waves = np.exp(-2j * np.pi * wave * np.arange(FINE) / FINE)
 
     def observe(self, engine: Any) -> None:
         """Take one sample."""
@@ -69,13 +76,23 @@ class DensityBandsAccumulator(BlockAccumulator):
         axis = int(np.argmax(np.abs(mean))) if self.axis is None else self.axis
         sign = -1.0 if mean[axis] < 0 else 1.0
         place = sign * engine.positions()[:, axis] / self.length
-        mode = np.exp(2j * np.pi * place).mean()
-        place = (place - np.angle(mode) / (2 * np.pi) + 0.5) % 1.0
+        modes = self.modes(place)
+        crest = np.argmax((modes @ self.waves).real) / FINE
+        place = (place - crest + 0.5) % 1.0
         bins = np.minimum((place * self.bins).astype(int), self.bins - 1)
         number = np.bincount(bins, minlength=self.bins)
         along = np.bincount(bins, sign * headings[:, axis], minlength=self.bins)
-        square = abs(mode) ** 2
-        self.blocks.add(np.concatenate([number, along, [square, square**2]]))
+        square = (np.abs(modes) ** 2).mean()
+        self.blocks.add(np.concatenate([number, along, [square]]))
+
+    def modes(self, place: Array) -> NDArray[np.complex128]:
+        """Mean of e^(2 pi i m place) for the longest waves, (WAVES,)."""
+        step, power = np.exp(2j * np.pi * place), np.ones(len(place), complex)
+        found = np.zeros(WAVES, complex)
+        for m in range(WAVES):
+            power *= step
+            found[m] = power.mean()
+        return found
 
     def result(self) -> Result:
         """Density over its mean, and the mean heading along the axis."""
@@ -104,14 +121,14 @@ class DensityBandsAccumulator(BlockAccumulator):
         )
 
     def comparisons(self) -> list[Comparison]:
-        """N times the mean square of the first mode: 1 for places at random."""
+        """N times the mean square of the modes: 1 for places at random."""
         means, number = of_mean(self.blocks), self.case.particles
-        gradient = np.zeros(2 * self.bins + 2)
-        gradient[-2] = number
+        gradient = np.zeros(2 * self.bins + 1)
+        gradient[-1] = number
         noise = self.case.flock.noise
         random = blind(noise, self.case.box.dimension) and self.case.flock.cohesion is None
-        measured = means.scalar(number * float(means.value[-2]), gradient)
-        note = "1 for places at random, the number of birds where all are in one place"
-        what = "structure factor of the longest wave"
+        measured = means.scalar(number * float(means.value[-1]), gradient)
+        note = "1 for places at random"
+        what = f"structure factor of the {WAVES} longest waves"
         # without order the axis follows chance, which does not know the places
         return [Comparison(what, *measured, 1.0 if random else math.nan, "", note)]
