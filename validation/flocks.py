@@ -60,10 +60,10 @@ def alone(page: Page) -> None:
     """A bird alone: a walk whose steps remember."""
     page.heading("A bird alone (V1)")
     page.text(
-        "40 000 birds that do not see one another (reach 1e-6), speed 0.3: mean square displacement "
-        "after n steps beside l^2 [n (1 + a)/(1 - a) - 2 a (1 - a^n)/(1 - a)^2], where a is the "
-        "mean cosine of the turn in a step: sin(eta/2)/(eta/2) for angular noise in 2D, 1 - eta/(2 "
-        "pi) in 3D, and 1 - eta^2/3 (3D) or an elliptic integral (2D) for vectorial noise."
+        "40 000 birds that do not see one another (reach 1e-6), speed 0.3: mean square "
+        "displacement after n steps beside l^2 [n (1 + a)/(1 - a) - 2 a (1 - a^n)/(1 - a)^2], where "
+        "a is the mean cosine of the turn in a step: sin(eta/2)/(eta/2) for angular noise in 2D, 1 - "
+        "eta/(2 pi) in 3D, and 1 - eta^2/3 (3D) or an elliptic integral (2D) for vectorial noise."
     )
     rows = []
     for size in ((30, 30), (16, 16, 16)):
@@ -90,9 +90,9 @@ def crowd(page: Page) -> None:
     """All see all."""
     page.heading("All see all (V2)")
     page.text(
-        "400 birds in a box where each is in reach of each: all turn from one direction, each on its "
-        "own, so that the mean square of the order is a^2 + (1 - a^2)/N exactly. With noise 2 pi "
-        "nobody heeds the others, and the mean order is sqrt(pi/4N), or sqrt(8/(3 pi N)) in 3D."
+        "400 birds in a box where each is in reach of each: all turn from one direction, each on "
+        "its own, so that the mean square of the order is a^2 + (1 - a^2)/N exactly. With noise 2 "
+        "pi nobody heeds the others, and the mean order is sqrt(pi/4N), or sqrt(8/(3 pi N)) in 3D."
     )
     rows = []
     for size in ((2, 2), (2, 2, 2)):
@@ -109,7 +109,9 @@ def crowd(page: Page) -> None:
             name = f"{len(size)}D, noise {strength:.3g}"
             expected = theory.mean_square_order(max(a, 0.0), 400)
             rows.append(
-                Comparison(f"{name}: mean square order", square.mean(), square.std() * error, expected)
+                Comparison(
+                    f"{name}: mean square order", square.mean(), square.std() * error, expected
+                )
             )
             if strength > 6:
                 expected = theory.disordered_order(400, len(size))
@@ -124,9 +126,9 @@ def against_noise(page: Page, axis: Any) -> None:
     """Vicsek's figure 2."""
     page.heading("Order against noise (V3)")
     page.text(
-        "Density 4, speed 0.03, angular noise (Vicsek et al. 1995, figure 2a), birds that move along "
-        "their new headings; 'expected' are the values of an independent program. The order `original` "
-        "of that paper, where birds move along their old headings, is beside it."
+        "Density 4, speed 0.03, angular noise (Vicsek et al. 1995, figure 2a), birds that move "
+        "along their new headings; 'expected' are the values of an independent program. The order "
+        "`original` of that paper, where birds move along their old headings, is beside it."
     )
     for number, known, steps, look in ((300, SMALL, 60_000, "o"), (4000, LARGE, 40_000, "s")):
         side, rows = math.sqrt(number / 4), []
@@ -163,9 +165,9 @@ def fluctuations(page: Page, axis: Any) -> None:
     """Giant number fluctuations."""
     page.heading("Giant number fluctuations (V4)")
     page.text(
-        "Box 128 x 128, density 2, speed 0.5, angular noise 1.57: standard deviation of the number of "
-        "birds in squares of side 1 to 32, beside those of an independent program, whose errors are "
-        "not known; birds at random have the square root of the mean."
+        "Box 128 x 128, density 2, speed 0.5, angular noise 1.57: standard deviation of the number "
+        "of birds in squares of side 1 to 32, beside those of an independent program, whose errors "
+        "are not known; birds at random have the square root of the mean."
     )
     watch = NumberFluctuations(every=20, sides=[1, 2, 4, 8, 16, 32])
     given = {"density": 2, "speed": 0.5, "noise": AngularNoise(1.57)}
@@ -200,7 +202,9 @@ def fluctuations(page: Page, axis: Any) -> None:
     page.check(f"spreads within {100 * off:.1f} % of the other program's (5 %)", off < 0.05)
     mean = order(simulation.engine)
     page.check(f"polar order at the end {mean:.3f} (0.817, within 0.02)", abs(mean - 0.817) < 0.02)
-    axis.errorbar(number, result.value, result.error, fmt="o", mfc="white", color=BLUE, label="flock")
+    axis.errorbar(
+        number, result.value, result.error, fmt="o", mfc="white", color=BLUE, label="flock"
+    )
     axis.plot(number, SPREADS, "x", color=RED, label="independent program")
     axis.plot(number, result.expected, "k-", lw=0.8, label="at random")
     axis.plot(number, result.value[0] * (number / 2) ** 0.8, "--", color=GREY, label=r"$n^{0.8}$")
@@ -212,9 +216,9 @@ def isotropy(page: Page) -> None:
     """No direction is better than another."""
     page.heading("Isotropy (V5)")
     page.text(
-        "200 flocks of 192 birds, each with a seed of its own, after 100 steps at noise 1.5: the mean "
-        "heading must know nothing of the axes. That any cells, threads and slices give the same bits "
-        "is a law of the tests (`tests/laws/test_flock.py`)."
+        "200 flocks of 192 birds, each with a seed of its own, after 100 steps at noise 1.5: the "
+        "mean heading must know nothing of the axes. That any cells, threads and slices give the "
+        "same bits is a law of the tests (`tests/laws/test_flock.py`)."
     )
     turns = []
     for seed in range(max(long(200), 60)):
@@ -236,9 +240,9 @@ def jump(page: Page, axis: Any) -> None:
     """The transition with vectorial noise is a jump."""
     page.heading("Vectorial noise (V6)")
     page.text(
-        "Box 64 x 64, density 2, speed 0.5, from a random start (Gregoire and Chate 2004): the order "
-        "jumps between strengths of 0.605 and 0.621, where bands form. Means over the last part of "
-        "each run; 'expected' are the values of an independent program, good to some 0.01."
+        "Box 64 x 64, density 2, speed 0.5, from a random start (Gregoire and Chate 2004): the "
+        "order jumps between strengths of 0.605 and 0.621, where bands form. Means over the last "
+        "part of each run; 'expected' are the values of an independent program, good to some 0.01."
     )
     rows, met = [], True
     for strength, expected in JUMP.items():
