@@ -152,6 +152,8 @@ from mesokit.running.callbacks import StopRun as StopRun
 from mesokit.running.callbacks import every as every
 from mesokit.simulation import Simulation as Simulation
 from mesokit.spheres.kinds import SphereKind as SphereKind
+from mesokit.spheres.start.from_file import FileStart as FileStart
+from mesokit.spheres.start.from_run import RunStart as RunStart
 from mesokit.spheres.start.lattice import LatticeStart as LatticeStart
 from mesokit.spheres.start.protocol import SphereStart as SphereStart
 from mesokit.spheres.start.random import RandomStart as RandomStart

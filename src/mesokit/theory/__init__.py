@@ -30,6 +30,7 @@ from mesokit.theory.dumbbell_shear import (
     fene_p_thinning,
     pair_friction,
 )
+from mesokit.theory.enskog_diffusion import enskog_diffusion
 from mesokit.theory.enskog_rate import contact_value, enskog_rate
 from mesokit.theory.finite_size import viscosity_renormalised
 from mesokit.theory.gamma import cell_energy_cdf, cell_energy_pdf, cell_energy_variance
@@ -184,6 +185,7 @@ __all__ = [
     "dumbbell_thinning",
     "dumbbell_viscosity",
     "end_to_end_cdf",
+    "enskog_diffusion",
     "enskog_friction",
     "enskog_rate",
     "fene_p_thinning",

@@ -7,8 +7,8 @@ def kicked_temperature(power: float, restitution: float, unit_rate: float) -> fl
     """Thermal energy at which kicks give as much as collisions take, in molecular chaos.
 
     A sphere loses (1 - e^2) kT/2 in each of its collisions (van Noije and Ernst 1998, to lowest
-    order in the fourth cumulant). Velocities of neighbours are correlated, which makes it some percent
-    hotter at e = 0.8.
+    order in the fourth cumulant). Velocities of neighbours are correlated, which makes it some
+    percent hotter at e = 0.8.
 
     Parameters
     ----------
