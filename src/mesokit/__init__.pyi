@@ -148,6 +148,7 @@ from mesokit.observe.velocity_distribution import VelocityDistribution as Veloci
 from mesokit.observe.velocity_field import VelocityField as VelocityField
 from mesokit.observe.velocity_profile import VelocityProfile as VelocityProfile
 from mesokit.observe.wake import Wake as Wake
+from mesokit.observe.wall_force import WallForce as WallForce
 from mesokit.observe.wall_stress import WallStress as WallStress
 from mesokit.potential.bending import Bending as Bending
 from mesokit.potential.fene import FENE as FENE

@@ -28,7 +28,8 @@ def predict(world, rules, spheres, lists, queue, tally, i, now):
     state, number = spheres.state, spheres.number
     r, v = place_at(world, state, i, now), velocity_at(world, state, i, now)
     leaves = time_to_leave(world, lists, r, v, entries(lists.centre, i, 0, r))
-    best, partner = now + leaves, LEAVES if leaves < math.inf else NOTHING
+    best = now + leaves
+    partner = np.int64(LEAVES if leaves < math.inf else NOTHING)
     one = mover(state, i, r)
     # all times first and the soonest then, so that one pair need not wait for another
     near, times = lists.count[i], lists.times
@@ -42,7 +43,7 @@ def predict(world, rules, spheres, lists, queue, tally, i, now):
     for w in range(len(world.walls)):
         time = time_to_wall(world, state, i, w, best)
         if time < best:
-            best, partner = time, FIRST_WALL - w
+            best, partner = time, np.int64(FIRST_WALL - w)
     queue.time[i], queue.partner[i] = best, partner
     queue.partner_hits[i] = spheres.hits[partner] if partner >= 0 else 0
     tally.counts[PREDICTIONS] += 1
