@@ -1,6 +1,6 @@
 """The four panels of figure 1 of Vicsek et al. (1995): birds with their ways of the last 20 steps.
 
-    python draw_vicsek_1995.py        writes vicsek_1995.png; some seconds
+python draw_vicsek_1995.py        writes vicsek_1995.png; some seconds
 """
 
 from pathlib import Path
