@@ -26,8 +26,9 @@ KINDS = ("pairs", "walls", "elastic by contact time")
 class CollisionRate(Observable):
     """Collisions of a sphere per time: with others, with walls, and made elastic by a contact time.
 
-    A collision of two counts for both; what a contact time does is told without walls. Theory is that of a uniform gas of equal spheres: the rate
-    that belongs to the pressure, at the temperature as it is in time.
+    A collision of two counts for both; what a contact time does is told without walls. Theory is
+    that of a uniform gas of equal spheres: the rate that belongs to the pressure, at the
+    temperature as it is in time.
     """
 
     quantity: Literal["collision-rate"] = tag("collision-rate")
@@ -49,7 +50,8 @@ class CollisionRateAccumulator:
 
     def observe(self, spheres: RunningSpheres) -> None:
         """Take one sample: of what has happened since the last."""
-        degrees = spheres.dimension * spheres.n
+        still = 0 if self.case.walls else 1  # without walls the momentum is zero
+        degrees = spheres.dimension * max(spheres.n - still, 1)
         root = math.sqrt(2 * spheres.totals()[2] / degrees)
         now = np.array([spheres.time, *spheres.collisions, root])
         elapsed = now[0] - self.before[0]
@@ -79,7 +81,7 @@ class CollisionRateAccumulator:
         if contact_time and not self.case.walls:
             known[2] = known[0] * theory.elastic_share(float(value[0]), contact_time)
         # that of a contact time counts walls as well, which are not told apart
-        shown = 2 if self.case.walls else 3 if contact_time else 1
+        shown = [0, 1] if self.case.walls else [0, 2] if contact_time else [0]
         note = "approximate: molecular chaos" if not self.case.spheres.collision.elastic else ""
         listed = [
             Comparison(
@@ -90,18 +92,18 @@ class CollisionRateAccumulator:
                 "1/time",
                 note,
             )
-            for k in range(shown)
+            for k in shown
         ]
         return Result(
             quantity="collision-rate",
             drawing="curve",
             name=self.name,
-            x={"with": np.array(KINDS[:shown])},
-            value=value[:shown],
-            error=error[:shown],
+            x={"with": np.array(KINDS)[shown]},
+            value=value[shown],
+            error=error[shown],
             label="collisions of a sphere per time",
             units={"value": "1/time", "with": ""},
-            expected=known[:shown],
+            expected=known[shown],
             theory="Enskog",
             comparisons=tuple(listed) if self.blocks.count else (),
             samples=self.blocks.count,
