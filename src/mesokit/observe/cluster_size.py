@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit import method as methods
 from mesokit.case.component import component, param, tag
+from mesokit.method.protocol import method_of
 from mesokit.observe.shared.protocol import BlockAccumulator, Observable
 from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
@@ -43,7 +43,7 @@ class ClusterSizeAccumulator(BlockAccumulator):
         self.name, self.gap, self.case = observable.label, observable.gap, case
         self.classes = case.particles.bit_length()
         self.blocks = Blocks((self.classes + 2,))
-        closed = methods.load(case.run.method).closed_axes(case)
+        closed = method_of(case).closed_axes(case)
         self.repeats = np.array([k not in closed for k in range(case.box.dimension)])
 
     def observe(self, spheres: RunningSpheres) -> None:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit import method as methods
 from mesokit import theory
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
+from mesokit.method.protocol import method_of
 from mesokit.observe.shared.protocol import BlockAccumulator, Observable
 from mesokit.observe.shared.result import Comparison, Result
 from mesokit.statistics import Blocks
@@ -39,7 +39,7 @@ class HeightProfile(Observable):
     def check(self, case: Case) -> None:
         """Raise CaseError without gravity along one axis that plates close."""
         along = np.flatnonzero(case.spheres.gravity)
-        closed = methods.load(case.run.method).closed_axes(case)
+        closed = method_of(case).closed_axes(case)
         if len(along) != 1 or int(along[0]) not in closed:
             raise CaseError("height-profile: expected gravity along one axis, which plates close")
 

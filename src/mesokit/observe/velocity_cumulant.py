@@ -94,10 +94,10 @@ class VelocityCumulantAccumulator(BlockAccumulator):
         if collision.elastic:
             return 0.0, "Maxwell"
         heating = self.case.spheres.heating
-        rule = "" if heating is None else heating.rule
-        constant = collision.rule == "hard" and not collision.rough and not collision.contact_time
-        if not constant or rule not in ("", "kicks"):
+        kicked = hasattr(heating, "power")  # a white noise, unlike a bath
+        constant = hasattr(collision, "restitution") and collision.reach == 1
+        if not constant or collision.rough or collision.contact_time or (heating and not kicked):
             return math.nan, ""
         d = self.case.box.dimension
-        known = theory.fourth_cumulant(collision.restitution, d, heated=rule == "kicks")
+        known = theory.fourth_cumulant(collision.restitution, d, heated=kicked)
         return known, "van Noije and Ernst"
