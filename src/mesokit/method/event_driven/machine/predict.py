@@ -8,6 +8,8 @@ from mesokit.method.event_driven.machine.groups import (
     FIRST_WALL,
     LEAVES,
     NOTHING,
+    PARTNER,
+    PARTNER_HITS,
     PREDICTIONS,
 )
 from mesokit.method.event_driven.machine.lists import time_to_leave
@@ -44,6 +46,7 @@ def predict(world, rules, spheres, lists, queue, tally, i, now):
         time = time_to_wall(world, state, i, w, best)
         if time < best:
             best, partner = time, np.int64(FIRST_WALL - w)
-    queue.time[i], queue.partner[i] = best, partner
-    queue.partner_hits[i] = spheres.hits[partner] if partner >= 0 else 0
+    queue.time[i], queue.event[i, PARTNER] = best, partner
+    if partner >= 0:
+        queue.event[i, PARTNER_HITS] = np.int32(spheres.hits[partner])
     tally.counts[PREDICTIONS] += 1
