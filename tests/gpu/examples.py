@@ -37,6 +37,9 @@ from mesokit.geometry.solids.cut_cube import share_and_depth, share_beyond
 from mesokit.geometry.solids.none import Nothing
 from mesokit.method.event_driven.collision import RULES
 from mesokit.method.event_driven.collision import protocol as spheres
+from mesokit.method.flock.engine.walls import flown
+from mesokit.method.flock.noise import RULES as NOISES
+from mesokit.method.flock.noise import protocol as birds
 from mesokit.method.mpcd import collision, thermostat
 from mesokit.method.mpcd.collision import protocol as rules
 from mesokit.method.mpcd.field import protocol as fields
@@ -155,6 +158,9 @@ ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     cut.roomy: lambda p, d: (vec(d),),
     cut.home: lambda p, d: (vec(d),),
     cut.grip: lambda p, d: (WHOLE, vec(d)),
+    birds.counted: lambda p, d: (),
+    birds.turned: lambda p, d: (COUNTER, WHOLE, vec(d), vec(d), WHOLE),
+    flown: lambda p, d: (vec(d), vec(d), vec(d)),
     spheres.restitution: lambda p, d: (1.0,),
     spheres.next_contact: lambda p, d: (vec(d), vec(d), 1.0, 0.0),
     spheres.step_of_energy: lambda p, d: (1.0, 1.0),
@@ -188,7 +194,7 @@ def parts(d: int) -> Iterator[Any]:
     faults, tensor = np.zeros(8, np.int64), np.zeros(d * d, np.int64)
     yield interactions.Force(1.0, np.zeros(8, np.int64), 1.0, 1, faults)
     yield interactions.Energy()
-    yield from (rule().kernel() for rule in RULES)
+    yield from (rule().kernel() for rule in (*RULES, *NOISES))
     yield interactions.Virial(1.0, tensor, 1.0)
 
 

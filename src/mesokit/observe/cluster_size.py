@@ -26,7 +26,7 @@ class ClusterSize(Observable):
     neighbours. "mean" is the size of the cluster of a sphere taken at random.
     """
 
-    quantity: Literal["cluster-size"] = tag("cluster-size")
+    quantity: Literal["contact-clusters"] = tag("contact-clusters")
     methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
     needs_fluid: ClassVar[bool] = False
     gap: float = param(0.1, doc="between the surfaces of neighbours, at most", unit="a", gt=0)
@@ -64,7 +64,7 @@ class ClusterSizeAccumulator(BlockAccumulator):
             for name, k in zip(names, (-2, -1, 0), strict=True)
         ]
         return Result(
-            quantity="cluster-size",
+            quantity="contact-clusters",
             drawing="curve",
             name=self.name,
             x={"size": 2.0 ** np.arange(self.classes)},
