@@ -16,6 +16,7 @@ METHODS = {  # what `run.method` says: the module that holds the METHOD
     "mpcd": "mesokit.method.mpcd.method",
     "brownian": "mesokit.method.brownian.method",
     "event-driven": "mesokit.method.event_driven.method",
+    "soft-spheres": "mesokit.method.soft_spheres.method",
 }
 DEFAULT = next(iter(METHODS))
 

@@ -44,6 +44,7 @@ from mesokit.theory.harmonic_spring import Spring, mean_square_bond, spring, spr
 from mesokit.theory.harmonic_trap import TrappedShape, normal_in_box, trapped_shape
 from mesokit.theory.heat_at_walls import HeatAtWalls, heat_at_walls, slit_temperature_rise
 from mesokit.theory.held_temperature import shear_warming, temperature_offset
+from mesokit.theory.hertz_contact import hertz_contact
 from mesokit.theory.hookean_shear import (
     ShearStress,
     SizeInShear,
@@ -92,6 +93,7 @@ from mesokit.theory.relaxation_modulus import (
 from mesokit.theory.rouse_times import RouseTimes, rouse_times, rouse_times_from_slowest
 from mesokit.theory.self_diffusion import self_diffusion
 from mesokit.theory.slip_sphere import enskog_friction, slip_sphere_diffusion
+from mesokit.theory.spring_dashpot import spring_dashpot
 from mesokit.theory.square_array import (
     square_array_drag,
     square_array_drag_dilute,
@@ -195,6 +197,7 @@ __all__ = [
     "hagen_poiseuille_flow_rate",
     "hagen_poiseuille_velocity",
     "heat_at_walls",
+    "hertz_contact",
     "kirkwood_diffusion",
     "kirkwood_in_cells",
     "kolmogorov_onset_time",
@@ -238,6 +241,7 @@ __all__ = [
     "slip_sphere_diffusion",
     "slit_temperature_rise",
     "spring",
+    "spring_dashpot",
     "spring_of_bond",
     "square_array_drag",
     "square_array_drag_dilute",
