@@ -21,8 +21,11 @@ settings.register_profile("same every time", derandomize=True)
 settings.load_profile("same every time")
 
 HERE = Path(__file__).parent
-# laboratory.py, fake_fluid.py, flows.py, shapes.py, examples.py, ptx.py
-sys.path[:0] = [str(HERE / name) for name in ("laws", "observe", "report", "geometry", "gpu")]
+# laboratory.py, hard_spheres.py, refusal.py, fake_fluid.py, flows.py, shapes.py, examples.py,
+# ptx.py
+sys.path[:0] = [
+    str(HERE / name) for name in ("laws", "case", "observe", "report", "geometry", "gpu")
+]
 
 
 @pytest.fixture(autouse=True, scope="session")

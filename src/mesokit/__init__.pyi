@@ -49,6 +49,14 @@ from mesokit.geometry.surface import Surface as Surface
 from mesokit.geometry.surface_contact import SurfaceContact as SurfaceContact
 from mesokit.io.open import RunFiles as RunFiles
 from mesokit.io.open import open as open
+from mesokit.method.event_driven.collision.hard import HardCollision as HardCollision
+from mesokit.method.event_driven.collision.protocol import SphereCollision as SphereCollision
+from mesokit.method.event_driven.collision.square_well import SquareWell as SquareWell
+from mesokit.method.event_driven.collision.viscoelastic import Viscoelastic as Viscoelastic
+from mesokit.method.event_driven.heating.andersen import Andersen as Andersen
+from mesokit.method.event_driven.heating.kicks import Kicks as Kicks
+from mesokit.method.event_driven.heating.protocol import Heating as Heating
+from mesokit.method.event_driven.section import HardSpheres as HardSpheres
 from mesokit.method.mpcd.collision.at import AT as AT
 from mesokit.method.mpcd.collision.at_plus_a import ATPlusA as ATPlusA
 from mesokit.method.mpcd.collision.demix import Demix as Demix
@@ -81,6 +89,14 @@ from mesokit.method.mpcd.thermostat.maxwell_boltzmann import MaxwellBoltzmann as
 from mesokit.method.mpcd.thermostat.none import NoThermostat as NoThermostat
 from mesokit.method.mpcd.thermostat.protocol import Thermostat as Thermostat
 from mesokit.method.mpcd.thermostat.rescale import Rescale as Rescale
+from mesokit.method.soft_spheres.pair.hertz import HertzLaw as HertzLaw
+from mesokit.method.soft_spheres.pair.protocol import ContactLaw as ContactLaw
+from mesokit.method.soft_spheres.pair.protocol import PairLaw as PairLaw
+from mesokit.method.soft_spheres.pair.spring_dashpot import SpringDashpot as SpringDashpot
+from mesokit.method.soft_spheres.section import SoftSpheres as SoftSpheres
+from mesokit.method.soft_spheres.thermostat.langevin import Langevin as Langevin
+from mesokit.method.soft_spheres.thermostat.protocol import SoftThermostat as SoftThermostat
+from mesokit.method.soft_spheres.thermostat.rescale import RescaleAll as RescaleAll
 from mesokit.observe.bond_correlation import BondCorrelation as BondCorrelation
 from mesokit.observe.bond_length import BondLength as BondLength
 from mesokit.observe.cell_occupancy import CellOccupancy as CellOccupancy
@@ -90,9 +106,12 @@ from mesokit.observe.density_gradient import DensityGradient as DensityGradient
 from mesokit.observe.density_profile import DensityProfile as DensityProfile
 from mesokit.observe.domain_size import DomainSize as DomainSize
 from mesokit.observe.dynamic_moduli import DynamicModuli as DynamicModuli
+from mesokit.observe.equation_of_state import EquationOfState as EquationOfState
 from mesokit.observe.flow_frames import FlowFrames as FlowFrames
 from mesokit.observe.flow_rate import FlowRate as FlowRate
 from mesokit.observe.forces import Forces as Forces
+from mesokit.observe.granular_temperature import GranularTemperature as GranularTemperature
+from mesokit.observe.hexatic_order import HexaticOrder as HexaticOrder
 from mesokit.observe.longitudinal_modes import LongitudinalModes as LongitudinalModes
 from mesokit.observe.mean_square_displacement import (
     MeanSquareDisplacement as MeanSquareDisplacement,
@@ -143,5 +162,6 @@ from mesokit.simulation import Simulation as Simulation
 from mesokit.spheres.kinds import SphereKind as SphereKind
 from mesokit.spheres.start.lattice import LatticeStart as LatticeStart
 from mesokit.spheres.start.protocol import SphereStart as SphereStart
+from mesokit.spheres.start.random import RandomStart as RandomStart
 from mesokit.study.merge import merge as merge
 from mesokit.study.study import Study as Study

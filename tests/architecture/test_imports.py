@@ -44,7 +44,10 @@ ROWS = {
     "case/": ("case", "errors", "=method", "scalar", "theory"),
     "geometry/": ("case", "errors", "geometry", "scalar"),
     "potential/": ("case", "errors", "potential", "scalar", "theory"),
-    "spheres/": ("case", "errors", "scalar", "spheres"),
+    "spheres/": ("case", "errors", "geometry", "scalar", "spheres"),
+    "spheres/start/random.py": (
+        "case", "method.event_driven.grow", "method.event_driven.walls", "spheres",
+    ),
     "method/__init__.py": (),
     "method/protocol.py": ("case", "engine", "=method"),
     "method/mpcd/": MPCD,
@@ -53,6 +56,10 @@ ROWS = {
     "method/mpcd/start/": START,
     "method/mpcd/start/first_state.py": (*MPCD, "execute", "io"),
     "method/mpcd/method.py": (*MPCD, "engine", "execute", "io", "method.protocol", "observe"),
+    "method/event_driven/": (
+        "case", "engine", "errors", "geometry", "method.event_driven", "method.protocol",
+        "observe", "running.cores", "scalar", "spheres", "theory",
+    ),
     "method/brownian/": (
         "case", "engine", "errors", "method.brownian", "method.protocol", "observe",
         "running.cores", "scalar", "statistics",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from refusal import refused
 
 from mesokit.cli import main
 
@@ -269,19 +270,6 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "field twice": ({"[[wall]]": '[trajectory]\nevery = 5\nfields = ["id", "id"]\n[[wall]]'},
                     ("trajectory.fields",)),
 }  # fmt: skip
-
-
-def refused(capsys: pytest.CaptureFixture[str], *arguments: str, status: int = 2) -> str:
-    """The one line that the command ends with."""
-    with pytest.raises(SystemExit) as end:
-        main(list(map(str, arguments)))
-    captured = capsys.readouterr()
-    assert end.value.code == status
-    assert captured.out == ""
-    assert captured.err.startswith("mesokit: error: ")
-    assert captured.err.count("\n") == 1
-    assert "Traceback" not in captured.err
-    return captured.err
 
 
 def test_the_good_case_is_good(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -29,8 +29,8 @@ class EquationOfState(Observable):
     """Z = P/(n kT) of elastic hard spheres, by the virial and by the collision rate.
 
     By the virial Z = 1 + sum of r.dp over collisions/(d N kT t), where d (N - 1) kT is twice the
-    kinetic energy, as the momentum is zero. Spheres of one size collide at a rate that says the same
-    (Enskog): (Z - 1) 2 d/(diameter sqrt(pi m/kT)).
+    kinetic energy, as the momentum is zero. Spheres of one size collide at a rate that says the
+    same (Enskog): (Z - 1) 2 d/(diameter sqrt(pi m/kT)).
     """
 
     quantity: Literal["equation-of-state"] = tag("equation-of-state")
@@ -146,7 +146,10 @@ class EquationOfStateAccumulator:
         counts, scale = section.counts(box), section.scale(box)
         total = sum(counts)
         moments = [
-            sum(n * kind.mean_power(p) * scale**p for n, kind in zip(counts, section.kinds, strict=True))
+            sum(
+                n * kind.mean_power(p) * scale**p
+                for n, kind in zip(counts, section.kinds, strict=True)
+            )
             / total
             for p in range(1, d + 1)
         ]

@@ -141,9 +141,9 @@ class GranularTemperatureAccumulator:
         listed = [Comparison("temperature at the end", last, nan, known, "m a^2/time^2", note)]
         if self.law() == "Haff":
             e, d = self.case.spheres.collision.restitution, self.case.box.dimension
-            # each collision takes (1 - e^2)/d of the mean energy of the two, in molecular chaos
+            # a sphere loses (1 - e^2)/d of its mean energy in each collision, in molecular chaos
             collisions = rows[-1, 2] - rows[0, 2]
-            by_count = rows[0, 0] * math.exp(-(1 - e**2) * collisions / (2 * d))
+            by_count = rows[0, 0] * math.exp(-(1 - e**2) * collisions / d)
             what = "temperature after so many collisions"
             listed.append(Comparison(what, last, nan, by_count, "m a^2/time^2", note))
         return listed

@@ -119,6 +119,14 @@ class Spheres:
         """The packing fraction, by the mean volume of each kind."""
         return float(self._filled(box) * self.scale(box) ** box.dimension / box.volume)
 
+    def largest(self, box: Box) -> float:
+        """The largest diameter that there may be.
+
+        >>> Spheres(number=4, kinds=[SphereKind(2.0, spread=0.5)]).largest(Box([9, 9]))
+        3.0
+        """
+        return max(kind.diameter * (1 + kind.spread) for kind in self.kinds) * self.scale(box)
+
     def _filled(self, box: Box) -> float:
         unit = ball_volume(box.dimension, 1.0)
         pairs = zip(self.kinds, self.counts(box), strict=True)

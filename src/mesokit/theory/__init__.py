@@ -53,6 +53,7 @@ from mesokit.theory.hookean_shear import (
     shear_heating,
     size_in_shear,
 )
+from mesokit.theory.kicked_temperature import kicked_temperature
 from mesokit.theory.kolmogorov import (
     kolmogorov_onset_time,
     kolmogorov_velocity,
@@ -184,9 +185,9 @@ __all__ = [
     "dimer_oscillation_range",
     "dumbbell_thinning",
     "dumbbell_viscosity",
-    "enskog_rate",
     "end_to_end_cdf",
     "enskog_friction",
+    "enskog_rate",
     "fene_p_thinning",
     "first_passage_cdf",
     "gaussian_stress_kernel",
@@ -198,6 +199,7 @@ __all__ = [
     "hagen_poiseuille_velocity",
     "heat_at_walls",
     "hertz_contact",
+    "kicked_temperature",
     "kirkwood_diffusion",
     "kirkwood_in_cells",
     "kolmogorov_onset_time",

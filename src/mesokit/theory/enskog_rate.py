@@ -8,8 +8,8 @@ import math
 def contact_value(packing_fraction: float, dimension: int) -> float:
     """Pair distribution of equal hard disks or spheres at contact.
 
-    Disks after Henderson (1975), spheres after Carnahan and Starling (1969); the disks' is 0.2 % too
-    high at 0.4 and 1.2 % at 0.6.
+    Disks after Henderson (1975), spheres after Carnahan and Starling (1969); the disks' is 0.2 %
+    too high at 0.4 and 1.2 % at 0.6.
 
     Parameters
     ----------

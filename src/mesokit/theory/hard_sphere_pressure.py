@@ -10,7 +10,8 @@ def compressibility(packing_fraction: float, dimension: int) -> float:
     """Z = P/(n kT) of the fluid in equilibrium.
 
     Disks: virial series to the tenth coefficient (Clisby and McCoy 2006), continued by the ratio of
-    the last two, good to 0.1 % below a packing fraction of 0.5 and 1 % at 0.6. Spheres: Kolafa (Boublik and Nezbeda 1986, eq. 4.46).
+    the last two, good to 0.1 % below a packing fraction of 0.5 and 1 % at 0.6. Spheres: Kolafa
+    (Boublik and Nezbeda 1986, eq. 4.46).
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ def check(case: Case) -> None:
         if box.dimension not in wall.dimensions:
             raise CaseError(f"wall[#{i + 1}]: {type(wall).__name__} is not for {box.dimension}D")
     wall_rows(case)
-    largest = max(kind.diameter * (1 + kind.spread) for kind in section.kinds) * section.scale(box)
+    largest = section.largest(box)
     shut = {axis for wall in case.walls for axis in wall.closed_axes}
     for axis, length in zip(box.axes, box.size, strict=True):
         if axis not in shut and length < 2 * largest:
@@ -33,6 +33,7 @@ def check(case: Case) -> None:
                 f"({2 * largest:g}) along {axis}"
             )
     _gravity(case, shut)
+    section.start.check(case)
 
 
 def _gravity(case: Case, shut: set[str]) -> None:

@@ -15,13 +15,15 @@ from mesokit.method.event_driven.machine import groups
 from mesokit.method.event_driven.machine.collide import Rules
 from mesokit.method.event_driven.machine.system import Given, System
 from mesokit.method.event_driven.walls import room_of, wall_rows
-from mesokit.method.event_driven.window import window
+from mesokit.method.event_driven.window import instant, window
 from mesokit.spheres.made import made
+
+Array = NDArray[np.float64]
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.engine import Array, Integers, State
-    from mesokit.spheres.start.protocol import Placed
+    from mesokit.engine import Integers, State
+    from mesokit.spheres.start.protocol import Started
 
 
 class EventDriven:
@@ -64,6 +66,7 @@ class EventDriven:
                 rules,
                 pair.contact_time,
                 window(self.case),
+                instant=instant(self.case),
                 reach=pair.reach,
                 turn=self._heat if section.heating is not None else None,
             )
@@ -73,7 +76,7 @@ class EventDriven:
         motion = Motion(velocities, self.made.masses, self.case.run.seed, turn)
         self.case.spheres.heating.act(motion, self.system.window)
 
-    def start(self, placed: Placed) -> None:
+    def start(self, placed: Started) -> None:
         """Put the spheres where they start from."""
         if placed.diameters is not None:
             self.system = self._system(placed.diameters)
@@ -102,8 +105,8 @@ class EventDriven:
     def end_warmup(self) -> None:
         """Forget counts of events, and what walls have taken."""
         tally = self.system.tally
-        tally.counts[: groups.SINCE] = 0
-        tally.sums[: groups.BEGAN] = 0
+        tally.counts[: groups.IN_A_ROW] = 0
+        tally.sums[:] = 0
         tally.impulse[:] = 0
 
     @property

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.errors import CaseError
+from mesokit.errors import CaseError, RunError
 from mesokit.method.event_driven.collision.hard import Constant
 from mesokit.method.event_driven.machine.collide import Rules
-from mesokit.method.event_driven.machine.groups import RADIUS, VELOCITY
+from mesokit.method.event_driven.machine.groups import VELOCITY
 from mesokit.method.event_driven.machine.scatter import scattered
 from mesokit.method.event_driven.machine.system import Given, System
 
@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 DILUTE = {2: 0.20, 3: 0.10}  # packing fraction of the spheres that begin to grow
 SPEED = 0.05  # of growth of a mean diameter, in thermal velocities
 IN_WINDOW = 0.05  # relative growth
+INSTANT = 1e-12  # of a window
 
 
 def grown(
@@ -47,20 +48,35 @@ def grown(
     rules = Rules(Constant(1.0), -1.0, 0.0, wall_rules, np.uint64(seed))
     inertia = np.ones(n)
     window = IN_WINDOW / growth
-    given = Given(size, closed, (), small * diameters, np.ones(n), inertia, walls, rules, 0.0, window, growth)
+    given = Given(
+        size,
+        closed,
+        (),
+        small * diameters,
+        np.ones(n),
+        inertia,
+        walls,
+        rules,
+        lasting=0.0,
+        window=window,
+        instant=INSTANT * window,
+        growth=growth,
+    )
     system = System(given)
     v = np.random.default_rng(seed).normal(size=(n, d))
     system.fill(places, v / math.sqrt((v * v).mean()), np.zeros((n, 1 if d == 2 else 3)))
     until = (1 / small - 1) / growth
     windows = math.floor(until / window)
-    for k in range(windows):
-        system.run_to(k + 1, 0.0)
-        _cool(system)
-    system.run_to(windows, until - windows * window)
-    places, _ = system.read()
-    if float(system.spheres.state[:, RADIUS].max()) <= 0 or not np.isfinite(places).all():
-        raise CaseError("spheres.start: no room for them")
-    return places
+    try:
+        for k in range(windows):
+            system.run_to(k + 1, 0.0)
+            _cool(system)
+        system.run_to(windows, until - windows * window)
+    except RunError:
+        raise CaseError(
+            f"spheres: they jam before they fill {fraction:.3g} of the box; expected fewer"
+        ) from None
+    return system.read()[0]
 
 
 def _cool(system: System) -> None:

@@ -17,10 +17,10 @@ from mesokit.spheres.start.first_state import ARRAYS, first_state, missing_files
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.spheres.start.protocol import Placed
+    from mesokit.spheres.start.protocol import Started
 
 
-def _first_state(case: Case, arrays: Mapping[str, Any]) -> Placed:
+def _first_state(case: Case, arrays: Mapping[str, Any]) -> Started:
     own = made(case)
     return first_state(case, own, arrays, case.spheres.first_spin_kT)
 

@@ -1,4 +1,4 @@
-"""The walls of a case as rows of numbers for the machinery. Raises CaseError for what it cannot do."""
+"""The walls of a case as rows of numbers for the machinery."""
 
 from __future__ import annotations
 
@@ -127,13 +127,14 @@ def _alone(term: Term, room: Room) -> Part | None:
     if len(term) == 1:
         return term[0]
     part = next((part for part in term if _in_box(part, room)), None)
-    if part is None or part.sign > 0 or part.kind not in ROUND:
+    if part is None or part.sign > 0 or part.kind not in (*ROUND, "brick"):
         return None
+    wide = math.hypot(*part.numbers[3:6]) if part.kind == "brick" else part.numbers[6]
     for other in term:  # images that do not overlap
         way = [a - b for a, b in zip(other.numbers[:3], part.numbers[:3], strict=True)]
         if any(x % length for x, length in zip(way, room.size, strict=False)):
             return None
-        if other is not part and math.hypot(*way) < 2 * part.numbers[6]:
+        if any(way) and math.hypot(*way) < 2 * wide:
             return None
         if other.numbers[3:] != part.numbers[3:] or other.kind != part.kind:
             return None

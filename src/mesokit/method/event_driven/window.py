@@ -11,8 +11,9 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 COLLISIONS = 500.0  # of each sphere in a window, about
+INSTANT = 1e-12  # of the mean time between two collisions
 BETWEEN_TURNS = 0.25  # collisions of a sphere
-LONGEST, SHORTEST = 2.0**20, 2.0**-20
+LONGEST, SHORTEST = 2.0**60, 2.0**-60
 
 
 def collision_rate(case: Case) -> float:
@@ -25,7 +26,9 @@ def collision_rate(case: Case) -> float:
     phi, number = min(section.fraction(box), 0.7), section.count(box)
     rates = [0.0]
     if section.kT > 0:
-        rate = theory.enskog_rate(number / box.volume, diameter, section.kT / mass, phi, box.dimension)
+        rate = theory.enskog_rate(
+            number / box.volume, diameter, section.kT / mass, phi, box.dimension
+        )
         rates.append(rate)
         rates.append(math.sqrt(section.kT / mass) / max(box.size))
     if section.gravity:
@@ -34,9 +37,9 @@ def collision_rate(case: Case) -> float:
 
 
 def window(case: Case) -> float:
-    """A power of two, about 500 mean times between collisions, or a quarter of one where velocities are changed
-    at the end of each; it does not depend on the timestep, so that the length of a step changes no
-    bit."""
+    """A power of two, about 500 mean times between collisions, or a quarter of one where velocities
+    are changed at the end of each. It does not depend on the timestep, so that the length of a step
+    changes no bit."""
     rate, heating = collision_rate(case), case.spheres.heating
     if heating is not None and heating.interval is not None:
         return float(heating.interval)
@@ -44,3 +47,10 @@ def window(case: Case) -> float:
         return 1024.0
     wanted = 2.0 ** round(math.log2((COLLISIONS if heating is None else BETWEEN_TURNS) / rate))
     return min(max(wanted, SHORTEST), LONGEST)
+
+
+def instant(case: Case) -> float:
+    """A time between two collisions that is none: where it comes many times in a row, time stands
+    still."""
+    rate = collision_rate(case)
+    return INSTANT / rate if rate > 0 else 0.0

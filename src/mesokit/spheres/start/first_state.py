@@ -12,7 +12,7 @@ from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.spheres.made import Made
 from mesokit.spheres.start import thermal
-from mesokit.spheres.start.protocol import Array, Placed
+from mesokit.spheres.start.protocol import Array, Started
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 ARRAYS = ("positions", "velocities", "spins")
 
 
-def first_state(case: Case, made: Made, arrays: Mapping[str, Any], spin_kT: float) -> Placed:
+def first_state(case: Case, made: Made, arrays: Mapping[str, Any], spin_kT: float) -> Started:
     """Places, velocities and spins of all. Raises CaseError for arrays that do not fit.
 
     Velocities and spins that nobody gives are drawn.
@@ -41,7 +41,7 @@ def first_state(case: Case, made: Made, arrays: Mapping[str, Any], spin_kT: floa
         velocities = thermal.velocities(case.run.seed, made, kT, d, at_rest)
     if spins is None:
         spins = thermal.spins(case.run.seed, made, spin_kT, d)
-    return Placed(positions, velocities, spins, placed.diameters if placed else None)
+    return Started(positions, velocities, spins, placed.diameters if placed else None)
 
 
 def _checked(name: str, given: Mapping[str, Any], shape: tuple[int, ...]) -> Array:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
+from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.spheres.start.protocol import Array, Placed, SphereStart
 
 if TYPE_CHECKING:
@@ -44,21 +45,50 @@ class LatticeStart(SphereStart):
         doc="'close-packed': triangular in 2D, face-centred cubic in 3D; 'square': square or cubic",
     )
 
-    def place(self, case: Case, made: Made) -> Placed:
-        """Sites for all. Raises CaseError where neighbours would overlap."""
-        size, n = np.array(case.box.size, float), len(made.diameters)
-        cells, sites = unit_cells(self.lattice, size, n), CELLS[self.lattice, len(size)][0]
-        corners = np.stack(np.meshgrid(*map(np.arange, cells), indexing="ij"), -1)
-        every = (corners.reshape(-1, 1, len(size)) + np.array(sites)).reshape(-1, len(size))
-        chosen = np.linspace(0, len(every), n, endpoint=False).astype(int)
-        places = (every[chosen] * (size / cells))[mixed(case.run.seed, n, len(case.spheres.kinds))]
-        gap = nearest(places, size) - made.diameters.max()
+    def check(self, case: Case) -> None:
+        """Raise CaseError where neighbours would overlap, or solids are in the way."""
+        if any(not wall.closed_axes for wall in case.walls):
+            raise CaseError(
+                f"spheres.start.rule = {show(self.rule)}: not beside solids other than plates; "
+                "expected 'random'"
+            )
+        section, box = case.spheres, case.box
+        largest = section.largest(box)
+        free = self.free(case, largest)
+        if free.min() <= 0:
+            raise CaseError(f"spheres: no room for a diameter of {largest:.4g} between the walls")
+        sites, gap = self.sites(section.count(box), free, shut(case)), -largest
+        if len(sites) > 1:
+            gap += nearest(sites, free, shut(case))
         if gap < 0:
             raise CaseError(
                 f"spheres.start.rule = {show(self.rule)}: neighbours on this lattice would overlap "
                 f"by {-gap:.3g}; expected fewer or smaller spheres, or rule 'random'"
             )
-        return Placed(places)
+
+    def free(self, case: Case, largest: float) -> Array:
+        """Lengths of the box that centres may be in."""
+        return np.array(case.box.size, float) - largest * shut(case)
+
+    def place(self, case: Case, made: Made) -> Placed:
+        """Sites for all, a radius off the walls."""
+        largest, n = case.spheres.largest(case.box), len(made.diameters)
+        sites = self.sites(n, self.free(case, largest), shut(case)) + 0.5 * largest * shut(case)
+        return Placed(sites[mixed(case.run.seed, n, len(case.spheres.kinds))])
+
+    def sites(self, n: int, size: Array, shut: NDArray[np.bool_]) -> Array:
+        """So many places (n, d) in a room."""
+        cells, within = unit_cells(self.lattice, size, n), CELLS[self.lattice, len(size)][0]
+        corners = np.stack(np.meshgrid(*map(np.arange, cells), indexing="ij"), -1)
+        every = (corners.reshape(-1, 1, len(size)) + np.array(within)).reshape(-1, len(size))
+        chosen = np.linspace(0, len(every), n, endpoint=False).astype(int)
+        return np.asarray(every[chosen] * (size / cells))
+
+
+def shut(case: Case) -> NDArray[np.bool_]:
+    """Which axes plates close."""
+    closed = closed_axes(case.walls)
+    return np.array([axis in closed for axis in case.box.axes])
 
 
 def unit_cells(lattice: str, size: Array, n: int) -> Integers:
@@ -77,12 +107,10 @@ def mixed(seed: int, n: int, kinds: int) -> Integers:
     return np.arange(n) if kinds == 1 else np.random.default_rng(seed).permutation(n)
 
 
-def nearest(places: Array, size: Array) -> float:
-    """The shortest distance of two places in a periodic box."""
+def nearest(places: Array, size: Array, shut: NDArray[np.bool_]) -> float:
+    """The shortest distance of two places, in a box that is periodic but along shut axes."""
     from scipy.spatial import cKDTree
 
-    if len(places) == 1:
-        return float(size.min())
-    tree = cKDTree(np.mod(places, size), boxsize=size)
-    distance, _ = tree.query(np.mod(places, size), k=2)
+    around = np.where(shut, 3 * size, size)  # images far away
+    distance, _ = cKDTree(places, boxsize=around).query(places, k=2)
     return float(distance[:, 1].min())

@@ -20,6 +20,16 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
+class Started(NamedTuple):
+    """What an engine is filled with, by particle number: positions and velocities (n, d), spins
+    ((n,) in 2D, (n, 3) in 3D), and diameters (n,) where they are not those of the case."""
+
+    positions: Array
+    velocities: Array
+    spins: Array
+    diameters: Array | None = None
+
+
 class Placed(NamedTuple):
     """By particle number: positions (n, d), and velocities (n, d) and spins ((n,) in 2D, (n, 3) in
     3D) unless they are to be drawn; diameters (n,) where the start brings its own."""
@@ -34,6 +44,9 @@ class Placed(NamedTuple):
 @component
 class SphereStart(ABC):
     """Where spheres are at first."""
+
+    def check(self, case: Case) -> None:  # noqa: B027  # most can begin anywhere
+        """Raise CaseError where there is no room for all."""
 
     @abstractmethod
     def place(self, case: Case, made: Made) -> Placed:

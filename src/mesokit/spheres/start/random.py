@@ -17,7 +17,8 @@ class RandomStart(SphereStart):
     """Anywhere, none on another, off the walls.
 
     Where they are too many to be put in one by one, they begin small and grow while they fly and
-    collide (Lubachevsky and Stillinger 1990): a disordered start at any packing fraction of a fluid.
+    collide (Lubachevsky and Stillinger 1990): a disordered start at any packing fraction of a
+    fluid.
     """
 
     rule: Literal["random"] = tag("random")
@@ -30,6 +31,4 @@ class RandomStart(SphereStart):
         walls = surface_rows(case).rows
         fraction = case.spheres.fraction(case.box)
         closed = room_of(case).closed
-        return Placed(
-            grown(case.box.size, closed, made.diameters, walls, fraction, case.run.seed)
-        )
+        return Placed(grown(case.box.size, closed, made.diameters, walls, fraction, case.run.seed))

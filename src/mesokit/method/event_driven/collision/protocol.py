@@ -16,9 +16,9 @@ from mesokit.scalar.jit import generic
 class SphereCollision(ABC):
     """What two spheres do to one another when they touch.
 
-    The tangential velocity of the contact after a collision is minus `tangential` times that before,
-    unless the impulse would be more than `friction` times the normal one (Walton 1993): -1 is
-    smooth, 1 perfectly rough.
+    The tangential velocity of the contact after a collision is minus `tangential` times that
+    before, unless the impulse would be more than `friction` times the normal one (Walton 1993): -1
+    is smooth, 1 perfectly rough.
     """
 
     tangential: float = option(

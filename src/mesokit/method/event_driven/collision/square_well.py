@@ -32,7 +32,9 @@ class SquareWell(SphereCollision):
     """
 
     rule: Literal["square-well"] = tag("square-well")
-    depth: float = param(1.0, doc="energy of a bound pair is minus this", unit="kT", ge=-1e6, le=1e6)
+    depth: float = param(
+        1.0, doc="energy of a bound pair is minus this", unit="kT", ge=-1e6, le=1e6
+    )
     width: float = param(1.5, doc="distance up to which it acts", unit="diameters", gt=1, le=3)
     restitution: float = param(
         1.0, doc="normal velocity after a collision over minus that before", ge=0, le=1

@@ -1,1 +1,1 @@
-"""The compiled machinery: spheres in memory, who is near whom, what comes next, what happens then."""
+"""The compiled machinery: spheres in memory, who is near whom, what comes next and happens."""

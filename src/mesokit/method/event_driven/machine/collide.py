@@ -8,6 +8,7 @@ import numpy as np
 from mesokit.method.event_driven.collision.protocol import restitution, step_of_energy
 from mesokit.method.event_driven.machine.groups import (
     ELASTIC,
+    IN_A_ROW,
     INERTIA,
     LAST,
     LOST_ENERGY,
@@ -132,7 +133,9 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
     levers = turning(state, body, i) + turning(state, body, j)
     closing = -dot(u, n)
     e, tangential, friction = restitution(rules.pair, closing), rules.tangential, rules.friction
-    if time - max(body[i, LAST], body[j, LAST]) < world.lasting:
+    since = time - max(body[i, LAST], body[j, LAST])
+    note_pause(world, tally, since)
+    if since < world.lasting:
         e, tangential = 1.0, -1.0
         tally.counts[ELASTIC] += 1
     normal, along = impulse_of(masses, levers, u, n, e, tangential, friction)
@@ -146,6 +149,12 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
     tally.counts[PAIRS] += 1
     tally.sums[VIRIAL] += dot(apart, total)
     tally.sums[LOST_ENERGY] += 0.5 * (1.0 - e * e) * closing * closing / masses
+
+
+@scalar
+def note_pause(world, tally, since):
+    """Count collisions in a row that come no time after the last of one of both."""
+    tally.counts[IN_A_ROW] = tally.counts[IN_A_ROW] + 1 if since < world.instant else 0
 
 
 @scalar
@@ -185,6 +194,7 @@ def collide_wall(world, rules, spheres, tally, i, w, time):
         lever = scaled(-state[i, RADIUS], n)
         u = added_scaled(surface_velocity(spheres, i, v, lever), -1.0, wall_velocity)
         e, tangential = wall_restitution(rules, w, -dot(u, n)), rules.at_walls[w, 1]
+        note_pause(world, tally, time - body[i, LAST])
         if time - body[i, LAST] < world.lasting:
             e, tangential = 1.0, -1.0
             tally.counts[ELASTIC] += 1

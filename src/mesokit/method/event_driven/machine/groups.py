@@ -22,7 +22,7 @@ DONE, FULL, COLLAPSED, LOST = 0, 1, 2, 3
 class World(NamedTuple):
     """What does not change: lengths (d,) of the box, their inverses (d,; 0 along closed axes),
     acceleration (d,), relative rate at which diameters grow, walls (walls, 16), and `lasting`:
-    collisions less than this after another are elastic."""
+    collisions less than this after another are elastic; `instant`: a time that is none."""
 
     size: tuple[float, ...]
     inverse: tuple[float, ...]
@@ -30,6 +30,7 @@ class World(NamedTuple):
     growth: float
     walls: Any
     lasting: float
+    instant: float
 
 
 class Spheres(NamedTuple):
@@ -86,7 +87,7 @@ class Queue(NamedTuple):
 
 
 class Tally(NamedTuple):
-    """What has happened: numbers (8,) and momentum that each wall has taken (walls, d)."""
+    """What has happened: counts (8,), sums (2,), momentum that each wall has taken (walls, d)."""
 
     counts: Any
     sums: Any
@@ -94,5 +95,5 @@ class Tally(NamedTuple):
 
 
 # places in `Tally.counts`, and in `Tally.sums`
-PAIRS, WALLS, ELASTIC, STEPS, RENEWALS, PREDICTIONS, SINCE, COUNTS = 0, 1, 2, 3, 4, 5, 6, 8
-VIRIAL, LOST_ENERGY, BEGAN, USUAL, SUMS = 0, 1, 2, 3, 8
+PAIRS, WALLS, ELASTIC, STEPS, RENEWALS, PREDICTIONS, IN_A_ROW, COUNTS = 0, 1, 2, 3, 4, 5, 6, 8
+VIRIAL, LOST_ENERGY, SUMS = 0, 1, 2

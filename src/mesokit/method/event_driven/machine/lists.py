@@ -133,7 +133,7 @@ def time_to_leave(world, lists, r, v, centre):
         left = max(shell - math.sqrt(square), 0.0)
         u = math.sqrt(speed)
         return 2.0 * left / (u + math.sqrt(u * u + 2.0 * pull * left))
-    if speed == 0.0:
+    if speed < 1e-200:  # whose square is nothing
         return math.inf
     b = dot(gone, v)
     return (math.sqrt(max(b * b + speed * (shell * shell - square), 0.0)) - b) / speed

@@ -94,12 +94,8 @@ def meeting(world, rule, one, other, now):
     """
     g, since = world.gravity, max(one.time, other.time)
     mine, its = since - one.time, since - other.time
-    apart = added_scaled(
-        fallen(one.r, mine, one.v, g), -1.0, fallen(other.r, its, other.v, g)
-    )
-    v = added_scaled(
-        added_scaled(one.v, mine, g), -1.0, added_scaled(other.v, its, g)
-    )
+    apart = added_scaled(fallen(one.r, mine, one.v, g), -1.0, fallen(other.r, its, other.v, g))
+    v = added_scaled(added_scaled(one.v, mine, g), -1.0, added_scaled(other.v, its, g))
     apart = meant_image(world, apart, v, now - since)
     reach = one.radius + other.radius
     growth = reach * world.growth

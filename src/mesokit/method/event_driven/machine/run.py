@@ -2,18 +2,16 @@
 
 from mesokit.method.event_driven.machine.collide import collide_pair, collide_wall
 from mesokit.method.event_driven.machine.groups import (
-    BEGAN,
     COLLAPSED,
     DONE,
     FIRST_WALL,
     FULL,
+    IN_A_ROW,
     LAST,
     LEAVES,
     RADIUS,
     RENEWALS,
-    SINCE,
     TIME,
-    USUAL,
 )
 from mesokit.method.event_driven.machine.lists import find, link, renew
 from mesokit.method.event_driven.machine.motion import (
@@ -28,14 +26,13 @@ from mesokit.scalar.cache import kernel
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import scalar
 
-ROUND = 100  # collisions of each sphere after which it is asked how long they took
-STALLED = 1e-9  # of the usual time: time stands still
+MANY = 100  # collisions in a row that take no time
 
 
 @kernel
 def advance(world, rules, spheres, lists, queue, tally, end):
     """Do all events before a time; how it ended: DONE, FULL lists or COLLAPSED."""
-    number, n = spheres.number, len(spheres.number)
+    number = spheres.number
     while True:
         i = next_event(queue, number, end)
         if i < 0:
@@ -46,7 +43,7 @@ def advance(world, rules, spheres, lists, queue, tally, end):
             if spheres.hits[partner] == queue.partner_hits[i]:
                 collide_pair(world, rules, spheres, tally, i, partner, now)
                 other = partner
-                if stalls(tally, n, now):
+                if tally.counts[IN_A_ROW] >= MANY:
                     return COLLAPSED
         elif partner == LEAVES:
             tally.counts[RENEWALS] += 1
@@ -54,7 +51,7 @@ def advance(world, rules, spheres, lists, queue, tally, end):
                 return FULL
         elif partner <= FIRST_WALL:
             collide_wall(world, rules, spheres, tally, i, FIRST_WALL - partner, now)
-            if stalls(tally, n, now):
+            if tally.counts[IN_A_ROW] >= MANY:
                 return COLLAPSED
         for k in (i, other):
             remove(queue, number, k)
@@ -71,19 +68,6 @@ def boxed(world, state, i, now):
     for k in range(len(r)):
         r = with_item(r, k, r[k] - floor(r[k] * world.inverse[k]) * world.size[k])
     return r
-
-
-@scalar
-def stalls(tally, n, now):
-    """Whether collisions have become so many that time stands still."""
-    tally.counts[SINCE] += 1
-    if tally.counts[SINCE] < ROUND * max(n, 100):
-        return False
-    took, usual = now - tally.sums[BEGAN], tally.sums[USUAL]
-    tally.counts[SINCE] = 0
-    tally.sums[BEGAN] = now
-    tally.sums[USUAL] = max(usual, took)
-    return took < STALLED * usual
 
 
 @kernel

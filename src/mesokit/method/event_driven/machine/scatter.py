@@ -29,7 +29,7 @@ def scattered(
     n, d = len(diameters), len(size)
     lengths = tuple(float(length) for length in size)
     inverse = tuple(0.0 if shut else 1.0 / x for shut, x in zip(closed, lengths, strict=True))
-    world = World(lengths, inverse, (0.0,) * d, 0.0, walls, 0.0)
+    world = World(lengths, inverse, (0.0,) * d, 0.0, walls, 0.0, 0.0)
     cells = tuple(int(max(1, x // diameters.max())) for x in lengths)
     cells = tuple(min(c, max(1, int(4 * n ** (1 / d)))) for c in cells)
     head, following = np.full(cells, -1, np.int32).ravel(), np.zeros(n, np.int32)
@@ -88,10 +88,7 @@ def fits(world, cells, head, following, radii, places, r, radius):
         distance, _ = outward(world, w, r)
         if distance < radius:
             return False
-    steps = 1
-    for k in range(len(r)):
-        steps *= 3
-    for step in range(steps):
+    for step in range(9 if len(r) == 2 else 27):
         cell, rest = 0, step
         for k in range(len(r)):
             here = min(int(r[k] / world.size[k] * cells[k]), cells[k] - 1)

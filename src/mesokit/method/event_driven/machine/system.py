@@ -28,10 +28,14 @@ KEPT = ("state", "body", "boxes", "hits")
 
 
 class Given(NamedTuple):
-    """What a system is made of: lengths (d,) of the box, which axes are closed (d,), acceleration
-    (d,), diameters, masses and moments of inertia (n,), walls (walls, 14), rules, the time within
-    which collisions lose nothing, the length of a window, relative growth of diameters per time, and how far spheres feel one another in
-    diameters, and what changes velocities (n, d) by particle number at the end of a window."""
+    """What a system is made of.
+
+    size, closed, gravity (d,): lengths of the box, which axes walls close, acceleration; diameters,
+    masses, inertia (n,); walls (walls, 14); rules; lasting: a collision sooner than this after
+    another loses nothing; window: the length of one; instant: a time that is none; growth of
+    diameters, relative per time; reach: how far spheres feel one another, in diameters; turn: what
+    changes velocities (n, d) by particle number at the end of a window.
+    """
 
     size: Sequence[float]
     closed: Sequence[bool]
@@ -43,6 +47,7 @@ class Given(NamedTuple):
     rules: Rules
     lasting: float
     window: float
+    instant: float = 0.0
     growth: float = 0.0
     reach: float = 1.0
     turn: Callable[[Array, int], None] | None = None
@@ -109,7 +114,8 @@ class System:
             0.0 if shut else 1.0 / length for shut, length in zip(given.closed, size, strict=True)
         )
         gravity = tuple(float(g) for g in given.gravity) or (0.0,) * self.d
-        return World(size, inverse, gravity, self.growth, self.walls, given.lasting)
+        lasting, instant = given.lasting, given.instant
+        return World(size, inverse, gravity, self.growth, self.walls, lasting, instant)
 
     def sort(self) -> None:
         """Neighbours in space become neighbours in memory; changes no bit of the motion."""
@@ -203,7 +209,6 @@ class System:
         while self.windows < windows:
             self._run(self.window)
             synchronise(self.world, self.spheres, self.window)
-            self.tally.sums[groups.BEGAN] -= self.window
             self.now = 0.0
             if self.given.turn is not None:
                 self._turn(self.given.turn)

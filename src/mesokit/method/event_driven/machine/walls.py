@@ -14,11 +14,10 @@ from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
-# columns: kind, place of three, unit vector of three (normal of a plane, axis of a cylinder), radius,
-# velocity of three, amplitude, frequency, phase at the start of the window
-KIND, PLACE, AXIS, ROUND, MOVES, AMPLITUDE, FREQUENCY, PHASE, COLUMNS = (
-    0, 1, 4, 7, 8, 11, 12, 13, 14,
-)  # fmt: skip
+# columns: kind, place of three, unit vector of three (normal of a plane, axis of a cylinder),
+# radius, velocity of three, amplitude, frequency, phase at the start of the window
+KIND, PLACE, AXIS, ROUND, MOVES = 0, 1, 4, 7, 8
+AMPLITUDE, FREQUENCY, PHASE, COLUMNS = 11, 12, 13, 14
 PLANE, OUTSIDE, INSIDE = 0.0, 1.0, -1.0  # kinds: a plane; fluid outside or inside of a round wall
 CLOSE = 1e-13  # of the radius of a sphere: it touches
 STEPS = 1_000_000
@@ -117,7 +116,20 @@ def approach(world, state, i, w, tau):
         else:  # for as long as it does not come nearer to the middle than a quarter
             bend += (square + 0.5 * pull * size) / (0.25 * size)
             longest = parabola(0.25 * size, math.sqrt(square), pull)
+    elif walls[w, KIND] == OUTSIDE:  # until it may have come to another image of the wall
+        between = next_image(world, w) - 2.0 * (walls[w, ROUND] + radius)
+        longest = parabola(max(gap, between - gap), math.sqrt(dot(moving, moving)), pull)
     return gap, closing, bend, longest
+
+
+@scalar
+def next_image(world, w):
+    """How far away the nearest image of a round wall is, infinite if there is none."""
+    nearest = math.inf
+    for k in range(len(world.size)):
+        if world.inverse[k] > 0.0 and abs(world.walls[w, AXIS + k]) < 0.999:
+            nearest = min(nearest, world.size[k])
+    return nearest
 
 
 @scalar

@@ -1,0 +1,115 @@
+"""Wrong cases of event-driven dynamics: each is refused with one line that names the key."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from refusal import refused
+
+from mesokit.cli import main
+
+GOOD = """
+[run]
+steps = 10
+method = "event-driven"
+[box]
+size = [20, 10.5]
+[spheres]
+number = 30
+timestep = 0.1
+kinds = [{ diameter = 1 }]
+collision = { rule = "hard", restitution = 0.9 }
+gravity = [0, -1]
+start = { rule = "lattice" }
+[[wall]]
+shape = "plates"
+axis = "y"
+lower = { contact = { restitution = 0.8 } }
+[[observe]]
+quantity = "granular-temperature"
+every = 2
+"""
+WALL = GOOD[GOOD.index("[[wall]]") : GOOD.index("[[observe]]")]
+# name: (what is replaced by what in the good case, what the message must say)
+BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
+    "misspelt method": ({'"event-driven"': '"event-drivn"'}, ("run.method", "'event-driven'")),
+    "section of another method": ({"[spheres]": "[fluid]"}, ("fluid: unknown key", "event-driven")),
+    "misspelt section": ({"[spheres]": "[sphere]"}, ("sphere: unknown key", "'spheres'")),
+    "misspelt key": ({"number = 30": "nunber = 30"}, ("spheres.nunber", "'number'")),
+    "no spheres": ({"number = 30": "number = 0"}, ("spheres.number = 0", "at least 1")),
+    "half a sphere": ({"number = 30": "number = 1.5"}, ("spheres.number = 1.5", "whole number")),
+    "number and density": ({"number = 30": "number = 30\ndensity = 1"}, ("spheres", "not both")),
+    "overfull": ({"number = 30": "packing_fraction = 1.2"}, ("packing_fraction = 1.2", "below 1")),
+    "too many for the box": ({"number = 30": "number = 300"}, ("spheres", "less than 1")),
+    "no room on the lattice": ({"number = 30": "packing_fraction = 0.95"}, ("overlap", "'random'")),
+    "negative fraction": ({"number = 30": "packing_fraction = -1"}, ("above 0",)),
+    "no kinds": ({"[{ diameter = 1 }]": "[]"}, ("spheres.kinds",)),
+    "no diameter": ({"diameter = 1": "diameter = 0"}, ("kinds[#1].diameter = 0", "at least")),
+    "narrow box": ({"diameter = 1": "diameter = 9", "[20, 10.5]": "[10, 90]",
+                    "number = 30": "number = 1"}, ("box.size", "two diameters", "along x")),
+    "spread": ({"diameter = 1": "spread = 1"}, ("kinds[#1].spread = 1", "below 1")),
+    "mass and density": ({"diameter = 1": "mass = 1, density = 1"}, ("kinds[#1]", "not both")),
+    "no mass": ({"diameter = 1": "mass = 0"}, ("kinds[#1].mass = 0", "above 0")),
+    "large diameter": ({"diameter = 1": "diameter = 11", "[20, 10.5]": "[40, 10.5]",
+                        "number = 30": "number = 1"}, ("spheres", "a diameter of 11", "walls")),
+    "no time": ({"timestep = 0.1": "timestep = 0"}, ("spheres.timestep = 0", "at least")),
+    "negative kT": ({"timestep = 0.1": "kT = -1"}, ("spheres.kT = -1", "at least 0")),
+    "rule": ({'"hard"': '"soft"'}, ("spheres.collision.rule = 'soft'", "'hard'")),
+    "bouncing up": ({"restitution = 0.9": "restitution = 1.1"}, ("at most 1",)),
+    "key of another rule": ({"restitution = 0.9": "depth = 1"}, ("collision.depth: unknown",)),
+    "tangential": ({"restitution = 0.9": "tangential = 2"}, ("tangential = 2", "at most 1")),
+    "friction": ({"restitution = 0.9": "friction = -1"}, ("friction = -1", "at least 0")),
+    "contact time": ({"restitution = 0.9": "contact_time = -1"}, ("contact_time = -1",)),
+    "narrow well": ({'"hard", restitution = 0.9': '"square-well", width = 0.5'}, ("above 1",)),
+    "long gravity": ({"[0, -1]": "[0, 0, -1]"}, ("spheres.gravity", "2 numbers")),
+    "endless fall": ({"[0, -1]": "[1, 0]"}, ("spheres.gravity", "along x", "wall")),
+    "text for gravity": ({"[0, -1]": '"down"'}, ("spheres.gravity", "list")),
+    "start": ({'"lattice"': '"random", seed = 1'}, ("start.seed: unknown key",)),
+    "rule of start": ({'"lattice"': '"lattise"'}, ("start.rule = 'lattise'", "'lattice'")),
+    "heating": ({"gravity": 'heating = { rule = "kick" }\ngravity'}, ("heating.rule", "'kicks'")),
+    "no power": ({"gravity": 'heating = { rule = "kicks", power = 0 }\ngravity'}, ("power = 0",)),
+    "shear": ({"10.5]": "10.5]\nshear_rate = 0.1"}, ("shear", "event-driven")),
+    "open box": ({"10.5]": '10.5]\nopen = ["x"]'}, ("box.open", "event-driven")),
+    "wall of another kind": ({WALL: '[[wall]]\nshape = "capsule"\nstart = [1, 1]\nend = [2, 2]\n'
+                              "radius = 1\n", "10.5": "10"}, ("wall[#1]", "event-driven")),
+    "round wall in a box of broken length":
+        ({WALL: '[[wall]]\nshape = "disk"\ncentre = [5, 5]\nradius = 2\n'},
+         ("wall[#1]", "whole lengths")),
+    "sphere in 2D": ({WALL: '[[wall]]\nshape = "sphere"\ncentre = [5, 5]\nradius = 2\n',
+                      "10.5": "10"}, ("wall[#1]", "2D")),
+    "virtual particles": ({'axis = "y"': 'axis = "y"\nvirtual = "none"'}, ("wall[#1].virtual",)),
+    "temperature of a cold wall": ({"restitution = 0.8": "temperature = 2"},
+                                   ("wall[#1]", "diffuse")),
+    "half a vibration": ({"restitution = 0.8": "amplitude = 0.1"}, ("wall[#1]", "frequency")),
+    "misspelt contact": ({"restitution = 0.8": "restitusion = 0.8"}, ("restitusion: unknown key",)),
+    "observable of a fluid": ({'"granular-temperature"': '"velocity-field"'}, ("observe[#1]",)),
+    "pressure beside walls": ({'"granular-temperature"': '"equation-of-state"'},
+                              ("observe[#1]", "wall")),
+    "units": ({"[[wall]]": '[units]\ncell = 1e-6\nmatch = "reynolds"\n[[wall]]'}, ("units",)),
+}  # fmt: skip
+
+
+def test_the_good_case_is_good(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "good.toml").write_text(GOOD)
+    with pytest.raises(SystemExit) as end:
+        main(["check", str(tmp_path / "good.toml")])
+    assert end.value.code == 0
+    assert "packing fraction" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_case_is_refused(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch
+) -> None:
+    changes, expected = BAD[name]
+    text = GOOD
+    for old, new in changes.items():
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    (tmp_path / "bad.toml").write_text(text)
+    monkeypatch.chdir(tmp_path)
+    message = refused(capsys, "run", "bad.toml")
+    for words in expected:
+        assert words in message
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["bad.toml"]
