@@ -60,6 +60,12 @@ ROWS = {
         "case", "engine", "errors", "geometry", "method.event_driven", "method.protocol",
         "observe", "running.cores", "scalar", "spheres", "theory",
     ),
+    "method/soft_spheres/": (
+        "case", "engine", "errors", "execute.cells", "execute.cpu.strips.layout",
+        "execute.cpu.threads", "geometry", "method.event_driven.machine.walls",
+        "method.event_driven.walls", "method.protocol", "method.soft_spheres", "observe",
+        "potential", "running.cores", "scalar", "spheres", "theory",
+    ),
     "method/brownian/": (
         "case", "engine", "errors", "method.brownian", "method.protocol", "observe",
         "running.cores", "scalar", "statistics",

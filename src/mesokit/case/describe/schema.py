@@ -37,7 +37,10 @@ def schema() -> dict[str, Any]:
     sections = {name: _by_key(cases[name], each["properties"]) for name, each in found.items()}
     together: dict[str, Any] = {}
     for each in reversed(sections.values()):  # the usual method says what a shared key means
-        together |= each
+        for key, inner in each.items():
+            differs = key in together and together[key] != inner
+            alike = not differs or key in sections[methods.DEFAULT]
+            together[key] = inner if alike else {"type": "object"}  # each method says its own
     order = [*sections[methods.DEFAULT], *sorted(together)]
     return {
         "$schema": DIALECT,

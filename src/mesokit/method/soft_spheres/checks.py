@@ -37,8 +37,8 @@ def check(case: Case) -> None:
             )
         if axis not in shut and length < 2 * (reach + section.skin_of(box)):
             raise CaseError(
-                f"spheres.skin: expected less than {0.5 * length - reach:.3g}, half of the box along "
-                f"{axis} less the reach"
+                f"spheres.skin: expected less than {0.5 * length - reach:.3g}, half of the box "
+                f"along {axis} less the reach"
             )
     _gravity(case, shut)
     _timestep(case)

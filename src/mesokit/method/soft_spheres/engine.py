@@ -12,12 +12,13 @@ from mesokit.errors import RunError
 from mesokit.method.soft_spheres.laws import given_of
 from mesokit.method.soft_spheres.machine import groups
 from mesokit.method.soft_spheres.machine.system import System
+from mesokit.method.soft_spheres.scales import timestep_of
 from mesokit.spheres.made import made
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.engine import Array, Integers, State
-    from mesokit.spheres.start.protocol import Placed
+    from mesokit.spheres.start.protocol import Started
 
 
 class SoftEngine:
@@ -27,12 +28,12 @@ class SoftEngine:
         section, box = case.spheres, case.box
         self.case, self.made = case, made(case)
         self.n, self.dimension = len(self.made.diameters), box.dimension
-        self.box, self.timestep = np.array(box.size, float), section.step_of(box)
+        self.box, self.timestep = np.array(box.size, float), timestep_of(section, box)
         self.system = System(given_of(case, self.made), threads)
         self.threads, self.step = threads, 0
         self.seconds = {"steps": 0.0}
 
-    def start(self, placed: Placed) -> None:
+    def start(self, placed: Started) -> None:
         """Put the spheres where they start from."""
         if placed.diameters is not None:
             self.made = self.made._replace(
@@ -40,7 +41,6 @@ class SoftEngine:
                 inertia=self.made.inertia * (placed.diameters / self.made.diameters) ** 2,
             )
             self.system = System(given_of(self.case, self.made), self.threads)
-        assert placed.velocities is not None and placed.spins is not None
         self.system.fill(placed.positions, placed.velocities, placed.spins)
         self.system.find_forces(self.time)
 

@@ -13,6 +13,7 @@ from mesokit.method.soft_spheres.machine.contact import OWN, Contact
 from mesokit.method.soft_spheres.machine.groups import Motion
 from mesokit.method.soft_spheres.machine.system import Given
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw, damping_ratio
+from mesokit.method.soft_spheres.scales import timestep_of
 from mesokit.potential.protocol import central
 
 if TYPE_CHECKING:
@@ -88,7 +89,7 @@ def nearest(law: Any) -> float:
 
 def _motion(case: Case) -> Motion:
     section, box = case.spheres, case.box
-    d, step = box.dimension, section.step_of(box)
+    d, step = box.dimension, timestep_of(section, box)
     gravity = [*section.gravity, 0.0, 0.0, 0.0][:3] if section.gravity else [0.0, 0.0, 0.0]
     bath = section.thermostat
     return Motion(
@@ -102,7 +103,7 @@ def _motion(case: Case) -> Motion:
 
 
 def _walls(case: Case) -> tuple[Array, Array]:
-    """Rows of walls, and the damping ratio and friction of each: -1, and as of pairs, unless said."""
+    """Rows of walls, and damping ratio and friction of each: -1, and as of pairs, unless said."""
     found, law = surface_rows(case), case.spheres.pair
     own = np.zeros((len(found.rows), OWN))
     for w, (_, surface) in enumerate(found.surfaces):

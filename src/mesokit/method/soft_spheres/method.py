@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from mesokit.method.protocol import Columns, Method
 from mesokit.method.soft_spheres.checks import check
 from mesokit.method.soft_spheres.engine import SoftEngine
+from mesokit.method.soft_spheres.scales import timestep_of
 from mesokit.method.soft_spheres.section import KEYS, Sections
 from mesokit.method.soft_spheres.summary import summary
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
@@ -17,10 +18,10 @@ from mesokit.spheres.start.first_state import ARRAYS, first_state, missing_files
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.spheres.start.protocol import Placed
+    from mesokit.spheres.start.protocol import Started
 
 
-def _first_state(case: Case, arrays: Mapping[str, Any]) -> Placed:
+def _first_state(case: Case, arrays: Mapping[str, Any]) -> Started:
     return first_state(case, made(case), arrays, case.spheres.first_spin_kT)
 
 
@@ -47,7 +48,7 @@ METHOD = Method(
     observables=(MeanSquareDisplacement,),
     check=check,
     groups=groups,
-    timestep=lambda case: float(case.spheres.step_of(case.box)),
+    timestep=lambda case: float(timestep_of(case.spheres, case.box)),
     kT=lambda case: float(case.spheres.kT),
     summary=summary,
     starts=starts,

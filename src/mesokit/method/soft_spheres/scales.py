@@ -36,11 +36,14 @@ def shortest_contact(section: SoftSpheres, box: Box) -> float:
     return law.contact_time_of(mass, speed_of_collision(section, box))
 
 
-def usual_timestep(section: SoftSpheres, box: Box) -> float:
-    """The step unless said."""
+def timestep_of(section: SoftSpheres, box: Box) -> float:
+    """Time of a step."""
+    if section.timestep is not None:
+        return section.timestep
     law = section.pair
     if isinstance(law, ContactLaw):
         time = shortest_contact(section, box)
         return time / IN_CONTACT if math.isfinite(time) else OF_FLIGHT
     kT = max(section.kT, section.thermostat.held_kT if section.thermostat else 0.0, 1.0)
-    return float(OF_FLIGHT * law.diameter * math.sqrt(lightest(section, box) / kT))  # type: ignore[attr-defined]
+    diameter: float = law.diameter  # type: ignore[attr-defined]
+    return OF_FLIGHT * diameter * math.sqrt(lightest(section, box) / kT)

@@ -9,7 +9,6 @@ from mesokit.geometry.shape import Wall
 from mesokit.method.soft_spheres.pair import PairLaw
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw
 from mesokit.method.soft_spheres.pair.spring_dashpot import SpringDashpot
-from mesokit.method.soft_spheres.scales import usual_timestep
 from mesokit.method.soft_spheres.thermostat import SoftThermostat
 from mesokit.spheres.section import Spheres
 
@@ -36,18 +35,17 @@ class SoftSpheres(Spheres):
     )
     timestep: float | None = param(
         None,
-        doc="time of a step: a fiftieth of a contact, or 0.005 of the time in which a sphere flies "
-        "its diameter",
+        doc="time of a step (unless said a fiftieth of a contact, or 0.005 of the time in which a "
+        "sphere flies its diameter)",
         unit="time",
-        unless_said="contact time/50",
         gt=0,
         le=1e9,
     )
     skin: float | None = param(
         None,
-        doc="how far lists of neighbours go beyond the reach: changes the speed alone",
+        doc="how far lists of neighbours go beyond the reach: changes the speed alone (0.1 of the "
+        "reach of contacts, 0.16 of that of potentials unless said)",
         unit="a",
-        unless_said="0.1 or 0.16 of the reach",
         gt=0,
         le=1e6,
     )
@@ -71,10 +69,6 @@ class SoftSpheres(Spheres):
         if self.spin_kT is not None:
             return self.spin_kT
         return self.kT if self.turns else 0.0
-
-    def step_of(self, box: Box) -> float:
-        """Time of a step."""
-        return usual_timestep(self, box) if self.timestep is None else self.timestep
 
     def reach(self, box: Box) -> float:
         """The largest distance at which two spheres feel one another."""

@@ -17,7 +17,10 @@ from mesokit.running.cores import usable_cores
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
-RATE_OF_CONTACTS, RATE_OF_POTENTIALS = 6e6, 2.5e6  # sphere-steps per second and core (docs/benchmark)
+RATE_OF_CONTACTS, RATE_OF_POTENTIALS = (
+    6e6,
+    2.5e6,
+)  # sphere-steps per second and core (docs/benchmark)
 USUAL_NEIGHBOURS = 66.0  # within the reach, where the second was measured
 BYTES = 600  # for each sphere: states twice, lists
 DEEP = 0.05  # overlap, in diameters, beyond which spheres are not hard
@@ -27,7 +30,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     """Derived numbers, cost, and warnings."""
     section, box = case.spheres, case.box
     cores = usable_cores() if threads is None else threads
-    steps, step = case.run.warmup + case.run.steps, section.step_of(box)
+    steps, step = case.run.warmup + case.run.steps, scales.timestep_of(section, box)
     phi = section.fraction(box)
     memory = case.particles * BYTES + 200_000_000
     stored = stored_bytes(case.trajectory, case.groups, box.dimension, case.run.steps)
@@ -46,7 +49,11 @@ def summary(case: Case, threads: int | None = None) -> Summary:
         rows += [
             ("contact time", number(time, "time"), "of the lightest two"),
             ("steps per contact", number(time / step), ""),
-            ("collision speed", number(speed, "a/time"), "thermal, or after a fall through the box"),
+            (
+                "collision speed",
+                number(speed, "a/time"),
+                "thermal, or after a fall through the box",
+            ),
             ("overlap", number(overlap, "diameters"), "expected at that speed"),
         ]
     else:
@@ -71,11 +78,11 @@ def _warnings(case: Case, numbers: dict[str, float]) -> Iterator[str]:
     per_contact = numbers.get("steps_per_contact", math.inf)
     if per_contact < scales.WARNED:
         yield (
-            f"spheres.timestep: {per_contact:.3g} steps in a contact; restitution and energy are off "
-            "by a percent or more below 20"
+            f"spheres.timestep: {per_contact:.3g} steps in a contact; restitution and energy are "
+            "off by a percent or more below 20"
         )
     if numbers.get("overlap", 0.0) > DEEP:
         yield (
-            f"spheres.pair: spheres overlap by {numbers['overlap']:.2g} diameters where they collide; "
-            "hard ones ask for a shorter contact time or a larger stiffness"
+            f"spheres.pair: spheres overlap by {numbers['overlap']:.2g} diameters where they "
+            "collide; hard ones ask for a shorter contact time or a larger stiffness"
         )

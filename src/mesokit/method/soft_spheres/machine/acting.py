@@ -4,7 +4,7 @@ from mesokit.scalar.jit import generic
 
 
 @generic
-def act(law, i, time, step, bodies, box, lists, walls, noted):
+def act(law, i, time, step, world, noted):
     """Find force and torque on a sphere, by neighbours and walls; contacts grow by a step."""
 
 
@@ -19,6 +19,6 @@ def turns(law):
 
 
 @generic
-def tell(law, i, time, bodies, box, lists, walls, told):
+def tell(law, i, time, world, told):
     """Add up what readers ask of a sphere, in quanta, in a row of eight: twice its share of the
     potential energy, r F of its pairs (xx, yy, zz, xy, xz, yz), and how many touch it."""

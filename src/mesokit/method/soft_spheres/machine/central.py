@@ -38,7 +38,8 @@ def _(law):
 
 
 @act.register(Central)
-def _(law, i, time, step, bodies, box, lists, walls, noted):
+def _(law, i, time, step, world, noted):
+    bodies, box, lists, walls = world
     x, y, z = row(bodies.place, i)
     a, b, c, low = np.int64(0), np.int64(0), np.int64(0), FAR
     for s in range(lists.count[i]):
@@ -50,7 +51,11 @@ def _(law, i, time, step, bodies, box, lists, walls, noted):
         c += fixed(push * dz, law.scale)
         low = min(low, apart(square))
     rounders = np.int64(lists.count[i]) * np.int64(ROUNDER_BITS)
-    bodies.force[i, 0], bodies.force[i, 1], bodies.force[i, 2] = a - rounders, b - rounders, c - rounders
+    bodies.force[i, 0], bodies.force[i, 1], bodies.force[i, 2] = (
+        a - rounders,
+        b - rounders,
+        c - rounders,
+    )
     for w in range(len(walls.rows)):
         distance, out, _ = from_wall(walls.rows, w, box, (x, y, z), time)
         if distance < 2.0 * reach(bodies, i):
@@ -63,12 +68,13 @@ def _(law, i, time, step, bodies, box, lists, walls, noted):
 
 @scalar
 def apart(square):
-    """Bits of the square of a distance; of none, which lists are filled up with, those of infinity."""
+    """Bits of a squared distance; of none, with which lists are filled up, those of infinity."""
     return bits(square) if square > 0.0 else FAR
 
 
 @tell.register(Central)
-def _(law, i, time, bodies, box, lists, walls, told):
+def _(law, i, time, world, told):
+    bodies, box, lists, walls = world
     r = row(bodies.place, i)
     for s in range(lists.count[i]):
         j = lists.near[i, s]

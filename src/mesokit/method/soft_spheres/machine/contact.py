@@ -27,9 +27,9 @@ class Contact(NamedTuple):
     """What happens at a contact.
 
     normal: force along the normal; stiffness, damping: of the spring along the surface, over the
-    normal stiffness and over sqrt(normal stiffness * mass); friction: Coulomb's coefficient; memory:
-    1 for a spring along the surface, 0 for the dashpot alone; rolling: its coefficient; width: how
-    many numbers a contact remembers; quantum and its inverse.
+    normal stiffness and over sqrt(normal stiffness * mass); friction: Coulomb's coefficient;
+    memory: 1 for a spring along the surface, 0 for the dashpot alone; rolling: its coefficient;
+    quantum and its inverse.
     """
 
     normal: Any
@@ -45,7 +45,8 @@ class Contact(NamedTuple):
 class Touch(NamedTuple):
     """One contact, as one of the two spheres sees it.
 
-    overlap; normal: from the other to this; reduced: mass; arm: radius of this, roller: reduced radius;
+    overlap; normal: from the other to this; reduced: mass; arm: radius of this; roller: reduced
+    radius;
     velocity: of this against the other at the contact; turning: difference of the angular
     velocities; ratio, friction: of damping and of Coulomb.
     """
@@ -72,7 +73,8 @@ def _(law):
 
 
 @act.register(Contact)
-def _(law, i, time, step, bodies, box, lists, walls, noted):
+def _(law, i, time, step, world, noted):
+    bodies, box, lists, walls = world
     r = row(bodies.place, i)
     force = np.int64(0), np.int64(0), np.int64(0)
     torque = force
@@ -163,7 +165,9 @@ def answer(law, touch, springs, i, s, step):
             law.damping * math.sqrt(stiffness * touch.reduced),
             law.rolling * abs(push),
         )
-        against, spring = stretched(slider, kept(springs, i, s, ROLLING), rolling, touch.normal, step)
+        against, spring = stretched(
+            slider, kept(springs, i, s, ROLLING), rolling, touch.normal, step
+        )
         keep(springs, i, s, ROLLING, spring)
         torque = added_scaled(torque, -touch.roller, cross(touch.normal, against))
     return force, torque
@@ -209,7 +213,8 @@ def abs_sum(vector):
 
 
 @tell.register(Contact)
-def _(law, i, time, bodies, box, lists, walls, told):
+def _(law, i, time, world, told):
+    bodies, box, lists, walls = world
     r = row(bodies.place, i)
     for s in range(lists.count[i]):
         j = lists.near[i, s]

@@ -9,9 +9,8 @@ from typing import Any, NamedTuple
 
 REACH = 3  # column of `place`: how far a sphere reaches, a radius or half of a cut-off
 INVERSE = 3  # column of `velocity` and `spin`: the inverse of mass and of moment of inertia
-FARTHEST, NEAREST, LARGEST = 0, 1, 2  # columns of `noted`
+FARTHEST, NEAREST, LARGEST, DONE, PENDING = 0, 1, 2, 3, 4  # columns of what threads note
 GAP = 8  # numbers between those of two threads: each has a cache line of its own
-DONE, PENDING = 0, 1  # places in `progress`
 ENERGY, VIRIAL, TOUCHING, TOLD = 0, 1, 7, 8  # columns of what is told of a sphere, and their number
 
 
@@ -55,17 +54,26 @@ class Lists(NamedTuple):
 
 
 class Walls(NamedTuple):
-    """rows (walls, COLUMNS): see `mesokit.geometry.rows`; own (walls, 2): damping ratio and friction
-    of each; springs (n, walls, width); impulse (walls, 3): whole quanta, what they took."""
+    """rows (walls, 14): as in event-driven dynamics; own (walls, 2): damping ratio and friction of
+    each; springs (n, walls, width): of contacts that remember."""
 
     rows: Any
     own: Any
     springs: Any
 
 
+class World(NamedTuple):
+    """The spheres, the box, who is near whom, and the walls."""
+
+    bodies: Bodies
+    box: Box
+    lists: Lists
+    walls: Walls
+
+
 class Motion(NamedTuple):
-    """The step, gravity, and of Langevin's bath: by how much velocities decay in a step (1 without),
-    and its thermal energy; axes: 1 along each there is, and turns: 1 about each there is."""
+    """The time of a step, gravity, and of Langevin's bath: by how much velocities decay in a step
+    (1 without), and its thermal energy; axes: 1 along each there is, and turns: 1 about each there is."""
 
     step: float
     gravity: tuple[float, float, float]

@@ -129,7 +129,7 @@ def carry_springs(team, order, old, old_number, new, number):
 @scalar
 def stretched(springs, i, s):
     """Whether a contact has anything to remember."""
+    found = False
     for k in range(springs.shape[2]):
-        if springs[i, s, k] != 0.0:
-            return True
-    return False
+        found |= springs[i, s, k] != 0.0
+    return found

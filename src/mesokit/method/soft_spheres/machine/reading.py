@@ -6,8 +6,8 @@ from mesokit.scalar.cache import kernel
 
 
 @kernel
-def tell_all(team, time, law, bodies, box, lists, walls, told):
+def tell_all(team, time, law, world, told):
     """What the law tells of every sphere, (n, 8)."""
-    first, last = share(len(bodies.number), team.thread, team.threads)
+    first, last = share(len(world.bodies.number), team.thread, team.threads)
     for i in range(first, last):
-        tell(law, i, time, bodies, box, lists, walls, told[i])
+        tell(law, i, time, world, told[i])

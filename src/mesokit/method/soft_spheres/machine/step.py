@@ -24,47 +24,47 @@ BATH, BATH_OF_SPINS = METHOD + np.uint64(1), METHOD + np.uint64(2)
 
 
 @kernel
-def advance(team, counter, steps, law, motion, bodies, box, lists, walls, noted, progress):
+def advance(team, counter, steps, law, motion, world, noted):
     """So many steps, or fewer where lists must be made anew.
 
-    `progress` says whether forces are due first, and then how many steps are done and whether forces
+    `noted` says whether forces are due first, and then how many steps are done and whether forces
     are due, with new lists.
     """
-    first, last = share(len(bodies.number), team.thread, team.threads)
-    done, pending = 0, progress[team.thread, PENDING] != 0
+    first, last = share(len(world.bodies.number), team.thread, team.threads)
+    mine = noted[team.thread]
+    done, pending = 0, mine[PENDING] != 0.0
     while done < steps:
         now = Counter(counter.seed, counter.step + np.uint64(done))
         if not pending:
             farthest = 0.0
             for i in range(first, last):
-                kick(law, motion, bodies, i)
-                drift(motion, now, bodies, box, i)
-                farthest = max(farthest, moved(bodies, box, lists, i))
-            noted[team.thread, FARTHEST] = farthest
+                kick(law, motion, world.bodies, i)
+                drift(motion, now, world.bodies, world.box, i)
+                farthest = max(farthest, moved(world.bodies, world.box, world.lists, i))
+            mine[FARTHEST] = farthest
             meet(team)
             for t in range(team.threads):
                 farthest = max(farthest, noted[t, FARTHEST])
-            if worn(farthest, 0.0, lists.skin):
+            if worn(farthest, 0.0, world.lists.skin):
                 pending = True
                 break
         time = motion.step * float(now.step + np.uint64(1))
         for i in range(first, last):
-            act(law, i, time, motion.step, bodies, box, lists, walls, noted[team.thread])
+            act(law, i, time, motion.step, world, mine)
         meet(team)
         for i in range(first, last):
-            kick(law, motion, bodies, i)
+            kick(law, motion, world.bodies, i)
         pending = False
         done += 1
-    progress[team.thread, DONE] = done
-    progress[team.thread, PENDING] = 1 if pending else 0
+    mine[DONE], mine[PENDING] = float(done), 1.0 if pending else 0.0
 
 
 @kernel
-def find_forces(team, time, law, bodies, box, lists, walls, noted):
+def find_forces(team, time, law, world, noted):
     """The forces on spheres where they start from. No contact grows meanwhile."""
-    first, last = share(len(bodies.number), team.thread, team.threads)
+    first, last = share(len(world.bodies.number), team.thread, team.threads)
     for i in range(first, last):
-        act(law, i, time, 0.0, bodies, box, lists, walls, noted[team.thread])
+        act(law, i, time, 0.0, world, noted[team.thread])
 
 
 @scalar

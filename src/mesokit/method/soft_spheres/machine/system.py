@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from mesokit.errors import RunError
 from mesokit.execute.cpu.threads import Threads
 from mesokit.method.soft_spheres.machine import groups
-from mesokit.method.soft_spheres.machine.groups import Bodies, Box, Lists, Motion, Walls
+from mesokit.method.soft_spheres.machine.groups import Bodies, Box, Lists, Motion, Walls, World
 from mesokit.method.soft_spheres.machine.lists import GROUP, carry_springs, make_lists, sort
 from mesokit.method.soft_spheres.machine.reading import tell_all
 from mesokit.method.soft_spheres.machine.step import advance, find_forces
@@ -34,7 +34,7 @@ class Grid(NamedTuple):
 class Given(NamedTuple):
     """What does not change.
 
-    size of the box and closed axes; reach, masses, inertia (n,); law: a pair of forces, see `acting`;
+    size of the box and closed axes; reach, masses, inertia (n,); law of the forces, see `acting`;
     width: numbers that a contact remembers; nearest: no two come nearer, largest: no force exceeds
     it; motion; walls: rows and own, see `Walls`; seed; skin.
     """
@@ -71,7 +71,6 @@ class System:
         self.begins = np.zeros(int(np.prod(self.grid.cells)) + 1, np.int64)
         self.scratch = np.zeros((threads, n), np.int64)
         self.noted = np.zeros((threads, groups.GAP))
-        self.progress = np.zeros((threads, groups.GAP), np.int64)
         self.noted_forces()
 
     def noted_forces(self) -> None:
@@ -84,11 +83,9 @@ class System:
 
     def _lists(self, most: int) -> Lists:
         n, width = self.n, self.given.width
+        count, near = np.zeros(n, np.int64), np.zeros((n, most), np.int32)
         springs = np.zeros((n, most if width else 0, width))
-        return Lists(
-            self.given.skin, np.zeros(n, np.int64), np.zeros((n, most), np.int32), springs,
-            np.zeros((n, 4)),
-        )  # fmt: skip
+        return Lists(self.given.skin, count, near, springs, np.zeros((n, 4)))
 
     # --- start and steps --------------------------------------------------------------------------
 
@@ -117,27 +114,26 @@ class System:
         else:
             self.bodies.spin[:, :3] = spins
 
+    @property
+    def world(self) -> World:
+        """What the loops work on, as it lies now."""
+        return World(self.bodies, self.box, self.lists, self.walls)
+
     def find_forces(self, time: float) -> None:
         """The forces at the start."""
-        self.team.run(
-            find_forces, time, self.given.law, self.bodies, self.box, self.lists, self.walls,
-            self.noted,
-        )  # fmt: skip
+        self.team.run(find_forces, time, self.given.law, self.world, self.noted)
         self._look()
 
     def run(self, step: int, steps: int) -> None:
         """So many steps from a step on. Raises RunError where forces are beyond all bounds."""
-        done = 0
-        self.progress[:] = 0
+        law, motion, done = self.given.law, self.given.motion, 0
+        self.noted[:, groups.PENDING] = 0.0
         while done < steps or steps == 0:
             counter = Counter(np.uint64(self.given.seed), np.uint64(step + done))
-            self.team.run(
-                advance, counter, steps - done, self.given.law, self.given.motion, self.bodies,
-                self.box, self.lists, self.walls, self.noted, self.progress,
-            )  # fmt: skip
-            done += int(self.progress[0, groups.DONE])
+            self.team.run(advance, counter, steps - done, law, motion, self.world, self.noted)
+            done += int(self.noted[0, groups.DONE])
             self._look()
-            if self.progress[0, groups.PENDING]:
+            if self.noted[0, groups.PENDING]:
                 self.renew()
             if steps == 0:
                 return
@@ -147,13 +143,13 @@ class System:
         nearest = np.sqrt(law.view(np.int64)[:, groups.NEAREST].view(np.float64).min())
         if nearest < given.nearest:
             raise RunError(
-                f"two spheres, or a sphere and a wall, are {nearest:.3g} apart: the force is beyond "
-                "all bounds; expected a shorter timestep, or a start without overlaps"
+                f"two spheres, or a sphere and a wall, are {nearest:.3g} apart: the force is "
+                "beyond all bounds; expected a shorter timestep, or a start without overlaps"
             )
         if law[:, groups.LARGEST].max() > 2.0**61:
             raise RunError(
-                "a force of a contact is beyond all bounds; expected a shorter timestep, or a start "
-                "without overlaps"
+                "a force of a contact is beyond all bounds; expected a shorter timestep, or a "
+                "start without overlaps"
             )
 
     # --- lists ------------------------------------------------------------------------------------
@@ -171,9 +167,15 @@ class System:
         columns = np.ascontiguousarray(self.bodies.place.T)
         while True:
             self.team.run(
-                make_lists, self.grid, self.begins, columns, self.bodies, self.box, self.lists,
+                make_lists,
+                self.grid,
+                self.begins,
+                columns,
+                self.bodies,
+                self.box,
+                self.lists,
                 self.scratch,
-            )  # fmt: skip
+            )
             longest = int(self.lists.count.max())
             if longest < self.lists.near.shape[1]:  # one place is written beyond the end
                 break
@@ -182,9 +184,13 @@ class System:
             if len(self.walls.rows):
                 self.walls = self._walls(self.walls.springs[self.order])
             self.team.run(
-                carry_springs, self.order, self.old, self.spare.number, self.lists,
+                carry_springs,
+                self.order,
+                self.old,
+                self.spare.number,
+                self.lists,
                 self.bodies.number,
-            )  # fmt: skip
+            )
 
     # --- reading ----------------------------------------------------------------------------------
 
@@ -197,9 +203,7 @@ class System:
     def told(self, time: float) -> NDArray[np.int64]:
         """What `acting.tell` says of every sphere, by number, in quanta."""
         told = np.zeros((self.n, groups.TOLD), np.int64)
-        self.team.run(
-            tell_all, time, self.given.law, self.bodies, self.box, self.lists, self.walls, told
-        )
+        self.team.run(tell_all, time, self.given.law, self.world, told)
         return self.by_number(told)
 
     def state(self) -> dict[str, NDArray[Any]]:
@@ -254,8 +258,8 @@ def _three(numbers: Any) -> tuple[float, float, float]:
 
 
 def _grid(given: Given, box: Box) -> Grid:
-    """Cells of half the length that lists reach, of which five lie along an axis at least; or of all
-    of it, three at least; or one."""
+    """Cells of half the length that lists reach, of which five lie along an axis at least; or of
+    all of it, three at least; or one."""
     d, reach = len(given.size), 2 * float(given.reach.max()) + given.skin
     least = (float(np.prod(given.size)) / CELLS) ** (1 / d)
     cells, wide = [1, 1, 1], [0, 0, 0]
@@ -271,5 +275,7 @@ def _grid(given: Given, box: Box) -> Grid:
 
 
 def _bodies(n: int) -> Bodies:
-    rows = [np.zeros((n, 4)) for _ in range(3)] + [np.zeros((n, 3), np.int64) for _ in range(2)]
-    return Bodies(*rows, np.zeros((n, 3), np.int32), np.zeros(n, np.int64))
+    place, velocity, spin = np.zeros((n, 4)), np.zeros((n, 4)), np.zeros((n, 4))
+    force, torque = np.zeros((n, 3), np.int64), np.zeros((n, 3), np.int64)
+    images, number = np.zeros((n, 3), np.int32), np.zeros(n, np.int64)
+    return Bodies(place, velocity, spin, force, torque, images, number)

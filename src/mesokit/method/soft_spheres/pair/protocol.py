@@ -23,11 +23,11 @@ SOLID_SPHERES = 2 / 7  # tangential over normal stiffness: sliding and pressing 
 
 @family("pair law of soft spheres", "rule", "mesokit.soft_pair")
 @component
-class PairLaw(ABC):
+class PairLaw(ABC):  # noqa: B024  each sort of law has its own questions
     """What two soft spheres do to one another."""
 
 
-PairLaw.register(Pair)
+PairLaw.register(Pair)  # type: ignore[type-abstract]
 
 
 @component
@@ -36,9 +36,12 @@ class ContactLaw(PairLaw):
     gives, friction and resistance to rolling (Cundall and Strack 1979; Luding 2008)."""
 
     friction: float = param(
-        0.0, doc="Coulomb's coefficient: largest tangential over normal force", ge=0, le=1e6,
+        0.0,
+        doc="Coulomb's coefficient: largest tangential over normal force",
+        ge=0,
+        le=1e6,
         kw_only=True,
-    )  # fmt: skip
+    )
     tangential: Literal["history", "viscous"] = param(
         "history",
         doc="'history': a spring along the surface, which remembers how far it slid (Cundall and "
@@ -46,17 +49,26 @@ class ContactLaw(PairLaw):
         kw_only=True,
     )
     tangential_stiffness: float = param(
-        SOLID_SPHERES, doc="of the spring along the surface, over the normal stiffness", gt=0, le=10,
+        SOLID_SPHERES,
+        doc="of the spring along the surface, over the normal stiffness",
+        gt=0,
+        le=10,
         kw_only=True,
-    )  # fmt: skip
+    )
     tangential_damping: float = param(
-        0.2, doc="of the dashpot along the surface, over sqrt(normal stiffness * reduced mass)",
-        ge=0, le=10, kw_only=True,
-    )  # fmt: skip
+        0.2,
+        doc="of the dashpot along the surface, over sqrt(normal stiffness * reduced mass)",
+        ge=0,
+        le=10,
+        kw_only=True,
+    )
     rolling: float = param(
-        0.0, doc="coefficient of rolling resistance: largest torque over normal force and radius",
-        ge=0, le=1e6, kw_only=True,
-    )  # fmt: skip
+        0.0,
+        doc="coefficient of rolling resistance: largest torque over normal force and radius",
+        ge=0,
+        le=1e6,
+        kw_only=True,
+    )
 
     @abstractmethod
     def normal(self) -> Any:

@@ -28,8 +28,8 @@ class SpringDashpot(ContactLaw):
 
     Given by restitution and contact time, the stiffness k and the damping g of a pair are such that
     all pairs have these, whatever their masses; given by stiffness and damping, these are the same
-    for all pairs. Without `pulls` the force is cut off where it would pull, at the end of a contact:
-    the restitution is then a little larger (Schwager and Poschel 2007).
+    for all pairs. Without `pulls` the force is cut off where it would pull, at the end of a
+    contact: the restitution is then a little larger (Schwager and Poschel 2007).
 
     Examples
     --------
@@ -45,16 +45,14 @@ class SpringDashpot(ContactLaw):
     rule: Literal["spring-dashpot"] = tag("spring-dashpot")
     restitution: float | None = param(
         None,
-        doc="normal velocity after over before a collision",
-        unless_said=USUAL_RESTITUTION,
+        doc="normal velocity after over before a collision (0.8 unless said)",
         gt=0,
         le=1,
     )
     contact_time: float | None = param(
         None,
-        doc="how long a collision takes",
+        doc="how long a collision takes (0.01 unless said)",
         unit="time",
-        unless_said=USUAL_TIME,
         ge=1e-9,
         le=1e9,
     )

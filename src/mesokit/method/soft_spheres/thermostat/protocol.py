@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from abc import ABC
-
 from mesokit.case.component import component
 from mesokit.case.registry import family
 
 
 @family("thermostat of soft spheres", "rule", "mesokit.soft_thermostat")
 @component
-class SoftThermostat(ABC):
+class SoftThermostat:
     """Brings heat in and takes it out. Without one energy is kept."""
 
     @property
@@ -19,7 +17,7 @@ class SoftThermostat(ABC):
         return 0.0
 
     def decay(self, timestep: float) -> float:
-        """By how much velocities decay in a step, beside noise that makes up for it; 1: not at all."""
+        """By how much velocities decay in a step, beside noise; 1: not at all."""
         return 1.0
 
     @property

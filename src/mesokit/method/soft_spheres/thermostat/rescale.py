@@ -12,7 +12,8 @@ from mesokit.method.soft_spheres.thermostat.protocol import SoftThermostat
 class RescaleAll(SoftThermostat):
     """All velocities are scaled to exactly the mean kinetic energy, every so many steps.
 
-    Holds the mean and not the fluctuations; to bring a fluid to a temperature. Spins are left alone.
+    Holds the mean and not the fluctuations: to bring a fluid to a temperature. Spins are left
+    alone.
     """
 
     rule: Literal["rescale"] = tag("rescale")
