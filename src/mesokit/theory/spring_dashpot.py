@@ -18,8 +18,8 @@ def spring_dashpot(stiffness: float, damping: float, mass: float, pulls: bool = 
 
     With b = g/2m and w^2 = k/m - b^2: if the dashpot may pull until the overlap is zero, t = pi/w
     and e = exp(-b t). If the contact ends where the force is zero, t = (pi - atan2(2 b w,
-    w^2 - b^2))/w, and, overdamped with W^2 = b^2 - k/m, t = log((b + W)/(b - W))/W; e = exp(-b t) (Schwager
-    and Poschel, Granular Matter 9, 465, 2007).
+    w^2 - b^2))/w, and, overdamped with W^2 = b^2 - k/m, t = log((b + W)/(b - W))/W; e = exp(-b t)
+    (Schwager and Poschel, Granular Matter 9, 465, 2007).
 
     Parameters
     ----------

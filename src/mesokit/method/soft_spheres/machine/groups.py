@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 REACH = 3  # column of `place`: how far a sphere reaches, a radius or half of a cut-off
 INVERSE = 3  # column of `velocity` and `spin`: the inverse of mass and of moment of inertia
-FARTHEST, NEAREST, LARGEST, DONE, PENDING = 0, 1, 2, 3, 4  # columns of what threads note
+FARTHEST, NEAREST, LARGEST, DONE, PENDING = range(5)  # columns of what threads note
 GAP = 8  # numbers between those of two threads: each has a cache line of its own
 ENERGY, VIRIAL, TOUCHING, TOLD = 0, 1, 7, 8  # columns of what is told of a sphere, and their number
 
@@ -73,7 +73,8 @@ class World(NamedTuple):
 
 class Motion(NamedTuple):
     """The time of a step, gravity, and of Langevin's bath: by how much velocities decay in a step
-    (1 without), and its thermal energy; axes: 1 along each there is, and turns: 1 about each there is."""
+    (1 without), and its thermal energy; axes: 1 along each there is; turns: 1 about
+    each there is."""
 
     step: float
     gravity: tuple[float, float, float]
