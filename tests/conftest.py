@@ -21,8 +21,8 @@ settings.register_profile("same every time", derandomize=True)
 settings.load_profile("same every time")
 
 HERE = Path(__file__).parent
-# laboratory.py, hard_spheres.py, refusal.py, fake_fluid.py, flows.py, shapes.py, examples.py,
-# ptx.py
+# laboratory.py, hard_spheres.py, refusal.py, fake_fluid.py, fake_spheres.py, flows.py,
+# shapes.py, examples.py, ptx.py
 sys.path[:0] = [
     str(HERE / name) for name in ("laws", "case", "observe", "report", "geometry", "gpu")
 ]
@@ -34,6 +34,20 @@ def machine_in_no_hurry():
     from mesokit.cli import words
 
     words.SILENT = 3600.0
+
+
+@pytest.fixture
+def flying(monkeypatch):
+    """The method `flying-spheres`, whose name is answered."""
+    import fake_spheres
+
+    import mesokit.cli.end  # noqa: F401  commands look for templates, of which it has none
+    from mesokit import method as methods
+    from mesokit.case.case import case_class
+
+    monkeypatch.setitem(methods.METHODS, fake_spheres.NAME, "fake_spheres")
+    yield fake_spheres.NAME
+    case_class.cache_clear()
 
 
 @pytest.fixture

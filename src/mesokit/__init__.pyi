@@ -57,6 +57,18 @@ from mesokit.method.event_driven.heating.andersen import Andersen as Andersen
 from mesokit.method.event_driven.heating.kicks import Kicks as Kicks
 from mesokit.method.event_driven.heating.protocol import Heating as Heating
 from mesokit.method.event_driven.section import HardSpheres as HardSpheres
+from mesokit.method.flock.cohesion import Cohesion as Cohesion
+from mesokit.method.flock.noise.angular import AngularNoise as AngularNoise
+from mesokit.method.flock.noise.protocol import Noise as Noise
+from mesokit.method.flock.noise.vectorial import VectorialNoise as VectorialNoise
+from mesokit.method.flock.observe.cluster_sizes import ClusterSizes as ClusterSizes
+from mesokit.method.flock.observe.density_bands import DensityBands as DensityBands
+from mesokit.method.flock.observe.number_fluctuations import (
+    NumberFluctuations as NumberFluctuations,
+)
+from mesokit.method.flock.observe.polar_order import PolarOrder as PolarOrder
+from mesokit.method.flock.section import Flock as Flock
+from mesokit.method.flock.section import FlockStart as FlockStart
 from mesokit.method.mpcd.collision.at import AT as AT
 from mesokit.method.mpcd.collision.at_plus_a import ATPlusA as ATPlusA
 from mesokit.method.mpcd.collision.demix import Demix as Demix
@@ -160,6 +172,8 @@ from mesokit.running.callbacks import StopRun as StopRun
 from mesokit.running.callbacks import every as every
 from mesokit.simulation import Simulation as Simulation
 from mesokit.spheres.kinds import SphereKind as SphereKind
+from mesokit.spheres.start.from_file import FileStart as FileStart
+from mesokit.spheres.start.from_run import RunStart as RunStart
 from mesokit.spheres.start.lattice import LatticeStart as LatticeStart
 from mesokit.spheres.start.protocol import SphereStart as SphereStart
 from mesokit.spheres.start.random import RandomStart as RandomStart

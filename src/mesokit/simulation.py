@@ -190,7 +190,8 @@ class Simulation(Seen):
         if self.case.trajectory is not None:
             folder = directory.trajectory_folder
             number, first = written(self.case.trajectory, self.case.groups)
-            self.writer = TrajectoryWriter(self.case.trajectory, folder, number, first)
+            spheres = method_of(self.case).spheres
+            self.writer = TrajectoryWriter(self.case.trajectory, folder, number, first, spheres)
 
     @property
     def step(self) -> int:
@@ -321,7 +322,8 @@ class Simulation(Seen):
         """A run that goes on has no results yet: its frames come back out of the data file."""
         assert self.directory is not None
         if self.writer is not None and self.directory.data_file.exists():
-            self.writer.take_back(h5md.frames(self.directory.data_file))
+            file = self.directory.data_file
+            self.writer.take_back(h5md.frames(file), h5md.own(file))
         self.directory.data_file.unlink(missing_ok=True)
 
     @property

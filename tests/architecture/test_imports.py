@@ -48,6 +48,9 @@ ROWS = {
     "spheres/start/random.py": (
         "case", "method.event_driven.grow", "method.event_driven.walls", "spheres",
     ),
+    "spheres/start/from_file.py": ("case", "errors", "io.snapshot_file", "spheres"),
+    "spheres/start/from_run.py": ("case", "errors", "io.earlier_spheres", "spheres"),
+    "spheres/walls.py": ("case", "geometry"),
     "method/__init__.py": (),
     "method/protocol.py": ("case", "engine", "=method"),
     "method/mpcd/": MPCD,
@@ -58,13 +61,17 @@ ROWS = {
     "method/mpcd/method.py": (*MPCD, "engine", "execute", "io", "method.protocol", "observe"),
     "method/event_driven/": (
         "case", "engine", "errors", "geometry", "method.event_driven", "method.protocol",
-        "observe", "running.cores", "scalar", "spheres", "theory",
+        "observe", "scalar", "spheres", "statistics", "theory",
+    ),
+    "method/flock/": (
+        "case", "engine", "errors", "execute.cpu.threads", "geometry", "io", "method.flock",
+        "method.protocol", "observe", "running.cores", "scalar", "statistics", "theory",
     ),
     "method/soft_spheres/": (
         "case", "engine", "errors", "execute.cells", "execute.cpu.strips.layout",
         "execute.cpu.threads", "geometry", "method.event_driven.machine.walls",
         "method.event_driven.walls", "method.protocol", "method.soft_spheres", "observe",
-        "potential", "running.cores", "scalar", "spheres", "theory",
+        "potential", "running.cores", "scalar", "spheres", "statistics", "theory",
     ),
     "method/brownian/": (
         "case", "engine", "errors", "method.brownian", "method.protocol", "observe",
@@ -84,7 +91,8 @@ ROWS = {
         "report",
     ),
     "report/": ("case", "errors", "geometry", "io", "method.protocol", "observe", "report"),
-    "report/flow/state.py": ("case", "engine"),
+    "report/flow/state.py": ("case", "method.protocol"),
+    "report/flow/shaded.py": ("report", "scalar.cache"),
     "study/": (
         "case", "errors", "io", "method.protocol", "observe.shared", "report", "running",
         "simulation", "statistics", "study",

@@ -17,8 +17,8 @@ from mesokit.method import METHODS
 SOURCE = Path(__file__).parents[2] / "src" / "mesokit"
 # `theory` knows nothing of parts: its functions take the names of published rules
 FILES = [p for p in sorted(SOURCE.rglob("*.py")) if p.relative_to(SOURCE).parts[0] != "theory"]
-# words that mean something else as well: what a step sums, and a primitive of solids
-OTHERS = {"stress", "sampled"}
+# words that mean something else as well: what a step sums, a primitive of solids, keys of a start
+OTHERS = {"stress", "sampled", "file", "run"}
 CASES = [case_class(method) for method in METHODS]
 NAMES = {name for family in FAMILIES.values() for name in family.parts}
 

@@ -35,6 +35,8 @@ from mesokit.geometry.solids import contact, filled  # noqa: F401  what solids i
 from mesokit.geometry.solids.bodies import Bodies
 from mesokit.geometry.solids.cut_cube import share_and_depth, share_beyond
 from mesokit.geometry.solids.none import Nothing
+from mesokit.method.event_driven.collision import RULES
+from mesokit.method.event_driven.collision import protocol as spheres
 from mesokit.method.mpcd import collision, thermostat
 from mesokit.method.mpcd.collision import protocol as rules
 from mesokit.method.mpcd.field import protocol as fields
@@ -153,6 +155,9 @@ ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     cut.roomy: lambda p, d: (vec(d),),
     cut.home: lambda p, d: (vec(d),),
     cut.grip: lambda p, d: (WHOLE, vec(d)),
+    spheres.restitution: lambda p, d: (1.0,),
+    spheres.next_contact: lambda p, d: (vec(d), vec(d), 1.0, 0.0),
+    spheres.step_of_energy: lambda p, d: (1.0, 1.0),
     interactions.of_two: lambda p, d: (total(p, d), SPRING, vec(d), WHOLE, WHOLE),
     interactions.of_three: lambda p, d: (total(p, d), STIFF, vec(d), vec(d), WHOLE),
     interactions.of_wall: lambda p, d: (total(p, d), REPELS, (slit(d), 1.0), vec(d)),
@@ -183,6 +188,7 @@ def parts(d: int) -> Iterator[Any]:
     faults, tensor = np.zeros(8, np.int64), np.zeros(d * d, np.int64)
     yield interactions.Force(1.0, np.zeros(8, np.int64), 1.0, 1, faults)
     yield interactions.Energy()
+    yield from (rule().kernel() for rule in RULES)
     yield interactions.Virial(1.0, tensor, 1.0)
 
 

@@ -288,8 +288,8 @@ def test_the_good_file_is_good(tmp_path):
         ("melt.data", b"", "cannot be read as a LAMMPS"),
         (
             "melt.data",
-            b"title\n\n1 atoms\n\nAtoms # sphere\n\n1 1 1 1 0 0 0\n",
-            "'sphere': expected",
+            b"title\n\n1 atoms\n\nAtoms # ellipsoid\n\n1 1 1 1 0 0 0\n",
+            "'ellipsoid': expected",
         ),
         ("melt.data", b"title\n\n2 atoms\n\nAtoms # bond\n\n1 1 1 0 0 0\n", "it has 1 lines of"),
         ("melt.data", b"title\n\n2 atoms\n\nAtoms\n\n1 1 1 0 0 0\n2 1 1 0 0\n", "is damaged"),

@@ -152,7 +152,7 @@ def test_other_programs_read_the_trajectory(tmp_path):
         ({"box": Box((9, 7), shear_rate=0.1)}, "box: not with shear"),
         ({"brownian": Brownian(density=1e-3)}, "brownian.density = 0.001: 0 particles"),
         ({"brownian": Brownian(diffusion=1e30)}, "brownian.diffusion = 1e+30: in 1 steps"),
-        ({"trajectory": mesokit.Trajectory(every=1, fields=["velocity"])}, "not 'velocity'"),
+        ({"trajectory": mesokit.Trajectory(every=1, fields=["velocity"])}, "no 'velocity'"),
         ({"trajectory": mesokit.Trajectory(every=1, of="fluid")}, "'all' or 'particles'"),
         ({"observe": [MeanSquareDisplacement(of="centres")]}, "expected 'particles'"),
         ({"observe": [mesokit.VelocityProfile()]}, "observe[#1]"),

@@ -24,7 +24,7 @@ SIZE = (12, 10)
 class Frames(SimpleNamespace):
     """A trajectory in memory, read as one in a file is."""
 
-    fields = ("position",)
+    fields, diameter = ("position",), None
 
     def __len__(self):
         return len(self.frames)

@@ -91,7 +91,7 @@ class Case(Shown):
         if method.whole_cells:
             checks.whole_cells(self.box)
         method.check(self)
-        checks.check(self, method.name, method.observables, self.groups)
+        checks.check(self, method)
         if self.log is not None:
             checks.log(self, method.log(self).names)
 

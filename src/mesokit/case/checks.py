@@ -15,14 +15,15 @@ from mesokit.errors import CaseError
 MOST_BINS = 2**24  # of one observable: some gigabytes
 
 
-def check(case: Any, method: str, observables: tuple[type, ...], groups: Sequence[Group]) -> None:
+def check(case: Any, method: Any) -> None:
     """Raise CaseError for the first observable that cannot be measured, and for a trajectory
-    without particles. The method offers these observables; `groups` are those of the case."""
+    of what the method has not."""
     for problem in (
-        *offered(case, method, observables),
+        *offered(case, method.name, method.observables),
         *names(case),
         *bins(case),
-        *trajectory(case, groups),
+        *trajectory(case, case.groups),
+        *fields(case, method),
     ):
         raise CaseError(problem)
     for i, observable in enumerate(case.observe):
@@ -111,6 +112,17 @@ def trajectory(case: Any, groups: Sequence[Group]) -> Iterator[str]:
         yield f"trajectory.subset = {given.subset}: there are only {number} particles"
     if len(set(given.fields)) < len(given.fields):
         yield f"trajectory.fields = {show(given.fields)}: expected each field once"
+
+
+def fields(case: Any, method: Any) -> Iterator[str]:
+    """What a trajectory may hold of the particles of the method."""
+    for field in () if case.trajectory is None else case.trajectory.fields:
+        if field not in method.fields:
+            yield (
+                f"trajectory.fields = {show(case.trajectory.fields)}: particles of method "
+                f"{show(method.name)} have no {show(field)}; expected some of "
+                f"{', '.join(map(show, method.fields))}"
+            )
 
 
 def whole_cells(box: Any) -> None:

@@ -15,9 +15,10 @@ Floats = NDArray[np.float64]
 class Snapshot(NamedTuple):
     """Particles of a file, in its own order, in three dimensions.
 
-    `positions` (n, 3); `velocities` (n, 3), `images` (n, 3) and `masses` (n,) or None where the
-    file has none; `bonds` (b, 2), rows of the particles that are linked; `numbers` (n,), what the
-    file calls them; `low` and `lengths` (3,) of the box, `tilts` (3,) of its edges.
+    `positions` (n, 3); `velocities` (n, 3), `images` (n, 3), `masses` (n,), `diameters` (n,) and
+    `spins` (n, 3), angular velocities, or None where the file has none; `bonds` (b, 2), rows of the
+    particles that are linked; `numbers` (n,), what the file calls them; `low` and `lengths` (3,) of
+    the box, `tilts` (3,) of its edges.
     """
 
     positions: Floats
@@ -29,6 +30,8 @@ class Snapshot(NamedTuple):
     low: Floats
     lengths: Floats
     tilts: Floats
+    diameters: Floats | None = None
+    spins: Floats | None = None
 
 
 def rows_of(numbers: NDArray[Any], wanted: NDArray[Any]) -> NDArray[np.int64]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mesokit.case.component import component, param
 from mesokit.case.describe.hints import Many
 
-Quantity = Literal["position", "velocity", "image", "id"]
+Quantity = Literal["position", "velocity", "spin", "image", "id"]
 WIDTHS = {"image": 4, "id": 8}  # bytes of a field; the others follow the precision
 COMPRESSED = 0.9  # thermal noise hardly compresses
 
@@ -101,6 +101,17 @@ def names_and_diameters(groups: Sequence[Group]) -> tuple[tuple[str, ...], NDArr
     return tuple(names), np.array([kind.diameter for group in groups for kind in group.kinds])
 
 
+def components(field: str, dimension: int) -> int:
+    """How many numbers a field has for each particle: disks spin about one axis, spheres about 3.
+
+    >>> [components(field, 2) for field in ("position", "spin", "id")], components("spin", 3)
+    ([2, 1, 1], 3)
+    """
+    if field == "spin":
+        return 1 if dimension == 2 else 3
+    return 1 if field == "id" else dimension
+
+
 def stored_bytes(
     trajectory: Trajectory | None, groups: Sequence[Group], dimension: int, steps: int
 ) -> int:
@@ -109,7 +120,7 @@ def stored_bytes(
         return 0
     number = 4 if trajectory.precision == "float32" else 8
     per_particle = sum(
-        WIDTHS.get(name, number) * (1 if name == "id" else dimension) for name in trajectory.fields
+        WIDTHS.get(name, number) * components(name, dimension) for name in trajectory.fields
     )
     particles, _ = written(trajectory, groups)
     frames = steps // trajectory.every + 1

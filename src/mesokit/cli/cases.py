@@ -141,9 +141,10 @@ def check(
 
 def _draw(full: Case, case: Path, picture: str, axes: tuple[str, ...] | None) -> Path:
     """Draw what a case starts from, without a step."""
+    from mesokit.method.protocol import method_of
     from mesokit.report import save_figure
     from mesokit.simulation import Simulation
 
     with naming(case):
-        figure = Simulation(full).flow("particles", axes=axes)
+        figure = Simulation(full).flow(method_of(full).picture or "particles", axes=axes)
     return save_figure(figure, picture or f"{case.stem}-start.png")

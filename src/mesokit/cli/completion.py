@@ -22,6 +22,13 @@ def kinds(context: click.Context, option: click.Parameter, text: str) -> list[Co
     return beginning(text, KINDS)
 
 
+def colours(context: click.Context, option: click.Parameter, text: str) -> list[CompletionItem]:
+    """What colours of disks and spheres may mean."""
+    from mesokit.report.flow.colouring import COLOURS
+
+    return beginning(text, COLOURS)
+
+
 def keys(context: click.Context, option: click.Parameter, text: str) -> list[CompletionItem]:
     """Key paths of `--set`: those of the case on the command line, with what their parts have."""
     from mesokit.case.case import Case

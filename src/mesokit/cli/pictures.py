@@ -9,11 +9,11 @@ from typing import Any
 import click
 
 from mesokit.cli.commands import FORMATS, RUN, axes_of, cli, require_run, result_named
-from mesokit.cli.completion import kinds
+from mesokit.cli.completion import colours, kinds
 from mesokit.cli.words import say
 from mesokit.errors import CaseError
 
-KIND = "quiver, streamlines, particles, density, speed, vorticity or four"
+KIND = "quiver, streamlines, particles, density, speed, vorticity, four, disks or flock"
 FILE = click.Path(dir_okay=False, path_type=Path)
 
 
@@ -57,7 +57,17 @@ CHOICES: Sequence[Callable[[Any], Any]] = (
         metavar="A,B",
         help="The two axes of the picture in 3D, such as x,z.",
     ),
-    click.option("--at", type=float, help="Place along the third axis where solids are shown."),
+    click.option(
+        "--at",
+        type=float,
+        help="Place along the third axis where solids are shown; of spheres those behind it.",
+    ),
+    click.option(
+        "--colour",
+        shell_complete=colours,
+        metavar="NAME",
+        help="Of disks and spheres: speed, spin, neighbours, psi6 or kind.  [speed]",
+    ),
 )
 
 
@@ -77,14 +87,20 @@ def _choices(command: Any) -> Any:
 @click.option("--width", type=click.FloatRange(2, 20), help="Inches; a column has 3.4.  [6.4]")
 @click.option("--output", type=FILE, help="The file of one picture: PNG, PDF or SVG.")
 def plot(run: Path, output: Path | None, width: float | None, **given: Any) -> None:
-    """Draw the results of RUN again, one of them, or with --kind a picture of the flow."""
+    """Draw the results of RUN again, one of them, or with --kind a picture of the flow.
+
+    Of spheres a --region or a --colour is enough to ask for one.
+    """
     import mesokit
+    from mesokit.method.protocol import method_of
 
     kind, name = given.pop("kind"), given.pop("result")
     ending = f".{given.pop('kind_of_file') or 'png'}"
-    _require_one(kind, name, output, given)
     require_run(run)
     files = mesokit.open(run)
+    if kind is None and name is None and any(value is not None for value in given.values()):
+        kind = method_of(files.case).picture or None
+    _require_one(kind, name, output, given)
     if not files.ended and files.results:
         say(f"{run}: the run {files.state}; what is drawn is so far")
     if kind is not None:
@@ -121,21 +137,25 @@ def _require_one(kind: str | None, name: str | None, output: Path | None, given:
 @cli.command()
 @click.argument("run", type=RUN)
 @click.option(
-    "--kind", default="speed", shell_complete=kinds, help=f"What is drawn: {KIND}.  [speed]"
+    "--kind",
+    shell_complete=kinds,
+    help=f"What is drawn: {KIND}.  [that of the method, else speed]",
 )
 @_choices
 @click.option("--fps", default=15.0, help="Frames shown per second.  [15]")
 @click.option("--output", type=FILE, help="MP4 or GIF (RUN/flow-KIND.mp4 unless said).")
 @click.option("--quiet", is_flag=True, help="No progress; errors only.")
 def animate(
-    run: Path, kind: str, fps: float, output: Path | None, quiet: bool, **choices: Any
+    run: Path, kind: str | None, fps: float, output: Path | None, quiet: bool, **choices: Any
 ) -> None:
     """Make a film of the flow in RUN, from its flow-frames or its trajectory."""
     import mesokit
+    from mesokit.method.protocol import method_of
     from mesokit.report.progress import FilmReporter
 
     require_run(run)
     files = mesokit.open(run)
+    kind = kind or method_of(files.case).picture or "speed"
     output = output or files.directory.flow_file(kind, ".mp4")
     film = files.animate(output, kind, fps=fps, progress=FilmReporter(quiet), **choices)
     if not quiet:

@@ -68,7 +68,7 @@ def _writer(path: Path) -> Writer:
         ".xyz": text_frames.xyz,
         ".h5md": h5md_file.write,
         **dict.fromkeys(mdanalysis.FRAMES, mdanalysis.write_frames),
-        ".data": mdanalysis.write_last,
+        ".data": _write_data,
     }
     if path.suffix not in known:
         raise CaseError(
@@ -77,9 +77,17 @@ def _writer(path: Path) -> Writer:
         )
     if path.suffix == ".gsd":
         gsd_file.require()
-    elif path.suffix in (*mdanalysis.FRAMES, ".data"):
+    elif path.suffix in mdanalysis.FRAMES:
         mdanalysis.require()
     return known[path.suffix]
+
+
+def _write_data(path: Path, particles: Particles, moments: Iterator[Moment]) -> None:
+    """A data file of LAMMPS: each sphere has a mass of its own there, of others each kind."""
+    from mesokit.io import lammps_spheres, mdanalysis
+
+    write = lammps_spheres.write if particles.spheres else mdanalysis.write_last
+    write(path, particles, moments)
 
 
 def _contents(
@@ -89,39 +97,46 @@ def _contents(
     assert case.trajectory is not None
     if not directory.data_file.exists():
         folder = directory.trajectory_folder
-        writer = TrajectoryWriter(case.trajectory, folder, *written(case.trajectory, case.groups))
+        here = written(case.trajectory, case.groups)
+        writer = TrajectoryWriter(case.trajectory, folder, *here, method_of(case).spheres)
         if writer.segments():
             mass, kind = masses_and_kinds(case.groups)
-            return _particles(case, writer.ids, kind[writer.ids], mass[kind[writer.ids]]), (
-                writer.frames()
+            kind, own = kind[writer.ids], writer.own
+            particles = _particles(
+                case, writer.ids, kind, own.get("mass", mass[kind]), own.get("diameter")
             )
+            return particles, writer.frames()
     reader = trajectory()  # says what is missing where a run has not come so far
     if reader is None or not len(reader):
         raise RunError(
             f"{directory.path}: its trajectory has no frame; the run ended before the first"
         )
     frames = (reader[index] for index in range(len(reader)))
-    return _particles(case, reader.id, reader.species, reader.mass), frames
+    return _particles(case, reader.id, reader.species, reader.mass, reader.diameter), frames
 
 
-def _particles(case: Case, number: Array, kind: Array, mass: Array) -> Particles:
+def _particles(
+    case: Case, number: Array, kind: Array, mass: Array, diameter: Array | None
+) -> Particles:
+    """What does not change; `diameter` (n,) of spheres, None of particles that have no size."""
     bonds = method_of(case).bonds(case) - (number[0] if len(number) else 0)
     bonds = bonds[((bonds >= 0) & (bonds < len(number))).all(axis=1)]
     size = np.ones(3)
     size[: case.box.dimension] = case.box.size
     shut = method_of(case).closed_axes(case)
-    names, diameter = names_and_diameters(case.groups)
+    names, drawn = names_and_diameters(case.groups)
     return Particles(
         number=number,
         kind=kind,
         mass=mass,
         names=names,
-        diameter=diameter,
+        diameter=drawn[kind] if diameter is None else diameter,
         molecule=_molecules(len(number), bonds),
         bonds=bonds,
         dimension=case.box.dimension,
         size=size,
         closed=(0 in shut, 1 in shut, 2 in shut),
+        spheres=diameter is not None,
     )
 
 
@@ -160,7 +175,15 @@ def _moment(case: Case, frame: dict[str, Array]) -> Moment:
         if image is not None:
             image = image.copy()
             image[:, 0] += over.astype(int) + image[:, 1] * (tilt < 0)
-    return Moment(int(frame["step"]), time, float(tilt), position, velocity, image)
+    spin = _spin(frame.get("spin"))
+    return Moment(int(frame["step"]), time, float(tilt), position, velocity, image, spin)
+
+
+def _spin(values: Array | None) -> Array | None:
+    """Angular velocities (n, 3): disks spin about z."""
+    if values is None or values.ndim == 2:
+        return values
+    return np.pad(values[:, None], ((0, 0), (2, 0)))
 
 
 def _deep(values: Array | None) -> Array | None:

@@ -20,6 +20,8 @@ from mesokit.io.optional import package
 if TYPE_CHECKING:
     from mesokit.io.moments import Moment, Particles
 
+SPIN = "log/particles/angular_velocity"
+
 
 def require() -> ModuleType:
     """The package that reads and writes them. Raises CaseError where it is not installed."""
@@ -48,6 +50,11 @@ def _snapshot(frame: Any, file: Any, index: int) -> Snapshot:
         chunk = f"particles/{name}"
         return bool(file.chunk_exists(index, chunk) or file.chunk_exists(0, chunk))
 
+    spins = None
+    if file.chunk_exists(index, SPIN):
+        spins = np.asarray(file.read_chunk(index, SPIN), float)
+    elif stored("angmom") and stored("moment_inertia"):
+        spins = _spins(particles)
     links = np.zeros((0, 2), int) if not bonds.N else np.asarray(bonds.group, int)
     if links.size and not 0 <= links.min() <= links.max() < n:
         raise CaseError(f"it links particle {links.max()}, of {n}")
@@ -61,7 +68,25 @@ def _snapshot(frame: Any, file: Any, index: int) -> Snapshot:
         low=-0.5 * box[:3],
         lengths=box[:3],
         tilts=box[3:],
+        diameters=np.asarray(particles.diameter, float) if stored("diameter") else None,
+        spins=spins,
     )
+
+
+def _spins(particles: Any) -> Any:
+    """Angular velocities (n, 3) from quaternions p = 2 q (0, L), L in the frame of each particle.
+
+    About an axis with no moment of inertia there is none. Raises CaseError for particles that are
+    not spheres, whose axes turn with them.
+    """
+    inertia = np.asarray(particles.moment_inertia, float)
+    if (np.ptp(inertia, axis=1)[(inertia > 0).all(axis=1)] > 1e-5 * inertia.max()).any():
+        raise CaseError("its particles have three moments of inertia; expected those of spheres")
+    p = np.asarray(particles.angmom, float)
+    s, v = np.split(np.asarray(particles.orientation, float), [1], axis=1)
+    # L in space is p conj(q) / 2, as p = 2 q (0, L_body) and L = q L_body conj(q)
+    momentum = 0.5 * (s * p[:, 1:] - p[:, :1] * v - np.cross(p[:, 1:], v))
+    return np.divide(momentum, inertia, out=np.zeros_like(momentum), where=inertia > 0)
 
 
 def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
@@ -69,6 +94,9 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
 
     In 2D the box is one cell deep, which HOOMD-blue makes flat. `log/time` is the time. Molecules
     are bodies with numbers below -1. That an axis is closed has no place in such files.
+
+    Spins are there twice: as the angular momenta and moments of inertia of the schema, and as
+    `log/particles/angular_velocity`, of which OVITO makes a property of the particles.
     """
     hoomd = require()
     kinds, size = particles.kind, particles.size
@@ -76,11 +104,12 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
     frame.configuration.dimensions = particles.dimension
     frame.particles.N = len(kinds)
     frame.particles.types = list(particles.names)
-    frame.particles.type_shapes = [
-        {"type": "Sphere", "diameter": float(diameter)} for diameter in particles.diameter
-    ]
+    frame.particles.type_shapes = _shapes(particles)
     frame.particles.typeid, frame.particles.mass = kinds, particles.mass
-    frame.particles.diameter = particles.diameter[kinds]
+    frame.particles.diameter = particles.diameter
+    inertia = moments_of_inertia(particles)
+    if particles.spheres:
+        frame.particles.moment_inertia = inertia
     # -1: in no body; 0 and above: rigid ones, which molecules are not
     frame.particles.body = np.where(particles.molecule < 0, -1, -2 - particles.molecule)
     if len(particles.bonds):
@@ -96,7 +125,30 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
             frame.particles.position = _rounded(now.position - middle, faces)
             frame.particles.velocity, frame.particles.image = now.velocity, now.image
             frame.log = {"time": np.array([now.time])}
+            if now.spin is not None:
+                frame.log[SPIN.removeprefix("log/")] = now.spin
+                frame.particles.angmom = _angular_momentum(now.spin * inertia)
             file.append(frame)
+
+
+def _shapes(particles: Particles) -> list[dict[str, Any]]:
+    """A sphere for each kind: of the median diameter, where those of single particles differ."""
+    found = []
+    for kind in range(len(particles.names)):
+        own = particles.diameter[particles.kind == kind]
+        found.append({"type": "Sphere", "diameter": float(np.median(own))} if len(own) else {})
+    return found
+
+
+def moments_of_inertia(particles: Particles) -> Any:
+    """(n, 3), of uniform spheres, in 2D of disks about z."""
+    share = np.array([0, 0, 1 / 8] if particles.dimension == 2 else [1 / 10] * 3)
+    return (particles.mass * particles.diameter**2)[:, None] * share
+
+
+def _angular_momentum(momenta: Any) -> Any:
+    """As quaternions (n, 4) of particles that are not turned: 0 and twice the vector."""
+    return np.pad(2 * momenta, ((0, 0), (1, 0)))
 
 
 def _rounded(position: Any, half: Any) -> Any:

@@ -3,17 +3,17 @@
 /h5md        version, author, creator
 /parameters  case (TOML) and provenance (JSON); units: what a reduced unit is in SI, if known
 /connectivity  bonds (bonds, 2): places, in the rows of particles, of those that are linked
-/particles   one group, such as fluid: box, position, velocity, image with step, time and value;
-             id, mass, species
+/particles   one group, such as fluid: box, position, velocity, spin (angular velocity), image with
+             step, time and value; id, mass, species, and radius of spheres
 /observables time series, one row for each frame of the trajectory if there is one
 /results     what each observable measured: value, error, expected, fit, x, comparisons
 
 What readers want decides three things. Coordinates on disk always have three columns, in 2D with
-z = 0 in a box one cell high (`dimension` of the group says 2). Lengths and times are in units that
-have no SI name; their attribute is `reduced_unit`, as readers refuse a `unit` that they do not
-know (MDAnalysis: convert_units=False). Readers take row i of an observable to belong to frame i,
-so that profiles and correlations are kept under /results, and /observables leaves out what was
-not sampled at every frame.
+z = 0 in a box one cell high (`dimension` of the group says 2); disks spin about z. Lengths and
+times are in units that have no SI name; their attribute is `reduced_unit`, as readers refuse a
+`unit` that they do not know (MDAnalysis: convert_units=False). Readers take row i of an observable
+to belong to frame i, so that profiles and correlations are kept under /results, and /observables
+leaves out what was not sampled at every frame.
 
 Under Lees-Edwards shear the box is written as a triclinic one, whose second edge leans by how far
 the images have slid: that of the nearest image, between -L/2 and L/2.
@@ -42,7 +42,8 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.io.trajectory import TrajectoryWriter
 
-UNITS = {"position": "a", "velocity": "a/tau", "time": "tau"}
+UNITS = {"position": "a", "velocity": "a/tau", "spin": "1/tau", "time": "tau", "radius": "a"}
+FIELDS = ("position", "velocity", "spin", "image")
 CHUNK = 65536  # particles
 LARGE = 2**20  # numbers of one result, beyond which it is compressed
 _TABLE = ("what", "measured", "error", "expected", "unit", "note")
@@ -107,10 +108,24 @@ def frames(path: str | Path) -> Iterator[dict[str, NDArray[Any]]]:
         if group is None:
             return
         clock, d = group["box/edges"], int(group.attrs["dimension"])
-        fields = [name for name in ("position", "velocity", "image") if name in group]
+        fields = [name for name in FIELDS if name in group]
         for index in range(len(clock["step"])):
-            frame = {name: group[name]["value"][index, :, :d] for name in fields}
+            frame = {name: group[name]["value"][index][..., columns(name, d)] for name in fields}
             yield {"step": clock["step"][index], "time": clock["time"][index], **frame}
+
+
+def own(path: str | Path) -> dict[str, NDArray[Any]]:
+    """Masses and diameters (n,) of spheres in a data file, nothing of others. Raises RunError."""
+    with opened(path) as file:
+        group = particles_of(file)
+        if group is None or "radius" not in group:
+            return {}
+        return {"mass": group["mass"][()], "diameter": 2 * group["radius"][()]}
+
+
+def columns(field: str, dimension: int) -> Any:
+    """Which of the three columns of a file are the numbers of a field; disks spin about z."""
+    return 2 if field == "spin" and dimension == 2 else slice(dimension)
 
 
 def particles_of(file: Any) -> Any:
@@ -175,7 +190,11 @@ def _particles(
     kind = kind[trajectory.ids]
     group.attrs["dimension"] = case.box.dimension
     group["id"] = trajectory.ids
-    group["mass"], group["species"] = mass[kind], kind
+    own = trajectory.own
+    group["mass"], group["species"] = own.get("mass", mass[kind]), kind
+    if "diameter" in own:
+        group["radius"] = 0.5 * own["diameter"]
+        group["radius"].attrs["reduced_unit"] = UNITS["radius"]
     group["species"].attrs["names"] = names_and_diameters(case.groups)[0]
     bonds = method_of(case).bonds(case)
     if len(bonds):
@@ -202,7 +221,7 @@ def _particles(
         edges[index] = _edges(case, float(frame["time"]), edges.shape[1:])
         for name, data in sets.items():
             row = np.zeros((n, 3), data.dtype)
-            row[:, : case.box.dimension] = frame[name]
+            row[:, columns(name, case.box.dimension)] = frame[name]
             data[index] = row
     del group["step"], group["time"]  # the elements have linked them
 

@@ -1,7 +1,8 @@
 """Trajectories as H5MD for other programs: what they ask for beside what the standard does.
 
-MDAnalysis wants the group to be called `trajectory`, and units that it knows: a cell is an angstrom
-here and a unit of time a picosecond, as all files are read that name no units.
+MDAnalysis wants the group to be called `trajectory`, takes what it does not know of particles from
+`observables`, where spins are therefore linked to, and wants units that it knows: a cell is an
+angstrom here and a unit of time a picosecond, as all files are read that name no units.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 UNITS = {
     "position": "Angstrom",
     "velocity": "Angstrom ps-1",
+    "spin": "ps-1",
     "edges": "Angstrom",
     "image": None,
 }
@@ -39,6 +41,8 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
         group["id"], group["mass"] = particles.number, particles.mass
         group["molecule"], group["species"] = particles.molecule, particles.kind
         group["species"].attrs["names"] = particles.names
+        if particles.spheres:
+            group["radius"] = 0.5 * particles.diameter
         box = group.create_group("box")
         boundary = ["none" if shut else "periodic" for shut in particles.closed]
         box.attrs["dimension"] = 3
@@ -51,7 +55,10 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
             _append(box, "edges", edges, now)
             _append(group, "position", now.position, now)
             _append(group, "velocity", now.velocity, now)
+            _append(group, "spin", now.spin, now)
             _append(group, "image", now.image, now)
+        if "spin" in group:
+            file["observables/trajectory/spin"] = group["spin"]
 
 
 def _append(parent: Any, name: str, value: Any, now: Moment) -> None:

@@ -1,4 +1,4 @@
-"""Data files of LAMMPS, of atom styles atomic, bond, angle, molecular and full.
+"""Data files of LAMMPS, of atom styles atomic, bond, angle, molecular, full and sphere.
 
 MDAnalysis takes the file apart into header and sections; it would keep numbers in single precision
 and neither images nor the corner of the box, so that the columns are read here.
@@ -17,8 +17,9 @@ from mesokit.case.snapshot import Snapshot, rows_of
 from mesokit.errors import CaseError
 from mesokit.io.optional import package
 
-# columns before the coordinates: number, molecule, type, charge
-STYLES = {"atomic": 2, "bond": 3, "angle": 3, "molecular": 3, "full": 4}
+# columns before the coordinates: number, molecule, type, charge; or number, type, diameter, density
+STYLES = {"atomic": 2, "bond": 3, "angle": 3, "molecular": 3, "full": 4, "sphere": 4}
+ROUND = "sphere"  # the style that is only known where the file says so
 COLUMNS = {5: "atomic", 6: "molecular", 7: "full"}  # without images, which are three more
 
 
@@ -54,11 +55,8 @@ def _snapshot(header: dict[str, str], sections: dict[str, Any], style: str | Non
     order = np.argsort(numbers)
     atoms, numbers = atoms[order], numbers[order]
     corners = np.array([header[f"{axis}lo {axis}hi"].split() for axis in "xyz"], float)
-    velocities = None
-    if sections.get("Velocities"):
-        rows = _numbers(sections, "Velocities")
-        velocities = np.zeros((n, 3))
-        velocities[rows_of(numbers, rows[:, 0].astype(int))] = rows[:, 1:4]
+    velocities, spins = _velocities(sections, numbers)
+    diameters = atoms[:, 2] if style == ROUND else None
     links = np.zeros((0, 2), int)
     if sections.get("Bonds"):
         links = rows_of(numbers, _numbers(sections, "Bonds")[:, 2:4].astype(int))
@@ -67,13 +65,27 @@ def _snapshot(header: dict[str, str], sections: dict[str, Any], style: str | Non
         positions=atoms[:, before : before + 3],
         velocities=velocities,
         images=atoms[:, before + 3 :].astype(int) if with_images else None,
-        masses=_masses(sections, atoms[:, 1 if before == 2 else 2]),
+        masses=_masses(sections, atoms[:, 1 if before == 2 else 2])
+        if diameters is None
+        else atoms[:, 3] * np.pi / 6 * diameters**3,
         bonds=links,
         numbers=numbers,
         low=corners[:, 0],
         lengths=corners[:, 1] - corners[:, 0],
         tilts=np.array(header.get("xy xz yz", "0 0 0").split(), float),
+        diameters=diameters,
+        spins=spins,
     )
+
+
+def _velocities(sections: dict[str, Any], numbers: NDArray[np.int64]) -> tuple[Any, Any]:
+    """Velocities (n, 3), and angular velocities (n, 3) of spheres; None of what is not there."""
+    if not sections.get("Velocities"):
+        return None, None
+    rows = _numbers(sections, "Velocities")
+    found = np.zeros((len(numbers), rows.shape[1] - 1))
+    found[rows_of(numbers, rows[:, 0].astype(int))] = rows[:, 1:]
+    return found[:, :3], found[:, 3:6] if found.shape[1] >= 6 else None
 
 
 def _masses(sections: dict[str, Any], kinds: NDArray[np.float64]) -> NDArray[np.float64] | None:

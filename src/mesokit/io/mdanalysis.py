@@ -100,7 +100,7 @@ def _empty(particles: Particles, velocities: bool = False) -> Any:
         made.add_TopologyAttr("names", names)
         made.add_TopologyAttr("types", names)
         made.add_TopologyAttr("masses", particles.mass)
-        made.add_TopologyAttr("radii", 0.5 * particles.diameter[particles.kind])
+        made.add_TopologyAttr("radii", 0.5 * particles.diameter)
         made.add_TopologyAttr("resids", np.arange(1, len(first) + 1))
         made.add_TopologyAttr("resnames", names[first])
         made.add_TopologyAttr("segids", ["mesokit"])

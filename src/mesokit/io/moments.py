@@ -11,10 +11,11 @@ Array = NDArray[Any]
 
 
 class Particles(NamedTuple):
-    """What does not change from frame to frame: (n,) numbers from 0, kinds from 0, masses.
+    """What does not change from frame to frame: (n,) numbers from 0, kinds from 0, and masses.
 
-    `names` and `diameter` of the kinds; `molecule` (n,) from 0, -1 for single particles; `bonds`
-    (b, 2) of rows; `size` (3,) of the box, one cell deep in 2D; `closed` axes.
+    `names` of the kinds; `diameter` (n,); `molecule` (n,) from 0, -1 for single particles; `bonds`
+    (b, 2) of rows; `size` (3,) of the box, one cell deep in 2D; `closed` axes. `spheres`: whether
+    particles are of these diameters, and not only drawn so.
     """
 
     number: NDArray[np.int64]
@@ -27,13 +28,15 @@ class Particles(NamedTuple):
     dimension: int
     size: Array
     closed: tuple[bool, bool, bool]
+    spheres: bool = False
 
 
 class Moment(NamedTuple):
     """One frame in three dimensions, z = 0 in 2D.
 
     `position` (n, 3) in the cell spanned by (L_x, 0, 0), (tilt, L_y, 0) and (0, 0, L_z) from the
-    origin on; `velocity` and `image` (n, 3), counts of these edges, or None.
+    origin on; `velocity`, `spin` (angular velocity) and `image` (n, 3), counts of these edges, or
+    None.
     """
 
     step: int
@@ -42,3 +45,4 @@ class Moment(NamedTuple):
     position: Array
     velocity: Array | None
     image: Array | None
+    spin: Array | None = None

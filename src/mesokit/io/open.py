@@ -207,7 +207,7 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         where, results = folder or self.path, self.results.values()
         return save_all(results, where, self.case, ending=ending, width=width, run=name)
 
-    def flow(self, kind: str = "four", **choices: Any) -> Any:
+    def flow(self, kind: str | None = None, **choices: Any) -> Any:
         """A picture of the flow; `mesokit.report.flow.picture` says what may be chosen.
 
         `files.flow("speed", region=((0, 20), (0, 10)), window=(50, 90))` is a Matplotlib figure;
@@ -222,7 +222,7 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         figure.origin = origin_of(self.case, self.path.resolve().name)
         return figure
 
-    def animate(self, path: str | Path, kind: str = "speed", **choices: Any) -> Film:
+    def animate(self, path: str | Path, kind: str | None = None, **choices: Any) -> Film:
         """Write a film of the flow, MP4 or GIF by its ending; see `mesokit.report.flow.animate`.
 
         `files.animate("film.mp4", "vorticity", window=(50, 90), fps=10)` writes the file.

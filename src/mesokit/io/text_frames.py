@@ -1,4 +1,7 @@
-"""Frames as text: dumps of LAMMPS and extended XYZ. Both are long; bonds have no place in them."""
+"""Frames as text: dumps of LAMMPS and extended XYZ. Both are long; bonds have no place in them.
+
+Columns have the names that LAMMPS, VMD and OVITO know: of spheres also radius and angular velocity.
+"""
 
 from __future__ import annotations
 
@@ -32,9 +35,11 @@ def dump(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
                 ("id", "%d", particles.number + 1), ("type", "%d", particles.kind + 1),
                 ("element", "%s", np.array(particles.names)[particles.kind]),
                 ("mol", "%d", particles.molecule + 1),
-                ("diameter", FIGURES, particles.diameter[particles.kind]),
+                ("diameter", FIGURES, particles.diameter),
+                *([("radius", FIGURES, 0.5 * particles.diameter)] * particles.spheres),
                 ("mass", FIGURES, particles.mass), *_vector("x y z", FIGURES, now.position),
                 *_vector("ix iy iz", "%d", now.image), *_vector("vx vy vz", FIGURES, now.velocity),
+                *_vector("omegax omegay omegaz", FIGURES, now.spin),
             ]  # fmt: skip
             file.write(f"ITEM: ATOMS {' '.join(name for name, _, _ in columns)}\n")
             _table(file, columns)
@@ -50,9 +55,10 @@ def xyz(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
             edges[1, 0] = now.tilt
             lattice = " ".join(f"{number:.9g}" for number in edges.ravel())
             velocity = "" if now.velocity is None else ":velo:R:3"
+            spin = "" if now.spin is None else ":angular_velocity:R:3"
             file.write(
                 f'{len(kinds)}\nLattice="{lattice}" '
-                f"Properties=species:S:1:pos:R:3:id:I:1:molecule:I:1:radius:R:1{velocity}"
+                f"Properties=species:S:1:pos:R:3:id:I:1:molecule:I:1:radius:R:1{velocity}{spin}"
                 f' Time={now.time:.9g} Step={now.step} pbc="{open_axes}"\n'
             )
             _table(
@@ -62,8 +68,9 @@ def xyz(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
                     *_vector("x y z", FIGURES, now.position),
                     ("id", "%d", particles.number + 1),
                     ("molecule", "%d", particles.molecule + 1),
-                    ("radius", FIGURES, 0.5 * particles.diameter[particles.kind]),
+                    ("radius", FIGURES, 0.5 * particles.diameter),
                     *_vector("vx vy vz", FIGURES, now.velocity),
+                    *_vector("wx wy wz", FIGURES, now.spin),
                 ],
             )
 

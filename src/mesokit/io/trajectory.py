@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from mesokit.case.trajectory import Trajectory
 
 Frame = dict[str, NDArray[Any]]
+OWN = ("mass", "diameter")  # what each sphere has of its own, the same in all frames
 LARGEST = 64 * 2**20  # bytes of frames kept in memory
 
 
@@ -32,13 +33,22 @@ class TrajectoryWriter:
     Particles are stored in the order of their ids. `first` is the id of the first
     that may be written. Call `record` where a frame is due, `flush`
     before every checkpoint, `resume` before going on from one.
+
+    Of `spheres` it also keeps what each has of its own (`own`): masses and diameters (n,).
     """
 
     def __init__(
-        self, trajectory: Trajectory, folder: str | Path, particles: int, first: int = 0
+        self,
+        trajectory: Trajectory,
+        folder: str | Path,
+        particles: int,
+        first: int = 0,
+        spheres: bool = False,
     ) -> None:
         self.trajectory, self.folder = trajectory, Path(folder)
         self.ids = first + np.arange(min(trajectory.subset or particles, particles))
+        self.spheres = spheres
+        self._own: Frame = {}
         self._frames: list[Frame] = []
         self._bytes = 0
 
@@ -51,16 +61,40 @@ class TrajectoryWriter:
             frame["position"] = _inside(engine.positions(self.ids).astype(real), engine.box)
         if "velocity" in fields:
             frame["velocity"] = engine.velocities(self.ids).astype(real)
+        if "spin" in fields:
+            frame["spin"] = engine.spins(self.ids).astype(real)
         if "image" in fields:
             frame["image"] = engine.images(self.ids).astype(np.int32)
+        if self.spheres and not self._own:
+            self._own = {"mass": engine.masses(self.ids), "diameter": engine.diameters(self.ids)}
         self._add(frame)
 
-    def take_back(self, frames: Iterable[Frame]) -> None:
-        """Make segments again of frames that have gone to the data file, unless they are there."""
+    @property
+    def own(self) -> Frame:
+        """Masses and diameters (n,) of spheres; nothing of others, and before the first frame.
+
+        Raises RunError for a damaged file.
+        """
+        if self.spheres and not self._own and self._own_file.exists():
+            self._own = {name: _load(self._own_file, name) for name in OWN}
+        return self._own
+
+    @property
+    def _own_file(self) -> Path:
+        return self.folder / "own.npz"
+
+    def take_back(self, frames: Iterable[Frame], own: Frame) -> None:
+        """Make segments again of frames that have gone to the data file, unless they are there.
+
+        `own` is what spheres have of their own there.
+        """
         if len(self.steps()):
             return
         shutil.rmtree(self.coming, ignore_errors=True)  # we may have been killed here before
-        back = TrajectoryWriter(self.trajectory, self.coming, len(self.ids), int(self.ids[0]))
+        back = TrajectoryWriter(
+            self.trajectory, self.coming, len(self.ids), int(self.ids[0]), self.spheres
+        )
+        back._own = own
         for frame in frames:
             back._add({name: np.asarray(entry) for name, entry in frame.items()})
         back.flush()
@@ -86,6 +120,8 @@ class TrajectoryWriter:
             self.folder.mkdir(exist_ok=True)
         except OSError as error:
             raise RunError(f"cannot make {self.folder}: {error.strerror}") from None
+        if self._own and not self._own_file.exists():
+            _save(self._own_file, self._own)
         self._write(self._frames)
         self._frames, self._bytes = [], 0
 
@@ -129,8 +165,12 @@ class TrajectoryWriter:
     def _write(self, frames: list[Frame]) -> None:
         path = self.folder / f"segment-{int(frames[0]['step']):015d}.npz"
         stacked = {name: np.stack([frame[name] for frame in frames]) for name in frames[0]}
-        with replacing(path) as temporary, temporary.open("wb") as file:
-            np.savez(file, **stacked)  # type: ignore[arg-type]
+        _save(path, stacked)
+
+
+def _save(path: Path, arrays: Frame) -> None:
+    with replacing(path) as temporary, temporary.open("wb") as file:
+        np.savez(file, **arrays)  # type: ignore[arg-type]
 
 
 def _inside(position: NDArray[Any], box: NDArray[Any]) -> NDArray[Any]:

@@ -14,7 +14,8 @@ from mesokit.io import h5md
 class TrajectoryReader:
     """Frames of the particles: `reader[i]` is a dictionary, `reader.read("position")` all frames.
 
-    Particles are in the order of `id`. In 2D the third column that the file carries is left out.
+    Particles are in the order of `id`. In 2D the third column that the file carries is left out,
+    and spins are about it. `diameter` (n,) is that of spheres, None of other particles.
     """
 
     def __init__(self, path: Path) -> None:
@@ -26,13 +27,16 @@ class TrajectoryReader:
             if group is None:
                 return
             self.dimension = int(group.attrs["dimension"])
-            self.fields = tuple(n for n in ("position", "velocity", "image") if n in group)
+            self.fields = tuple(name for name in h5md.FIELDS if name in group)
             self.step: NDArray[np.int64] = group["box/edges/step"][()]
             self.time: NDArray[np.float64] = group["box/edges/time"][()]
             self.edges: NDArray[np.float64] = group["box/edges/value"][()]
             self.id: NDArray[np.int64] = group["id"][()]
             self.mass: NDArray[np.float64] = group["mass"][()]
             self.species: NDArray[np.int64] = group["species"][()]
+            self.diameter: NDArray[np.float64] | None = None
+            if "radius" in group:
+                self.diameter = 2 * group["radius"][()]
 
     def __len__(self) -> int:
         return len(self.step)
@@ -46,12 +50,15 @@ class TrajectoryReader:
         return frame | {"step": self.step[index], "time": self.time[index]}
 
     def read(self, field: str, frames: slice = slice(None)) -> NDArray[Any]:
-        """One field of some or all frames, (frames, n, d). Raises KeyError if it is not there."""
+        """One field of some or all frames, (frames, n, d), spins of disks (frames, n).
+
+        Raises KeyError if it is not there.
+        """
         if field not in self.fields:
             raise KeyError(f"no field {field!r}; there are {', '.join(self.fields)}")
         with h5md.opened(self.path) as file:
             data = h5md.particles_of(file)[f"{field}/value"]
-            return np.asarray(data[frames, :, : self.dimension])
+            return np.asarray(data[frames][..., h5md.columns(field, self.dimension)])
 
     def __repr__(self) -> str:
         return (

@@ -98,6 +98,15 @@ class Method:
         The solids that pictures show (`mesokit.geometry.solids.solids.Solids`), or None.
     kT : function of a case, optional
         Thermal energy, where particles have velocities.
+    fields : sequence of str, optional
+        What a trajectory may hold of its particles: all but spins unless said.
+    spheres : bool, optional
+        Whether its particles are disks or spheres, each with a size and a mass of its own: then its
+        engine answers `diameters`, `masses`, `velocities` and `spins`.
+    headings : bool, optional
+        Whether the velocities of single particles, at one time, are what pictures show of it.
+    picture : str, optional
+        The kind of pictures and films of its particles, where none is asked for.
     start_from_run : str, optional
         The key by which a case starts from where another run ended.
     starts : function of a case, optional
@@ -130,6 +139,10 @@ class Method:
     closed_axes: Callable[[Case], set[int]] = lambda case: set()
     solids: Callable[[Case], Any] = lambda case: None
     kT: Callable[[Case], float] | None = None
+    fields: tuple[str, ...] = ("position", "velocity", "image", "id")
+    spheres: bool = False
+    headings: bool = False
+    picture: str = ""
     start_from_run: str = ""
     starts: Callable[[Case], Mapping[str, Path]] = lambda case: {}
     missing_files: Callable[[Case], list[str]] = lambda case: []

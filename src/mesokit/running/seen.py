@@ -54,7 +54,7 @@ class Seen(Shown):
             "results": self.results.values() if self.step > self.case.run.warmup else (),
         }
 
-    def flow(self, kind: str = "four", **choices: Any) -> Any:
+    def flow(self, kind: str | None = None, **choices: Any) -> Any:
         """A picture of the flow so far; `mesokit.report.flow.picture` says what may be chosen.
 
         `simulation.flow("particles")` works before the first step, too: it shows the solids, the
@@ -74,7 +74,7 @@ class Seen(Shown):
         """What pictures call it: the folder, if there is one."""
         return "" if self.directory is None else self.directory.path.resolve().name
 
-    def animate(self, path: str | Path, kind: str = "speed", **choices: Any) -> Film:
+    def animate(self, path: str | Path, kind: str | None = None, **choices: Any) -> Film:
         """Write a film of the flow so far (MP4 or GIF by its ending)."""
         from mesokit.report.flow import CHOICES, animate
 

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 NAME = "spheres"
+FIELDS = ("position", "velocity", "spin", "image", "id")  # what trajectories may hold of them
 
 
 def groups(case: Case) -> tuple[Group, ...]:

@@ -32,8 +32,7 @@ class Spheres:
     density: float | None = param(None, doc="number per area or volume", unit="1/a^d", gt=0)
     packing_fraction: float | None = param(
         None,
-        doc="part of the box that they fill",
-        unless_said=USUAL_FRACTION,
+        doc="part of the box that they fill (0.3 unless a number or density is given)",
         gt=0,
         lt=1,
     )

@@ -30,6 +30,7 @@ from mesokit.theory.dumbbell_shear import (
     fene_p_thinning,
     pair_friction,
 )
+from mesokit.theory.enskog_diffusion import enskog_diffusion
 from mesokit.theory.enskog_rate import contact_value, enskog_rate
 from mesokit.theory.finite_size import viscosity_renormalised
 from mesokit.theory.gamma import cell_energy_cdf, cell_energy_pdf, cell_energy_variance
@@ -42,6 +43,7 @@ from mesokit.theory.hagen_poiseuille import (
 from mesokit.theory.hard_sphere_pressure import compressibility
 from mesokit.theory.harmonic_spring import Spring, mean_square_bond, spring, spring_of_bond
 from mesokit.theory.harmonic_trap import TrappedShape, normal_in_box, trapped_shape
+from mesokit.theory.heading_memory import angular_memory, vectorial_memory
 from mesokit.theory.heat_at_walls import HeatAtWalls, heat_at_walls, slit_temperature_rise
 from mesokit.theory.held_temperature import shear_warming, temperature_offset
 from mesokit.theory.hertz_contact import hertz_contact
@@ -82,7 +84,9 @@ from mesokit.theory.normal_modes import (
 from mesokit.theory.origin import Origin, origins
 from mesokit.theory.oscillating_slit import oscillating_slit_response, oscillating_slit_velocity
 from mesokit.theory.passage_times import first_passage_cdf, mean_exit_time
+from mesokit.theory.persistent_walk import msd_persistent_walk, persistent_diffusion
 from mesokit.theory.poiseuille import PoiseuilleFit, poiseuille_fit, poiseuille_velocity
+from mesokit.theory.polar_order import disordered_binder, disordered_order, mean_square_order
 from mesokit.theory.pulled_shape import pulled_shape
 from mesokit.theory.relaxation_modulus import (
     apparent_viscosity,
@@ -160,6 +164,7 @@ __all__ = [
     "TransversePoles",
     "TrappedShape",
     "ViscosityFit",
+    "angular_memory",
     "apparent_viscosity",
     "bead_diffusion",
     "beads_in_slit",
@@ -183,9 +188,12 @@ __all__ = [
     "demixing_diffusion",
     "diffusion_in_box",
     "dimer_oscillation_range",
+    "disordered_binder",
+    "disordered_order",
     "dumbbell_thinning",
     "dumbbell_viscosity",
     "end_to_end_cdf",
+    "enskog_diffusion",
     "enskog_friction",
     "enskog_rate",
     "fene_p_thinning",
@@ -219,8 +227,10 @@ __all__ = [
     "mean_square_bond",
     "mean_square_end_to_end",
     "mean_square_gyration",
+    "mean_square_order",
     "mixture_compressibility",
     "msd_molecular_chaos",
+    "msd_persistent_walk",
     "msd_rouse_beads",
     "network_modes",
     "normal_in_box",
@@ -228,6 +238,7 @@ __all__ = [
     "oscillating_slit_response",
     "oscillating_slit_velocity",
     "pair_friction",
+    "persistent_diffusion",
     "poiseuille_fit",
     "poiseuille_velocity",
     "pulled_shape",
@@ -269,6 +280,7 @@ __all__ = [
     "vacf_modes",
     "vacf_molecular_chaos",
     "vacf_tail",
+    "vectorial_memory",
     "verlet_swing",
     "virtual_gas_slip",
     "viscosity_renormalised",

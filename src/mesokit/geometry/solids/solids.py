@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.component import name_of
+from mesokit.case.component import name_of, show
 from mesokit.errors import CaseError
 from mesokit.geometry.region import Room
 from mesokit.geometry.samples.from_file import FromFile
@@ -112,13 +112,19 @@ class Solids(SolidTables):
         for index, (wall, label) in enumerate(zip(walls, labels(walls), strict=True)):
             if only is not None and index not in only:
                 continue
+            if not wall.closed_axes and any(length != int(length) for length in box.size):
+                raise CaseError(
+                    f"wall[#{index + 1}]: solids other than plates need a box of whole lengths, "
+                    f"not box.size = {show(list(box.size))}"
+                )
             try:
                 made = wall.bodies(room, label)
             except CaseError as error:
                 raise CaseError(f"wall[#{index + 1}].{error}") from None
             bodies += made
             self.walls += [index] * len(made)
-        super().__init__(room, bodies)
+        # tables are of whole cells: the last may reach beyond a box of plates alone
+        super().__init__(Room(tuple(map(math.ceil, box.size)), room.closed), bodies)
 
     @property
     def obstruct(self) -> bool:

@@ -85,8 +85,6 @@ def check(case: Case) -> None:
         raise CaseError("box: not with shear; the particles of method 'brownian' drift with no one")
     if case.box.open:
         raise CaseError(f"box.open = {show(list(case.box.open))}: not with method 'brownian'")
-    if case.trajectory is not None and "velocity" in case.trajectory.fields:
-        raise CaseError("trajectory.fields: not 'velocity'; Brownian particles have none")
 
 
 def groups(case: Case) -> tuple[Group, ...]:
@@ -164,6 +162,7 @@ METHOD = Method(
     check=check,
     groups=groups,
     timestep=lambda case: float(case.brownian.timestep),
+    fields=("position", "image", "id"),
     summary=summary,
     missing_files=_missing_files,
     arrays=("positions",),

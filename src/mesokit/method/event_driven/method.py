@@ -6,14 +6,16 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from mesokit.method.event_driven.checks import check
+from mesokit.method.event_driven.displacement import Displacement
 from mesokit.method.event_driven.engine import EventDriven
 from mesokit.method.event_driven.section import KEYS, Sections
 from mesokit.method.event_driven.summary import summary
 from mesokit.method.protocol import Columns, Method
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
-from mesokit.spheres.groups import groups
+from mesokit.spheres.groups import FIELDS, groups
 from mesokit.spheres.made import made
 from mesokit.spheres.start.first_state import ARRAYS, first_state, missing_files, starts
+from mesokit.spheres.walls import closed_axes, solids
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -46,7 +48,13 @@ METHOD = Method(
     sections=Sections,
     keys=KEYS,
     whole_cells=False,
+    fields=FIELDS,
+    spheres=True,
+    picture="disks",
+    closed_axes=closed_axes,
+    solids=solids,
     observables=(MeanSquareDisplacement,),
+    expected={"mean-square-displacement": Displacement},
     check=check,
     groups=groups,
     timestep=lambda case: float(case.spheres.timestep),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from mesokit.method.protocol import Columns, Method
 from mesokit.method.soft_spheres.checks import check
+from mesokit.method.soft_spheres.displacement import Displacement
 from mesokit.method.soft_spheres.engine import SoftEngine
 from mesokit.method.soft_spheres.scales import timestep_of
 from mesokit.method.soft_spheres.section import KEYS, Sections
@@ -15,6 +16,7 @@ from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
 from mesokit.spheres.groups import groups
 from mesokit.spheres.made import made
 from mesokit.spheres.start.first_state import ARRAYS, first_state, missing_files, starts
+from mesokit.spheres.walls import closed_axes, solids
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -46,6 +48,7 @@ METHOD = Method(
     keys=KEYS,
     whole_cells=False,
     observables=(MeanSquareDisplacement,),
+    expected={"mean-square-displacement": Displacement},
     check=check,
     groups=groups,
     timestep=lambda case: float(timestep_of(case.spheres, case.box)),
@@ -58,4 +61,6 @@ METHOD = Method(
     engine=_engine,
     start=SoftEngine.start,
     log=columns,
+    closed_axes=closed_axes,
+    solids=solids,
 )

@@ -115,12 +115,12 @@ class Canvas:
     def _bar(self, box: Box, scale: Scale) -> None:
         ax = self._add(box)
         if not self.place.flat:
-            self.figure.colorbar(scale.mappable(), cax=ax, label=scale.label)
-            ax.locator_params(nbins=6)
+            bar = self.figure.colorbar(scale.mappable(), cax=ax, label=scale.label)
+            _ticks(bar, scale, 6)
             return
-        self.figure.colorbar(scale.mappable(), cax=ax, orientation="horizontal")
+        bar = self.figure.colorbar(scale.mappable(), cax=ax, orientation="horizontal")
         ax.xaxis.set_ticks_position("top")
-        ax.locator_params(nbins=4)
+        _ticks(bar, scale, 4)
         ax.tick_params(labelsize=8, pad=1, length=2)
         ax.text(-0.03, 0.5, scale.label, transform=ax.transAxes, ha="right", va="center", size=9)
 
@@ -137,3 +137,16 @@ class Canvas:
                 if flow.beads is not None:
                     beads.draw(ax, flow.beads, self.region)
                 ax.set(xlim=limits[0], ylim=limits[1])
+
+
+def _ticks(bar: Any, scale: Scale, most: int) -> None:
+    """A few round numbers, or names of the whole ones."""
+    from matplotlib.ticker import FuncFormatter
+
+    if scale.names:
+        bar.set_ticks(range(len(scale.names)), labels=scale.names)
+        bar.ax.minorticks_off()
+        return
+    bar.ax.locator_params(nbins=most)
+    if bar.orientation == "horizontal":  # a power beside the bar would stand over its numbers
+        bar.ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))

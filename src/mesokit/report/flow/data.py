@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.report.flow.shown import Spheres
+
 Array = NDArray[np.floating[Any]]
 
 
@@ -65,6 +67,9 @@ class Flow:
     smoothing: width over which the velocity is smoothed before its slope is taken, in bins.
     beads: of solutes, drawn over all, or None.
     bonds: ends (m, 2, 2) of those between the `particles`, or None.
+    spheres: at the end of the time, or None.
+    headings: velocities (n, 2) of the `particles` along the two axes, or None.
+    time: of the `particles`, where they have headings.
     """
 
     axes: tuple[str, str]
@@ -81,6 +86,9 @@ class Flow:
     smoothing: float = 0.0
     beads: Beads | None = None
     bonds: Array | None = None
+    spheres: Spheres | None = None
+    headings: Array | None = None
+    time: float = 0.0
 
     @property
     def speed(self) -> Array:

@@ -8,7 +8,7 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,15 +16,17 @@ from numpy.typing import NDArray
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.io.atomic import replacing
+from mesokit.method.protocol import method_of
 from mesokit.report.caption import symbols
 from mesokit.report.finish.origin import origin_of
 from mesokit.report.finish.saving import foot_strip
 from mesokit.report.flow.beads import BeadFrames, frames_of
 from mesokit.report.flow.encode import ENCODERS, Pixels
 from mesokit.report.flow.kinds import panels_of, quieted
-from mesokit.report.flow.region import Ranges, frames_in, region_of
+from mesokit.report.flow.region import frames_in, region_of
 from mesokit.report.flow.solids import Section
-from mesokit.report.flow.source import Source, choose_one, sources
+from mesokit.report.flow.source import AT_ONCE, Source, choose_one, sources
+from mesokit.report.flow.view import View
 from mesokit.report.progress import FilmReporter, Reporter
 
 if TYPE_CHECKING:
@@ -36,15 +38,6 @@ if TYPE_CHECKING:
 SCALED = 24  # frames that the colours are chosen from
 DPI = {".mp4": 160, ".gif": 100}
 FASTEST = 100.0  # frames per second
-
-
-class View(NamedTuple):
-    """Which part of the flow is shown: a region, a window of time, a plane and where it lies."""
-
-    region: Ranges | None = None
-    window: tuple[float, float] | None = None
-    axes: tuple[str, str] | None = None
-    at: float | None = None
 
 
 @dataclass(frozen=True)
@@ -71,7 +64,7 @@ def animate(
     results: Mapping[str, Result],
     trajectory: TrajectoryReader | None,
     path: str | Path,
-    kind: str = "speed",
+    kind: str | None = None,
     fps: float = 15.0,
     progress: Reporter | None = None,
     run: str = "",
@@ -83,11 +76,11 @@ def animate(
     ----------
     case, results, trajectory: of the run.
     path: the file, which ends in .mp4 or .gif.
-    kind: as for `picture`.
+    kind: as for `picture`; unless said that of the method, such as "disks", else "speed".
     fps: frames shown per second.
     progress: what tells how it goes (nothing does unless said).
     run: its name, for the line below the film and the metadata of the file.
-    choices: `region`, `window`, `axes` and `at`, as for `picture`.
+    choices: `region`, `window`, `axes`, `at` and `colour`, as for `picture`.
 
     Raises CaseError for an ending or a choice that there is not, RunError where the run kept no
     frames or the file cannot be written. Whatever goes wrong, an old file stays as it was.
@@ -105,8 +98,9 @@ def animate(
         raise CaseError(f"output = {show(str(path))}: expected a name that ends in .mp4 or .gif")
     if not isinstance(fps, numbers.Real) or not 0 < fps <= FASTEST:
         raise CaseError(f"fps = {show(fps)}: expected a number above 0, at most {FASTEST:g}")
-    panels = panels_of(kind)
-    found = sources(case, results, trajectory, view.axes)
+    kind = kind or method_of(case).picture or "speed"
+    panels = panels_of(kind, case)
+    found = sources(case, results, trajectory, view)
     source = choose_one(found, {panel.NEEDS for panel in panels}, kind)
     frames = frames_in(source.time, view.window)
     whole = np.intersect1d(frames, source.whole)
@@ -121,8 +115,8 @@ def animate(
     width, note = quieted(panels, flows, shown)
     flows = [replace(flow, smoothing=width) for flow in flows]
     reaches = [max(panel.reach(flow, shown) for flow in flows) for panel in panels]
-    how = "projection" if all(panel.NEEDS == "particles" for panel in panels) else "mean"
-    notes = [section.note(how), note(flows[0])]
+    how = "projection" if all(panel.NEEDS in AT_ONCE for panel in panels) else "mean"
+    notes = [section.note(how), note(flows[0]), *(f.spheres.note for f in [first] if f.spheres)]
     solutes = frames_of(case, trajectory, source.axes)
     if solutes:
         first = replace(first, beads=solutes.at(source.time[frames[0]]))

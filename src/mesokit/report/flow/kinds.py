@@ -3,20 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError
-from mesokit.report.flow import density, particles, quiver, speed, streamlines, vorticity
+from mesokit.method.protocol import method_of
+from mesokit.report.flow import (
+    birds,
+    density,
+    disks,
+    particles,
+    quiver,
+    speed,
+    streamlines,
+    vorticity,
+)
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.region import Region
 from mesokit.report.flow.scale import Scale
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
 
 
 class Panel(Protocol):
     """How one panel is drawn: a module.
 
-    NEEDS: "velocity", "density" or "particles"; TITLE: its name where several are side by side.
+    NEEDS: "velocity", "density", "particles", "spheres" or "headings"; TITLE: its name where
+    several are side by side.
     """
 
     NEEDS: str
@@ -39,6 +53,8 @@ KINDS: dict[str, tuple[Panel, ...]] = {
     "density": (density,),
     "speed": (speed,),
     "vorticity": (vorticity,),
+    "disks": (disks,),
+    "flock": (birds,),
     "four": (quiver, streamlines, particles, density),
 }
 
@@ -53,9 +69,15 @@ def quieted(
     return width, lambda flow: vorticity.note(flow, clear)
 
 
-def panels_of(kind: str) -> tuple[Panel, ...]:
-    """The panels of a kind of picture. Raises CaseError for an unknown one."""
+def panels_of(kind: str, case: Case) -> tuple[Panel, ...]:
+    """The panels of a kind of picture. Raises CaseError for an unknown one, and one of what the
+    particles of the case have not."""
     if kind not in KINDS:
         known = list(KINDS)
         raise CaseError(f"kind = {show(kind)}: expected {one_of(known)}{nearest(str(kind), known)}")
+    if any(panel.NEEDS == "spheres" for panel in KINDS[kind]) and not method_of(case).spheres:
+        raise CaseError(
+            f"kind = {show(kind)}: particles of method {show(case.run.method)} have no size; "
+            "expected 'particles', or another kind"
+        )
     return KINDS[kind]

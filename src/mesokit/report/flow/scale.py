@@ -14,12 +14,16 @@ ENOUGH = 99.5  # percent of the bins that the colours span; the few beyond are n
 
 @dataclass(frozen=True)
 class Scale:
-    """Colours (a name or a map of Matplotlib) from `low` to `high`, and what they show."""
+    """Colours (a name or a map of Matplotlib) from `low` to `high`, and what they show.
+
+    `names`: of whole numbers from 0, each of which has a colour of its own.
+    """
 
     low: float
     high: float
     colours: Any
     label: str
+    names: tuple[str, ...] = ()
 
     def mappable(self) -> Any:
         """What Matplotlib draws a colour bar of."""

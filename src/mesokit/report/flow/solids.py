@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -79,7 +80,7 @@ class Section:
         if self.solids is None:
             return False
         length = self.case.box.size[self.columns[1 - axis]]
-        along = np.linspace(0, length, 2 * length + 1)
+        along = np.linspace(0, length, 2 * math.ceil(length) + 1)
         beyond = np.full_like(along, -0.25)
         x, y = (beyond, along) if axis == 0 else (along, beyond)
         return bool((self.distance(x, y) < 0).all())

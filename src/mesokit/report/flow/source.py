@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mesokit.case.component import show
 from mesokit.errors import CaseError, RunError
 from mesokit.report.flow.data import Flow
+from mesokit.report.flow.view import View
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -19,12 +20,22 @@ if TYPE_CHECKING:
     from mesokit.report.flow.state import State
 
 Axes = tuple[str, str]
-WORDS = {"velocity": "velocities", "density": "densities", "particles": "positions of particles"}
+ALL = View()
+WORDS = {
+    "velocity": "velocities",
+    "density": "densities",
+    "particles": "positions of particles",
+    "spheres": "positions of spheres",
+    "headings": "positions and velocities of particles",
+}
+AT_ONCE = ("particles", "spheres", "headings")  # shown as they are at one time, and not as a mean
 FRAMES = '[[observe]] quantity = "flow-frames"'
 REMEDY = {
     "velocity": FRAMES,
     "density": FRAMES,
     "particles": f"{FRAMES} with particles > 0, or [trajectory]",
+    "spheres": "[trajectory]",
+    "headings": '[trajectory] with fields = ["position", "velocity"]',
 }
 
 
@@ -37,7 +48,7 @@ class Found(list["Source"]):
 
     def lack(self, needs: str, kept: str) -> str:
         """What was kept, and what to add to the case; of the case as it is, if it has the maps."""
-        if not self.others or needs == "particles":
+        if not self.others or needs in AT_ONCE:
             return f"{kept}; add to the case and run it again: {REMEDY[needs]}"
         maps = " and ".join(",".join(axes) for axes in self.others)
         return (
@@ -67,7 +78,7 @@ def sources(
     case: Case,
     results: Mapping[str, Result],
     trajectory: TrajectoryReader | State | None,
-    axes: Axes | None = None,
+    view: View = ALL,
 ) -> Found:
     """What there is to draw over two axes (those of the first map unless said), best first.
 
@@ -78,6 +89,7 @@ def sources(
     from mesokit.report.flow.field_source import FieldSource
     from mesokit.report.flow.frame_source import FrameSource
     from mesokit.report.flow.setting import Setting
+    from mesokit.report.flow.spheres import SphereSource
     from mesokit.report.flow.trajectory_source import TrajectorySource
 
     kept = [result for result in results.values() if result.samples]
@@ -85,6 +97,7 @@ def sources(
     for drawing in ("frames", "map"):
         found_now = [r for r in kept if r.drawing == drawing]
         maps += [(axes_of(r), r) for r in sorted(found_now, key=lambda r: "component" not in r.x)]
+    axes = view.axes
     _check(case, axes)
     chosen = axes or (maps[0][0] if maps else ("x", "y"))
     found = Found(chosen, [axes for axes, _ in maps if set(axes) != set(chosen)])
@@ -94,6 +107,8 @@ def sources(
             found.append(make(Setting.of(case, chosen), result))
     if trajectory is not None and "position" in trajectory.fields and len(trajectory):
         found.append(TrajectorySource(case, trajectory, chosen))
+        if trajectory.diameter is not None:
+            found.append(SphereSource(case, trajectory, view._replace(axes=chosen)))
     return found
 
 

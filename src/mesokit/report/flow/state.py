@@ -5,24 +5,31 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit.case.trajectory import masses_and_kinds
+from mesokit.method.protocol import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.engine import Particles
 
 MOST = 20_000  # particles of the first group, evenly picked where there are more
 
 
 class State:
-    """One frame of the particles that an engine has, with what a `TrajectoryReader` tells."""
+    """One frame of the particles that an engine has, with what a `TrajectoryReader` tells.
 
-    fields = ("position",)
+    Of spheres that is all that trajectories may hold, and all of them.
+    """
 
-    def __init__(self, case: Case, engine: Particles) -> None:
-        number = case.particles
-        shown = min(MOST, number)
+    def __init__(self, case: Case, engine: Any) -> None:
+        number, spheres = case.particles, method_of(case).spheres
+        shown = number if spheres else min(MOST, number)
+        self.fields: tuple[str, ...] = (
+            ("position", "velocity", "spin") if spheres else ("position",)
+        )
+        if method_of(case).headings:
+            self.fields = ("position", "velocity")
         picked = np.arange(shown) * number // max(shown, 1)
         others = np.arange(number, sum(group.number for group in case.groups))
         masses, kinds = masses_and_kinds(case.groups)
@@ -31,10 +38,20 @@ class State:
         self.mass = masses[self.species]
         self.step, self.time = np.array([engine.step]), np.array([engine.time])
         self.engine = engine
+        self.diameter: NDArray[np.float64] | None = None
+        if spheres:
+            self.mass, self.diameter = engine.masses(self.id), engine.diameters(self.id)
 
     def __len__(self) -> int:
         return 1
 
     def __getitem__(self, index: int) -> dict[str, Any]:
         """The frame."""
-        return {"position": self.engine.positions(self.id)}
+        frame = {"position": self.engine.positions(self.id)}
+        if self.diameter is not None:
+            frame |= {
+                "velocity": self.engine.velocities(self.id), "spin": self.engine.spins(self.id)
+            }  # fmt: skip
+        elif "velocity" in self.fields:
+            frame["velocity"] = self.engine.velocities(self.id)
+        return frame

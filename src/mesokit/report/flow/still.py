@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mesokit.method.protocol import method_of
 from mesokit.report.flow.beads import frames_of
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.kinds import Panel, panels_of, quieted
-from mesokit.report.flow.region import Ranges, frames_in, region_of
+from mesokit.report.flow.region import frames_in, region_of
 from mesokit.report.flow.solids import Section
-from mesokit.report.flow.source import choose, sources
+from mesokit.report.flow.source import AT_ONCE, choose, sources
+from mesokit.report.flow.view import View
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -21,29 +23,28 @@ if TYPE_CHECKING:
     from mesokit.observe.shared.result import Result
     from mesokit.report.flow.state import State
 
-CHOICES = ("region", "window", "axes", "at")  # what a user may say of a picture, and of a film
-
 
 def picture(
     case: Case,
     results: Mapping[str, Result],
     trajectory: TrajectoryReader | State | None = None,
-    kind: str = "four",
-    region: Ranges | None = None,
-    window: tuple[float, float] | None = None,
-    axes: tuple[str, str] | None = None,
-    at: float | None = None,
+    kind: str | None = None,
+    **choices: Any,
 ) -> Any:
-    """A Matplotlib figure of the flow, averaged over a time.
+    """A Matplotlib figure of the flow, averaged over a time; of particles as they are at its end.
 
     Parameters
     ----------
     case, results, trajectory: of the run; a `State` of its engine is a trajectory of one frame.
-    kind: "quiver", "streamlines", "particles", "density", "speed", "vorticity" or "four".
+    kind: "quiver", "streamlines", "particles", "density", "speed", "vorticity", "four", of
+        spheres "disks", of birds "flock"; unless said that of the method, else "four".
+    choices: the rest.
     region: ((x0, x1), (y0, y1)) in cells, the whole box unless said.
     window: (t0, t1), the times averaged over, all unless said.
     axes: of the picture in 3D, those of the first map unless said; it averages along the third.
-    at: where along the third axis solids are shown, in the middle unless said.
+    at: where along the third axis solids are shown, in the middle unless said; of spheres those
+        behind it.
+    colour: of disks and spheres: "speed" (unless said), "spin", "neighbours", "psi6" or "kind".
 
     Raises CaseError for a kind, region, window, axes or place that there is not, RunError where
     the run kept nothing to draw.
@@ -55,12 +56,14 @@ def picture(
     >>> len(figure.axes)  # the panel and its colour bar
     2
     """
-    panels = panels_of(kind)
-    found = sources(case, results, trajectory, axes)
+    view = View(**choices)
+    window, kind = view.window, kind or method_of(case).picture or "four"
+    panels = panels_of(kind, case)
+    found = sources(case, results, trajectory, view)
     chosen = [choose(found, panel.NEEDS, kind, window is not None) for panel in panels]
-    section = Section(case, chosen[0].axes, at)
+    section = Section(case, chosen[0].axes, view.at)
     flows = [source.flow(frames_in(source.time, window)) for source in chosen]
-    shown = region_of(region, flows[0].axes, flows[0].size)
+    shown = region_of(view.region, flows[0].axes, flows[0].size)
     from mesokit.report.flow.canvas import Canvas
 
     width, note = quieted(panels, flows, shown)
@@ -68,11 +71,14 @@ def picture(
     beads = solutes.at(window and window[1]) if solutes else None
     flows = [replace(flow, smoothing=width, beads=beads) for flow in flows]
     reaches = [panel.reach(flow, shown) for panel, flow in zip(panels, flows, strict=True)]
-    averaged = [f for f, panel in zip(flows, panels, strict=True) if panel.NEEDS != "particles"]
+    averaged = [f for f, panel in zip(flows, panels, strict=True) if panel.NEEDS not in AT_ONCE]
     mean = _mean(averaged[0], window) if averaged else ""
     when = rf"solutes at $t = {beads.time:.4g}\,\tau$" if beads else ""
-    how = "projection" if all(panel.NEEDS == "particles" for panel in panels) else "mean"
+    how = "projection" if all(panel.NEEDS in AT_ONCE for panel in panels) else "mean"
     notes = [section.note(how), mean, note(flows[0]), _few(case, panels, flows), when]
+    notes += [text for flow in flows for text in _spheres(flow)]
+    if any(panel.NEEDS == "headings" for panel in panels):
+        notes.append(rf"at $t = {flows[0].time:.6g}\,\tau$")
     drawn = Canvas(panels, flows, reaches, shown, section, notes=notes)
     drawn.show(flows)
     return drawn.figure
@@ -90,10 +96,18 @@ def _mean(flow: Flow, window: tuple[float, float] | None) -> str:
     return text
 
 
+def _spheres(flow: Flow) -> list[str]:
+    """When spheres are where they are, and which of them are shown."""
+    if flow.spheres is None:
+        return []
+    return [rf"at $t = {flow.spheres.time:.4g}\,\tau$", flow.spheres.note]
+
+
 def _few(case: Case, panels: Sequence[Panel], flows: Sequence[Flow]) -> str:
     """How many particles are shown, if not all."""
     for panel, flow in zip(panels, flows, strict=True):
-        if panel.NEEDS == "particles" and flow.particles is not None:
-            shown = len(flow.particles)
+        found = flow.particles if flow.spheres is None else flow.spheres.places
+        if panel.NEEDS in AT_ONCE and found is not None:
+            shown = len(found)
             return f"{shown} of {case.particles} particles" if 0 < shown < case.particles else ""
     return ""

@@ -31,11 +31,11 @@ class TrajectorySource:
         self.bonds = FluidBonds(case, reader.id[self.rows], self.setting.columns)
         known = {"particles"}
         if "velocity" in reader.fields and len(self.rows):
-            known.add("velocity")
+            known |= {"velocity", "headings"}
         if len(self.rows) == case.particles > 0:
             known.add("density")
         self.gives = frozenset(known)
-        self.bins = tuple(int(length) for length in self.setting.size)
+        self.bins = tuple(max(1, int(length)) for length in self.setting.size)
         self.bin_volume = case.box.volume / np.prod(self.bins)
 
     def flow(self, frames: NDArray[np.int64]) -> Flow:
@@ -47,7 +47,8 @@ class TrajectorySource:
             place = read["position"][self.rows][:, columns]
             known = "velocity" in read
             velocity = read["velocity"][self.rows][:, columns] if known else 0 * place
-            bins = np.minimum(place.astype(int), np.array(self.bins) - 1)
+            fine = np.array(self.bins) / self.setting.size  # 1 where lengths are whole numbers
+            bins = np.minimum((place * fine).astype(int), np.array(self.bins) - 1)
             index = np.ravel_multi_index((bins[:, 0], bins[:, 1]), self.bins)
             each = (np.ones_like(mass), mass, mass * velocity[:, 0], mass * velocity[:, 1])
             for total, weight in zip(sums, each, strict=True):
@@ -63,4 +64,5 @@ class TrajectorySource:
             noise=noise,
         )
         bonds = self.bonds.at(read["position"][self.rows].astype(float), float(self.time[frame]))
-        return replace(flow, bonds=bonds)
+        headings = velocity if "headings" in self.gives else None
+        return replace(flow, bonds=bonds, headings=headings, time=float(self.time[frame]))

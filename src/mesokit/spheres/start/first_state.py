@@ -7,16 +7,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.spheres.made import Made
 from mesokit.spheres.start import thermal
+from mesokit.spheres.start.lattice import shut
 from mesokit.spheres.start.protocol import Array, Started
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
+ROUNDING = 1e-5  # of a diameter: files keep places as float32
 ARRAYS = ("positions", "velocities", "spins")
 
 
@@ -41,7 +44,31 @@ def first_state(case: Case, made: Made, arrays: Mapping[str, Any], spin_kT: floa
         velocities = thermal.velocities(case.run.seed, made, kT, d, at_rest)
     if spins is None:
         spins = thermal.spins(case.run.seed, made, spin_kT, d)
-    return Started(positions, velocities, spins, placed.diameters if placed else None)
+    diameters = placed.diameters if placed else None
+    if placed is None or case.spheres.start.files():
+        own = made.diameters if diameters is None else diameters
+        require_apart(positions, own, np.array(case.box.size, float), shut(case))
+    return Started(positions, velocities, spins, diameters)
+
+
+def require_apart(places: Array, diameters: Array, size: Array, closed: NDArray[np.bool_]) -> None:
+    """Raise CaseError for spheres that lie on one another, or on plates, by more than rounding."""
+    from scipy.spatial import cKDTree
+
+    largest = float(diameters.max())
+    beyond = np.minimum(places, size - places) - 0.5 * diameters[:, None]
+    lowest = np.where(closed, beyond, np.inf).min(axis=1)
+    if (lowest < -ROUNDING * largest).any():
+        raise CaseError(f"positions: sphere {int(lowest.argmin())} lies in a plate")
+    around = np.where(closed, 3 * size, size)
+    tree = cKDTree(np.where(closed, places, np.mod(places, size)), boxsize=around)
+    pairs = tree.query_pairs(largest, output_type="ndarray")
+    way = places[pairs[:, 0]] - places[pairs[:, 1]]
+    way -= around * np.rint(way / around)
+    gaps = np.linalg.norm(way, axis=1) - 0.5 * (diameters[pairs[:, 0]] + diameters[pairs[:, 1]])
+    if len(gaps) and gaps.min() < -ROUNDING * largest:
+        i, j = pairs[gaps.argmin()]
+        raise CaseError(f"positions: spheres {i} and {j} overlap by {-gaps.min():.3g}")
 
 
 def _checked(name: str, given: Mapping[str, Any], shape: tuple[int, ...]) -> Array:

@@ -85,11 +85,10 @@ def impulse_of(masses, levers, u, n, e, tangential, friction):
 
 
 @scalar
-def push(world, spheres, i, v, impulse, lever):
-    """Give sphere i an impulse at the end of a lever."""
+def push(spheres, i, v, impulse, turned):
+    """Give sphere i an impulse, and an angular one."""
     body = spheres.body
     put_entries(spheres.state, i, VELOCITY, added_scaled(v, 1.0 / body[i, MASS], impulse))
-    turned = outer(lever, impulse)
     if body[i, INERTIA] > 0.0:
         spin = added_scaled(spin_of(body, i, v), 1.0 / body[i, INERTIA], turned)
         put_entries(body, i, SPIN, spin)
@@ -143,8 +142,9 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
     # surfaces that grow push one another apart
     growing = (state[i, RADIUS] + state[j, RADIUS]) * world.growth / masses
     total = added_scaled(total, 2.0 * growing, n)
-    push(world, spheres, i, v_i, total, lever_i)
-    push(world, spheres, j, v_j, scaled(-1.0, total), lever_j)
+    # only what is along the surface turns: rounding must not
+    push(spheres, i, v_i, total, outer(lever_i, along))
+    push(spheres, j, v_j, scaled(-1.0, total), outer(lever_j, scaled(-1.0, along)))
     body[i, LAST] = body[j, LAST] = time
     tally.counts[PAIRS] += 1
     tally.sums[VIRIAL] += dot(apart, total)
@@ -203,7 +203,7 @@ def collide_wall(world, rules, spheres, tally, i, w, time):
         )
         total = added_scaled(along, normal, n)
         total = added_scaled(total, body[i, MASS] * state[i, RADIUS] * world.growth, n)
-        push(world, spheres, i, v, total, lever)
+        push(spheres, i, v, total, outer(lever, along))
     body[i, LAST] = time
     for k in range(len(n)):
         tally.impulse[w, k] -= total[k]

@@ -49,7 +49,7 @@ class Lists(NamedTuple):
 
     centre (n, 4): these places, and how far one may go; cells (d,), per_length (d,): of the grid;
     cell (n,), head (cells,), following (n,), before (n,): the centres of each cell, linked;
-    count (n,), near (n, most): the lists.
+    count (n,), near (n, most): the lists; times (most,): when those of one list are met.
     """
 
     shell: float
@@ -63,6 +63,7 @@ class Lists(NamedTuple):
     before: Any
     count: Any
     near: Any
+    times: Any
 
 
 class Queue(NamedTuple):

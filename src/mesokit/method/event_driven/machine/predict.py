@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from mesokit.method.event_driven.machine.groups import (
     FIRST_WALL,
     LEAVES,
@@ -28,11 +30,15 @@ def predict(world, rules, spheres, lists, queue, tally, i, now):
     leaves = time_to_leave(world, lists, r, v, entries(lists.centre, i, 0, r))
     best, partner = now + leaves, LEAVES if leaves < math.inf else NOTHING
     one = mover(state, i, r)
-    for a in range(lists.count[i]):
-        j = lists.near[i, a]
-        time = meeting(world, rules.pair, one, mover(state, j, r), now)
-        if time < best or (time == best and partner >= 0 and number[j] < number[partner]):
-            best, partner = time, j
+    # all times first and the soonest then, so that one pair need not wait for another
+    near, times = lists.count[i], lists.times
+    for a in range(near):
+        times[a] = meeting(world, rules.pair, one, mover(state, lists.near[i, a], r), now)
+    for a in range(near):
+        if times[a] <= best:
+            j = lists.near[i, a]
+            if times[a] < best or (partner >= 0 and number[j] < number[partner]):
+                best, partner = times[a], np.int64(j)
     for w in range(len(world.walls)):
         time = time_to_wall(world, state, i, w, best)
         if time < best:

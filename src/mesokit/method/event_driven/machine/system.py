@@ -182,7 +182,8 @@ class System:
             np.zeros(n, np.int32),
             np.zeros(n, np.int32),
             np.zeros(n, np.int32),
-            np.zeros((n, self.room), np.int32),
+            np.zeros((n, self.room), np.uint32),
+            np.zeros(self.room),
         )
 
     def _queue(self) -> Queue:

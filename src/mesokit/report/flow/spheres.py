@@ -1,0 +1,93 @@
+"""Pictures from the disks and spheres of a trajectory."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.box import AXES
+from mesokit.method.protocol import method_of
+from mesokit.report.flow.colouring import Frame, chosen
+from mesokit.report.flow.data import Array, Flow
+from mesokit.report.flow.setting import Setting
+from mesokit.report.flow.shown import Spheres
+from mesokit.report.flow.view import View
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.io.trajectory_reader import TrajectoryReader
+    from mesokit.report.flow.state import State
+
+
+class SphereSource:
+    """The frames of a trajectory of spheres."""
+
+    gives = frozenset({"spheres"})
+
+    def __init__(self, case: Case, reader: TrajectoryReader | State, view: View) -> None:
+        self.case, self.reader, self.view = case, reader, view
+        self.axes, self.time = view.axes or ("x", "y"), reader.time
+        self.whole = np.arange(len(reader))
+        self.setting = Setting.of(case, self.axes)
+        self.third = next((k for k in range(3) if k not in self.setting.columns), 2)
+        first, second = self.setting.columns
+        self.towards = 1.0 if (second - first) % 3 == 1 else -1.0  # a right-handed picture
+
+    def flow(self, frames: NDArray[np.int64]) -> Flow:
+        """Spheres as they are in the last of the frames."""
+        frame = int(frames[-1])
+        read, reader, box = self.reader[frame], self.reader, self.case.box
+        assert reader.diameter is not None
+        colouring = chosen(self.case, reader, self.view.colour)
+        now = Frame(self.case, read, reader.diameter, reader.species)
+        position = np.asarray(read["position"], float)
+        spheres = Spheres(
+            places=position[:, self.setting.columns],
+            depth=None,
+            room=(0.0, 0.0),
+            diameters=reader.diameter,
+            values=colouring.numbers(now) if colouring else np.zeros(len(position)),
+            counted=colouring is not None and colouring.counted,
+            scale=functools.partial(colouring.scale, self.case) if colouring else None,
+            repeats=self._repeats(float(self.time[frame])),
+            time=float(self.time[frame]),
+        )
+        if box.dimension == 3:
+            spheres = self._deep(spheres, self.towards * position[:, self.third])
+        return replace(self.setting.flow(), spheres=spheres)
+
+    def _deep(self, spheres: Spheres, depth: Array) -> Spheres:
+        """With their depths; behind a plane, if the picture is of a place on the third axis."""
+        ends = sorted((0.0, self.towards * float(self.case.box.size[self.third])))
+        if self.view.at is None:
+            return replace(spheres, depth=depth, room=(ends[0], ends[1]))
+        plane = self.towards * self.view.at
+        kept, axis = depth <= plane, AXES[self.third]
+        return replace(
+            spheres,
+            places=spheres.places[kept],
+            depth=depth[kept],
+            room=(ends[0], plane),
+            diameters=spheres.diameters[kept],
+            values=spheres.values[kept],
+            note=rf"spheres at ${axis} {'<' if self.towards > 0 else '>'} {self.view.at:g}\,a$",
+        )
+
+    def _repeats(self, time: float) -> tuple[tuple[float, float], ...]:
+        """No displacement, and those by one box along each periodic axis of the picture."""
+        box, closed = self.case.box, method_of(self.case).closed_axes(self.case)
+        edges = np.diag(np.array(box.size, float))
+        if box.sheared:
+            edges[1, 0] = box.displacement(time) % edges[0, 0]
+        once = [(0, 1, -1) if k not in closed else (0,) for k in self.setting.columns]
+        found: dict[tuple[float, float], None] = {}
+        for counts in itertools.product(*once):
+            way = sum(n * edges[k] for n, k in zip(counts, self.setting.columns, strict=True))
+            first, second = way[self.setting.columns].tolist()
+            found[first, second] = None
+        return tuple(found)

@@ -1,0 +1,23 @@
+"""What a user may say of a picture, and of a film."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from mesokit.report.flow.region import Ranges
+
+
+class View(NamedTuple):
+    """Which part of the box is shown: a region, a window of time, a plane and where it lies.
+
+    `colour` says what the colours of spheres mean.
+    """
+
+    region: Ranges | None = None
+    window: tuple[float, float] | None = None
+    axes: tuple[str, str] | None = None
+    at: float | None = None
+    colour: str | None = None
+
+
+CHOICES = View._fields

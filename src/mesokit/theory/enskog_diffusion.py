@@ -1,0 +1,40 @@
+"""Diffusion of hard disks and spheres (Enskog)."""
+
+from __future__ import annotations
+
+import math
+
+
+def enskog_diffusion(
+    density: float, diameter: float, kT_over_m: float, contact: float, dimension: int
+) -> float:
+    """Self-diffusion coefficient of equal smooth elastic hard disks or spheres.
+
+    The first approximation of Chapman and Enskog (1970, section 16.1), in molecular chaos.
+    Backflow makes it larger at medium densities (1.24 times at n = 0.5 in 3D), cages make it
+    smaller near freezing; of disks it grows with the logarithm of time and size.
+
+    Parameters
+    ----------
+    density : float
+        Number per area or volume, in 1/a^d.
+    diameter : float
+        In a.
+    kT_over_m : float
+        Thermal energy over mass, in (a/time)^2.
+    contact : float
+        Pair distribution at contact, such as `contact_value` gives.
+    dimension : int
+        2 or 3.
+
+    Examples
+    --------
+    >>> from mesokit.theory import contact_value
+    >>> chi = contact_value(0.5 * math.pi / 6, 3)
+    >>> round(enskog_diffusion(0.5, 1.0, 1.0, chi, 3), 4)
+    0.1998
+    """
+    thermal = math.sqrt(kT_over_m / math.pi)
+    if dimension == 2:
+        return thermal / (2 * density * diameter * contact)
+    return 3 * thermal / (8 * density * diameter**2 * contact)
