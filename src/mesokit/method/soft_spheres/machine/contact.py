@@ -197,11 +197,12 @@ def forget(springs, i, s):
 
 @scalar
 def counted(total, vector, scale):
-    """A sum in whole quanta, and a vector more."""
+    """A sum in whole quanta, and a vector more: cut off toward zero, so that what the other sphere
+    adds is exactly minus this."""
     return (
-        total[0] + quanta(vector[0], scale),
-        total[1] + quanta(vector[1], scale),
-        total[2] + quanta(vector[2], scale),
+        total[0] + np.int64(vector[0] * scale),
+        total[1] + np.int64(vector[1] * scale),
+        total[2] + np.int64(vector[2] * scale),
     )
 
 
