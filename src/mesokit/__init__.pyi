@@ -101,6 +101,14 @@ from mesokit.method.mpcd.thermostat.maxwell_boltzmann import MaxwellBoltzmann as
 from mesokit.method.mpcd.thermostat.none import NoThermostat as NoThermostat
 from mesokit.method.mpcd.thermostat.protocol import Thermostat as Thermostat
 from mesokit.method.mpcd.thermostat.rescale import Rescale as Rescale
+from mesokit.method.soft_spheres.pair.hertz import HertzLaw as HertzLaw
+from mesokit.method.soft_spheres.pair.protocol import ContactLaw as ContactLaw
+from mesokit.method.soft_spheres.pair.protocol import PairLaw as PairLaw
+from mesokit.method.soft_spheres.pair.spring_dashpot import SpringDashpot as SpringDashpot
+from mesokit.method.soft_spheres.section import SoftSpheres as SoftSpheres
+from mesokit.method.soft_spheres.thermostat.langevin import Langevin as Langevin
+from mesokit.method.soft_spheres.thermostat.protocol import SoftThermostat as SoftThermostat
+from mesokit.method.soft_spheres.thermostat.rescale import RescaleAll as RescaleAll
 from mesokit.observe.bond_correlation import BondCorrelation as BondCorrelation
 from mesokit.observe.bond_length import BondLength as BondLength
 from mesokit.observe.cell_occupancy import CellOccupancy as CellOccupancy

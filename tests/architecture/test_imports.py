@@ -67,6 +67,12 @@ ROWS = {
         "case", "engine", "errors", "execute.cpu.threads", "geometry", "io", "method.flock",
         "method.protocol", "observe", "running.cores", "scalar", "statistics", "theory",
     ),
+    "method/soft_spheres/": (
+        "case", "engine", "errors", "execute.cells", "execute.cpu.strips.layout",
+        "execute.cpu.threads", "geometry", "method.event_driven.machine.walls",
+        "method.event_driven.walls", "method.protocol", "method.soft_spheres", "observe",
+        "potential", "running.cores", "scalar", "spheres", "statistics", "theory",
+    ),
     "method/brownian/": (
         "case", "engine", "errors", "method.brownian", "method.protocol", "observe",
         "running.cores", "scalar", "statistics",

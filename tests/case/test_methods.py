@@ -77,9 +77,7 @@ def test_a_case_is_of_the_class_of_its_method():
 
 
 def test_a_method_that_there_is_not_is_refused():
-    with pytest.raises(
-        CaseError, match=r"'brownain': expected 'brownian', .* or 'mpcd', or .*; did you mean"
-    ):
+    with pytest.raises(CaseError, match=r"'brownain': expected .*, or .*; did you mean"):
         Run(steps=1, method="brownain")
 
 

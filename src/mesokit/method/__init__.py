@@ -17,6 +17,7 @@ METHODS = {  # what `run.method` says: the module that holds the METHOD
     "brownian": "mesokit.method.brownian.method",
     "flock": "mesokit.method.flock.method",
     "event-driven": "mesokit.method.event_driven.method",
+    "soft-spheres": "mesokit.method.soft_spheres.method",
 }
 DEFAULT = next(iter(METHODS))
 

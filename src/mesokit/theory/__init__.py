@@ -50,6 +50,7 @@ from mesokit.theory.harmonic_trap import TrappedShape, normal_in_box, trapped_sh
 from mesokit.theory.heading_memory import angular_memory, vectorial_memory
 from mesokit.theory.heat_at_walls import HeatAtWalls, heat_at_walls, slit_temperature_rise
 from mesokit.theory.held_temperature import shear_warming, temperature_offset
+from mesokit.theory.hertz_contact import hertz_contact
 from mesokit.theory.hookean_shear import (
     ShearStress,
     SizeInShear,
@@ -103,6 +104,7 @@ from mesokit.theory.rouse_times import RouseTimes, rouse_times, rouse_times_from
 from mesokit.theory.second_virial import second_virial
 from mesokit.theory.self_diffusion import self_diffusion
 from mesokit.theory.slip_sphere import enskog_friction, slip_sphere_diffusion
+from mesokit.theory.spring_dashpot import spring_dashpot
 from mesokit.theory.square_array import (
     square_array_drag,
     square_array_drag_dilute,
@@ -218,6 +220,7 @@ __all__ = [
     "hagen_poiseuille_flow_rate",
     "hagen_poiseuille_velocity",
     "heat_at_walls",
+    "hertz_contact",
     "kicked_temperature",
     "kirkwood_diffusion",
     "kirkwood_in_cells",
@@ -266,6 +269,7 @@ __all__ = [
     "slip_sphere_diffusion",
     "slit_temperature_rise",
     "spring",
+    "spring_dashpot",
     "spring_of_bond",
     "square_array_drag",
     "square_array_drag_dilute",

@@ -8,7 +8,7 @@ from typing import Any
 from mesokit import method as methods
 from mesokit.case.case import FIELDS, SECTIONS, Case, case_class
 from mesokit.case.component import tag_of
-from mesokit.case.describe.plain import plain_schemas
+from mesokit.case.describe.plain import PLACE, plain_schemas
 from mesokit.case.registry import FAMILIES
 from mesokit.errors import CaseError
 
@@ -37,7 +37,11 @@ def schema() -> dict[str, Any]:
     sections = {name: _by_key(cases[name], each["properties"]) for name, each in found.items()}
     together: dict[str, Any] = {}
     for each in reversed(sections.values()):  # the usual method says what a shared key means
-        together |= each
+        for key, inner in each.items():
+            if key not in together or key in sections[methods.DEFAULT]:
+                together[key] = inner
+            elif together[key] != inner:
+                together[key] = _any_of_both(key, together[key], inner, definitions)
     order = [*sections[methods.DEFAULT], *sorted(together)]
     return {
         "$schema": DIALECT,
@@ -50,6 +54,22 @@ def schema() -> dict[str, Any]:
         "allOf": [_rules(name, cases[name], sections[name], together) for name in cases],
         "definitions": dict(sorted(definitions.items())),
     }
+
+
+def _any_of_both(
+    key: str, one: dict[str, Any], other: dict[str, Any], definitions: dict[str, Any]
+) -> dict[str, Any]:
+    """A section of several methods, each of which says below which of the keys are its own."""
+    tables = [definitions[each["allOf"][0]["$ref"].removeprefix(PLACE)] for each in (one, other)]
+    mine, theirs = (table["properties"] for table in tables)
+    joint = dict(theirs | mine)
+    for name in mine.keys() & theirs.keys():
+        if mine[name] != theirs[name]:
+            told = mine[name].get("description", "")
+            joint[name] = {"anyOf": [mine[name], theirs[name]], "description": told}
+    name = key.capitalize()
+    definitions[name] = {**tables[0], "title": name, "properties": joint}
+    return {**one, "allOf": [{"$ref": f"{PLACE}{name}"}]}
 
 
 def schema_text() -> str:

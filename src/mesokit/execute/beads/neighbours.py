@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mesokit.case.box import SLIDING, fold
+from mesokit.execute.cells import cell_of, next_along, worn
 from mesokit.execute.cpu.strips.layout import share
 from mesokit.execute.cpu.strips.rows import load_values, store_values
 from mesokit.execute.cpu.threads import meet
@@ -19,7 +20,7 @@ from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
-CROWDED, NOWHERE = -1, -1  # the length of a list that did not fit; no cell, beyond a wall
+CROWDED = -1  # the length of a list that did not fit
 MOVED, OFFSET, MADE = 0, 1, 2  # places in `Neighbours.noted`
 GAP = 8  # numbers between those of two threads: each has a cache line of its own
 
@@ -83,12 +84,6 @@ def offset_of_images(box):
 
 
 @scalar
-def cell_along(lists, k, x):
-    """Number of the cell along an axis of a coordinate in the box."""
-    return min(max(int(floor(x * lists.inverse[k])), 0), lists.cells[k] - 1)
-
-
-@scalar
 def slipped(lists, box, thread):
     """How far the images have slid since the lists were made."""
     moved = offset_of_images(box) - lists.noted[thread, OFFSET]
@@ -116,8 +111,8 @@ def stale(lists, box, team):
     farthest = 0.0
     for t in range(team.threads):
         farthest = max(farthest, lists.noted[t, MOVED])
-    gone = 2.0 * math.sqrt(farthest) + abs(slipped(lists, box, team.thread))
-    return lists.noted[team.thread, MADE] == 0.0 or gone > lists.skin
+    slip = abs(slipped(lists, box, team.thread))
+    return lists.noted[team.thread, MADE] == 0.0 or worn(farthest, slip, lists.skin)
 
 
 @by_type
@@ -166,16 +161,6 @@ def link(lists, cells):
             lists.head[cell] = i
 
 
-@scalar
-def cell_of(lists, r):
-    """Number of the cell of a place in the box."""
-    cell, stride = 0, 1
-    for k in range(len(r)):
-        cell += cell_along(lists, k, r[k]) * stride
-        stride *= lists.cells[k]
-    return cell
-
-
 @seldom
 def make_list(lists, box, places, i, zero):
     """All within reach of bead i, in order."""
@@ -212,21 +197,6 @@ def list_cell(lists, box, places, i, mine, cell, found, zero):
             found += 1
         j = lists.following[j]
     return found
-
-
-@scalar
-def next_along(lists, box, k, x):
-    """The cells before, at and after x along an axis, NOWHERE for none, and the boxes crossed."""
-    cells, here = lists.cells[k], cell_along(lists, k, x)
-    if cells == 1:
-        return (NOWHERE, here, NOWHERE), (0.0, 0.0, 0.0)
-    before, after, back, on = here - 1, here + 1, 0.0, 0.0
-    repeats = box.inverse[k] > 0.0
-    if before < 0:
-        before, back = (cells - 1 if repeats else NOWHERE), -1.0
-    if after >= cells:
-        after, on = (0 if repeats else NOWHERE), 1.0
-    return (before, here, after), (back, 0.0, on)
 
 
 @scalar

@@ -11,8 +11,9 @@ import math
 import numpy as np
 
 from mesokit.case.box import fold
-from mesokit.execute.beads.neighbours import apart, find_cells, link, next_along
+from mesokit.execute.beads.neighbours import apart, find_cells, link
 from mesokit.execute.beads.state import load_place
+from mesokit.execute.cells import next_along
 from mesokit.execute.cpu.grid import cell_index
 from mesokit.execute.cpu.strips.layout import share
 from mesokit.execute.cpu.strips.rows import load_particle, store_values

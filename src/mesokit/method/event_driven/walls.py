@@ -43,8 +43,31 @@ def room_of(case: Case) -> Room:
 
 def wall_rows(case: Case) -> WallRows:
     """All walls of a case."""
-    room = room_of(case)
-    rows, contacts, surface = [], [], []
+    found = surface_rows(case)
+    for wall, surface in found.surfaces:
+        _check(surface, wall)
+    contacts = [_contact(case, surface) for _, surface in found.surfaces]
+    return WallRows(
+        found.rows, np.array(contacts, float).reshape(-1, 4), found.surface, found.names
+    )
+
+
+class SurfaceRows(NamedTuple):
+    """rows (walls, 14); surfaces: the number of the wall and the surface of each; surface (walls,):
+    number of each one's body; names of the bodies."""
+
+    rows: Array
+    surfaces: list[tuple[int, Surface]]
+    surface: NDArray[np.int64]
+    names: tuple[str, ...]
+
+
+def surface_rows(case: Case) -> SurfaceRows:
+    """Where the walls of a case are and how they move, whatever they do to spheres."""
+    room, method = room_of(case), case.run.method
+    rows: list[Array] = []
+    surfaces: list[tuple[int, Surface]] = []
+    body_of: list[int] = []
     names: list[str] = []
     for i, wall in enumerate(case.walls):
         if not wall.closed_axes and any(length != int(length) for length in case.box.size):
@@ -55,40 +78,37 @@ def wall_rows(case: Case) -> WallRows:
         if wall.virtual != "extrapolate":
             raise CaseError(f"wall[#{i + 1}].virtual = {show(wall.virtual)}: spheres need none")
         for body in wall.bodies(room, f"{type(wall).__name__.lower()}-{i + 1}"):
-            _check(body.surface, i, case)
-            for part in _parts(body, room, i):
+            if body.surface.rotation is not None:
+                raise CaseError(f"wall[#{i + 1}]: rotation: not with method {method!r}")
+            for part in _parts(body, room, i, method):
                 rows.append(_row(part, body.surface, case.box.dimension))
-                contacts.append(_contact(case, body.surface))
-                surface.append(len(names))
+                surfaces.append((i, body.surface))
+                body_of.append(len(names))
             names.append(body.name)
-    return WallRows(
+    return SurfaceRows(
         np.array(rows, float).reshape(-1, columns.COLUMNS),
-        np.array(contacts, float).reshape(-1, 4),
-        np.array(surface, np.int64),
+        surfaces,
+        np.array(body_of, np.int64),
         tuple(names),
     )
 
 
-def _check(surface: Surface, i: int, case: Case) -> None:
-    key = f"wall[#{i + 1}]"
-    if surface.rotation is not None:
-        raise CaseError(f"{key}: rotation: not with method 'event-driven'")
-    contact = surface.contact
-    if contact is None:
-        return
-    if contact.temperature is not None and surface.rule != "diffuse":
+def _check(surface: Surface, i: int) -> None:
+    key, contact = f"wall[#{i + 1}]", surface.contact
+    if contact is not None and contact.temperature is not None and surface.rule != "diffuse":
         raise CaseError(f"{key}: contact.temperature: only with rule = 'diffuse'")
-    if (contact.amplitude == 0) != (contact.frequency == 0):
-        raise CaseError(f"{key}: contact: a vibration has an amplitude and a frequency")
 
 
-def _parts(body: Any, room: Room, i: int) -> Iterator[Part]:
+def _parts(body: Any, room: Room, i: int, method: str) -> Iterator[Part]:
     """The planes and round surfaces of a body, each once."""
+    contact = body.surface.contact
+    vibrates = contact is not None and contact.amplitude > 0
+    if contact is not None and vibrates != (contact.frequency > 0):
+        raise CaseError(f"wall[#{i + 1}]: contact: a vibration has an amplitude and a frequency")
     for piece in body.pieces:
         part = _alone(piece.term, room)
         if part is None:
-            raise CaseError(f"wall[#{i + 1}]: not with method 'event-driven'; {ALLOWED}")
-        vibrates = body.surface.contact is not None and body.surface.contact.amplitude > 0
+            raise CaseError(f"wall[#{i + 1}]: not with method {method!r}; {ALLOWED}")
         if vibrates and part.kind != "half_space":
             raise CaseError(f"wall[#{i + 1}]: contact.amplitude: only plates vibrate")
         if part.kind == "brick" and part.sign < 0:
@@ -99,7 +119,7 @@ def _parts(body: Any, room: Room, i: int) -> Iterator[Part]:
             if _in_box(part, room):
                 yield part  # its images are found by the nearest one
         else:
-            raise CaseError(f"wall[#{i + 1}]: not with method 'event-driven'; {ALLOWED}")
+            raise CaseError(f"wall[#{i + 1}]: not with method {method!r}; {ALLOWED}")
 
 
 def _alone(term: Term, room: Room) -> Part | None:

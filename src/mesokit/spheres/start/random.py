@@ -26,9 +26,9 @@ class RandomStart(SphereStart):
     def place(self, case: Case, made: Made) -> Placed:
         """Places for all. Raises CaseError where there is no room."""
         from mesokit.method.event_driven.grow import grown
-        from mesokit.method.event_driven.walls import room_of, wall_rows
+        from mesokit.method.event_driven.walls import room_of, surface_rows
 
-        walls = wall_rows(case).rows
+        walls = surface_rows(case).rows
         fraction = case.spheres.fraction(case.box)
         closed = room_of(case).closed
         return Placed(grown(case.box.size, closed, made.diameters, walls, fraction, case.run.seed))

@@ -1,0 +1,104 @@
+"""What does not go together in a case of soft spheres."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mesokit.case.component import show
+from mesokit.errors import CaseError
+from mesokit.method.event_driven.walls import surface_rows
+from mesokit.method.soft_spheres import scales
+from mesokit.method.soft_spheres.pair.protocol import ContactLaw
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+
+def check(case: Case) -> None:
+    """Raise CaseError for a case without a meaning."""
+    section, box = case.spheres, case.box
+    section.check(box)
+    if box.sheared or box.shear is not None or box.shear_frequency:
+        raise CaseError("box: not with shear in method 'soft-spheres'")
+    if box.open:
+        raise CaseError(f"box.open = {show(list(box.open))}: not with method 'soft-spheres'")
+    for i, wall in enumerate(case.walls):
+        if box.dimension not in wall.dimensions:
+            raise CaseError(f"wall[#{i + 1}]: {type(wall).__name__} is not for {box.dimension}D")
+    _walls(case)
+    _potential(case)
+    reach = section.reach(box)
+    shut = {axis for wall in case.walls for axis in wall.closed_axes}
+    for axis, length in zip(box.axes, box.size, strict=True):
+        if axis not in shut and length < 2 * reach:
+            raise CaseError(
+                f"box.size = {show(list(box.size))}: expected at least twice the reach of the pair "
+                f"law ({2 * reach:g}) along {axis}"
+            )
+        if axis not in shut and length < 2 * (reach + section.skin_of(box)):
+            raise CaseError(
+                f"spheres.skin: expected less than {0.5 * length - reach:.3g}, half of the box "
+                f"along {axis} less the reach"
+            )
+    _gravity(case, shut)
+    _timestep(case)
+
+
+def _walls(case: Case) -> None:
+    """Walls do what contacts do, and no more."""
+    touching = isinstance(case.spheres.pair, ContactLaw)
+    for i, surface in surface_rows(case).surfaces:
+        key, contact = f"wall[#{i + 1}]", surface.contact
+        if surface.rule == "diffuse":
+            raise CaseError(f"{key}.rule = 'diffuse': not with method 'soft-spheres'")
+        if contact is None:
+            continue
+        for name in ("temperature", "tangential"):
+            if getattr(contact, name) is not None:
+                raise CaseError(f"{key}: contact.{name}: not with method 'soft-spheres'")
+        if contact.restitution == 0:
+            raise CaseError(f"{key}: contact.restitution = 0: expected more than 0")
+        for name in ("restitution", "friction"):
+            if not touching and getattr(contact, name) is not None:
+                raise CaseError(f"{key}: contact.{name}: a potential has none")
+
+
+def _potential(case: Case) -> None:
+    """Potentials act between equal spheres."""
+    section = case.spheres
+    if isinstance(section.pair, ContactLaw):
+        return
+    kinds, scale = section.kinds, section.scale(case.box)
+    if any(kind.spread for kind in kinds) or len({kind.diameter for kind in kinds}) > 1:
+        raise CaseError("spheres.kinds: a potential acts between spheres of one diameter alone")
+    given, own = kinds[0].diameter * scale, section.pair.diameter
+    if abs(given - own) > 1e-9 * own:
+        raise CaseError(
+            f"spheres.kinds: diameter {given:g}; expected that of the potential, {own:g} "
+            "(with number or density, and no packing fraction beside)"
+        )
+
+
+def _gravity(case: Case, shut: set[str]) -> None:
+    """Without walls below spheres would fall for ever, faster and faster."""
+    gravity = case.spheres.gravity
+    falls = [axis for axis, g in zip(case.box.axes, gravity, strict=False) if g]
+    round_walls = [wall for wall in case.walls if not wall.closed_axes]
+    if falls and not round_walls and not set(falls) & shut:
+        raise CaseError(
+            f"spheres.gravity = {show(list(gravity))}: nothing ends the fall along {falls[0]}; "
+            "expected a wall"
+        )
+
+
+def _timestep(case: Case) -> None:
+    """A contact must be followed."""
+    section, box = case.spheres, case.box
+    if section.timestep is None or not isinstance(section.pair, ContactLaw):
+        return
+    time = scales.shortest_contact(section, box)
+    if section.timestep > time / scales.REFUSED:
+        raise CaseError(
+            f"spheres.timestep = {show(section.timestep)}: expected at most a tenth of the contact "
+            f"time, {time / scales.REFUSED:.3g} (better a fiftieth)"
+        )

@@ -1,0 +1,118 @@
+"""From the section of a case to the numbers that the loops work with."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.method.event_driven.walls import room_of, surface_rows
+from mesokit.method.soft_spheres.machine.central import Central
+from mesokit.method.soft_spheres.machine.contact import OWN, Contact
+from mesokit.method.soft_spheres.machine.groups import Motion
+from mesokit.method.soft_spheres.machine.system import Given
+from mesokit.method.soft_spheres.pair.protocol import ContactLaw, damping_ratio
+from mesokit.method.soft_spheres.scales import timestep_of
+from mesokit.potential.protocol import central
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.spheres.made import Made
+
+Array = NDArray[np.float64]
+PARTS = 2.0**50  # quanta in the force of an overlap of a diameter: beyond it there is room for 2^11
+FINEST = 2.0**34  # quanta in the unit of force of a potential
+ROOM = 2.0**50  # quanta that one term of a vector loop may be
+
+
+def given_of(case: Case, made: Made) -> Given:
+    """All that does not change in a run."""
+    section, box, law = case.spheres, case.box, case.spheres.pair
+    touching = isinstance(law, ContactLaw)
+    rows, own = _walls(case)
+    return Given(
+        tuple(float(length) for length in box.size),
+        tuple(room_of(case).closed),
+        made.diameters / 2 if touching else np.full(len(made.masses), 0.5 * law.reach),
+        made.masses,
+        made.inertia,
+        contact_of(case, law) if touching else central_of(case, law),
+        law.width if touching else 0,
+        0.0 if touching else nearest(law),
+        _motion(case),
+        rows,
+        own,
+        case.run.seed,
+        section.skin_of(box),
+    )
+
+
+def contact_of(case: Case, law: ContactLaw) -> Contact:
+    """A law of contact."""
+    scale = 2.0 ** np.floor(np.log2(PARTS / law.largest_force(case)))
+    return Contact(
+        law.normal(),
+        law.tangential_stiffness,
+        law.tangential_damping,
+        law.friction,
+        float(law.tangential == "history"),
+        law.rolling,
+        float(1 / scale),
+        float(scale),
+    )
+
+
+def central_of(case: Case, law: Any) -> Central:
+    """A potential; forces are counted in parts of that at the distance of a diameter."""
+    scale = 2.0 ** np.floor(np.log2(FINEST / usual_force(law)))
+    return Central(law.kernel(), float(1 / scale), float(scale))
+
+
+def usual_force(law: Any) -> float:
+    """A force of the potential that is met everywhere: at 0.95 of the diameter."""
+    square = (0.95 * law.diameter) ** 2
+    _, push = central(law.kernel(), square)
+    return max(abs(push) * law.diameter, 1e-6)
+
+
+def nearest(law: Any) -> float:
+    """The distance below which a force has no room in one term of a vector loop."""
+    kernel, most = law.kernel(), usual_force(law) * ROOM / FINEST
+    distances = np.linspace(1.0, 0.0, 1001)[:-1] * law.diameter
+    for distance in distances:
+        _, push = central(kernel, float(distance) ** 2)
+        if not abs(push) * distance < most:
+            return float(distance)
+    return 0.0
+
+
+def _motion(case: Case) -> Motion:
+    section, box = case.spheres, case.box
+    d, step = box.dimension, timestep_of(section, box)
+    gravity = [*section.gravity, 0.0, 0.0, 0.0][:3] if section.gravity else [0.0, 0.0, 0.0]
+    bath = section.thermostat
+    return Motion(
+        float(step),
+        (float(gravity[0]), float(gravity[1]), float(gravity[2])),
+        1.0 if bath is None else bath.decay(step),
+        0.0 if bath is None else bath.held_kT,
+        (1.0, 1.0, 1.0 if d == 3 else 0.0),
+        (0.0, 0.0, 0.0) if not section.turns else (float(d == 3), float(d == 3), 1.0),
+    )
+
+
+def _walls(case: Case) -> tuple[Array, Array]:
+    """Rows of walls, and damping ratio and friction of each: -1, and as of pairs, unless said."""
+    found, law = surface_rows(case), case.spheres.pair
+    own = np.zeros((len(found.rows), OWN))
+    for w, (_, surface) in enumerate(found.surfaces):
+        contact = surface.contact
+        restitution = None if contact is None else contact.restitution
+        friction = None if contact is None else contact.friction
+        usual = law.friction if isinstance(law, ContactLaw) else 0.0
+        own[w] = (
+            -1.0 if restitution is None else damping_ratio(restitution),
+            0.0 if surface.rule == "slip" else usual if friction is None else friction,
+        )
+    return found.rows, own

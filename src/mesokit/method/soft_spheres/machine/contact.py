@@ -1,0 +1,261 @@
+"""Forces of spheres that touch: along the normal, along the surface, and against rolling.
+
+Of every pair each sphere finds the force for itself. What one finds is bit for bit minus what the
+other does, for all the same numbers come in, with the other sign or in another order of two terms.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mesokit.method.soft_spheres.machine.acting import act, quantum, tell, turns
+from mesokit.method.soft_spheres.machine.central import add_product
+from mesokit.method.soft_spheres.machine.geometry import cross, from_to, from_wall, reach, row
+from mesokit.method.soft_spheres.machine.groups import ENERGY, INVERSE, LARGEST, TOUCHING
+from mesokit.method.soft_spheres.machine.spring import Slider, stretched
+from mesokit.method.soft_spheres.pair.protocol import normal_energy, normal_force
+from mesokit.scalar.fixed_point import quanta
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.vector import added, added_scaled, dot, scaled
+
+DAMPING_RATIO, FRICTION, OWN = 0, 1, 2  # columns of `Walls.own`, and their number
+SLIDING, ROLLING = 0, 3  # where in `springs` the two springs of a contact are
+
+
+class Contact(NamedTuple):
+    """What happens at a contact.
+
+    normal: force along the normal; stiffness, damping: of the spring along the surface, over the
+    normal stiffness and over sqrt(normal stiffness * mass); friction: Coulomb's coefficient;
+    memory: 1 for a spring along the surface, 0 for the dashpot alone; rolling: its coefficient;
+    quantum and its inverse.
+    """
+
+    normal: Any
+    stiffness: float
+    damping: float
+    friction: float
+    memory: float
+    rolling: float
+    quantum: float
+    scale: float
+
+
+class Touch(NamedTuple):
+    """One contact, as one of the two spheres sees it.
+
+    overlap; normal: from the other to this; reduced: mass; arm: radius of this; roller: reduced
+    radius;
+    velocity: of this against the other at the contact; turning: difference of the angular
+    velocities; ratio, friction: of damping and of Coulomb.
+    """
+
+    overlap: float
+    normal: tuple[float, float, float]
+    reduced: float
+    arm: float
+    roller: float
+    velocity: tuple[float, float, float]
+    turning: tuple[float, float, float]
+    ratio: float
+    friction: float
+
+
+@quantum.register(Contact)
+def _(law):
+    return law.quantum
+
+
+@turns.register(Contact)
+def _(law):
+    return True
+
+
+@act.register(Contact)
+def _(law, i, time, step, world, noted):
+    bodies, box, lists, walls = world
+    r = row(bodies.place, i)
+    force = np.int64(0), np.int64(0), np.int64(0)
+    torque = force
+    largest = 0.0
+    for s in range(lists.count[i]):
+        j = lists.near[i, s]
+        way = from_to(box, bodies.place, j, r)
+        square, sum_of_radii = dot(way, way), reach(bodies, i) + reach(bodies, j)
+        if square < sum_of_radii * sum_of_radii and j != i:
+            touch = between(law, bodies, i, j, way, math.sqrt(square))
+            pushed, twisted = answer(law, touch, lists.springs, i, s, step)
+            force = counted(force, pushed, law.scale)
+            torque = counted(torque, twisted, law.scale)
+            largest = max(largest, abs_sum(pushed), abs_sum(twisted))
+        else:
+            forget(lists.springs, i, s)
+    for w in range(len(walls.rows)):
+        distance, out, moves = from_wall(walls.rows, w, box, r, time)
+        if distance < reach(bodies, i):
+            touch = at_wall(walls, bodies, i, w, distance, out, moves)
+            pushed, twisted = answer(law, touch, walls.springs, i, w, step)
+            force = counted(force, pushed, law.scale)
+            torque = counted(torque, twisted, law.scale)
+            largest = max(largest, abs_sum(pushed), abs_sum(twisted))
+        else:
+            forget(walls.springs, i, w)
+    for k in range(3):
+        bodies.force[i, k], bodies.torque[i, k] = force[k], torque[k]
+    noted[LARGEST] = max(noted[LARGEST], largest * law.scale)
+
+
+@scalar
+def between(law, bodies, i, j, way, distance):
+    """The contact of sphere i with sphere j, which is `distance` away."""
+    arm, other = reach(bodies, i), reach(bodies, j)
+    normal = scaled(1.0 / distance, way)
+    spin, spin_of_other = row(bodies.spin, i), row(bodies.spin, j)
+    rolled = added(scaled(arm, spin), scaled(other, spin_of_other))
+    velocity = added_scaled(row(bodies.velocity, i), -1.0, row(bodies.velocity, j))
+    velocity = added_scaled(velocity, -1.0, cross(rolled, normal))
+    inverse = bodies.velocity[i, INVERSE] + bodies.velocity[j, INVERSE]
+    return Touch(
+        arm + other - distance,
+        normal,
+        1.0 / inverse,
+        arm,
+        arm * other / (arm + other),
+        velocity,
+        added_scaled(spin, -1.0, spin_of_other),
+        -1.0,
+        law.friction,
+    )
+
+
+@scalar
+def at_wall(walls, bodies, i, w, distance, out, moves):
+    """The contact of sphere i with a wall."""
+    arm, spin = reach(bodies, i), row(bodies.spin, i)
+    velocity = added_scaled(row(bodies.velocity, i), -1.0, moves)
+    velocity = added_scaled(velocity, -1.0, cross(scaled(arm, spin), out))
+    mass = 1.0 / bodies.velocity[i, INVERSE]
+    ratio, friction = walls.own[w, DAMPING_RATIO], walls.own[w, FRICTION]
+    return Touch(arm - distance, out, mass, arm, arm, velocity, spin, ratio, friction)
+
+
+@scalar
+def answer(law, touch, springs, i, s, step):
+    """Force and torque on the sphere; what the contact remembers is brought up to date."""
+    closing = -dot(touch.velocity, touch.normal)
+    push, stiffness = normal_force(law.normal, touch.overlap, closing, touch.reduced, touch.ratio)
+    force, torque = scaled(push, touch.normal), (0.0, 0.0, 0.0)
+    if touch.friction > 0.0:
+        sliding = added_scaled(touch.velocity, closing, touch.normal)
+        slider = Slider(
+            law.memory * law.stiffness * stiffness,
+            law.damping * math.sqrt(stiffness * touch.reduced),
+            touch.friction * abs(push),
+        )
+        along, spring = stretched(slider, kept(springs, i, s, SLIDING), sliding, touch.normal, step)
+        keep(springs, i, s, SLIDING, spring)
+        force = added(force, along)
+        torque = scaled(-touch.arm, cross(touch.normal, along))
+    if law.rolling > 0.0:
+        # the velocity with which the surfaces would slip if they did not roll (Luding 2008, eq. 22)
+        rolling = scaled(-touch.roller, cross(touch.turning, touch.normal))
+        slider = Slider(
+            law.stiffness * stiffness,
+            law.damping * math.sqrt(stiffness * touch.reduced),
+            law.rolling * abs(push),
+        )
+        against, spring = stretched(
+            slider, kept(springs, i, s, ROLLING), rolling, touch.normal, step
+        )
+        keep(springs, i, s, ROLLING, spring)
+        torque = added_scaled(torque, -touch.roller, cross(touch.normal, against))
+    return force, torque
+
+
+@scalar
+def kept(springs, i, s, at):
+    """A spring of a contact; not stretched where contacts remember nothing."""
+    if springs.shape[2] <= at:
+        return 0.0, 0.0, 0.0
+    return springs[i, s, at], springs[i, s, at + 1], springs[i, s, at + 2]
+
+
+@scalar
+def keep(springs, i, s, at, spring):
+    """Remember a spring."""
+    if springs.shape[2] > at:
+        springs[i, s, at], springs[i, s, at + 1], springs[i, s, at + 2] = spring
+
+
+@scalar
+def forget(springs, i, s):
+    """Forget a contact that is over."""
+    for k in range(springs.shape[2]):
+        springs[i, s, k] = 0.0
+
+
+@scalar
+def counted(total, vector, scale):
+    """A sum in whole quanta, and a vector more: cut off toward zero, so that what the other sphere
+    adds is exactly minus this."""
+    return (
+        total[0] + np.int64(vector[0] * scale),
+        total[1] + np.int64(vector[1] * scale),
+        total[2] + np.int64(vector[2] * scale),
+    )
+
+
+@scalar
+def abs_sum(vector):
+    """A bound of the numbers of a vector; infinite where one is none."""
+    found = abs(vector[0]) + abs(vector[1]) + abs(vector[2])
+    return found if found >= 0.0 else np.inf
+
+
+@tell.register(Contact)
+def _(law, i, time, world, told):
+    bodies, box, lists, walls = world
+    r = row(bodies.place, i)
+    for s in range(lists.count[i]):
+        j = lists.near[i, s]
+        way = from_to(box, bodies.place, j, r)
+        square, sum_of_radii = dot(way, way), reach(bodies, i) + reach(bodies, j)
+        if square < sum_of_radii * sum_of_radii and j != i:
+            touch = between(law, bodies, i, j, way, math.sqrt(square))
+            energy, force = at_rest(law, touch, lists.springs, i, s)
+            told[ENERGY] += quanta(energy, law.scale)
+            told[TOUCHING] += 1
+            add_product(told, law.scale, force, way)
+    for w in range(len(walls.rows)):
+        distance, out, moves = from_wall(walls.rows, w, box, r, time)
+        if distance < reach(bodies, i):
+            touch = at_wall(walls, bodies, i, w, distance, out, moves)
+            energy, _ = at_rest(law, touch, walls.springs, i, w)
+            told[ENERGY] += quanta(2.0 * energy, law.scale)
+            told[TOUCHING] += 1
+
+
+@scalar
+def at_rest(law, touch, springs, i, s):
+    """Energy of the springs of a contact, and its force; dashpots along the surface count as they
+    are, and nothing changes."""
+    closing = -dot(touch.velocity, touch.normal)
+    push, stiffness = normal_force(law.normal, touch.overlap, closing, touch.reduced, touch.ratio)
+    energy = normal_energy(law.normal, touch.overlap, touch.reduced)
+    force = scaled(push, touch.normal)
+    if touch.friction > 0.0:
+        spring = kept(springs, i, s, SLIDING)
+        slider = Slider(
+            law.memory * law.stiffness * stiffness,
+            law.damping * math.sqrt(stiffness * touch.reduced),
+            touch.friction * abs(push),
+        )
+        sliding = added_scaled(touch.velocity, closing, touch.normal)
+        along, _ = stretched(slider, spring, sliding, touch.normal, 0.0)
+        force = added(force, along)
+        energy += 0.5 * slider.stiffness * dot(spring, spring)
+    if law.rolling > 0.0:
+        spring = kept(springs, i, s, ROLLING)
+        energy += 0.5 * law.stiffness * stiffness * dot(spring, spring)
+    return energy, force

@@ -1,0 +1,84 @@
+"""What the loops of soft spheres work on, by name.
+
+A row of four numbers is one half of a cache line: what a neighbour is asked for comes at once.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+REACH = 3  # column of `place`: how far a sphere reaches, a radius or half of a cut-off
+INVERSE = 3  # column of `velocity` and `spin`: the inverse of mass and of moment of inertia
+FARTHEST, NEAREST, LARGEST, DONE, PENDING = range(5)  # columns of what threads note
+GAP = 8  # numbers between those of two threads: each has a cache line of its own
+ENERGY, VIRIAL, TOUCHING, TOLD = 0, 1, 7, 8  # columns of what is told of a sphere, and their number
+
+
+class Bodies(NamedTuple):
+    """The spheres in the order of memory.
+
+    place (n, 4): coordinates in the box and reach; velocity (n, 4): and inverse mass; spin (n, 4):
+    angular velocity and inverse moment of inertia; force, torque (n, 3): in whole quanta;
+    images (n, 3): boxes away; number (n,): of the particle.
+    """
+
+    place: Any
+    velocity: Any
+    spin: Any
+    force: Any
+    torque: Any
+    images: Any
+    number: Any
+
+
+class Box(NamedTuple):
+    """Lengths and their inverses; the inverse is 0 along axes that do not repeat."""
+
+    size: tuple[float, float, float]
+    inverse: tuple[float, float, float]
+
+
+class Lists(NamedTuple):
+    """Who is near whom, by places in memory.
+
+    skin: how far lists go beyond the reach; count (n,) and near (n, most): the lists, filled up to
+    whole groups of eight with the sphere itself; springs (n, most, width): of contacts that
+    remember; made_at (n, 4): where the spheres were.
+    """
+
+    skin: float
+    count: Any
+    near: Any
+    springs: Any
+    made_at: Any
+
+
+class Walls(NamedTuple):
+    """rows (walls, 14): as in event-driven dynamics; own (walls, 2): damping ratio and friction of
+    each; springs (n, walls, width): of contacts that remember."""
+
+    rows: Any
+    own: Any
+    springs: Any
+
+
+class World(NamedTuple):
+    """The spheres, the box, who is near whom, and the walls."""
+
+    bodies: Bodies
+    box: Box
+    lists: Lists
+    walls: Walls
+
+
+class Motion(NamedTuple):
+    """The time of a step, gravity, and of Langevin's bath: by how much velocities decay in a step
+    (1 without), and its thermal energy; axes: 1 along each there is; turns: 1 about
+    each there is."""
+
+    step: float
+    gravity: tuple[float, float, float]
+    decay: float
+    kT: float
+    axes: tuple[float, float, float]
+    turns: tuple[float, float, float]

@@ -1,0 +1,13 @@
+"""What readers ask of all spheres."""
+
+from mesokit.execute.cpu.strips.layout import share
+from mesokit.method.soft_spheres.machine.acting import tell
+from mesokit.scalar.cache import kernel
+
+
+@kernel
+def tell_all(team, time, law, world, told):
+    """What the law tells of every sphere, (n, 8)."""
+    first, last = share(len(world.bodies.number), team.thread, team.threads)
+    for i in range(first, last):
+        tell(law, i, time, world, told[i])

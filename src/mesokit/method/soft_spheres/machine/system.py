@@ -1,0 +1,281 @@
+"""Soft spheres in memory: what is laid out how, sorted when, and read by particle number."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import RunError
+from mesokit.execute.cpu.threads import Threads
+from mesokit.method.soft_spheres.machine import groups
+from mesokit.method.soft_spheres.machine.groups import Bodies, Box, Lists, Motion, Walls, World
+from mesokit.method.soft_spheres.machine.lists import GROUP, carry_springs, make_lists, sort
+from mesokit.method.soft_spheres.machine.reading import tell_all
+from mesokit.method.soft_spheres.machine.step import advance, find_forces
+from mesokit.scalar.random import Counter
+
+Array = NDArray[np.float64]
+CELLS = 4_000_000  # at most
+ROUNDING = 1 + 1e-9  # what cells are larger than they need
+
+
+class Grid(NamedTuple):
+    """Cells along each axis, their number per length, how many of them on both sides are looked
+    through, and the square of the farthest that anybody is listed."""
+
+    cells: tuple[int, int, int]
+    inverse: tuple[float, float, float]
+    wide: tuple[int, int, int]
+    farthest: float
+
+
+class Given(NamedTuple):
+    """What does not change.
+
+    size of the box and closed axes; reach, masses, inertia (n,); law of the forces, see `acting`;
+    width: numbers that a contact remembers; nearest: no two come nearer, largest: no force exceeds
+    it; motion; walls: rows and own, see `Walls`; seed; skin.
+    """
+
+    size: tuple[float, ...]
+    closed: tuple[bool, ...]
+    reach: Array
+    masses: Array
+    inertia: Array
+    law: Any
+    width: int
+    nearest: float
+    motion: Motion
+    rows: Array
+    own: Array
+    seed: int
+    skin: float
+
+
+class System:
+    """The spheres, their lists, and the threads that move them."""
+
+    def __init__(self, given: Given, threads: int) -> None:
+        n, self.given, self.team = len(given.reach), given, Threads(threads)
+        self.n, self.dimension = n, len(given.size)
+        self.box = _box(given)
+        self.grid = _grid(given, self.box)
+        self.bodies = _bodies(n)
+        self.spare = _bodies(n)
+        self.walls = self._walls(np.zeros((n, len(given.rows), given.width)))
+        self.lists = self._lists(GROUP)
+        self.old = self._lists(GROUP)
+        self.cell, self.order = np.zeros(n, np.int64), np.zeros(n, np.int64)
+        self.begins = np.zeros(int(np.prod(self.grid.cells)) + 1, np.int64)
+        self.scratch = np.zeros((threads, n), np.int64)
+        self.noted = np.zeros((threads, groups.GAP))
+        self.noted_forces()
+
+    def noted_forces(self) -> None:
+        """Forget how near spheres came."""
+        self.noted.view(np.int64)[:, groups.NEAREST] = np.float64(np.inf).view(np.int64)
+        self.noted[:, groups.LARGEST] = 0.0
+
+    def _walls(self, springs: Array) -> Walls:
+        return Walls(self.given.rows, self.given.own, springs)
+
+    def _lists(self, most: int) -> Lists:
+        n, width = self.n, self.given.width
+        count, near = np.zeros(n, np.int64), np.zeros((n, most), np.int32)
+        springs = np.zeros((n, most if width else 0, width))
+        return Lists(self.given.skin, count, near, springs, np.zeros((n, 4)))
+
+    # --- start and steps --------------------------------------------------------------------------
+
+    def fill(self, places: Array, velocities: Array, spins: Array) -> None:
+        """Put spheres at these places (n, d), with velocities (n, d) and spins ((n,) or (n, 3))."""
+        given, bodies, d = self.given, self.bodies, self.dimension
+        size, repeats = np.array(given.size), ~np.array(given.closed)
+        images = np.where(repeats, np.floor(places / size), 0).astype(np.int32)
+        inside = places - images * size
+        inside = np.where(repeats & (inside >= size), 0.0, inside)
+        for array in bodies:
+            array[:] = 0
+        bodies.number[:] = np.arange(self.n)
+        bodies.place[:, :d], bodies.place[:, groups.REACH] = inside, given.reach
+        bodies.images[:, :d] = images
+        bodies.velocity[:, :d], bodies.velocity[:, groups.INVERSE] = velocities, 1 / given.masses
+        self._set_spins(spins)
+        bodies.spin[:, groups.INVERSE] = 1 / given.inertia
+        self.walls = self._walls(np.zeros_like(self.walls.springs))
+        self.lists = self._lists(GROUP)
+        self.renew()
+
+    def _set_spins(self, spins: Array) -> None:
+        if self.dimension == 2:
+            self.bodies.spin[:, 2] = spins
+        else:
+            self.bodies.spin[:, :3] = spins
+
+    @property
+    def world(self) -> World:
+        """What the loops work on, as it lies now."""
+        return World(self.bodies, self.box, self.lists, self.walls)
+
+    def find_forces(self, time: float) -> None:
+        """The forces at the start."""
+        self.team.run(find_forces, time, self.given.law, self.world, self.noted)
+        self._look()
+
+    def run(self, step: int, steps: int) -> None:
+        """So many steps from a step on. Raises RunError where forces are beyond all bounds."""
+        law, motion, done = self.given.law, self.given.motion, 0
+        self.noted[:, groups.PENDING] = 0.0
+        while done < steps or steps == 0:
+            counter = Counter(np.uint64(self.given.seed), np.uint64(step + done))
+            self.team.run(advance, counter, steps - done, law, motion, self.world, self.noted)
+            done += int(self.noted[0, groups.DONE])
+            self._look()
+            if self.noted[0, groups.PENDING]:
+                self.renew()
+            if steps == 0:
+                return
+
+    def _look(self) -> None:
+        law, given = self.noted, self.given
+        nearest = np.sqrt(law.view(np.int64)[:, groups.NEAREST].view(np.float64).min())
+        if nearest < given.nearest:
+            raise RunError(
+                f"two spheres, or a sphere and a wall, are {nearest:.3g} apart: the force is "
+                "beyond all bounds; expected a shorter timestep, or a start without overlaps"
+            )
+        if law[:, groups.LARGEST].max() > 2.0**61:
+            raise RunError(
+                "a force of a contact is beyond all bounds; expected a shorter timestep, or a "
+                "start without overlaps"
+            )
+
+    # --- lists ------------------------------------------------------------------------------------
+
+    def renew(self) -> None:
+        """Sort spheres by cells, and list who is near whom."""
+        bodies, spare = self.bodies, self.spare
+        if not np.isfinite(bodies.place).all():
+            raise RunError("places are no numbers any more; expected a shorter timestep")
+        sort(self.grid, bodies.place, self.cell, self.begins, self.order)
+        for old, new in zip(bodies, spare, strict=True):
+            np.take(old, self.order, axis=0, out=new, mode="clip")
+        self.bodies, self.spare = spare, bodies
+        self.lists, self.old = self.old, self.lists
+        columns = np.ascontiguousarray(self.bodies.place.T)
+        while True:
+            self.team.run(
+                make_lists,
+                self.grid,
+                self.begins,
+                columns,
+                self.bodies,
+                self.box,
+                self.lists,
+                self.scratch,
+            )
+            longest = int(self.lists.count.max())
+            if longest < self.lists.near.shape[1]:  # one place is written beyond the end
+                break
+            self.lists = self._lists(longest + GROUP)
+        if self.given.width:
+            if len(self.walls.rows):
+                self.walls = self._walls(self.walls.springs[self.order])
+            self.team.run(
+                carry_springs,
+                self.order,
+                self.old,
+                self.spare.number,
+                self.lists,
+                self.bodies.number,
+            )
+
+    # --- reading ----------------------------------------------------------------------------------
+
+    def by_number(self, rows: NDArray[Any]) -> NDArray[Any]:
+        """Rows in the order of memory, by particle number."""
+        found = np.empty_like(rows)
+        found[self.bodies.number] = rows
+        return found
+
+    def told(self, time: float) -> NDArray[np.int64]:
+        """What `acting.tell` says of every sphere, by number, in quanta."""
+        told = np.zeros((self.n, groups.TOLD), np.int64)
+        self.team.run(tell_all, time, self.given.law, self.world, told)
+        return self.by_number(told)
+
+    def state(self) -> dict[str, NDArray[Any]]:
+        """All that the next step depends on, by particle number."""
+        bodies, found = self.bodies, {}
+        for name in ("place", "velocity", "spin", "force", "torque", "images"):
+            found[name] = self.by_number(getattr(bodies, name)[:, :3])
+        if self.given.width:
+            i, s = np.nonzero((self.lists.springs != 0).any(axis=2))
+            kept = s < self.lists.count[i]
+            i, s = i[kept], s[kept]
+            pairs = np.stack([bodies.number[i], bodies.number[self.lists.near[i, s]]], axis=1)
+            sorting = np.lexsort((pairs[:, 1], pairs[:, 0]))
+            found["pairs"] = pairs[sorting]
+            found["springs"] = self.lists.springs[i, s][sorting]
+            found["wall_springs"] = self.by_number(self.walls.springs)
+        return found
+
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
+        """Go on from a state."""
+        bodies, given = self.bodies, self.given
+        bodies.number[:] = np.arange(self.n)
+        bodies.place[:, groups.REACH] = given.reach
+        bodies.velocity[:, groups.INVERSE] = 1 / given.masses
+        bodies.spin[:, groups.INVERSE] = 1 / given.inertia
+        for name in ("place", "velocity", "spin", "force", "torque", "images"):
+            getattr(bodies, name)[:, :3] = state[name]
+        self.lists = self._lists(GROUP)
+        if given.width:
+            self.walls = self._walls(np.array(state["wall_springs"], float))
+        self.renew()
+        if given.width:
+            self._remember(state["pairs"], state["springs"])
+
+    def _remember(self, pairs: NDArray[np.int64], springs: Array) -> None:
+        slot = np.empty(self.n, np.int64)
+        slot[self.bodies.number] = np.arange(self.n)
+        for (a, b), spring in zip(slot[pairs], springs, strict=True):
+            self.lists.springs[a, self.lists.near[a] == b] = spring
+
+
+def _box(given: Given) -> Box:
+    size = [*given.size, 1.0, 1.0][:3]
+    shut = [*given.closed, True, True][:3]
+    inverse = [0.0 if closed else 1.0 / length for length, closed in zip(size, shut, strict=True)]
+    return Box(_three(size), _three(inverse))
+
+
+def _three(numbers: Any) -> tuple[float, float, float]:
+    x, y, z = (float(number) for number in numbers)
+    return x, y, z
+
+
+def _grid(given: Given, box: Box) -> Grid:
+    """Cells of half the length that lists reach, of which five lie along an axis at least; or of
+    all of it, three at least; or one."""
+    d, reach = len(given.size), 2 * float(given.reach.max()) + given.skin
+    least = (float(np.prod(given.size)) / CELLS) ** (1 / d)
+    cells, wide = [1, 1, 1], [0, 0, 0]
+    for k, length in enumerate(given.size):
+        for width in (1, 2):
+            number = int(length / max(reach / width * ROUNDING, least))
+            if number >= 2 * width + 1:
+                cells[k], wide[k] = number, width
+    inverse = [number / length for number, length in zip(cells, box.size, strict=True)]
+    a, b, c = cells
+    e, f, g = wide
+    return Grid((a, b, c), _three(inverse), (e, f, g), (reach * ROUNDING) ** 2)
+
+
+def _bodies(n: int) -> Bodies:
+    place, velocity, spin = np.zeros((n, 4)), np.zeros((n, 4)), np.zeros((n, 4))
+    force, torque = np.zeros((n, 3), np.int64), np.zeros((n, 3), np.int64)
+    images, number = np.zeros((n, 3), np.int32), np.zeros(n, np.int64)
+    return Bodies(place, velocity, spin, force, torque, images, number)

@@ -1,0 +1,69 @@
+"""Soft spheres, as the rest of the package knows them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from mesokit.method.protocol import Columns, Method
+from mesokit.method.soft_spheres.checks import check
+from mesokit.method.soft_spheres.displacement import Displacement
+from mesokit.method.soft_spheres.engine import SoftEngine
+from mesokit.method.soft_spheres.scales import timestep_of
+from mesokit.method.soft_spheres.section import KEYS, Sections
+from mesokit.method.soft_spheres.summary import summary
+from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
+from mesokit.spheres.groups import FIELDS, groups
+from mesokit.spheres.made import made
+from mesokit.spheres.start.first_state import ARRAYS, first_state, missing_files, starts
+from mesokit.spheres.walls import closed_axes, solids
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.spheres.start.protocol import Started
+
+
+def _first_state(case: Case, arrays: Mapping[str, Any]) -> Started:
+    return first_state(case, made(case), arrays, case.spheres.first_spin_kT)
+
+
+def _engine(case: Case, threads: int, measures: Sequence[str]) -> SoftEngine:
+    return SoftEngine(case, threads)
+
+
+def columns(case: Case) -> Columns:
+    """Energies, of which the log of a run may tell."""
+    names = ("translation", "rotation", "potential", "contact")
+
+    def read(engine: Any, wanted: Collection[str]) -> dict[str, float]:
+        known = engine.energies()
+        return {name: float(known[name]) for name in wanted}
+
+    return Columns(names, ("translation", "potential"), read)
+
+
+METHOD = Method(
+    name="soft-spheres",
+    sections=Sections,
+    keys=KEYS,
+    whole_cells=False,
+    fields=FIELDS,
+    spheres=True,
+    picture="disks",
+    observables=(MeanSquareDisplacement,),
+    expected={"mean-square-displacement": Displacement},
+    check=check,
+    groups=groups,
+    timestep=lambda case: float(timestep_of(case.spheres, case.box)),
+    kT=lambda case: float(case.spheres.kT),
+    summary=summary,
+    starts=starts,
+    missing_files=missing_files,
+    arrays=ARRAYS,
+    first_state=_first_state,
+    engine=_engine,
+    start=SoftEngine.start,
+    log=columns,
+    closed_axes=closed_axes,
+    solids=solids,
+)

@@ -1,0 +1,128 @@
+"""What a pair law answers: a potential of mesokit, or a law of contact, which loses energy.
+
+The first argument of the scalar functions is the NamedTuple of parameters that `normal` gives; its
+class picks the implementation.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any, Literal
+
+from mesokit.case.component import component, param
+from mesokit.case.registry import family
+from mesokit.potential.protocol import Pair
+from mesokit.scalar.jit import generic
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+SOLID_SPHERES = 2 / 7  # tangential over normal stiffness: sliding and pressing take equally long
+
+
+@family("pair law of soft spheres", "rule", "mesokit.soft_pair")
+@component
+class PairLaw(ABC):  # noqa: B024  each sort of law has its own questions
+    """What two soft spheres do to one another."""
+
+
+PairLaw.register(Pair)  # type: ignore[type-abstract]
+
+
+@component
+class ContactLaw(PairLaw):
+    """What two spheres do to one another that touch: a force along the normal, which a subclass
+    gives, friction and resistance to rolling (Cundall and Strack 1979; Luding 2008)."""
+
+    friction: float = param(
+        0.0,
+        doc="Coulomb's coefficient: largest tangential over normal force",
+        ge=0,
+        le=1e6,
+        kw_only=True,
+    )
+    tangential: Literal["history", "viscous"] = param(
+        "history",
+        doc="'history': a spring along the surface, which remembers how far it slid (Cundall and "
+        "Strack 1979); 'viscous': a dashpot alone (Haff and Werner 1986)",
+        kw_only=True,
+    )
+    tangential_stiffness: float = param(
+        SOLID_SPHERES,
+        doc="of the spring along the surface, over the normal stiffness",
+        gt=0,
+        le=10,
+        kw_only=True,
+    )
+    tangential_damping: float = param(
+        0.2,
+        doc="of the dashpot along the surface, over sqrt(normal stiffness * reduced mass)",
+        ge=0,
+        le=10,
+        kw_only=True,
+    )
+    rolling: float = param(
+        0.0,
+        doc="coefficient of rolling resistance: largest torque over normal force and radius",
+        ge=0,
+        le=1e6,
+        kw_only=True,
+    )
+
+    @abstractmethod
+    def normal(self) -> Any:
+        """Parameters for the scalar functions below."""
+
+    @abstractmethod
+    def largest_force(self, case: Case) -> float:
+        """Force of an overlap of a whole diameter, about: what quanta of force are a part of."""
+
+    @abstractmethod
+    def contact_time_of(self, mass: float, speed: float) -> float:
+        """How long a collision takes that closes at this speed, of this reduced mass."""
+
+    @abstractmethod
+    def overlap_of(self, mass: float, speed: float) -> float:
+        """The largest overlap of such a collision, without damping."""
+
+    @abstractmethod
+    def restitution_of(self, mass: float, speed: float) -> float:
+        """Restitution of such a collision."""
+
+    @property
+    def elastic(self) -> bool:
+        """Whether energy is kept."""
+        return self.restitution_of(1.0, 1.0) == 1.0 and self.friction == 0.0 and self.rolling == 0.0
+
+    @property
+    def width(self) -> int:
+        """How many numbers a contact remembers."""
+        if self.rolling > 0:
+            return 6
+        return 3 if self.friction > 0 and self.tangential == "history" else 0
+
+
+def damping_ratio(restitution: float) -> float:
+    """Damping over sqrt(stiffness * mass) of a spring and dashpot that has this restitution.
+
+    >>> damping_ratio(1.0)
+    0.0
+    """
+    if restitution == 1.0:
+        return 0.0
+    log = math.log(restitution)
+    return -2.0 * log / math.hypot(math.pi, log)
+
+
+@generic
+def normal_force(law, overlap, closing, reduced, ratio):
+    """Force along the normal at an overlap that grows at the rate `closing`, and the stiffness.
+
+    `reduced` is the reduced mass, `ratio` the damping ratio of a surface that has its own, else -1.
+    """
+
+
+@generic
+def normal_energy(law, overlap, reduced):
+    """Energy of the spring along the normal."""

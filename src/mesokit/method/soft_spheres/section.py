@@ -1,0 +1,92 @@
+"""The sections of a case of soft spheres."""
+
+from __future__ import annotations
+
+from mesokit.case.box import Box
+from mesokit.case.component import component, param
+from mesokit.case.describe.hints import Many
+from mesokit.geometry.shape import Wall
+from mesokit.method.soft_spheres.pair import PairLaw
+from mesokit.method.soft_spheres.pair.protocol import ContactLaw
+from mesokit.method.soft_spheres.pair.spring_dashpot import SpringDashpot
+from mesokit.method.soft_spheres.thermostat import SoftThermostat
+from mesokit.spheres.section import Spheres
+
+KEYS = {"walls": "wall"}  # field -> key in the file, where they differ: one [[wall]] each
+CONTACT_SKIN, POTENTIAL_SKIN = 0.1, 0.16  # of the largest reach of two
+
+
+@component
+class SoftSpheres(Spheres):
+    """Disks or spheres with forces: of grains that touch, or of atoms with a potential.
+
+    A step is a step of the integrator, velocity Verlet.
+
+    Examples
+    --------
+    >>> from mesokit import Box
+    >>> SoftSpheres(packing_fraction=0.5).count(Box([40, 40]))
+    1019
+    """
+
+    pair: PairLaw = param(SpringDashpot(), doc="what two spheres do to one another")
+    thermostat: SoftThermostat | None = param(
+        None, doc="what holds the temperature (nothing unless said)"
+    )
+    timestep: float | None = param(
+        None,
+        doc="time of a step (unless said a fiftieth of a contact, or 0.005 of the time in which a "
+        "sphere flies its diameter)",
+        unit="time",
+        gt=0,
+        le=1e9,
+    )
+    skin: float | None = param(
+        None,
+        doc="how far lists of neighbours go beyond the reach: changes the speed alone (0.1 of the "
+        "reach of contacts, 0.16 of that of potentials unless said)",
+        unit="a",
+        gt=0,
+        le=1e6,
+    )
+    spin_kT: float | None = param(
+        None,
+        doc="thermal energy of rotation at the start (kT where friction turns spheres, else 0)",
+        unit="kT",
+        ge=0,
+        le=1e9,
+    )
+
+    @property
+    def turns(self) -> bool:
+        """Whether friction turns spheres."""
+        law = self.pair
+        return isinstance(law, ContactLaw) and (law.friction > 0 or law.rolling > 0)
+
+    @property
+    def first_spin_kT(self) -> float:
+        """Thermal energy of rotation at the start."""
+        if self.spin_kT is not None:
+            return self.spin_kT
+        return self.kT if self.turns else 0.0
+
+    def reach(self, box: Box) -> float:
+        """The largest distance at which two spheres feel one another."""
+        if isinstance(self.pair, ContactLaw):
+            largest = max(kind.diameter * (1 + kind.spread) for kind in self.kinds)
+            return float(largest * self.scale(box))
+        return float(self.pair.reach)  # type: ignore[attr-defined]
+
+    def skin_of(self, box: Box) -> float:
+        """How far lists go beyond that."""
+        if self.skin is not None:
+            return self.skin
+        part = CONTACT_SKIN if isinstance(self.pair, ContactLaw) else POTENTIAL_SKIN
+        return part * self.reach(box)
+
+
+class Sections:
+    """What a case of soft spheres has beside the sections of every case."""
+
+    spheres: SoftSpheres = param(SoftSpheres(), doc="the spheres")
+    walls: Many[Wall] = param((), doc="walls; key `[[wall]]` in a file")

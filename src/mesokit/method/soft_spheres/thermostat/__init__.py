@@ -1,0 +1,10 @@
+"""Thermostats of soft spheres. A new one is a file here."""
+
+from __future__ import annotations
+
+from mesokit.case.registry import parts_in
+from mesokit.method.soft_spheres.thermostat.protocol import SoftThermostat
+
+THERMOSTATS = parts_in(__path__, __name__, SoftThermostat)
+
+__all__ = ["THERMOSTATS", "SoftThermostat"]

@@ -1,0 +1,26 @@
+"""What a thermostat of soft spheres is."""
+
+from __future__ import annotations
+
+from mesokit.case.component import component
+from mesokit.case.registry import family
+
+
+@family("thermostat of soft spheres", "rule", "mesokit.soft_thermostat")
+@component
+class SoftThermostat:
+    """Brings heat in and takes it out. Without one energy is kept."""
+
+    @property
+    def held_kT(self) -> float:
+        """Thermal energy that it holds."""
+        return 0.0
+
+    def decay(self, timestep: float) -> float:
+        """By how much velocities decay in a step, beside noise; 1: not at all."""
+        return 1.0
+
+    @property
+    def scaled_every(self) -> int:
+        """After how many steps velocities are scaled to hold the thermal energy; 0: never."""
+        return 0
