@@ -64,16 +64,19 @@ def test_kicked_inelastic_spheres_have_the_fourth_cumulant_of_theory():
 
 
 def test_a_dilute_gas_lies_as_the_barometric_law_says():
-    (height,) = observed(
-        gas(
-            [200, 60],
-            150,
-            walls=[Plates("y")],
-            observe=[HeightProfile(every=1)],
-            number=400,
-            packing_fraction=0.0005,
-            gravity=(0, -0.05),
-            timestep=20.0,
-        )
+    simulation = gas(
+        [200, 60],
+        800,
+        walls=[Plates("y")],
+        observe=[HeightProfile(every=1)],
+        number=400,
+        packing_fraction=0.0005,
+        gravity=(0, -0.05),
+        timestep=20.0,
     )
-    assert abs(height.measured - height.expected) < 3 * height.error + 0.01 * height.expected
+    simulation.engine.advance(100)  # the lattice falls, and its waves die away
+    (height,) = observed(simulation)
+    # what disks take from one another is of the order of the fraction that they fill at the floor
+    filled = 0.0005 * 60 / 20
+    assert height.error < 0.003 * height.expected
+    assert abs(height.measured - height.expected) < 3 * height.error + filled * height.expected

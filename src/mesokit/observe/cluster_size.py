@@ -67,14 +67,19 @@ class ClusterSizeAccumulator(BlockAccumulator):
             quantity="cluster-size",
             drawing="curve",
             name=self.name,
-            x={"size": 2.0 ** np.arange(self.classes)},
+            x={"size": np.array(list(map(_class_name, range(self.classes))))},
             value=value[:-2],
             error=error[:-2],
-            label="share of the spheres in clusters up to twice this",
+            label="share of the spheres in clusters of a size",
             units={"value": "", "size": ""},
             comparisons=tuple(listed) if self.blocks.count else (),
             samples=self.blocks.count,
         )
+
+
+def _class_name(k: int) -> str:
+    """Sizes of a class: 1, 2-3, 4-7."""
+    return f"{2**k}-{2 ** (k + 1) - 1}" if k else "1"
 
 
 def cluster_sizes(
