@@ -67,19 +67,14 @@ class ClusterSizeAccumulator(BlockAccumulator):
             quantity="cluster-size",
             drawing="curve",
             name=self.name,
-            x={"size": np.array(list(map(_class_name, range(self.classes))))},
+            x={"cluster of": np.array([str(2**k) for k in range(self.classes)])},
             value=value[:-2],
             error=error[:-2],
-            label="share of the spheres in clusters of a size",
-            units={"value": "", "size": ""},
+            label="share of the spheres, to below the next",
+            units={"value": "", "cluster of": ""},
             comparisons=tuple(listed) if self.blocks.count else (),
             samples=self.blocks.count,
         )
-
-
-def _class_name(k: int) -> str:
-    """Sizes of a class: 1, 2-3, 4-7."""
-    return f"{2**k}-{2 ** (k + 1) - 1}" if k else "1"
 
 
 def cluster_sizes(
