@@ -57,6 +57,18 @@ from mesokit.method.event_driven.heating.andersen import Andersen as Andersen
 from mesokit.method.event_driven.heating.kicks import Kicks as Kicks
 from mesokit.method.event_driven.heating.protocol import Heating as Heating
 from mesokit.method.event_driven.section import HardSpheres as HardSpheres
+from mesokit.method.flock.cohesion import Cohesion as Cohesion
+from mesokit.method.flock.noise.angular import AngularNoise as AngularNoise
+from mesokit.method.flock.noise.protocol import Noise as Noise
+from mesokit.method.flock.noise.vectorial import VectorialNoise as VectorialNoise
+from mesokit.method.flock.observe.cluster_sizes import ClusterSizes as ClusterSizes
+from mesokit.method.flock.observe.density_bands import DensityBands as DensityBands
+from mesokit.method.flock.observe.number_fluctuations import (
+    NumberFluctuations as NumberFluctuations,
+)
+from mesokit.method.flock.observe.polar_order import PolarOrder as PolarOrder
+from mesokit.method.flock.section import Flock as Flock
+from mesokit.method.flock.section import FlockStart as FlockStart
 from mesokit.method.mpcd.collision.at import AT as AT
 from mesokit.method.mpcd.collision.at_plus_a import ATPlusA as ATPlusA
 from mesokit.method.mpcd.collision.demix import Demix as Demix
@@ -140,6 +152,7 @@ from mesokit.observe.velocity_distribution import VelocityDistribution as Veloci
 from mesokit.observe.velocity_field import VelocityField as VelocityField
 from mesokit.observe.velocity_profile import VelocityProfile as VelocityProfile
 from mesokit.observe.wake import Wake as Wake
+from mesokit.observe.wall_force import WallForce as WallForce
 from mesokit.observe.wall_stress import WallStress as WallStress
 from mesokit.potential.bending import Bending as Bending
 from mesokit.potential.fene import FENE as FENE

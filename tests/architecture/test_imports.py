@@ -63,6 +63,10 @@ ROWS = {
         "case", "engine", "errors", "geometry", "method.event_driven", "method.protocol",
         "observe", "scalar", "spheres", "statistics", "theory",
     ),
+    "method/flock/": (
+        "case", "engine", "errors", "execute.cpu.threads", "geometry", "io", "method.flock",
+        "method.protocol", "observe", "running.cores", "scalar", "statistics", "theory",
+    ),
     "method/brownian/": (
         "case", "engine", "errors", "method.brownian", "method.protocol", "observe",
         "running.cores", "scalar", "statistics",

@@ -17,7 +17,14 @@ from mesokit.method.protocol import method_of
 from mesokit.study.here import Here
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = ["README.md", "docs/guide.md", "docs/studies.md", "docs/own.md", "docs/methods/brownian.md"]
+PAGES = [
+    "README.md",
+    "docs/guide.md",
+    "docs/studies.md",
+    "docs/own.md",
+    "docs/methods/brownian.md",
+    "docs/methods/flock.md",
+]
 SHORT = ["--set", "run.steps=40", "--set", "run.warmup=10"]
 
 

@@ -13,7 +13,7 @@ from mesokit.cli.completion import colours, kinds
 from mesokit.cli.words import say
 from mesokit.errors import CaseError
 
-KIND = "quiver, streamlines, particles, density, speed, vorticity, four or disks"
+KIND = "quiver, streamlines, particles, density, speed, vorticity, four, disks or flock"
 FILE = click.Path(dir_okay=False, path_type=Path)
 
 
@@ -139,7 +139,7 @@ def _require_one(kind: str | None, name: str | None, output: Path | None, given:
 @click.option(
     "--kind",
     shell_complete=kinds,
-    help=f"What is drawn: {KIND}.  [disks where particles have a size, else speed]",
+    help=f"What is drawn: {KIND}.  [that of the method, else speed]",
 )
 @_choices
 @click.option("--fps", default=15.0, help="Frames shown per second.  [15]")

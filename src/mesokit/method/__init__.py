@@ -15,6 +15,7 @@ from typing import Any
 METHODS = {  # what `run.method` says: the module that holds the METHOD
     "mpcd": "mesokit.method.mpcd.method",
     "brownian": "mesokit.method.brownian.method",
+    "flock": "mesokit.method.flock.method",
     "event-driven": "mesokit.method.event_driven.method",
 }
 DEFAULT = next(iter(METHODS))

@@ -103,6 +103,8 @@ class Method:
     spheres : bool, optional
         Whether its particles are disks or spheres, each with a size and a mass of its own: then its
         engine answers `diameters`, `masses`, `velocities` and `spins`.
+    headings : bool, optional
+        Whether the velocities of single particles, at one time, are what pictures show of it.
     picture : str, optional
         The kind of pictures and films of its particles, where none is asked for.
     start_from_run : str, optional
@@ -139,6 +141,7 @@ class Method:
     kT: Callable[[Case], float] | None = None
     fields: tuple[str, ...] = ("position", "velocity", "image", "id")
     spheres: bool = False
+    headings: bool = False
     picture: str = ""
     start_from_run: str = ""
     starts: Callable[[Case], Mapping[str, Path]] = lambda case: {}

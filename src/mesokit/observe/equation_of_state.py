@@ -92,7 +92,7 @@ class EquationOfStateAccumulator:
             for name, found in zip(names, pressures, strict=True)
         ]
         if self.blocks.count:
-            listed.append(Comparison("collision rate", *rate, self.expected_rate(), "1/time", note))
+            listed.append(Comparison("collision rate", *rate, self.expected_rate(), "1/tau", note))
         return Result(
             quantity="equation-of-state",
             drawing="curve",

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.engine import RunningSpheres
 
-PARTS = ("translation", "rotation")
+PARTS, UNIT = ("translation", "rotation"), "m a^2/tau^2"
 
 
 @component
@@ -79,13 +79,13 @@ class GranularTemperatureAccumulator:
         value = rows[:, : len(shown)]
         return Result(
             quantity="granular-temperature",
-            drawing="curve",
+            drawing="cooling" if self.law() == "Haff" else "curve",
             name=self.name,
             x={"time": time, "of": np.array(shown)},
             value=value,
             error=np.full(value.shape, np.nan),
             label="temperature $k_B T$",
-            units={"value": "m a^2/time^2", "time": "time", "of": ""},
+            units={"value": UNIT, "time": "tau", "of": ""},
             expected=self.expected(time, rows, len(shown)),
             theory=self.law(),
             comparisons=tuple(self.comparisons(time, rows)),
@@ -131,19 +131,23 @@ class GranularTemperatureAccumulator:
         return found
 
     def comparisons(self, time: Array, rows: Array) -> list[Comparison]:
-        """The temperature at the end, and beside the collisions that there were."""
+        """The temperature at the end, and where it has fallen to a quarter, while the gas is still
+        uniform; there also beside the collisions that there were."""
         if len(time) < 2:
             return []
-        law = self.expected(time, rows, 1)
-        known = math.nan if law is None else float(law[-1, 0])
-        last, nan = float(rows[-1, 0]), math.nan
-        note = "approximate: the law is that of a uniform gas" if self.law() == "Haff" else ""
-        listed = [Comparison("temperature at the end", last, nan, known, "m a^2/time^2", note)]
-        if self.law() == "Haff":
-            e, d = self.case.spheres.collision.restitution, self.case.box.dimension
+        law, nan = self.expected(time, rows, 1), math.nan
+        cooling = self.law() == "Haff"
+        note = "approximate: the law is that of a uniform gas" if cooling else ""
+        known = nan if law is None else float(law[-1, 0])
+        listed = [Comparison("temperature at the end", float(rows[-1, 0]), nan, known, UNIT, note)]
+        quarter = np.flatnonzero(rows[:, 0] <= 0.25 * rows[0, 0])
+        if law is not None and cooling and len(quarter):
+            k, e = quarter[0], self.case.spheres.collision.restitution
+            found, at = float(rows[k, 0]), f"at t = {time[k]:.4g}"
+            listed.append(Comparison(f"temperature {at}", found, nan, float(law[k, 0]), UNIT, note))
             # a sphere loses (1 - e^2)/d of its mean energy in each collision, in molecular chaos
-            collisions = rows[-1, 2] - rows[0, 2]
-            by_count = rows[0, 0] * math.exp(-(1 - e**2) * collisions / d)
-            what = "temperature after so many collisions"
-            listed.append(Comparison(what, last, nan, by_count, "m a^2/time^2", note))
+            collisions = rows[k, 2] - rows[0, 2]
+            lost = math.exp(-(1 - e**2) * collisions / self.case.box.dimension)
+            what = f"temperature after {collisions:.3g} collisions of each"
+            listed.append(Comparison(what, found, nan, float(rows[0, 0]) * lost, UNIT, note))
         return listed

@@ -28,7 +28,13 @@ from mesokit.report.finish.saving import save_figure
 from mesokit.report.finish.several import add
 from mesokit.report.flow.layout import page_width
 from mesokit.report.molecules import histogram, tracks
-from mesokit.report.particles import histograms, snapshots, structure_factor
+from mesokit.report.particles import (
+    cooling,
+    flocks,
+    histograms,
+    snapshots,
+    structure_factor,
+)
 from mesokit.report.rheology import stress_in_time
 from mesokit.report.style import HEIGHT, STYLE, WIDTH
 
@@ -53,10 +59,14 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "histograms": histograms.draw,
     "snapshots": snapshots.draw,
     "structure factor": structure_factor.draw,
+    "cooling": cooling.draw,
     "centreline": wake.draw,
     "signal": probe.draw,
     "tracks": tracks.draw,
     "histogram": histogram.draw,
+    "order": flocks.draw_order,
+    "bands": flocks.draw_bands,
+    "clusters": flocks.draw_clusters,
 }
 MAPS = ("map", "frames")
 LEAST_HEIGHT, LEAST_FONT = 0.7, 0.75  # of the usual, however narrow a figure is

@@ -47,6 +47,7 @@ from mesokit.theory.hagen_poiseuille import (
 from mesokit.theory.hard_sphere_pressure import compressibility
 from mesokit.theory.harmonic_spring import Spring, mean_square_bond, spring, spring_of_bond
 from mesokit.theory.harmonic_trap import TrappedShape, normal_in_box, trapped_shape
+from mesokit.theory.heading_memory import angular_memory, vectorial_memory
 from mesokit.theory.heat_at_walls import HeatAtWalls, heat_at_walls, slit_temperature_rise
 from mesokit.theory.held_temperature import shear_warming, temperature_offset
 from mesokit.theory.hookean_shear import (
@@ -86,8 +87,10 @@ from mesokit.theory.normal_modes import (
 from mesokit.theory.origin import Origin, origins
 from mesokit.theory.oscillating_slit import oscillating_slit_response, oscillating_slit_velocity
 from mesokit.theory.passage_times import first_passage_cdf, mean_exit_time
+from mesokit.theory.persistent_walk import msd_persistent_walk, persistent_diffusion
 from mesokit.theory.ping_pong import bounce_height, bounce_time, dissipative_bounces
 from mesokit.theory.poiseuille import PoiseuilleFit, poiseuille_fit, poiseuille_velocity
+from mesokit.theory.polar_order import disordered_binder, disordered_order, mean_square_order
 from mesokit.theory.pulled_shape import pulled_shape
 from mesokit.theory.relaxation_modulus import (
     apparent_viscosity,
@@ -165,6 +168,7 @@ __all__ = [
     "TransversePoles",
     "TrappedShape",
     "ViscosityFit",
+    "angular_memory",
     "apparent_viscosity",
     "barometric_cdf",
     "barometric_mean",
@@ -193,6 +197,8 @@ __all__ = [
     "demixing_diffusion",
     "diffusion_in_box",
     "dimer_oscillation_range",
+    "disordered_binder",
+    "disordered_order",
     "dissipative_bounces",
     "dumbbell_thinning",
     "dumbbell_viscosity",
@@ -232,8 +238,10 @@ __all__ = [
     "mean_square_bond",
     "mean_square_end_to_end",
     "mean_square_gyration",
+    "mean_square_order",
     "mixture_compressibility",
     "msd_molecular_chaos",
+    "msd_persistent_walk",
     "msd_rouse_beads",
     "network_modes",
     "normal_in_box",
@@ -241,6 +249,7 @@ __all__ = [
     "oscillating_slit_response",
     "oscillating_slit_velocity",
     "pair_friction",
+    "persistent_diffusion",
     "poiseuille_fit",
     "poiseuille_velocity",
     "pulled_shape",
@@ -282,6 +291,7 @@ __all__ = [
     "vacf_modes",
     "vacf_molecular_chaos",
     "vacf_tail",
+    "vectorial_memory",
     "verlet_swing",
     "virtual_gas_slip",
     "viscosity_renormalised",

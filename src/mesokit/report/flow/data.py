@@ -68,6 +68,8 @@ class Flow:
     beads: of solutes, drawn over all, or None.
     bonds: ends (m, 2, 2) of those between the `particles`, or None.
     spheres: at the end of the time, or None.
+    headings: velocities (n, 2) of the `particles` along the two axes, or None.
+    time: of the `particles`, where they have headings.
     """
 
     axes: tuple[str, str]
@@ -85,6 +87,8 @@ class Flow:
     beads: Beads | None = None
     bonds: Array | None = None
     spheres: Spheres | None = None
+    headings: Array | None = None
+    time: float = 0.0
 
     @property
     def speed(self) -> Array:

@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING, Any, Protocol
 from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError
 from mesokit.method.protocol import method_of
-from mesokit.report.flow import density, disks, particles, quiver, speed, streamlines, vorticity
+from mesokit.report.flow import (
+    birds,
+    density,
+    disks,
+    particles,
+    quiver,
+    speed,
+    streamlines,
+    vorticity,
+)
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.region import Region
 from mesokit.report.flow.scale import Scale
@@ -20,8 +29,8 @@ if TYPE_CHECKING:
 class Panel(Protocol):
     """How one panel is drawn: a module.
 
-    NEEDS: "velocity", "density", "particles" or "spheres"; TITLE: its name where several are side
-    by side.
+    NEEDS: "velocity", "density", "particles", "spheres" or "headings"; TITLE: its name where
+    several are side by side.
     """
 
     NEEDS: str
@@ -45,6 +54,7 @@ KINDS: dict[str, tuple[Panel, ...]] = {
     "speed": (speed,),
     "vorticity": (vorticity,),
     "disks": (disks,),
+    "flock": (birds,),
     "four": (quiver, streamlines, particles, density),
 }
 

@@ -26,14 +26,16 @@ WORDS = {
     "density": "densities",
     "particles": "positions of particles",
     "spheres": "positions of spheres",
+    "headings": "positions and velocities of particles",
 }
-AT_ONCE = ("particles", "spheres")  # shown as they are at one time, and not as a mean
+AT_ONCE = ("particles", "spheres", "headings")  # shown as they are at one time, and not as a mean
 FRAMES = '[[observe]] quantity = "flow-frames"'
 REMEDY = {
     "velocity": FRAMES,
     "density": FRAMES,
     "particles": f"{FRAMES} with particles > 0, or [trajectory]",
     "spheres": "[trajectory]",
+    "headings": '[trajectory] with fields = ["position", "velocity"]',
 }
 
 

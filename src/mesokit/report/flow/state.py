@@ -28,6 +28,8 @@ class State:
         self.fields: tuple[str, ...] = (
             ("position", "velocity", "spin") if spheres else ("position",)
         )
+        if method_of(case).headings:
+            self.fields = ("position", "velocity")
         picked = np.arange(shown) * number // max(shown, 1)
         others = np.arange(number, sum(group.number for group in case.groups))
         masses, kinds = masses_and_kinds(case.groups)
@@ -50,4 +52,6 @@ class State:
             frame |= {
                 "velocity": self.engine.velocities(self.id), "spin": self.engine.spins(self.id)
             }  # fmt: skip
+        elif "velocity" in self.fields:
+            frame["velocity"] = self.engine.velocities(self.id)
         return frame

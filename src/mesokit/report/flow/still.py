@@ -36,8 +36,8 @@ def picture(
     Parameters
     ----------
     case, results, trajectory: of the run; a `State` of its engine is a trajectory of one frame.
-    kind: "quiver", "streamlines", "particles", "density", "speed", "vorticity", "four" or, of
-        spheres, "disks"; unless said that of the method, else "four".
+    kind: "quiver", "streamlines", "particles", "density", "speed", "vorticity", "four", of
+        spheres "disks", of birds "flock"; unless said that of the method, else "four".
     choices: the rest.
     region: ((x0, x1), (y0, y1)) in cells, the whole box unless said.
     window: (t0, t1), the times averaged over, all unless said.
@@ -77,6 +77,8 @@ def picture(
     how = "projection" if all(panel.NEEDS in AT_ONCE for panel in panels) else "mean"
     notes = [section.note(how), mean, note(flows[0]), _few(case, panels, flows), when]
     notes += [text for flow in flows for text in _spheres(flow)]
+    if any(panel.NEEDS == "headings" for panel in panels):
+        notes.append(rf"at $t = {flows[0].time:.6g}\,\tau$")
     drawn = Canvas(panels, flows, reaches, shown, section, notes=notes)
     drawn.show(flows)
     return drawn.figure

@@ -31,7 +31,7 @@ class TrajectorySource:
         self.bonds = FluidBonds(case, reader.id[self.rows], self.setting.columns)
         known = {"particles"}
         if "velocity" in reader.fields and len(self.rows):
-            known.add("velocity")
+            known |= {"velocity", "headings"}
         if len(self.rows) == case.particles > 0:
             known.add("density")
         self.gives = frozenset(known)
@@ -64,4 +64,5 @@ class TrajectorySource:
             noise=noise,
         )
         bonds = self.bonds.at(read["position"][self.rows].astype(float), float(self.time[frame]))
-        return replace(flow, bonds=bonds)
+        headings = velocity if "headings" in self.gives else None
+        return replace(flow, bonds=bonds, headings=headings, time=float(self.time[frame]))

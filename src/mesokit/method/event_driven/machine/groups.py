@@ -12,6 +12,9 @@ from typing import Any, NamedTuple
 TIME, VELOCITY, RADIUS, WIDTH = 3, 4, 7, 8
 # columns of `Spheres.body`
 MASS, INERTIA, LAST, SPIN, BODY_WIDTH = 0, 1, 2, 3, 6
+# columns of `Queue.event`: with whom, how many collisions that one had had (the last 32 bits);
+# BIN is -1 for those in the heap, PLACE is where they are in it
+PARTNER, PARTNER_HITS, AFTER, PREVIOUS, BIN, PLACE, EVENT_WIDTH = 0, 1, 2, 3, 4, 5, 8
 # what a sphere's next event is with, where it is with no other sphere
 LEAVES, NOTHING = -1, -2  # the surroundings of its list; never
 FIRST_WALL = -3  # and below: walls, -3 - number
@@ -49,7 +52,7 @@ class Lists(NamedTuple):
 
     centre (n, 4): these places, and how far one may go; cells (d,), per_length (d,): of the grid;
     cell (n,), head (cells,), following (n,), before (n,): the centres of each cell, linked;
-    count (n,), near (n, most): the lists.
+    count (n,), near (n, most): the lists; times (most,): when those of one list are met.
     """
 
     shell: float
@@ -63,26 +66,22 @@ class Lists(NamedTuple):
     before: Any
     count: Any
     near: Any
+    times: Any
 
 
 class Queue(NamedTuple):
     """The next event of each sphere (Paul 2007): bins of equal time, the current one as a heap.
 
-    time (n,), partner (n,), partner_hits (n,): the events; per_time: bins in a unit of time;
-    first (bins,), after (n,), previous (n,): the events of a bin, linked; bin_of (n,): -1 in the
-    heap; heap (n,), place (n,) in it; now (2,): current bin, size of the heap.
+    time (n,), event (n, 8): when, and the rest by the columns above, where AFTER and PREVIOUS link
+    the events of a bin; per_time: bins in a unit of time; first (bins,): of each; heap (n,);
+    now (2,): current bin, size of the heap.
     """
 
     per_time: float
     time: Any
-    partner: Any
-    partner_hits: Any
+    event: Any
     first: Any
-    after: Any
-    previous: Any
-    bin_of: Any
     heap: Any
-    place: Any
     now: Any
 
 

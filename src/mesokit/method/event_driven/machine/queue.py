@@ -3,6 +3,7 @@
 Putting in, taking out and finding the next cost a time that does not depend on how many there are.
 """
 
+from mesokit.method.event_driven.machine.groups import AFTER, BIN, PARTNER, PLACE, PREVIOUS
 from mesokit.scalar.jit import scalar
 
 HEAP, CURRENT, SIZE = -1, 0, 1
@@ -21,8 +22,8 @@ def sooner(queue, number, a, b):
 def key(queue, number, i):
     """The lower and the higher particle number of an event, as one."""
     mine, other = number[i], number[i]
-    if queue.partner[i] >= 0:
-        other = number[queue.partner[i]]
+    if queue.event[i, PARTNER] >= 0:
+        other = number[queue.event[i, PARTNER]]
     return min(mine, other) * 4294967296 + max(mine, other)
 
 
@@ -30,7 +31,7 @@ def key(queue, number, i):
 def put_at(queue, place, i):
     """Write an entry of the heap."""
     queue.heap[place] = i
-    queue.place[i] = place
+    queue.event[i, PLACE] = place
 
 
 @scalar
@@ -73,7 +74,7 @@ def push(queue, number, i):
     """Into the heap."""
     place = queue.now[SIZE]
     queue.now[SIZE] = place + 1
-    queue.bin_of[i] = HEAP
+    queue.event[i, BIN] = HEAP
     put_at(queue, place, i)
     rise(queue, number, place)
 
@@ -88,29 +89,29 @@ def insert(queue, number, i):
         bins = len(queue.first)
         b = min(wanted, current + bins - 1) & (bins - 1)
         after = queue.first[b]
-        queue.after[i], queue.previous[i], queue.bin_of[i] = after, -1, b
+        queue.event[i, AFTER], queue.event[i, PREVIOUS], queue.event[i, BIN] = after, -1, b
         if after >= 0:
-            queue.previous[after] = i
+            queue.event[after, PREVIOUS] = i
         queue.first[b] = i
 
 
 @scalar
 def remove(queue, number, i):
     """Take out the event of i."""
-    b = queue.bin_of[i]
+    b = queue.event[i, BIN]
     if b == HEAP:
-        place, last = queue.place[i], queue.now[SIZE] - 1
+        place, last = queue.event[i, PLACE], queue.now[SIZE] - 1
         queue.now[SIZE] = last
         if place < last:
             put_at(queue, place, queue.heap[last])
             rise(queue, number, place)
-            sink(queue, number, queue.place[queue.heap[place]])
+            sink(queue, number, queue.event[queue.heap[place], PLACE])
     else:
-        after, previous = queue.after[i], queue.previous[i]
+        after, previous = queue.event[i, AFTER], queue.event[i, PREVIOUS]
         if after >= 0:
-            queue.previous[after] = previous
+            queue.event[after, PREVIOUS] = previous
         if previous >= 0:
-            queue.after[previous] = after
+            queue.event[previous, AFTER] = after
         else:
             queue.first[b] = after
 
@@ -127,7 +128,7 @@ def next_event(queue, number, end):
         i = queue.first[b]
         queue.first[b] = -1
         while i >= 0:
-            after = queue.after[i]
+            after = queue.event[i, AFTER]
             insert(queue, number, i)
             i = after
     i = queue.heap[0]

@@ -1,5 +1,7 @@
 """The loops: all events up to a time, and all predictions made anew."""
 
+import numpy as np
+
 from mesokit.method.event_driven.machine.collide import collide_pair, collide_wall
 from mesokit.method.event_driven.machine.groups import (
     COLLAPSED,
@@ -9,6 +11,8 @@ from mesokit.method.event_driven.machine.groups import (
     IN_A_ROW,
     LAST,
     LEAVES,
+    PARTNER,
+    PARTNER_HITS,
     RADIUS,
     RENEWALS,
     TIME,
@@ -37,10 +41,10 @@ def advance(world, rules, spheres, lists, queue, tally, end):
         i = next_event(queue, number, end)
         if i < 0:
             return DONE
-        now, partner = queue.time[i], queue.partner[i]
+        now, partner = queue.time[i], queue.event[i, PARTNER]
         other = i  # whose next event is to be found as well
         if partner >= 0:
-            if spheres.hits[partner] == queue.partner_hits[i]:
+            if np.int32(spheres.hits[partner]) == queue.event[i, PARTNER_HITS]:
                 collide_pair(world, rules, spheres, tally, i, partner, now)
                 other = partner
                 if tally.counts[IN_A_ROW] >= MANY:

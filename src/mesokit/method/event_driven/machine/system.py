@@ -182,7 +182,8 @@ class System:
             np.zeros(n, np.int32),
             np.zeros(n, np.int32),
             np.zeros(n, np.int32),
-            np.zeros((n, self.room), np.int32),
+            np.zeros((n, self.room), np.uint32),
+            np.zeros(self.room),
         )
 
     def _queue(self) -> Queue:
@@ -191,13 +192,8 @@ class System:
         return Queue(
             self.per_time,
             np.zeros(n),
-            np.zeros(n, np.int32),
-            np.zeros(n, np.int64),
+            aligned(n, groups.EVENT_WIDTH, np.int32),
             np.zeros(bins, np.int32),
-            np.zeros(n, np.int32),
-            np.zeros(n, np.int32),
-            np.zeros(n, np.int32),
-            np.zeros(n, np.int32),
             np.zeros(n, np.int32),
             np.zeros(2, np.int64),
         )
@@ -280,8 +276,9 @@ class System:
         self.begin_window(int(state["windows"]))
 
 
-def aligned(n: int, width: int) -> Any:
-    """Rows of 64-bit numbers that begin at multiples of 64 bytes."""
-    raw = np.zeros(n * width + 8)
-    start = (-raw.ctypes.data % 64) // 8
+def aligned(n: int, width: int, kind: type = np.float64) -> Any:
+    """Rows of numbers that begin at multiples of 64 bytes."""
+    size = np.dtype(kind).itemsize
+    raw = np.zeros(n * width + 64 // size, kind)
+    start = (-raw.ctypes.data % 64) // size
     return raw[start : start + n * width].reshape(n, width)

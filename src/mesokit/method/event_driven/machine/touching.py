@@ -8,14 +8,17 @@ from mesokit.scalar.vector import dot
 
 @scalar
 def touching(r, v, reach, growth):
-    """The time after which |r + v t| = reach + growth t from above, infinite if never."""
+    """The time after which |r + v t| = reach + growth t from above, infinite if never.
+
+    Whether they meet is asked last, of numbers that are all there: a processor does many pairs at
+    once as long as it need not guess.
+    """
     a = dot(v, v) - growth * growth
     b = dot(r, v) - reach * growth
     c = dot(r, r) - reach * reach
     square = b * b - a * c
-    if b >= 0.0:
-        late = c > 0.0 and a < 0.0 and square >= 0.0
-        return (b + math.sqrt(square)) / -a if late else math.inf
-    if square < 0.0:
-        return math.inf
-    return max(c, 0.0) / (math.sqrt(square) - b)
+    root = math.sqrt(max(square, 0.0))
+    if growth != 0.0 and b >= 0.0:
+        return (b + root) / -a if c > 0.0 and a < 0.0 and square >= 0.0 else math.inf
+    time = max(c, 0.0) / (root - b)
+    return time if (b < 0.0) & (square >= 0.0) else math.inf

@@ -1,0 +1,140 @@
+"""The birds in memory: the verbs of an engine, on the threads of one machine."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.execute.cpu.threads import Threads
+from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.geometry.solids.none import Nothing
+from mesokit.geometry.solids.solids import Solids, solids_of
+from mesokit.method.flock.engine.memory import Physics, axes_of, make
+from mesokit.method.flock.engine.step import step
+from mesokit.scalar.random import Counter
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.engine import Array, Integers, State
+
+FEWEST = 2000  # birds for each thread: fewer wait for one another longer than they work
+MOST_BOXES = 2**30  # away: images are 32-bit
+
+
+class Flocks:
+    """Engine of flocks (`mesokit.engine.Engine`).
+
+    `side` is the least length of a cell, the reach unless said: no bit depends on it.
+    """
+
+    def __init__(self, case: Case, threads: int = 1, side: float | None = None) -> None:
+        given, size = case.flock, case.box.size
+        self.n, self.dimension = given.birds(case.box), case.box.dimension
+        self.box, self.speed, self.timestep = np.array(size, float), given.speed, given.timestep
+        self.solids: Solids | None = solids_of(case) if case.walls else None  # keeps the tables
+        shut = closed_axes(case.walls)
+        closed = [axis in shut for axis in case.box.axes]
+        axes = axes_of(size, closed, max(side or 0.0, given.radius), self.n)
+        self.threads = max(1, min(threads, self.n // FEWEST))
+        cohesion = () if given.cohesion is None else (given.cohesion.kernel(),)
+        self.physics = Physics(
+            axes,
+            np.float32(given.radius**2),
+            given.speed * given.timestep,
+            given.order == "original",
+            given.noise.kernel(),
+            cohesion,
+            Nothing() if self.solids is None else self.solids.kernel,
+        )
+        self.groups = make(self.n, self.threads, axes, bool(cohesion))
+        self.seed, self.step, self.side = case.run.seed, 0, 0
+        self.team = Threads(self.threads)
+        self.seconds = {"steps": 0.0}
+
+    def start(self, positions: Array, headings: Array) -> None:
+        """Put birds at places (n, d), in or out of the box, with headings (n, d)."""
+        periodic = np.array(self.physics.axes.inverse) > 0
+        images = np.where(periodic, np.floor(positions / self.box), 0.0)
+        places = positions - images * self.box
+        over = periodic & (places >= self.box)  # a place just below 0 is rounded up
+        self._fill(np.where(over, 0.0, places), headings, images)
+
+    def _fill(self, places: Array, headings: Array, images: NDArray[Any]) -> None:
+        birds = self.groups[0]
+        birds.places[0], birds.headings[0] = places.T, headings.T
+        birds.images[0], birds.numbers[0] = images.T, np.arange(self.n)
+        self.side = 0
+
+    def advance(self, steps: int, measure_stress: bool = False) -> None:
+        """Run some steps."""
+        began = perf_counter()
+        counter = Counter(np.uint64(self.seed), np.uint64(self.step))
+        self.team.run(step, counter, steps, self.side, self.physics, self.groups)
+        self.step, self.side = self.step + steps, (self.side + steps) % 2
+        self.seconds["steps"] += perf_counter() - began
+
+    def check(self) -> None:
+        """Nothing can break down: speeds are given."""
+
+    def end_warmup(self) -> None:
+        """Nothing is summed up."""
+
+    @property
+    def time(self) -> float:
+        """Time since the start of the warm-up."""
+        return self.step * self.timestep
+
+    def positions(self, ids: Integers | None = None, unwrapped: bool = False) -> Array:
+        """Places (n, d), in the box or where the birds have gone to."""
+        places = self._by_number(self.groups[0].places)
+        if unwrapped:
+            places += self._by_number(self.groups[0].images) * self.box
+        return places if ids is None else places[ids]
+
+    def images(self, ids: Integers | None = None) -> NDArray[np.int32]:
+        """How many boxes away the birds are, (n, d)."""
+        images = self._by_number(self.groups[0].images)
+        return images if ids is None else images[ids]
+
+    def headings(self, ids: Integers | None = None) -> Array:
+        """Unit vectors (n, d) along which the birds head."""
+        headings = self._by_number(self.groups[0].headings)
+        return headings if ids is None else headings[ids]
+
+    def velocities(self, ids: Integers | None = None) -> Array:
+        """Heading times speed (n, d)."""
+        return self.speed * self.headings(ids)
+
+    def masses(self, ids: Integers | None = None) -> Array:
+        """All 1, (n,)."""
+        return np.ones(self.n if ids is None else len(ids))
+
+    def totals(self) -> tuple[int, Array, float]:
+        """Number, sum of the velocities (d,) and half the sum of their squares."""
+        velocity = self.velocities().sum(axis=0)
+        return self.n, velocity, 0.5 * self.n * self.speed**2
+
+    def state(self) -> State:
+        """Places, boxes and headings by number, and the step."""
+        names = ("places", "headings", "images")
+        found = {name: self._by_number(getattr(self.groups[0], name)) for name in names}
+        return found | {"step": np.array(self.step)}
+
+    def restore(self, state: State) -> None:
+        """Go on from a state."""
+        self._fill(state["places"], state["headings"], state["images"])
+        self.step = int(state["step"])
+
+    def _by_number(self, arrays: NDArray[Any]) -> NDArray[Any]:
+        found = np.empty(arrays.shape[:0:-1], arrays.dtype)
+        found[self.groups[0].numbers[self.side]] = arrays[self.side].T
+        return found
+
+
+def engine(case: Case, threads: int, measures: Sequence[str]) -> Flocks:
+    """The engine of a case; no observable needs anything measured on the way."""
+    return Flocks(case, threads)

@@ -1,0 +1,208 @@
+"""What each bird sees: sums over all birds in reach, in whole numbers.
+
+The birds of a cell see those of the cells around. These are brought together in one small stretch
+of memory, for all birds of the cell; the loop over them has no branch and adds up whole numbers, so
+that neither the order of birds nor cells nor threads changes a bit.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mesokit.method.flock.cohesion import pull
+from mesokit.method.flock.engine.memory import CHUNK, LANES, PULL, has_cohesion, past, sum_rows
+from mesokit.method.flock.noise.protocol import counted
+from mesokit.scalar.cache import inner
+from mesokit.scalar.jit import by_type, elementwise, for_each, scalar
+
+_NONE = np.int32(0)
+_ONE = np.int32(1)
+_PULL = np.float32(PULL)
+_TINY = np.float32(1e-30)
+
+
+@elementwise
+def nothing(like):
+    """A tuple of int32 zeros."""
+    return "_NONE"
+
+
+@elementwise
+def place_of(places, i, like):
+    """The place of bird i, as whole numbers."""
+    return "places[{k}, i]"
+
+
+@elementwise
+def way_to(near, j, here, unit):
+    """The way to bird j of those near, float32."""
+    return "np.float32(np.int32(near[{k}, j] - here[{k}])) * unit[{k}]"
+
+
+@scalar
+def length_squared(way):
+    """The square of a length, float32."""
+    total = way[0] * way[0]
+    for k in range(1, len(way)):
+        total = np.float32(total + way[k] * way[k])
+    return total
+
+
+@elementwise
+def with_heading(near, j, reached, sums):
+    """Sums with the heading of bird j added, where it is in reach."""
+    return "np.int32(sums[{k}] + (near[len(sums) + {k}, j] if reached else _NONE))"
+
+
+@elementwise
+def with_way(factor, reached, way, sums):
+    """Sums with the way times a factor added, where it counts."""
+    return "np.int32(sums[{k}] + (np.int32(way[{k}] * factor) if reached else _NONE))"
+
+
+@for_each
+def add_to(sums, first, i, values):
+    """Add values to rows of the sums of bird i."""
+    return "sums[first + {k}, i] += np.int64(values[{k}])"
+
+
+@for_each
+def bring(near, j, seen, i, like):
+    """Place and heading of bird i become those of bird j near."""
+    return "near[{k}, j] = seen.places[{k}, i]; near[len(like) + {k}, j] = seen.headings[{k}, i]"
+
+
+@by_type
+def asks_number(physics):
+    """Whether the number of birds in reach is needed, or who is a bird and who fills a lane."""
+    if has_cohesion(physics):
+        return lambda physics: True
+    return lambda physics: counted(physics.noise)
+
+
+@by_type
+def add_seen(physics, near, top, here, sums, i):
+    """Add to the sums of bird i what it sees of so many birds near."""
+    return _see_headings_and_ways if has_cohesion(physics) else _see_headings
+
+
+def _see_headings(physics, near, top, here, sums, i):
+    unit, d = physics.axes.unit, len(here)
+    headings, around = nothing(here), _NONE
+    for j in range(top):
+        reached = length_squared(way_to(near, j, here, unit)) <= physics.reach
+        headings = with_heading(near, j, reached, headings)
+        if counted(physics.noise):
+            around = np.int32(around + (near[2 * d, j] if reached else _NONE))
+    add_to(sums, 0, i, headings)
+    sums[d, i] += np.int64(around)
+
+
+def _see_headings_and_ways(physics, near, top, here, sums, i):
+    unit, d, cohesion = physics.axes.unit, len(here), physics.cohesion[0]
+    core = cohesion.core * cohesion.core
+    headings, pulls, out, around = nothing(here), nothing(here), nothing(here), _NONE
+    for j in range(top):
+        way = way_to(near, j, here, unit)
+        square = length_squared(way)
+        reached = square <= physics.reach
+        headings = with_heading(near, j, reached, headings)
+        there = near[2 * d, j] > _NONE
+        around = np.int32(around + (_ONE if reached & there else _NONE))
+        other = reached & there & (square > _NONE)
+        inside, safe = square < core, max(square, _TINY)
+        pulls = with_way(_PULL * pull(cohesion, safe), other & (not inside), way, pulls)
+        away = np.float32(-_PULL / np.float32(np.sqrt(safe)))
+        out = with_way(away, other & inside, way, out)
+    add_to(sums, 0, i, headings)
+    sums[d, i] += np.int64(around)
+    add_to(sums, d + 1, i, pulls)
+    add_to(sums, 2 * d + 1, i, out)
+
+
+@scalar
+def cells_of_axis(axes, k):
+    """Cells along an axis; one along z in 2D."""
+    return axes.cells[k] if k < len(axes.cells) else 1
+
+
+@scalar
+def place_of_cell(axes, cell):
+    """Where a cell is among the cells: x, y, z."""
+    wide, high = cells_of_axis(axes, 0), cells_of_axis(axes, 1)
+    return cell % wide, cell // wide % high, cell // (wide * high)
+
+
+@scalar
+def next_place(axes, place):
+    """Where the next cell is."""
+    x, y, z = place
+    if x + 1 < cells_of_axis(axes, 0):
+        return x + 1, y, z
+    if y + 1 < cells_of_axis(axes, 1):
+        return 0, y + 1, z
+    return 0, 0, z + 1
+
+
+@scalar
+def wrapped(cell, number):
+    """A cell next to one of so many, around the end."""
+    return cell + number if cell < 0 else (cell - number if cell >= number else cell)
+
+
+@scalar
+def list_runs(axes, starts, place, runs):
+    """Write down the runs of birds around a cell, three cells along x in one; gives how many."""
+    wide, high, deep = (cells_of_axis(axes, 0), cells_of_axis(axes, 1), cells_of_axis(axes, 2))
+    x, y, z = place
+    beside_y, beside_z = int(high > 1), int(deep > 1)
+    first, last = max(x - 1, 0), min(x + 2, wide)
+    beyond = wide - 1 if x == 0 else 0  # across the end of the box
+    at_end = (wide > 1) & ((x == 0) | (x == wide - 1))
+    number = 0
+    for dz in range(-beside_z, beside_z + 1):
+        for dy in range(-beside_y, beside_y + 1):
+            row = (wrapped(z + dz, deep) * high + wrapped(y + dy, high)) * wide
+            runs[0, number], runs[1, number] = starts[row + first], starts[row + last]
+            number += 1
+            if at_end:
+                runs[0, number], runs[1, number] = starts[row + beyond], starts[row + beyond + 1]
+                number += 1
+    return number
+
+
+@inner
+def look(physics, seen, starts, scratch, cell, place, like):
+    """The sums of all birds of a cell, which is at this place among the cells."""
+    near, runs = scratch
+    begin, end = starts[cell], starts[cell + 1]
+    for k in range(sum_rows(physics)):
+        for i in range(begin, end):
+            seen.sums[k, i] = 0
+    number = list_runs(physics.axes, starts, place, runs)
+    run, held, first = 0, 0, runs[0, 0]
+    while run < number:
+        fit = min(runs[1, run] - first, CHUNK - held)
+        for j in range(fit):
+            bring(near, past(held, j), seen, past(first, j), like)
+        held, first = held + fit, first + fit
+        if first == runs[1, run]:
+            run += 1
+            first = runs[0, run]
+        if (held == CHUNK) | (run == number):
+            see(physics, seen, near, held, begin, end, like)
+            held = 0
+
+
+@scalar
+def see(physics, seen, near, held, begin, end, like):
+    """Let the birds of a cell see those near; what only fills the lanes counts for nothing."""
+    d, top = len(like), (held + LANES - 1) // LANES * LANES
+    if asks_number(physics):
+        for j in range(held):
+            near[2 * d, j] = _ONE
+    for k in range(d, len(near)):
+        for lane in range(LANES):
+            near[k, past(held, lane)] = _NONE
+    for i in range(begin, end):
+        add_seen(physics, near, top, place_of(seen.places, i, like), seen.sums, i)

@@ -1,0 +1,121 @@
+"""Birds turn and move, a strip of them at a time.
+
+What the loops over a strip need lies in rows of one array: the compiler then sees that they do not
+overlap, and does several birds at once.
+"""
+
+from __future__ import annotations
+
+from mesokit.geometry.protocol import exposed
+from mesokit.method.flock.engine.memory import HEADING, PULL, STRIP, has_cohesion, past, sum_rows
+from mesokit.method.flock.engine.walls import flown
+from mesokit.method.flock.noise.protocol import turned
+from mesokit.scalar.cache import inner
+from mesokit.scalar.fixed_point import ROUNDER, ROUNDER_BITS, bits
+from mesokit.scalar.intrinsics import floor  # noqa: F401  in the text of `boxes_away`
+from mesokit.scalar.jit import by_type, elementwise, for_each, scalar
+from mesokit.scalar.vector import added, chosen, dot, scaled
+
+
+@elementwise
+def load(strip, first, i, like):
+    """Elements i of rows from `first` on."""
+    return "strip[(first + {k}) * STRIP + i]"
+
+
+@for_each
+def store(strip, first, i, values):
+    """Set elements i of rows from `first` on."""
+    return "strip[(first + {k}) * STRIP + i] = values[{k}]"
+
+
+@elementwise
+def boxes_away(inverse, r):
+    """How many boxes away a place is, along each axis."""
+    return "floor(r[{k}] * inverse[{k}])"
+
+
+@elementwise
+def inside(size, away, r):
+    """A place brought back so many boxes; what is rounded to the length is at 0."""
+    return "_inside(size[{k}], r[{k}] - away[{k}] * size[{k}], away[{k}])"
+
+
+@scalar
+def _inside(length, x, away):
+    return 0.0 if (x >= length) & (away != 0.0) else x
+
+
+@by_type
+def wish(physics, strip, i, like):
+    """The sum that a bird follows: headings in reach, and what cohesion adds."""
+    if not has_cohesion(physics):
+        return lambda physics, strip, i, like: scaled(1.0 / HEADING, load(strip, 0, i, like))
+
+    def with_cohesion(physics, strip, i, like):
+        d = len(like)
+        weight = physics.cohesion[0].strength / PULL
+        total = scaled(1.0 / HEADING, load(strip, 0, i, like))
+        total = added(total, scaled(weight, load(strip, d + 1, i, like)))
+        out = load(strip, 2 * d + 1, i, like)
+        return chosen(dot(out, out) > 0.0, out, total)
+
+    return with_cohesion
+
+
+@inner
+def move(physics, counter, birds, sums, strip, side, first, count):
+    """Turn and move `count` birds from the bird `first` on."""
+    like = physics.axes.size
+    d, rows = len(like), sum_rows(physics)
+    headings, places = birds.headings[side], birds.places[side]
+    images, numbers = birds.images[side], birds.numbers[side]
+    heading, place, away, number = rows, rows + d, rows + 2 * d, rows + 3 * d
+    for k in range(rows):
+        for i in range(count):
+            strip[k * STRIP + i] = float(sums[k, past(first, i)])
+    for k in range(d):
+        for i in range(count):
+            strip[(heading + k) * STRIP + i] = headings[k, past(first, i)]
+        for i in range(count):
+            strip[(place + k) * STRIP + i] = places[k, past(first, i)]
+    for i in range(count):
+        strip[number * STRIP + i] = float(numbers[past(first, i)])
+    turn(physics, counter, strip, rows, count, like)
+    fly(physics, strip, rows, count, like)
+    for k in range(d):
+        for i in range(count):
+            headings[k, past(first, i)] = strip[(heading + k) * STRIP + i]
+        for i in range(count):
+            places[k, past(first, i)] = strip[(place + k) * STRIP + i]
+        for i in range(count):
+            images[k, past(first, i)] += int(strip[(away + k) * STRIP + i])
+
+
+@inner
+def turn(physics, counter, strip, rows, count, like):
+    """New headings, and the ways of the step."""
+    d = len(like)
+    heading, away, number = rows, rows + 2 * d, rows + 3 * d
+    for i in range(count):
+        old, total = load(strip, heading, i, like), wish(physics, strip, i, like)
+        name = bits(strip[number * STRIP + i] + ROUNDER) - ROUNDER_BITS
+        around = strip[d * STRIP + i]
+        new = turned(physics.noise, counter, name, old, total, around)
+        store(strip, heading, i, new)
+        store(strip, away, i, scaled(physics.way, chosen(physics.follows, old, new)))
+
+
+@inner
+def fly(physics, strip, rows, count, like):
+    """New places in the box, and how many boxes away they were."""
+    axes, d = physics.axes, len(like)
+    heading, place, away = rows, rows + d, rows + 2 * d
+    for i in range(count):
+        r, way = load(strip, place, i, like), load(strip, away, i, like)
+        r, new = flown(physics.solid, r, way, load(strip, heading, i, like))
+        if exposed(physics.solid):
+            store(strip, heading, i, new)
+        boxes = boxes_away(axes.inverse, r)
+        store(strip, place, i, inside(axes.size, boxes, r))
+        store(strip, away, i, boxes)

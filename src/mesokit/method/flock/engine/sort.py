@@ -1,0 +1,144 @@
+"""Birds into cells: a counting sort that threads share.
+
+Which of the birds of a cell comes first depends on the threads; nothing that is computed does.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mesokit.execute.cpu.threads import meet
+from mesokit.method.flock.engine.memory import HEADING
+from mesokit.scalar.cache import inner
+from mesokit.scalar.fixed_point import fixed
+from mesokit.scalar.intrinsics import with_item
+from mesokit.scalar.jit import scalar
+
+_LOW = np.uint64(0xFFFFFFFF)
+LOOK = 12  # birds in a cell that cost as much to look at as one costs otherwise
+
+
+@scalar
+def spot(axes, k, x):
+    """A place along axis k as a whole number of 32 bits."""
+    return np.int32(fixed(x, axes.scale[k]))
+
+
+@scalar
+def cell_along(axes, k, place):
+    """The cell along axis k of a place as a whole number."""
+    inside = np.uint64(np.int64(place)) & _LOW
+    cell = np.int64((inside * np.uint64(axes.cells[k])) >> axes.bits[k])
+    return min(cell, axes.cells[k] - 1)  # a place at a closed end may be rounded up to the length
+
+
+@scalar
+def part(number, team):
+    """The first and the last of a number of things that a thread takes."""
+    first = number * team.thread // team.threads
+    return first, number * (team.thread + 1) // team.threads
+
+
+@inner
+def sort(team, axes, birds, seen, cells, side):
+    """Sort birds from `side` to the other side, and say what they see of one another."""
+    n, number = birds.numbers.shape[1], len(cells.starts) - 1
+    first, last = part(n, team)
+    count(axes, birds.places, cells, team.thread, side, first, last)
+    meet(team)
+    add_up(team, cells, number)
+    meet(team)
+    share_out(team, cells, number)
+    meet(team)
+    scatter(axes, birds, seen, cells.homes, cells.counts[team.thread], side, first, last)
+    meet(team)
+
+
+@inner
+def count(axes, places, cells, thread, side, first, last):
+    """The cells of birds, and how many are in each."""
+    counts = cells.counts[thread]
+    counts[:] = 0
+    for i in range(first, last):
+        cell = 0
+        for j in range(len(axes.size)):
+            k = len(axes.size) - 1 - j
+            cell = cell * axes.cells[k] + cell_along(axes, k, spot(axes, k, places[side, k, i]))
+        cells.homes[i] = cell
+        counts[cell] += np.int32(1)
+
+
+@scalar
+def looks(birds):
+    """About how much work the birds of a cell are, if those around it hold as many."""
+    return birds * (LOOK + birds)
+
+
+@inner
+def add_up(team, cells, number):
+    """Birds and work in the cells of this thread."""
+    first, last = part(number, team)
+    birds = work = 0
+    for cell in range(first, last):
+        here = 0
+        for thread in range(team.threads):
+            here += cells.counts[thread, cell]
+        birds += here
+        work += looks(here)
+    cells.totals[team.thread, 0], cells.totals[team.thread, 1] = birds, work
+
+
+@inner
+def share_out(team, cells, number):
+    """Where the birds of each cell and thread go."""
+    first, last = part(number, team)
+    place = work = 0
+    for thread in range(team.thread):
+        place += cells.totals[thread, 0]
+        work += cells.totals[thread, 1]
+    for cell in range(first, last):
+        cells.starts[cell], cells.work[cell] = place, work
+        begin = place
+        for thread in range(team.threads):
+            here = cells.counts[thread, cell]
+            cells.counts[thread, cell] = place
+            place += here
+        work += looks(place - begin)
+    if team.thread == team.threads - 1:
+        cells.starts[number], cells.work[number] = place, work
+
+
+@inner
+def scatter(axes, birds, seen, homes, ahead, side, first, last):
+    """Copy birds to where they belong."""
+    other = 1 - side
+    for i in range(first, last):
+        cell = homes[i]
+        j = ahead[cell]
+        ahead[cell] = j + 1
+        birds.numbers[other, j] = birds.numbers[side, i]
+        for k in range(len(axes.size)):
+            x, u = birds.places[side, k, i], birds.headings[side, k, i]
+            birds.places[other, k, j] = x
+            birds.headings[other, k, j] = u
+            birds.images[other, k, j] = birds.images[side, k, i]
+            seen.places[k, j] = spot(axes, k, x)
+            seen.headings[k, j] = np.int32(fixed(u, HEADING))
+
+
+@scalar
+def cells_of(team, cells):
+    """The cells that a thread looks at: about the same work for each."""
+    work, number = cells.work, len(cells.work) - 1
+    ends = (0, 0)
+    for k in range(2):
+        wanted = work[number] * (team.thread + k) // team.threads
+        low, high = 0, number
+        while low < high:
+            middle = (low + high) // 2
+            if work[middle] < wanted:
+                low = middle + 1
+            else:
+                high = middle
+        ends = with_item(ends, k, low)
+    return ends

@@ -1,0 +1,66 @@
+"""Steps of a flock: sort, look, turn and move."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mesokit.execute.cpu.threads import meet
+from mesokit.method.flock.engine.look import look, next_place, place_of_cell
+from mesokit.method.flock.engine.memory import STRIP
+from mesokit.method.flock.engine.move import move
+from mesokit.method.flock.engine.sort import cells_of, sort
+from mesokit.method.flock.noise.protocol import FIRST_HEADING, unit_vector
+from mesokit.scalar.cache import inner, kernel
+from mesokit.scalar.random import METHOD, Counter, unit, words
+
+START = METHOD + np.uint64(2)  # purpose of random numbers
+
+
+@kernel
+def step(team, counter, steps, side, physics, groups):
+    """So many steps; birds lie on `side` before and, if they are even in number, after them."""
+    birds, seen, cells, _ = groups
+    for done in range(steps):
+        now = Counter(counter.seed, counter.step + np.uint64(done))
+        sort(team, physics.axes, birds, seen, cells, side)  # places, headings at t
+        side = 1 - side
+        look_and_move(team, now, physics, groups, side)  # headings, then places: t -> t + dt
+        meet(team)
+
+
+@inner
+def look_and_move(team, now, physics, groups, side):
+    """What the birds of this thread see, and where they turn and go to: a strip at a time."""
+    birds, seen, cells, scratch = groups
+    near, runs = scratch.near[team.thread], scratch.runs[team.thread]
+    strip, like = scratch.strip[team.thread], physics.axes.size
+    begin, end = cells_of(team, cells)
+    done, place = cells.starts[begin], place_of_cell(physics.axes, begin)
+    for cell in range(begin, end):
+        looked = cells.starts[cell + 1]
+        if looked > cells.starts[cell]:
+            look(physics, seen, cells.starts, (near, runs), cell, place, like)
+        place = next_place(physics.axes, place)
+        while looked - done >= STRIP or (cell == end - 1 and looked > done):
+            count = min(looked - done, STRIP)
+            move(physics, now, birds, seen.sums, strip, side, done, count)
+            done += count
+
+
+@kernel
+def scatter_places(counter, draw, size, numbers, places):
+    """Places uniform in the box for birds with these numbers: the draw-th try."""
+    for i in range(len(numbers)):
+        for k in range(len(size)):
+            high, low, _, _ = words(counter, START, numbers[i], 4 * draw + k)
+            places[i, k] = size[k] * unit(high, low)
+
+
+@kernel
+def scatter_headings(counter, like, headings):
+    """Headings uniform over all directions."""
+    for i in range(len(headings)):
+        a, b, c, d = words(counter, FIRST_HEADING, i, 0)
+        u = unit_vector(like, unit(a, b), unit(c, d))
+        for k in range(len(like)):
+            headings[i, k] = u[k]

@@ -1,0 +1,96 @@
+"""Flocks, as the rest of the package knows them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mesokit.case.component import show
+from mesokit.case.trajectory import Group, Kind
+from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.geometry.solids.solids import Solids, solids_of
+from mesokit.method.flock.checks import check
+from mesokit.method.flock.displacement import Displacement
+from mesokit.method.flock.engine.flocks import Flocks, engine
+from mesokit.method.flock.observe import OBSERVABLES
+from mesokit.method.flock.section import KEYS, Sections
+from mesokit.method.flock.start import FirstState, first_state
+from mesokit.method.flock.summary import summary
+from mesokit.method.protocol import Columns, Method
+from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+STARTS = ("positions", "velocities", "run", "file")
+
+
+def groups(case: Case) -> tuple[Group, ...]:
+    """One group of birds, without a mass of their own: it is written as 1."""
+    return (Group("birds", (Kind(1.0, case.flock.birds(case.box)),)),)
+
+
+def columns(case: Case) -> Columns:
+    """Polar order and mean heading, of which the log of a run may tell."""
+    names = ("order", *(f"heading {axis}" for axis in case.box.axes))
+
+    def read(engine: Any, wanted: Collection[str]) -> dict[str, float]:
+        mean = engine.headings().mean(axis=0)
+        told = dict(zip(names, (float(np.linalg.norm(mean)), *map(float, mean)), strict=True))
+        return {name: told[name] for name in wanted}
+
+    return Columns(names, names[:1], read)
+
+
+def _start(engine: Flocks, state: FirstState) -> None:
+    engine.start(*state)
+
+
+def _closed(case: Case) -> set[int]:
+    return {case.box.axes.index(axis) for axis in closed_axes(case.walls)}
+
+
+def _solids(case: Case) -> Solids | None:
+    return solids_of(case) if case.walls else None
+
+
+def _starts(case: Case) -> Mapping[str, Path]:
+    given = {key: getattr(case.flock.start, key) for key in STARTS}
+    return {f"flock.start.{key}": Path(name) for key, name in given.items() if name is not None}
+
+
+def _missing_files(case: Case) -> list[str]:
+    return [
+        f"{key} = {show(str(path), 500)}: no such {'folder' if key.endswith('run') else 'file'}"
+        for key, path in _starts(case).items()
+        if not path.exists()
+    ]
+
+
+METHOD = Method(
+    name="flock",
+    sections=Sections,
+    keys=KEYS,
+    whole_cells=False,
+    headings=True,
+    picture="flock",
+    observables=(MeanSquareDisplacement, *OBSERVABLES),
+    expected={"mean-square-displacement": Displacement},
+    check=check,
+    groups=groups,
+    timestep=lambda case: float(case.flock.timestep),
+    summary=summary,
+    closed_axes=_closed,
+    solids=_solids,
+    start_from_run="flock.start.run",
+    starts=_starts,
+    missing_files=_missing_files,
+    arrays=("positions", "velocities"),
+    first_state=first_state,
+    engine=engine,
+    start=_start,
+    log=columns,
+)

@@ -1,0 +1,10 @@
+"""Noise of birds. A new one is a file here."""
+
+from __future__ import annotations
+
+from mesokit.case.registry import parts_in
+from mesokit.method.flock.noise.protocol import Noise
+
+RULES = parts_in(__path__, __name__, Noise)
+
+__all__ = ["RULES", "Noise"]

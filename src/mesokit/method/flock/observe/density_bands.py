@@ -1,0 +1,134 @@
+"""Bands: density and order along the direction in which a flock flies."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.box import AXES, Axis
+from mesokit.case.component import component, param, show, tag
+from mesokit.errors import CaseError
+from mesokit.method.flock.observe.protocol import FlockObservable, blind, mean_heading, open_box
+from mesokit.observe.shared.estimate import of_mean, of_ratio
+from mesokit.observe.shared.protocol import BlockAccumulator
+from mesokit.observe.shared.result import Comparison, Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.engine import Array
+
+MOST_BINS = 2**16
+WAVES = 8  # the longest, that tell where the crest is
+FINE = 1024  # places among which it is found
+
+
+@component
+class DensityBands(FlockObservable):
+    """Profile of density and local order along the axis of the box nearest to the mean heading.
+
+    At each sample it is turned so that the flock flies to the right, and moved so that the crest of
+    the density, of its longest waves together, is in the middle: that band is then seen at rest,
+    others where they mostly are. A crest there is always; how large the waves are tells bands from
+    chance.
+    """
+
+    quantity: Literal["density-bands"] = tag("density-bands")
+    axis: Axis | None = param(None, doc="axis of the profile (nearest to the heading unless said)")
+    bins: int = param(64, doc="bins over the length of the box", ge=4, le=MOST_BINS)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError among walls, and in boxes of unequal sides without an axis."""
+        super().check(case)
+        open_box(case, "quantity = 'density-bands'")
+        if self.axis is not None:
+            case.box.index(self.axis)
+        elif len(set(case.box.size)) > 1:
+            raise CaseError(
+                f"axis: missing; the sides of the box {show(list(case.box.size))} differ, and so "
+                "do the profiles along them"
+            )
+
+    def accumulator(self, case: Case) -> DensityBandsAccumulator:
+        """An empty memory for it."""
+        return DensityBandsAccumulator(self, case)
+
+
+class DensityBandsAccumulator(BlockAccumulator):
+    """Block averages of number and heading in each bin, and of the longest waves."""
+
+    def __init__(self, observable: DensityBands, case: Case) -> None:
+        observable.check(case)
+        self.case, self.name, self.bins = case, observable.label, observable.bins
+        self.axis = None if observable.axis is None else AXES.index(observable.axis)
+        self.length = float(case.box.size[self.axis or 0])
+        self.blocks = Blocks(2 * self.bins + 1)
+        wave = np.arange(1, WAVES + 1)[:, None]
+        self.waves = np.exp(-2j * np.pi * wave * np.arange(FINE) / FINE)
+
+    def observe(self, engine: Any) -> None:
+        """Take one sample."""
+        headings = engine.headings()
+        _, mean = mean_heading(headings)
+        axis = int(np.argmax(np.abs(mean))) if self.axis is None else self.axis
+        sign = -1.0 if mean[axis] < 0 else 1.0
+        place = sign * engine.positions()[:, axis] / self.length
+        modes = self.modes(place)
+        crest = np.argmax((modes @ self.waves).real) / FINE
+        place = (place - crest + 0.5) % 1.0
+        bins = np.minimum((place * self.bins).astype(int), self.bins - 1)
+        number = np.bincount(bins, minlength=self.bins)
+        along = np.bincount(bins, sign * headings[:, axis], minlength=self.bins)
+        square = (np.abs(modes) ** 2).mean()
+        self.blocks.add(np.concatenate([number, along, [square]]))
+
+    def modes(self, place: Array) -> NDArray[np.complex128]:
+        """Mean of e^(2 pi i m place) for the longest waves, (WAVES,)."""
+        step, power = np.exp(2j * np.pi * place), np.ones(len(place), complex)
+        found = np.zeros(WAVES, complex)
+        for m in range(WAVES):
+            power *= step
+            found[m] = power.mean()
+        return found
+
+    def result(self) -> Result:
+        """Density over its mean, and the mean heading along the axis."""
+        n, case = self.bins, self.case
+        each = case.particles / n
+        sums, _ = self.blocks.sums()
+        with np.errstate(invalid="ignore", divide="ignore"):
+            density = of_mean(self.blocks)
+            order = of_ratio(sums[:, n : 2 * n], sums[:, :n])
+            value = np.stack([density.value[:n] / each, order.value], axis=1)
+            error = np.stack([density.error[:n] / each, order.error], axis=1)
+        return Result(
+            quantity="density-bands",
+            drawing="bands",
+            name=self.name,
+            x={
+                "along": (np.arange(n) + 0.5) / n * self.length,
+                "of": np.array(["density", "heading"]),
+            },
+            value=value,
+            error=error,
+            label="density over its mean, heading",
+            units={"value": "", "along": "a", "of": ""},
+            comparisons=tuple(self.comparisons()) if self.blocks.count else (),
+            samples=self.blocks.count,
+        )
+
+    def comparisons(self) -> list[Comparison]:
+        """N times the mean square of the modes: 1 for places at random."""
+        means, number = of_mean(self.blocks), self.case.particles
+        gradient = np.zeros(2 * self.bins + 1)
+        gradient[-1] = number
+        noise = self.case.flock.noise
+        random = blind(noise, self.case.box.dimension) and self.case.flock.cohesion is None
+        measured = means.scalar(number * float(means.value[-1]), gradient)
+        note = "1 for places at random"
+        what = f"structure factor of the {WAVES} longest waves"
+        # without order the axis follows chance, which does not know the places
+        return [Comparison(what, *measured, 1.0 if random else math.nan, "", note)]

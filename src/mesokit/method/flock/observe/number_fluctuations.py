@@ -1,0 +1,147 @@
+"""How much the number of birds in a part of the box fluctuates."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from mesokit.case.component import component, param, show, tag
+from mesokit.case.describe.hints import Either
+from mesokit.errors import CaseError
+from mesokit.method.flock.observe.protocol import FlockObservable, blind, open_box, within
+from mesokit.observe.shared.estimate import of_mean
+from mesokit.observe.shared.protocol import BlockAccumulator
+from mesokit.observe.shared.result import Comparison, Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.engine import Array
+
+LARGEST = 0.25  # side of the largest squares unless said, in the shortest length of the box
+FITTED = 4  # of the largest, whose exponent is fitted
+FEWEST = 3  # sides for an exponent
+MOST = 2**24  # squares
+
+
+@component
+class NumberFluctuations(FlockObservable):
+    """Standard deviation of the number of birds in squares (cubes) of several sides, over the mean.
+
+    Without order it is the root of the mean number; in ordered flocks it grows faster: giant number
+    fluctuations (Toner and Tu, Phys. Rev. Lett. 75, 4326 (1995)). The exponent is fitted to the
+    four largest sides.
+    """
+
+    quantity: Literal["number-fluctuations"] = tag("number-fluctuations")
+    sides: Either[None, float] = param(
+        None,
+        doc="sides of the squares (1, 2, 4, ... up to a quarter of the box unless said)",
+        unit="a",
+        min_length=1,
+    )
+
+    def all_sides(self, case: Case) -> tuple[float, ...]:
+        """From the smallest to the largest."""
+        if self.sides is not None:
+            return tuple(sorted(float(side) for side in self.sides))
+        most = LARGEST * min(case.box.size)
+        return tuple(2.0**k for k in range(max(0, int(math.log2(max(most, 1.0)))) + 1))
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError among walls, and for sides that are longer than the box."""
+        super().check(case)
+        open_box(case, "quantity = 'number-fluctuations'")
+        sides = self.all_sides(case)
+        if self.sides is not None:
+            within(sides, 1e-3, float(min(case.box.size)), "sides")
+        number = math.prod(int(length / sides[0]) for length in case.box.size)
+        if number > MOST:
+            raise CaseError(
+                f"sides = {show(list(sides))}: {number} squares; expected at most {MOST}"
+            )
+
+    def accumulator(self, case: Case) -> NumberFluctuationsAccumulator:
+        """An empty memory for it."""
+        return NumberFluctuationsAccumulator(self, case)
+
+
+class NumberFluctuationsAccumulator(BlockAccumulator):
+    """Block averages of the variances, about the mean that is known."""
+
+    def __init__(self, observable: NumberFluctuations, case: Case) -> None:
+        observable.check(case)
+        self.case, self.name = case, observable.label
+        self.sides = observable.all_sides(case)
+        self.size = np.array(case.box.size, float)
+        self.mean = case.particles * np.array(self.sides) ** len(self.size) / self.size.prod()
+        self.blocks = Blocks(len(self.sides))
+
+    def observe(self, engine: Any) -> None:
+        """Take one sample."""
+        places = engine.positions()
+        self.blocks.add(
+            [
+                ((counted(places, side, self.size) - mean) ** 2).mean()
+                for side, mean in zip(self.sides, self.mean, strict=True)
+            ]
+        )
+
+    def result(self) -> Result:
+        """Standard deviations."""
+        variance = of_mean(self.blocks)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            value = np.sqrt(variance.value)
+            error = variance.error / (2 * value)
+        # birds at random: a fixed number of them is spread over the box
+        poisson = np.sqrt(self.mean * (1 - self.mean / self.case.particles))
+        found = self.comparisons() if self.blocks.count and len(self.sides) >= FEWEST else []
+        return Result(
+            quantity="number-fluctuations",
+            drawing="structure factor",
+            name=self.name,
+            x={"mean number": self.mean},
+            value=value,
+            error=error,
+            label="standard deviation of the number",
+            units={"value": "", "mean number": ""},
+            expected=poisson,
+            theory="birds at random",
+            comparisons=tuple(found),
+            samples=self.blocks.count,
+            extra={"sides": np.array(self.sides)},
+        )
+
+    def comparisons(self) -> list[Comparison]:
+        """The exponent: slope of the logarithms, by least squares."""
+        variance, case = of_mean(self.blocks), self.case
+        use = np.arange(len(self.sides)) >= len(self.sides) - FITTED
+        x = np.log(self.mean[use]) - np.log(self.mean[use]).mean()
+        weight = np.zeros(len(self.sides))
+        weight[use] = x / (x**2).sum()
+        if not (variance.value[use] > 0).all():
+            return []
+        at = np.where(use, variance.value, 1.0)
+        slope = 0.5 * float(weight @ np.log(at))
+        d = case.box.dimension
+        random = blind(case.flock.noise, d) and case.flock.cohesion is None
+        expected, note = math.nan, "1/2 without order"
+        if random:
+            share = self.mean / case.particles
+            expected = 0.5 * float(weight @ np.log(self.mean * (1 - share)))
+            note = "birds at random"
+        elif d == 2:
+            expected, note = 0.8, "approximate: large ordered flocks (Toner and Tu 1995)"
+        measured = variance.scalar(slope, 0.5 * weight / at)
+        return [Comparison("exponent of number fluctuations", *measured, expected, "", note)]
+
+
+def counted(places: Array, side: float, size: Array) -> Array:
+    """How many places lie in each of the whole squares of a side that fit the box."""
+    many = np.floor(size / side * (1 + 1e-12)).astype(int)
+    bins = np.floor(places / side).astype(int)
+    inside = (bins < many).all(axis=1)
+    index = np.ravel_multi_index(tuple(bins[inside].T), tuple(many))
+    return np.bincount(index, minlength=int(many.prod())).astype(float)

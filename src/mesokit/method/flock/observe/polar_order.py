@@ -1,0 +1,155 @@
+"""Polar order: how far birds fly the same way, its fluctuations, and the mean direction."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.case.component import component, tag
+from mesokit.method.flock.observe.protocol import (
+    FlockObservable,
+    all_see_all,
+    blind,
+    mean_heading,
+)
+from mesokit.observe.shared.estimate import of_mean
+from mesokit.observe.shared.protocol import State, pack, unpack
+from mesokit.observe.shared.result import Comparison, Result
+from mesokit.statistics import Blocks, TimeSeries
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+MANY = 30  # birds, from which on their sum at random is as good as normal
+
+
+@component
+class PolarOrder(FlockObservable):
+    """Polar order phi, the length of the mean heading of all birds, in time.
+
+    Beside its mean are the mean of its square, the Binder cumulant 1 - <phi^4>/(3 <phi^2>^2) and
+    the susceptibility N (<phi^2> - <phi>^2).
+    """
+
+    quantity: Literal["polar-order"] = tag("polar-order")
+
+    def accumulator(self, case: Case) -> PolarOrderAccumulator:
+        """An empty memory for it."""
+        return PolarOrderAccumulator(self, case)
+
+
+class Known(NamedTuple):
+    """Mean, mean square and Binder cumulant by theory, nan where it has none, and what it says."""
+
+    order: float = math.nan
+    square: float = math.nan
+    cumulant: float = math.nan
+    why: str = ""
+
+
+class PolarOrderAccumulator:
+    """Powers of the order, and a time series of it and of the mean heading."""
+
+    def __init__(self, observable: PolarOrder, case: Case) -> None:
+        observable.check(case)
+        self.case, self.name = case, observable.label
+        self.blocks, self.series = Blocks(3), TimeSeries(1 + case.box.dimension)
+
+    def observe(self, engine: Any) -> None:
+        """Take one sample."""
+        order, mean = mean_heading(engine.headings())
+        self.blocks.add([order, order**2, order**4])
+        self.series.add(engine.time, [order, *mean])
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks, series=self.series)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        self.series = TimeSeries.from_state(unpack(state, "series"))
+
+    def pool(self, other: PolarOrderAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.blocks.pool(other.blocks)
+        self.series.pool(other.series)
+
+    def result(self) -> Result:
+        """The order in time, whose points are no means of their own: the error is nan."""
+        rows = self.series.values()
+        found = self.comparisons() if self.blocks.count else []
+        level = found[0].expected if found else math.nan
+        return Result(
+            quantity="polar-order",
+            drawing="order",
+            name=self.name,
+            x={"time": self.series.time()},
+            value=rows[:, 0],
+            error=np.full(len(rows), np.nan),
+            label="polar order",
+            units={"value": "", "time": "tau"},
+            expected=None if math.isnan(level) else np.full(len(rows), level),
+            theory="directions at random",
+            comparisons=tuple(found),
+            samples=self.blocks.count,
+            extra={
+                "heading": rows[:, 1:],
+                "mean": found[0].measured if found else math.nan,
+                "mean_error": found[0].error if found else math.nan,
+            },
+        )
+
+    def comparisons(self) -> list[Comparison]:
+        """Mean, mean square, Binder cumulant and susceptibility."""
+        number = self.case.particles
+        means = of_mean(self.blocks)
+        order, square, fourth = map(float, means.value)
+        cumulant = 1 - fourth / (3 * square**2) if square > 0 else math.nan
+        slope = np.array([0.0, 2 * fourth / (3 * square**3), -1 / (3 * square**2)])
+        known = self.known()
+        only = np.eye(3)
+        return [
+            Comparison(
+                "mean polar order", *means.scalar(order, only[0]), known.order, "", known.why
+            ),
+            Comparison(
+                "mean square polar order",
+                *means.scalar(square, only[1]),
+                known.square,
+                "",
+                known.why,
+            ),
+            Comparison(
+                "Binder cumulant", *means.scalar(cumulant, slope), known.cumulant, "", known.why
+            ),
+            Comparison(
+                "susceptibility",
+                *means.scalar(
+                    number * (square - order**2), number * np.array([-2 * order, 1.0, 0])
+                ),
+                note=f"number of birds times the variance of the order, {number} birds",
+            ),
+        ]
+
+    def known(self) -> Known:
+        """What theory knows."""
+        case, d = self.case, self.case.box.dimension
+        noise, number = case.flock.noise, case.particles
+        if case.flock.cohesion is not None:
+            return Known(why="no theory with cohesion")
+        if blind(noise, d):
+            square, why = 1 / number, "directions at random"
+            if number < MANY:
+                return Known(square=square, why=why)
+            order, cumulant = theory.disordered_order(number, d), theory.disordered_binder(d)
+            return Known(order, square, cumulant, why)
+        crowd = noise.crowd_order(d)
+        if crowd is not None and all_see_all(case):
+            return Known(square=theory.mean_square_order(crowd, number), why="all see all")
+        return Known(why="no theory but simulation")

@@ -1,0 +1,90 @@
+"""Pictures and films of birds: triangles along their headings, in a cyclic map of colours."""
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.quiver import Quiver
+
+import mesokit
+from mesokit import Box, CaseError, Disk, Run, RunError, Simulation, Trajectory
+from mesokit.method.flock import (
+    ClusterSizes,
+    DensityBands,
+    Flock,
+    NumberFluctuations,
+    PolarOrder,
+)
+from mesokit.report.flow.birds import colours
+
+OBSERVED = [PolarOrder(every=1), NumberFluctuations(every=1), DensityBands(every=1)]
+OBSERVED += [ClusterSizes(every=1)]
+
+
+def flock(size=(16, 16), output=None, fields=("position", "velocity"), steps=20, **parts):
+    simulation = Simulation(
+        run=Run(steps=steps, method="flock"), box=Box(size), flock=Flock(density=1), output=output,
+        trajectory=Trajectory(every=10, fields=fields), threads=1, **parts,
+    )  # fmt: skip
+    simulation.run()
+    return simulation
+
+
+def triangles(figure):
+    (drawn,) = [part for part in figure.axes[0].get_children() if isinstance(part, Quiver)]
+    return drawn
+
+
+def test_each_bird_points_along_its_heading(tmp_path):
+    simulation = flock(output=tmp_path / "run")
+    drawn = triangles(mesokit.open(tmp_path / "run").flow())  # the kind of the method
+    engine = simulation.engine
+    np.testing.assert_allclose(drawn.get_offsets(), engine.positions(), atol=1e-5)
+    along = np.stack([drawn.U, drawn.V], axis=1)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    np.testing.assert_allclose(along, engine.headings(), atol=1e-5)
+    angle = np.arctan2(*engine.headings().T[::-1]) / np.pi
+    np.testing.assert_allclose(drawn.get_facecolor(), colours()(0.5 * (angle + 1)), atol=0.03)
+
+
+def test_a_simulation_in_memory_is_drawn_as_it_is():
+    simulation = flock(walls=[Disk(centre=(8, 8), radius=3)])
+    drawn = triangles(simulation.flow(region=((0, 8), (0, 16))))
+    inside = simulation.engine.positions()
+    inside = inside[inside[:, 0] <= 8]
+    np.testing.assert_allclose(np.sort(drawn.get_offsets()[:, 0]), np.sort(inside[:, 0]))
+
+
+def test_films_and_three_dimensions(tmp_path):
+    flock((6, 6, 6), tmp_path / "run")
+    files = mesokit.open(tmp_path / "run")
+    assert files.animate(tmp_path / "film.gif").frames == 3
+    assert triangles(files.flow(axes=("x", "z"))).N == 216
+
+
+def test_what_is_missing_is_said_in_one_line(tmp_path):
+    flock(output=tmp_path / "run", fields=["position"])
+    files = mesokit.open(tmp_path / "run")
+    with pytest.raises(RunError, match=r"positions and velocities.*fields = ") as error:
+        files.flow(kind="flock")
+    assert "\n" not in str(error.value)
+    with pytest.raises(CaseError, match="kind = 'disks'"):
+        files.flow(kind="disks")
+
+
+def test_colours_go_round_and_are_told_apart_in_grey():
+    table = colours()(np.linspace(0, 1, 256))[:, :3]
+    assert np.abs(table[0] - table[-1]).max() < 0.05
+    assert np.abs(np.diff(table, axis=0)).max() < 0.08
+    grey = table @ [0.2126, 0.7152, 0.0722]
+    assert grey[128] < 0.35 < 0.55 < grey[0] < 0.75  # along x dark, against it light
+    rise = np.diff(np.convolve(grey, np.ones(9) / 9, "valid"))
+    assert (rise[:110] < 0.003).all() and (rise[-110:] > -0.003).all()
+
+
+def test_every_result_has_a_figure(tmp_path):
+    simulation = flock(observe=OBSERVED)
+    for result in simulation.results.values():
+        figure = result.plot()
+        assert figure.axes
+        figure.savefig(tmp_path / f"{result.name}.png")
+        assert result.plot(mpl.figure.Figure().subplots()) is not None
