@@ -37,6 +37,7 @@ class FakeSpheres:
         self.made, self.n = made(case), case.particles
         self.box, self.dimension = np.array(case.box.size, float), case.box.dimension
         self.step, self.collisions, self.virial = 0, (0, 0, 0), 0.0
+        self.wall_impulse = np.zeros((2, self.dimension))  # of the two plates
         self.advance(0)
 
     def advance(self, steps):
@@ -46,6 +47,7 @@ class FakeSpheres:
         self.r = self.rng.random(shape) * self.box
         events = self.rng.poisson(np.array(self.rates) * steps * self.n)
         self.collisions = tuple(int(x) for x in np.array(self.collisions) + events)
+        self.wall_impulse = self.wall_impulse + self.rng.normal(size=(2, self.dimension))
         self.virial += self.rng.exponential(self.n * (steps + 1))
 
     @property

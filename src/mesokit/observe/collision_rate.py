@@ -82,6 +82,7 @@ class CollisionRateAccumulator:
             known[2] = known[0] * theory.elastic_share(float(value[0]), contact_time)
         # that of a contact time counts walls as well, which are not told apart
         shown = [0, 1] if self.case.walls else [0, 2] if contact_time else [0]
+        drawn = 2 if self.case.walls else 1
         note = "approximate: molecular chaos" if not self.case.spheres.collision.elastic else ""
         listed = [
             Comparison(
@@ -98,12 +99,12 @@ class CollisionRateAccumulator:
             quantity="collision-rate",
             drawing="curve",
             name=self.name,
-            x={"with": np.array(KINDS)[shown]},
-            value=value[shown],
-            error=error[shown],
+            x={"with": np.array(KINDS[:drawn])},
+            value=value[:drawn],
+            error=error[:drawn],
             label="collisions of a sphere per time",
             units={"value": "1/time", "with": ""},
-            expected=known[shown],
+            expected=known[:drawn],
             theory="Enskog",
             comparisons=tuple(listed) if self.blocks.count else (),
             samples=self.blocks.count,

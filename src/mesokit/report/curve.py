@@ -47,7 +47,10 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
             of = ", ".join(str(result.x[name][k]) for name, k in zip(others, chosen, strict=True))
             theory = mathematics(", ".join(filter(None, [f"theory: {result.theory}", of])))
             look = {"color": COLOURS[i] if of else "black", "ls": LINES[i]}
-            ax.plot(places, result.expected[at], lw=1.2, label=theory, **look)
+            if len(places) == 1:  # of which a line through all points shows nothing
+                ax.axhline(result.expected[at][0], lw=1.2, label=theory, **look)
+            else:
+                ax.plot(places, result.expected[at], lw=1.2, label=theory, **look)
     if x.dtype.kind in "US":
         ax.set_xticks(places, [str(name) for name in x])
     ax.set_xlabel(labelled(axis, result.units.get(axis, "")))
