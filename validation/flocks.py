@@ -170,8 +170,8 @@ def fluctuations(page: Page, axis: Any) -> None:
     page.text(
         "Box 128 x 128, density 2, speed 0.5, angular noise 1.57: standard deviation of the "
         f"number of birds in squares of side 1 to 32, of {SEEDS} flocks from random starts, after "
-        "2,000 steps. Waves as long as the box come and go over thousands of steps, and blocks "
-        f"within one run do not see all of that: the errors are from {SEEDS} runs in {WINDOWS} windows of "
+        "2,000 steps. Waves as long as the box come and go over thousands of steps, and blocks in "
+        f"one run do not see all of that: the errors are from {SEEDS} runs in {WINDOWS} windows of "
         f"{WINDOW} steps each, whose scatter is in the table too. The values of an independent "
         "program are of one run whose errors are not known, and so as uncertain as a window."
     )

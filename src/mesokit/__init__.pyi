@@ -104,6 +104,8 @@ from mesokit.method.mpcd.thermostat.rescale import Rescale as Rescale
 from mesokit.observe.bond_correlation import BondCorrelation as BondCorrelation
 from mesokit.observe.bond_length import BondLength as BondLength
 from mesokit.observe.cell_occupancy import CellOccupancy as CellOccupancy
+from mesokit.observe.cluster_size import ClusterSize as ClusterSize
+from mesokit.observe.collision_rate import CollisionRate as CollisionRate
 from mesokit.observe.conservation import Conservation as Conservation
 from mesokit.observe.density_field import DensityField as DensityField
 from mesokit.observe.density_gradient import DensityGradient as DensityGradient
@@ -115,6 +117,7 @@ from mesokit.observe.flow_frames import FlowFrames as FlowFrames
 from mesokit.observe.flow_rate import FlowRate as FlowRate
 from mesokit.observe.forces import Forces as Forces
 from mesokit.observe.granular_temperature import GranularTemperature as GranularTemperature
+from mesokit.observe.height_profile import HeightProfile as HeightProfile
 from mesokit.observe.hexatic_order import HexaticOrder as HexaticOrder
 from mesokit.observe.longitudinal_modes import LongitudinalModes as LongitudinalModes
 from mesokit.observe.mean_square_displacement import (
@@ -144,10 +147,12 @@ from mesokit.observe.transverse_modes import TransverseModes as TransverseModes
 from mesokit.observe.velocity_autocorrelation import (
     VelocityAutocorrelation as VelocityAutocorrelation,
 )
+from mesokit.observe.velocity_cumulant import VelocityCumulant as VelocityCumulant
 from mesokit.observe.velocity_distribution import VelocityDistribution as VelocityDistribution
 from mesokit.observe.velocity_field import VelocityField as VelocityField
 from mesokit.observe.velocity_profile import VelocityProfile as VelocityProfile
 from mesokit.observe.wake import Wake as Wake
+from mesokit.observe.wall_force import WallForce as WallForce
 from mesokit.observe.wall_stress import WallStress as WallStress
 from mesokit.potential.bending import Bending as Bending
 from mesokit.potential.fene import FENE as FENE

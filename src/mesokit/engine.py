@@ -108,7 +108,8 @@ class RunningSpheres(Particles, Protocol):
 
     `totals` and `moments` are as of a fluid. `spins` (n,) in 2D or (n, 3) in 3D are angular
     velocities; `energies` tells "translation", "rotation" and "potential". Of event-driven
-    dynamics `collisions` counts since the warm-up those of pairs, those with walls, and how many
+    dynamics `wall_impulse` (surfaces, d) is the momentum that each surface has taken since the
+    warm-up, `collisions` counts since the warm-up those of pairs, those with walls, and how many
     of them were elastic for following too soon; `virial` is the sum of r.dp over those of pairs.
     """
 
@@ -118,6 +119,8 @@ class RunningSpheres(Particles, Protocol):
     def diameters(self, ids: Integers | None = None) -> Array: ...
     def spins(self, ids: Integers | None = None) -> Array: ...
     def energies(self) -> Mapping[str, float]: ...
+    @property
+    def wall_impulse(self) -> Array: ...
     @property
     def collisions(self) -> tuple[int, int, int]: ...
     @property

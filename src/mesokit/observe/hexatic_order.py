@@ -27,7 +27,7 @@ class HexaticOrder(Observable):
     """
 
     quantity: Literal["hexatic-order"] = tag("hexatic-order")
-    methods: ClassVar[tuple[str, ...]] = ("event-driven",)
+    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
     needs_fluid: ClassVar[bool] = False
 
     def check(self, case: Case) -> None:

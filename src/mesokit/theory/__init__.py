@@ -3,6 +3,7 @@
 Nothing here uses the rest of mesokit, so that it can judge it. Lengths are in cell sides a = 1.
 """
 
+from mesokit.theory.barometric import barometric_cdf, barometric_mean
 from mesokit.theory.bead_diffusion import bead_diffusion
 from mesokit.theory.bond_correlation import BondCorrelation, bond_correlation
 from mesokit.theory.chain_diffusion import (
@@ -17,6 +18,7 @@ from mesokit.theory.chain_in_slit import beads_in_slit, centre_in_slit
 from mesokit.theory.chain_scaling import ChainExponents, chain_exponents
 from mesokit.theory.chain_size import mean_square_end_to_end, mean_square_gyration
 from mesokit.theory.channel_cylinder import Reference, channel_cylinder, square_wake_length
+from mesokit.theory.collapse_in_a_line import collapse_restitution
 from mesokit.theory.couette import couette_velocity
 from mesokit.theory.cubic_array import (
     cubic_array_drag,
@@ -30,9 +32,11 @@ from mesokit.theory.dumbbell_shear import (
     fene_p_thinning,
     pair_friction,
 )
+from mesokit.theory.elastic_share import elastic_share
 from mesokit.theory.enskog_diffusion import enskog_diffusion
 from mesokit.theory.enskog_rate import contact_value, enskog_rate
 from mesokit.theory.finite_size import viscosity_renormalised
+from mesokit.theory.fourth_cumulant import fourth_cumulant
 from mesokit.theory.gamma import cell_energy_cdf, cell_energy_pdf, cell_energy_variance
 from mesokit.theory.gaussian_structure_factor import gaussian_structure_factor
 from mesokit.theory.haff import haff_temperature, haff_time
@@ -84,6 +88,7 @@ from mesokit.theory.origin import Origin, origins
 from mesokit.theory.oscillating_slit import oscillating_slit_response, oscillating_slit_velocity
 from mesokit.theory.passage_times import first_passage_cdf, mean_exit_time
 from mesokit.theory.persistent_walk import msd_persistent_walk, persistent_diffusion
+from mesokit.theory.ping_pong import bounce_height, bounce_time, dissipative_bounces
 from mesokit.theory.poiseuille import PoiseuilleFit, poiseuille_fit, poiseuille_velocity
 from mesokit.theory.polar_order import disordered_binder, disordered_order, mean_square_order
 from mesokit.theory.pulled_shape import pulled_shape
@@ -95,6 +100,7 @@ from mesokit.theory.relaxation_modulus import (
     storage_modulus,
 )
 from mesokit.theory.rouse_times import RouseTimes, rouse_times, rouse_times_from_slowest
+from mesokit.theory.second_virial import second_virial
 from mesokit.theory.self_diffusion import self_diffusion
 from mesokit.theory.slip_sphere import enskog_friction, slip_sphere_diffusion
 from mesokit.theory.square_array import (
@@ -164,15 +170,20 @@ __all__ = [
     "ViscosityFit",
     "angular_memory",
     "apparent_viscosity",
+    "barometric_cdf",
+    "barometric_mean",
     "bead_diffusion",
     "beads_in_slit",
     "bond_correlation",
+    "bounce_height",
+    "bounce_time",
     "cell_energy_cdf",
     "cell_energy_pdf",
     "cell_energy_variance",
     "centre_in_slit",
     "chain_exponents",
     "channel_cylinder",
+    "collapse_restitution",
     "complex_viscosity",
     "compressibility",
     "contact_value",
@@ -188,14 +199,17 @@ __all__ = [
     "dimer_oscillation_range",
     "disordered_binder",
     "disordered_order",
+    "dissipative_bounces",
     "dumbbell_thinning",
     "dumbbell_viscosity",
+    "elastic_share",
     "end_to_end_cdf",
     "enskog_diffusion",
     "enskog_friction",
     "enskog_rate",
     "fene_p_thinning",
     "first_passage_cdf",
+    "fourth_cumulant",
     "gaussian_stress_kernel",
     "gaussian_structure_factor",
     "gyration_cdf",
@@ -244,6 +258,7 @@ __all__ = [
     "rouse_diffusion",
     "rouse_times",
     "rouse_times_from_slowest",
+    "second_virial",
     "self_diffusion",
     "shear_heating",
     "shear_warming",

@@ -181,6 +181,13 @@ class EventDriven:
         return int(counts[groups.PAIRS]), int(counts[groups.WALLS]), int(counts[groups.ELASTIC])
 
     @property
+    def wall_impulse(self) -> Array:
+        """Momentum that each surface has taken since the warm-up, (surfaces, d)."""
+        taken = np.zeros((len(self.walls.names), self.dimension))
+        np.add.at(taken, self.walls.surface, self.system.tally.impulse)
+        return taken
+
+    @property
     def virial(self) -> float:
         """Sum of r.dp over collisions of pairs since the warm-up."""
         return float(self.system.tally.sums[groups.VIRIAL])

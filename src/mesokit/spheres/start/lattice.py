@@ -57,9 +57,8 @@ class LatticeStart(SphereStart):
         free = self.free(case, largest)
         if free.min() <= 0:
             raise CaseError(f"spheres: no room for a diameter of {largest:.4g} between the walls")
-        sites, gap = self.sites(section.count(box), free, shut(case)), -largest
-        if len(sites) > 1:
-            gap += nearest(sites, free, shut(case))
+        sites = self.sites(section.count(box), free, shut(case))
+        gap = nearest(sites, free, shut(case)) - largest if len(sites) > 1 else 0.0
         if gap < 0:
             raise CaseError(
                 f"spheres.start.rule = {show(self.rule)}: neighbours on this lattice would overlap "

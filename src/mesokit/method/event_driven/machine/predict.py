@@ -34,7 +34,8 @@ def predict(world, rules, spheres, lists, queue, tally, i, now):
     state, number = spheres.state, spheres.number
     r, v = place_at(world, state, i, now), velocity_at(world, state, i, now)
     leaves = time_to_leave(world, lists, r, v, entries(lists.centre, i, 0, r))
-    best, partner = now + leaves, LEAVES if leaves < math.inf else NOTHING
+    best = now + leaves
+    partner = np.int64(LEAVES if leaves < math.inf else NOTHING)
     one = of_row(state, i, r)
     near, times = lists.count[i], lists.times
     if world.growth != 0.0:
@@ -49,7 +50,7 @@ def predict(world, rules, spheres, lists, queue, tally, i, now):
     for w in range(len(world.walls)):
         time = time_to_wall(world, state, i, w, best)
         if time < best:
-            best, partner = time, FIRST_WALL - w
+            best, partner = time, np.int64(FIRST_WALL - w)
     queue.time[i], queue.event[i, PARTNER] = best, partner
     if partner >= 0:
         queue.event[i, PARTNER_HITS] = np.int32(spheres.hits[partner])

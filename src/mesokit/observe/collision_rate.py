@@ -1,0 +1,123 @@
+"""How often hard spheres collide."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.case.component import component, tag
+from mesokit.observe.shared.protocol import Observable, State, pack, unpack
+from mesokit.observe.shared.result import Comparison, Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.engine import RunningSpheres
+
+KINDS = ("pairs", "walls", "elastic by contact time")
+
+
+@component
+class CollisionRate(Observable):
+    """Collisions of a sphere per time: with others, with walls, and made elastic by a contact time.
+
+    A collision of two counts for both; what a contact time does is told without walls. Theory is
+    that of a uniform gas of equal spheres: the rate that belongs to the pressure, at the
+    temperature as it is in time.
+    """
+
+    quantity: Literal["collision-rate"] = tag("collision-rate")
+    methods: ClassVar[tuple[str, ...]] = ("event-driven",)
+    needs_fluid: ClassVar[bool] = False
+
+    def accumulator(self, case: Case) -> CollisionRateAccumulator:
+        """An empty memory for it."""
+        return CollisionRateAccumulator(self, case)
+
+
+class CollisionRateAccumulator:
+    """Block averages of what has happened between two samples."""
+
+    def __init__(self, observable: CollisionRate, case: Case) -> None:
+        self.name, self.case = observable.label, case
+        self.blocks = Blocks((4,))  # three rates, the root of the temperature
+        self.before = np.full(5, np.nan)  # time, three counts, root of temperature at the last
+
+    def observe(self, spheres: RunningSpheres) -> None:
+        """Take one sample: of what has happened since the last."""
+        still = 0 if self.case.walls else 1  # without walls the momentum is zero
+        degrees = spheres.dimension * max(spheres.n - still, 1)
+        root = math.sqrt(2 * spheres.totals()[2] / degrees)
+        now = np.array([spheres.time, *spheres.collisions, root])
+        elapsed = now[0] - self.before[0]
+        if elapsed > 0:  # false at the first, which is nan
+            pairs, walls, elastic = (now - self.before)[1:4] / elapsed / spheres.n
+            self.blocks.add([2 * pairs, walls, 2 * elastic, 0.5 * (root + self.before[4])])
+        self.before = now
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks, before=self.before)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        self.before = np.array(state["before"])
+
+    def pool(self, other: CollisionRateAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.blocks.pool(other.blocks)
+
+    def result(self) -> Result:
+        """The three rates."""
+        value, error = self.blocks.mean(), self.blocks.error()
+        known = np.array([self.expected(float(value[3])), math.nan, math.nan])
+        contact_time = self.case.spheres.collision.contact_time
+        if contact_time and not self.case.walls:
+            known[2] = known[0] * theory.elastic_share(float(value[0]), contact_time)
+        # that of a contact time counts walls as well, which are not told apart
+        shown = [0, 1] if self.case.walls else [0, 2] if contact_time else [0]
+        note = "approximate: molecular chaos" if not self.case.spheres.collision.elastic else ""
+        listed = [
+            Comparison(
+                f"collisions per time, {KINDS[k]}",
+                float(value[k]),
+                float(error[k]),
+                float(known[k]),
+                "1/time",
+                note,
+            )
+            for k in shown
+        ]
+        return Result(
+            quantity="collision-rate",
+            drawing="curve",
+            name=self.name,
+            x={"with": np.array(KINDS)[shown]},
+            value=value[shown],
+            error=error[shown],
+            label="collisions of a sphere per time",
+            units={"value": "1/time", "with": ""},
+            expected=known[shown],
+            theory="Enskog",
+            comparisons=tuple(listed) if self.blocks.count else (),
+            samples=self.blocks.count,
+        )
+
+    def expected(self, root: float) -> float:
+        """The rate of a uniform fluid of equal hard spheres, nan of all others."""
+        case, d = self.case, self.case.box.dimension
+        section = case.spheres
+        alike = len(section.kinds) == 1 and section.kinds[0].spread == 0
+        hard = section.collision.reach <= 1
+        if not (alike and hard) or case.walls or section.gravity:
+            return math.nan
+        kind, phi = section.kinds[0], section.fraction(case.box)
+        diameter = kind.diameter * section.scale(case.box)
+        excess = theory.compressibility(phi, d) - 1
+        return 2 * d * excess * root / (diameter * math.sqrt(math.pi * kind.mean_mass(d)))

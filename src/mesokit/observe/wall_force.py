@@ -1,0 +1,114 @@
+"""Force of hard spheres on the walls."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.component import component, tag
+from mesokit.errors import CaseError
+from mesokit.method.protocol import method_of
+from mesokit.observe.shared.estimate import of_mean
+from mesokit.observe.shared.protocol import Observable, State, pack, unpack
+from mesokit.observe.shared.result import Comparison, Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.engine import RunningSpheres
+
+
+@component
+class WallForce(Observable):
+    """Mean force on each surface, and of all of them beside the weight of the spheres.
+
+    It is the momentum that collisions give to a surface per time.
+    """
+
+    quantity: Literal["wall-force"] = tag("wall-force")
+    methods: ClassVar[tuple[str, ...]] = ("event-driven",)
+    needs_fluid: ClassVar[bool] = False
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError without a wall."""
+        if not case.walls:
+            raise CaseError("wall-force needs a [[wall]]")
+
+    def accumulator(self, case: Case) -> WallForceAccumulator:
+        """An empty memory for it."""
+        return WallForceAccumulator(self, case)
+
+
+class WallForceAccumulator:
+    """Block averages of what surfaces take between two samples."""
+
+    def __init__(self, observable: WallForce, case: Case) -> None:
+        observable.check(case)
+        self.name, self.case = observable.label, case
+        self.names: tuple[str, ...] = method_of(case).expected["wall-force"](case, observable)
+        d = case.box.dimension
+        self.blocks = Blocks((len(self.names), d))
+        self.before = np.full(1 + len(self.names) * d, np.nan)  # time, momentum taken so far
+
+    def observe(self, spheres: RunningSpheres) -> None:
+        """Take one sample: of what has been taken since the last."""
+        now = np.array([spheres.time, *spheres.wall_impulse.ravel()])
+        if now[0] > self.before[0]:
+            taken = (now - self.before)[1:] / (now[0] - self.before[0])
+            self.blocks.add(taken.reshape(len(self.names), -1))
+        self.before = now
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks, before=self.before)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        self.before = np.array(state["before"])
+
+    def pool(self, other: WallForceAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.blocks.pool(other.blocks)
+
+    def result(self) -> Result:
+        """Forces, and their sum along the axis of gravity."""
+        axes = np.array(self.case.box.axes)
+        return Result(
+            quantity="wall-force",
+            drawing="curve",
+            name=self.name,
+            x={"surface": np.array(self.names), "component": axes},
+            value=self.blocks.mean(),
+            error=self.blocks.error(),
+            label="force on a surface",
+            units={"value": "m a/tau^2", "surface": "", "component": ""},
+            comparisons=tuple(self.comparisons()) if self.blocks.count else (),
+            samples=self.blocks.count,
+        )
+
+    def comparisons(self) -> list[Comparison]:
+        """The force on all walls along each axis of gravity: the weight, if the spheres are at rest
+        on average."""
+        section, box = self.case.spheres, self.case.box
+        pairs = zip(section.kinds, section.counts(box), strict=True)
+        d = box.dimension
+        mass = sum(
+            number * kind.mean_mass(d) * kind.mean_power(d) / kind.diameter**d
+            for kind, number in pairs
+        )
+        found = of_mean(self.blocks)
+        listed = []
+        for axis, g in zip(box.axes, section.gravity, strict=False):
+            if g:
+                chosen = np.zeros((len(self.names), d))
+                chosen[:, box.index(axis)] = 1.0
+                total, weights = found.value[:, box.index(axis)].sum(), chosen.ravel()
+                flat = found._replace(residuals=found.residuals.reshape(len(found.residuals), -1))
+                value = flat.scalar(total, weights)
+                what = f"force on all walls along {axis}"
+                listed.append(Comparison(what, *value, mass * g, "m a/tau^2", "the weight"))
+        return listed

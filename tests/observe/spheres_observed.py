@@ -1,0 +1,72 @@
+"""Cases of hard spheres and a fake of their engine, for what observables of spheres say."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mesokit import Box, Case, HardSpheres, Plates, Run
+from mesokit.errors import CaseError
+from mesokit.spheres.made import made
+
+
+def hard(observe, size=(9, 9), walls=(), **spheres):
+    """A case of hard spheres."""
+    given = {"number": 20, **spheres}
+    return Case(
+        run=Run(10, method="event-driven"),
+        box=Box(list(size)),
+        walls=list(walls),
+        observe=list(observe),
+        spheres=HardSpheres(**given),
+    )
+
+
+def hard_case_for(observable, **spheres):
+    """A case in which it can be measured: without walls, or under gravity between plates."""
+    try:
+        return hard([observable], **spheres)
+    except CaseError:
+        return hard([observable], walls=[Plates("y")], gravity=(0, -1), **spheres)
+
+
+class FakeSpheres:
+    """Independent spheres, thermal, anywhere in the box; collisions come as told."""
+
+    def __init__(self, case, seed=1, rates=(3.0, 1.0, 0.5), kT=1.0):
+        self.case, self.rng, self.rates, self.kT = case, np.random.default_rng(seed), rates, kT
+        self.made, self.n = made(case), case.particles
+        self.box, self.dimension = np.array(case.box.size, float), case.box.dimension
+        self.step, self.collisions, self.virial = 0, (0, 0, 0), 0.0
+        self.advance(0)
+
+    def advance(self, steps):
+        self.step += steps
+        shape = (self.n, self.dimension)
+        self.v = self.rng.normal(size=shape) * np.sqrt(self.kT / self.made.masses)[:, None]
+        self.r = self.rng.random(shape) * self.box
+        events = self.rng.poisson(np.array(self.rates) * steps * self.n)
+        self.collisions = tuple(int(x) for x in np.array(self.collisions) + events)
+        self.virial += self.rng.exponential(self.n * (steps + 1))
+
+    @property
+    def time(self):
+        return 1.0 * self.step
+
+    def positions(self, ids=None, unwrapped=False):
+        return self.r
+
+    def velocities(self, ids=None):
+        return self.v
+
+    def masses(self, ids=None):
+        return self.made.masses
+
+    def diameters(self, ids=None):
+        return self.made.diameters
+
+    def energies(self):
+        return {"translation": self.totals()[2], "rotation": 1.0, "potential": 0.0}
+
+    def totals(self):
+        m = self.made.masses
+        return self.n, m @ self.v, 0.5 * float(m @ (self.v**2).sum(axis=1))

@@ -1,0 +1,143 @@
+"""Observables of spheres: stops, short runs, pools, and numbers known beforehand."""
+
+import numpy as np
+import pytest
+from spheres_observed import FakeSpheres, hard, hard_case_for
+
+from mesokit import (
+    ClusterSize,
+    CollisionRate,
+    HeightProfile,
+    Plates,
+    SphereKind,
+    VelocityCumulant,
+    theory,
+)
+from mesokit.errors import CaseError
+from mesokit.observe import OBSERVABLES
+from mesokit.observe.cluster_size import cluster_sizes
+
+OF_SPHERES = [kind for kind in OBSERVABLES if "event-driven" in kind.methods]
+
+
+def sampled(accumulator, spheres, samples):
+    for _ in range(samples):
+        spheres.advance(10)
+        accumulator.observe(spheres)
+
+
+@pytest.mark.parametrize("kind", OF_SPHERES)
+def test_same_bits_after_a_stop(kind):
+    case = hard_case_for(kind())
+    whole, first, second = (kind().accumulator(case) for _ in range(3))
+    sampled(whole, FakeSpheres(case), 40)
+    spheres = FakeSpheres(case)
+    sampled(first, spheres, 17)
+    second.restore({name: array.copy() for name, array in first.state().items()})
+    sampled(second, spheres, 23)
+    assert second.result() == whole.result()
+    assert whole.result().samples in (39, 40)  # rates need two looks
+
+
+@pytest.mark.parametrize("kind", OF_SPHERES)
+@pytest.mark.parametrize("samples", [0, 1, 2, 5])
+def test_short_runs_have_results(kind, samples):
+    case = hard_case_for(kind(name="mine"))
+    accumulator = kind(name="mine").accumulator(case)
+    sampled(accumulator, FakeSpheres(case), samples)
+    result = accumulator.result()
+    assert result.name == "mine" and result.quantity == kind().quantity
+    assert repr(result)
+
+
+@pytest.mark.parametrize("kind", OF_SPHERES)
+def test_two_runs_make_one(kind):
+    case = hard_case_for(kind())
+    one, other = (kind().accumulator(case) for _ in range(2))
+    sampled(one, FakeSpheres(case, seed=1), 20)
+    sampled(other, FakeSpheres(case, seed=2), 20)
+    alone = one.result().samples
+    one.pool(other)
+    assert one.result().samples == 2 * alone
+
+
+def test_rates_are_those_of_the_counts():
+    case = hard([CollisionRate(every=1)], number=1000, size=(90, 90))
+    accumulator = CollisionRate(every=1).accumulator(case)
+    sampled(accumulator, FakeSpheres(case), 200)
+    (found,) = accumulator.result().comparisons
+    assert abs(found.measured - 6.0) < 4 * found.error and found.error < 0.01
+
+
+def test_expected_rate_is_enskogs():
+    case = hard([CollisionRate()], number=None, packing_fraction=0.2, size=(60, 60))
+    accumulator = CollisionRate().accumulator(case)
+    rate = theory.enskog_rate(case.particles / 3600, 1.0, 1.0, 0.2, 2)
+    assert accumulator.expected(1.0) == pytest.approx(rate, rel=2e-3)
+
+
+@pytest.mark.parametrize("size", [(40, 40), (16, 16, 16)])
+@pytest.mark.parametrize("number", [4, 500])
+def test_fourth_cumulant_of_maxwells_velocities_is_zero(size, number):
+    case = hard([VelocityCumulant()], number=number, size=size, packing_fraction=None)
+    accumulator = VelocityCumulant().accumulator(case)
+    sampled(accumulator, FakeSpheres(case), 2000)
+    (found,) = accumulator.result().comparisons
+    assert found.expected == 0.0 and found.error < 0.01
+    assert abs(found.measured) < 4 * found.error
+
+
+def test_fourth_cumulant_of_even_velocities():
+    case = hard([VelocityCumulant()], number=4000, size=(90, 90))
+    accumulator, spheres = VelocityCumulant().accumulator(case), FakeSpheres(case)
+    spheres.v = np.random.default_rng(2).uniform(-1, 1, (4000, 2))
+    accumulator.observe(spheres)
+    # of one component <v^4> = 1/5, <v^2> = 1/3: a_2 = (2/4) (2/5 + 2/9)/(4/9) - 1
+    assert accumulator.result().value[0] == pytest.approx(-0.3, abs=0.015)
+
+
+def test_clusters_reach_through_the_box_but_not_through_walls():
+    places = np.array([[0.1, 5.0], [9.5, 5.0], [5.0, 0.5], [5.0, 9.9], [5.9, 0.5], [2.5, 2.5]])
+    ones = np.ones(6)
+    periodic = cluster_sizes(places, ones, np.array([10.0, 10.0]), 0.1)
+    closed = cluster_sizes(places, ones, np.array([10.0, 0.0]), 0.1)
+    assert sorted(periodic) == [1, 2, 3] and sorted(closed) == [1, 1, 2, 2]
+
+
+def test_shares_of_clusters_add_up():
+    case = hard([ClusterSize(gap=0.5)], number=60)
+    accumulator = ClusterSize(gap=0.5).accumulator(case)
+    sampled(accumulator, FakeSpheres(case), 20)
+    result = accumulator.result()
+    assert result.value.sum() == pytest.approx(1.0)
+    mean, largest, _ = result.comparisons
+    assert 1 < mean.measured < 60 and 0 < largest.measured <= 1
+
+
+def test_heights_of_an_ideal_gas_are_barometric():
+    observable = HeightProfile(bins=10)
+    spheres = {"number": 400, "gravity": (0, -1), "packing_fraction": 0.001}
+    case = hard([observable], size=(20, 20), walls=[Plates("y")], **spheres)
+    accumulator, fake = observable.accumulator(case), FakeSpheres(case)
+    section = case.spheres
+    radius = 0.5 * section.scale(case.box)
+    mass = section.kinds[0].mean_mass(2)
+    fake.kT = 5.0 * mass  # a scale height of 5
+    for _ in range(400):
+        fake.advance(1)
+        u = fake.rng.random(400)
+        fake.r[:, 1] = radius - 5 * np.log1p(u * np.expm1(-(20 - 2 * radius) / 5))
+        accumulator.observe(fake)
+    result = accumulator.result()
+    assert np.all(np.abs(result.value - result.expected) < 4 * result.error + 1e-3)
+    (mean,) = result.comparisons
+    assert abs(mean.measured - mean.expected) < 4 * mean.error + 0.01
+
+
+def test_what_cannot_be_measured_is_refused():
+    with pytest.raises(CaseError, match="height-profile"):
+        hard([HeightProfile()])
+    with pytest.raises(CaseError, match="height-profile"):
+        hard([HeightProfile()], walls=[Plates("x"), Plates("y")], gravity=(1, -1))
+    with pytest.raises(CaseError, match="one kind"):
+        hard([VelocityCumulant()], kinds=[SphereKind(1.0), SphereKind(0.5)])
