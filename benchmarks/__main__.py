@@ -2,7 +2,8 @@
 
 python -m benchmarks [--rounds 5] [--seconds 3] [--only PART,PART]
 
-Parts: peers, cost, solids, bonded, solutes, flocks, observe, memory, startup.
+Parts: peers, cost, solids, bonded, solutes, event-driven, flocks, observe, memory,
+startup.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import datetime
 import platform
 from pathlib import Path
 
-from benchmarks import bonded, costs, flocks, peers, solutes, startup
+from benchmarks import bonded, costs, event_driven, flocks, peers, solutes, startup
 
 PARTS = {
     "peers": peers.table,
@@ -20,6 +21,7 @@ PARTS = {
     "solids": costs.solids,
     "bonded": bonded.table,
     "solutes": solutes.table,
+    "event-driven": event_driven.table,
     "flocks": flocks.table,
     "observe": costs.observables,
     "memory": costs.memory,

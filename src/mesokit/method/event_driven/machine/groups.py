@@ -52,7 +52,8 @@ class Lists(NamedTuple):
 
     centre (n, 4): these places, and how far one may go; cells (d,), per_length (d,): of the grid;
     cell (n,), head (cells,), following (n,), before (n,): the centres of each cell, linked;
-    count (n,), near (n, most): the lists; times (most,): when those of one list are met.
+    count (n,), near (n, most): the lists; columns (8, most), times
+    (most,): the states of those on one list, and when they are met.
     """
 
     shell: float
@@ -66,6 +67,7 @@ class Lists(NamedTuple):
     before: Any
     count: Any
     near: Any
+    columns: Any
     times: Any
 
 

@@ -77,20 +77,34 @@ class Mover(NamedTuple):
     radius: float
 
 
+@elementwise
+def in_column(columns, a, start, like):
+    """Consecutive entries of column a, as a tuple as long as `like`."""
+    return "columns[start + {k}, a]"
+
+
 @scalar
-def mover(state, i, like):
+def of_column(columns, a, like):
+    """A sphere whose state is a column."""
+    r, v = in_column(columns, a, 0, like), in_column(columns, a, VELOCITY, like)
+    return Mover(r, v, columns[TIME, a], columns[RADIUS, a])
+
+
+@scalar
+def of_row(state, i, like):
     """Sphere i as it is in memory."""
     r, v = entries(state, i, 0, like), entries(state, i, VELOCITY, like)
     return Mover(r, v, state[i, TIME], state[i, RADIUS])
 
 
 @scalar
-def meeting(world, rule, one, other, now):
+def meeting(world, rule, one, other, now, growth):
     """The time at which something happens between two spheres, infinite if nothing does.
 
-    It follows from the states of both at the later of their own times, and does not depend on when
-    it is asked for. Of their images those are meant that are nearest `now`. Spheres that overlap by
-    rounding and come nearer touch at once (Bannerman, Strobl, Formella and Poeschel 2014).
+    Diameters grow by `growth` per time. The answer follows from the states of both at the later of
+    their own times, and does not depend on when it is asked for. Of their images those are meant
+    that are nearest `now`. Spheres that overlap by rounding and come nearer touch at once
+    (Bannerman, Strobl, Formella and Poeschel 2014).
     """
     g, since = world.gravity, max(one.time, other.time)
     mine, its = since - one.time, since - other.time
@@ -98,7 +112,7 @@ def meeting(world, rule, one, other, now):
     v = added_scaled(added_scaled(one.v, mine, g), -1.0, added_scaled(other.v, its, g))
     apart = meant_image(world, apart, v, now - since)
     reach = one.radius + other.radius
-    growth = reach * world.growth
+    growth = reach * growth if growth != 0.0 else 0.0
     return since + next_contact(rule, apart, v, mul_add(growth, since, reach), growth)
 
 

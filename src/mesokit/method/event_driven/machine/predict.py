@@ -11,17 +11,21 @@ from mesokit.method.event_driven.machine.groups import (
     PARTNER,
     PARTNER_HITS,
     PREDICTIONS,
+    WIDTH,
 )
 from mesokit.method.event_driven.machine.lists import time_to_leave
 from mesokit.method.event_driven.machine.motion import (
     entries,
     meeting,
-    mover,
+    of_column,
+    of_row,
     place_at,
     velocity_at,
 )
 from mesokit.method.event_driven.machine.walls import time_to_wall
 from mesokit.scalar.jit import scalar
+
+EIGHT = 8  # lengths of lists are multiples of it
 
 
 @scalar
@@ -32,11 +36,12 @@ def predict(world, rules, spheres, lists, queue, tally, i, now):
     leaves = time_to_leave(world, lists, r, v, entries(lists.centre, i, 0, r))
     best = now + leaves
     partner = np.int64(LEAVES if leaves < math.inf else NOTHING)
-    one = mover(state, i, r)
-    # all times first and the soonest then, so that one pair need not wait for another
+    one = of_row(state, i, r)
     near, times = lists.count[i], lists.times
-    for a in range(near):
-        times[a] = meeting(world, rules.pair, one, mover(state, lists.near[i, a], r), now)
+    if world.growth != 0.0:
+        meet_all(world, rules, state, lists, i, one, now, world.growth)
+    else:
+        meet_all(world, rules, state, lists, i, one, now, 0.0)
     for a in range(near):
         if times[a] <= best:
             j = lists.near[i, a]
@@ -50,3 +55,20 @@ def predict(world, rules, spheres, lists, queue, tally, i, now):
     if partner >= 0:
         queue.event[i, PARTNER_HITS] = np.int32(spheres.hits[partner])
     tally.counts[PREDICTIONS] += 1
+
+
+@scalar
+def meet_all(world, rules, state, lists, i, one, now, growth):
+    """When sphere i meets each of those on its list; growth 0 is to be said as that number.
+
+    They are gathered by columns first: the times then follow for eight of them at once, as vectors.
+    What lies beyond the end of the list is old and never read.
+    """
+    near, columns = lists.count[i], lists.columns
+    for a in range(near):
+        j = lists.near[i, a]
+        for k in range(WIDTH):
+            columns[k, a] = state[j, k]
+    for a in range((near + EIGHT - 1) & -EIGHT):
+        other = of_column(columns, a, one.r)
+        lists.times[a] = meeting(world, rules.pair, one, other, now, growth)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 WANTED = {2: 10.0, 3: 14.0}  # spheres on a list: more are looked at longer, fewer are made anew
 CLOSEST = 0.1  # of the largest diameter: the smallest shell
-ROOM = 24  # entries of a list, at first
+ROOM = 24  # entries of a list, at first; a multiple of eight
 PER_BIN = 4.0  # events
 KEPT = ("state", "body", "boxes", "hits")
 
@@ -183,6 +183,7 @@ class System:
             np.zeros(n, np.int32),
             np.zeros(n, np.int32),
             np.zeros((n, self.room), np.uint32),
+            np.zeros((groups.WIDTH, self.room)),
             np.zeros(self.room),
         )
 
