@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
-from mesokit.method.protocol import method_of
 from mesokit.observe.shared.estimate import of_mean
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Comparison, Result
@@ -19,6 +18,15 @@ from mesokit.statistics import Blocks
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.engine import RunningSpheres
+
+
+def surface_names(case: Case) -> tuple[str, ...]:
+    """What surfaces are called, wall by wall."""
+    names = []
+    for i, wall in enumerate(case.walls):
+        name, keys = wall.name or f"{type(wall).__name__.lower()}-{i + 1}", wall.surfaces()
+        names += [f"{name}-{key}" if len(keys) > 1 else name for key in keys]
+    return tuple(names)
 
 
 @component
@@ -48,7 +56,7 @@ class WallForceAccumulator:
     def __init__(self, observable: WallForce, case: Case) -> None:
         observable.check(case)
         self.name, self.case = observable.label, case
-        self.names: tuple[str, ...] = method_of(case).expected["wall-force"](case, observable)
+        self.names = surface_names(case)
         d = case.box.dimension
         self.blocks = Blocks((len(self.names), d))
         self.before = np.full(1 + len(self.names) * d, np.nan)  # time, momentum taken so far

@@ -10,7 +10,6 @@ from mesokit.method.event_driven.displacement import Displacement
 from mesokit.method.event_driven.engine import EventDriven
 from mesokit.method.event_driven.section import KEYS, Sections
 from mesokit.method.event_driven.summary import summary
-from mesokit.method.event_driven.walls import wall_rows
 from mesokit.method.protocol import Columns, Method
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
 from mesokit.spheres.groups import FIELDS, groups
@@ -30,10 +29,6 @@ def _first_state(case: Case, arrays: Mapping[str, Any]) -> Started:
 
 def _engine(case: Case, threads: int, measures: Sequence[str]) -> EventDriven:
     return EventDriven(case, threads)
-
-
-def _surfaces(case: Case, observable: Any) -> tuple[str, ...]:
-    return wall_rows(case).names
 
 
 def columns(case: Case) -> Columns:
@@ -59,7 +54,7 @@ METHOD = Method(
     closed_axes=closed_axes,
     solids=solids,
     observables=(MeanSquareDisplacement,),
-    expected={"mean-square-displacement": Displacement, "wall-force": _surfaces},
+    expected={"mean-square-displacement": Displacement},
     check=check,
     groups=groups,
     timestep=lambda case: float(case.spheres.timestep),
