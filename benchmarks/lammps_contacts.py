@@ -36,7 +36,7 @@ def ours(steps: int) -> tuple[np.ndarray, np.ndarray]:
     )
     case = Case(
         run=Run(steps, method="soft-spheres"),
-        box=Box([SIDE] * 3),
+        box=Box((SIDE, SIDE, SIDE)),
         spheres=SoftSpheres(number=COUNT, pair=law, timestep=STEP),
     )
     still = np.zeros((COUNT, 3))
