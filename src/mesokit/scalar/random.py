@@ -30,7 +30,7 @@ VIRTUAL_NUMBER = np.uint64(13)
 INITIAL_SOLUTES = np.uint64(14)
 # Where the numbers of what is no particle of the fluid begin.
 FIRST_VIRTUAL, FIRST_BEAD = 2**61, 2**62
-METHOD = np.uint64(128)  # and above: for methods other than MPCD, whose runs never meet
+METHOD = np.uint64(128)  # to 255: for methods other than MPCD, whose runs never meet
 
 _LOW = np.uint64(0xFFFFFFFF)
 _SHIFT = np.uint64(32)

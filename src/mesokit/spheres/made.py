@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 Array = NDArray[np.float64]
-SIZES = 1000  # purpose of the random numbers of diameters, above METHOD
+SIZES = 60  # purpose of the random numbers of diameters, above METHOD
 INERTIA = {2: 1 / 8, 3: 1 / 10}  # moment of inertia over m diameter^2 of a disk and a sphere
 
 

@@ -8,7 +8,7 @@ from mesokit.spheres.draws import normal_rows
 from mesokit.spheres.made import Made
 from mesokit.spheres.start.protocol import Array
 
-VELOCITIES, SPINS = 1001, 1002  # purposes of random numbers, above METHOD
+VELOCITIES, SPINS = 61, 62  # purposes of random numbers, above METHOD
 
 
 def velocities(seed: int, made: Made, kT: float, dimension: int, at_rest: bool = True) -> Array:

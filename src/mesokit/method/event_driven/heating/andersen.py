@@ -11,7 +11,7 @@ from mesokit.case.component import component, param, tag
 from mesokit.method.event_driven.heating.protocol import Heating, Motion
 from mesokit.spheres.draws import normal_rows, uniform_rows
 
-CHANCE, VELOCITY = 1021, 1022  # purposes of the random numbers, above METHOD
+CHANCE, VELOCITY = 81, 82  # purposes of the random numbers, above METHOD
 
 
 @component

@@ -10,7 +10,7 @@ from mesokit.case.component import component, param, tag
 from mesokit.method.event_driven.heating.protocol import Heating, Motion
 from mesokit.spheres.draws import normal_rows
 
-PURPOSE = 1020  # of the random numbers, above METHOD
+PURPOSE = 80  # of the random numbers, above METHOD
 
 
 @component

@@ -27,7 +27,7 @@ from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.random import METHOD, Counter, normals, unit, words
 from mesokit.scalar.vector import added_scaled, dot, outer, scaled
 
-THERMAL = METHOD + np.uint64(1010)  # purpose of the random numbers of thermal walls
+THERMAL = METHOD + np.uint64(70)  # purpose of the random numbers of thermal walls
 
 
 class Rules(NamedTuple):

@@ -18,7 +18,7 @@ from mesokit.scalar.random import METHOD, Counter, unit, words
 from mesokit.scalar.vector import added_scaled, dot
 
 Array = NDArray[np.float64]
-PLACES = METHOD + np.uint64(1011)  # purpose of the random numbers
+PLACES = METHOD + np.uint64(71)  # purpose of the random numbers
 TRIES = 100_000  # of one sphere
 
 
