@@ -168,14 +168,15 @@ def test_a_gas_cools_by_the_law_of_haff():
         collision=HardCollision(e),
         start=RandomStart(),
     ).engine
-    # clustering makes it some percent hotter later on; 0.4482(18), 0.2537(11) from other programs
-    for turn, tolerance in ((1, 0.015), (2, 0.03)):
+    # clustering makes it some percent hotter than the law; another program has these
+    for turn, known in ((1, 0.4482), (2, 0.2537)):
         engine.advance(1)
         kT = engine.totals()[2] / (engine.n - 1)
+        assert kT == pytest.approx(known, rel=0.03), turn
         expected = float(theory.haff_temperature(engine.time, haff))
-        assert kT == pytest.approx(expected, rel=tolerance), turn
+        assert kT == pytest.approx(expected, rel=0.05), turn
         collisions = 2 * engine.collisions[0] / engine.n
-        assert kT == pytest.approx(math.exp(-(1 - e**2) * collisions / 2), rel=tolerance)
+        assert kT == pytest.approx(math.exp(-(1 - e**2) * collisions / 2), rel=0.03)
 
 
 def test_kicks_hold_a_temperature():
@@ -188,14 +189,14 @@ def test_kicks_hold_a_temperature():
     ).engine
     engine.advance(20)
     found = []
-    for _ in range(60):
+    for _ in range(150):
         engine.advance(1)
         found.append(engine.totals()[2] / engine.n)
     rate = theory.enskog_rate(engine.n / 1600, 1.0, 1.0, engine.n * math.pi / 4 / 1600, 2)
     error = np.std(found) / math.sqrt(len(found) / 16)  # relaxes within 16 time units
     expected = theory.kicked_temperature(0.0627, 0.95, rate)
     assert abs(np.mean(found) - expected) < 3 * error + 0.005  # the kicks of an interval
-    assert error < 0.02
+    assert error < 0.03
     assert np.abs(engine.totals()[1]).max() < 1e-9
 
 
