@@ -280,6 +280,6 @@ class System:
 def aligned(n: int, width: int, kind: type = np.float64) -> Any:
     """Rows of numbers that begin at multiples of 64 bytes."""
     size = np.dtype(kind).itemsize
-    raw = np.zeros(n * width + 64 // size, kind)
+    raw: NDArray[Any] = np.zeros(n * width + 64 // size, kind)
     start = (-raw.ctypes.data % 64) // size
     return raw[start : start + n * width].reshape(n, width)
