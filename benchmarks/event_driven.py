@@ -58,8 +58,8 @@ def table(rounds: int, seconds: float) -> Iterator[str]:
     yield ""
     yield (
         "Million collisions per second of a core, and for each step of an atom in LAMMPS "
-        f"{lammps_peer.version()} (`lj/cut` 2.5, {ATOMS:,} atoms, one rank) run in turn; CPU time, "
-        "medians, the ratios pair by pair."
+        f"{lammps_peer.version()} (`lj/cut` 2.5, {ATOMS:,} atoms, one rank) run in turn; "
+        "CPU time, medians, the ratios pair by pair."
     )
     yield ""
     yield (
