@@ -2,7 +2,7 @@
 
 python -m benchmarks [--rounds 5] [--seconds 3] [--only PART,PART]
 
-Parts: peers, cost, solids, bonded, solutes, flocks, observe, memory, startup.
+Parts: peers, cost, solids, bonded, solutes, soft, flocks, observe, memory, startup.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import datetime
 import platform
 from pathlib import Path
 
-from benchmarks import bonded, costs, flocks, peers, solutes, startup
+from benchmarks import bonded, costs, flocks, peers, soft_spheres, solutes, startup
 
 PARTS = {
     "peers": peers.table,
@@ -20,6 +20,7 @@ PARTS = {
     "solids": costs.solids,
     "bonded": bonded.table,
     "solutes": solutes.table,
+    "soft": soft_spheres.table,
     "flocks": flocks.table,
     "observe": costs.observables,
     "memory": costs.memory,
