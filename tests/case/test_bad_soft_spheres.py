@@ -102,7 +102,9 @@ def test_wrong_cases_are_refused(name, tmp_path: Path, capsys):
 def test_the_good_case_passes(tmp_path: Path, capsys):
     file = tmp_path / "case.toml"
     file.write_text(GOOD)
-    main(["check", str(file)])
+    with pytest.raises(SystemExit) as end:
+        main(["check", str(file)])
+    assert end.value.code == 0
     told = capsys.readouterr().out
     for words in ("contact time", "steps per contact", "packing fraction", "overlap", "run time"):
         assert words in told

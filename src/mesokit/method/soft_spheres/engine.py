@@ -116,6 +116,11 @@ class SoftEngine:
         """Forces of pairs and walls (n, d), without gravity."""
         return self._rows("force", None, self.dimension) * self.system.given.law.quantum
 
+    def torques(self) -> Array:
+        """Torques of contacts, (n,) in 2D and (n, 3) in 3D."""
+        found = self._rows("torque", None, 3) * self.system.given.law.quantum
+        return found[:, 2] if self.dimension == 2 else found
+
     def energies(self) -> dict[str, float]:
         """Kinetic energy of translation and of rotation; "potential": of pairs, walls and gravity;
         "contact": of these the pairs and walls alone."""

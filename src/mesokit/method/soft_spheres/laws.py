@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from mesokit.spheres.made import Made
 
 Array = NDArray[np.float64]
-PARTS = 2.0**48  # quanta in the force of an overlap of a diameter; one term has room for four
+PARTS = 2.0**50  # quanta in the force of an overlap of a diameter: beyond it there is room for 2^11
 FINEST = 2.0**34  # quanta in the unit of force of a potential
 ROOM = 2.0**50  # quanta that one term of a vector loop may be
 

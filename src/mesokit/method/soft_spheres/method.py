@@ -13,7 +13,7 @@ from mesokit.method.soft_spheres.scales import timestep_of
 from mesokit.method.soft_spheres.section import KEYS, Sections
 from mesokit.method.soft_spheres.summary import summary
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
-from mesokit.spheres.groups import groups
+from mesokit.spheres.groups import FIELDS, groups
 from mesokit.spheres.made import made
 from mesokit.spheres.start.first_state import ARRAYS, first_state, missing_files, starts
 from mesokit.spheres.walls import closed_axes, solids
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def _first_state(case: Case, arrays: Mapping[str, Any]) -> Started:
-    return first_state(case, made(case), arrays, case.spheres.first_spin_kT)
+    return first_state(case, made(case), arrays, case.spheres.first_spin_kT, hard=False)
 
 
 def _engine(case: Case, threads: int, measures: Sequence[str]) -> SoftEngine:
@@ -47,6 +47,9 @@ METHOD = Method(
     sections=Sections,
     keys=KEYS,
     whole_cells=False,
+    fields=FIELDS,
+    spheres=True,
+    picture="disks",
     observables=(MeanSquareDisplacement,),
     expected={"mean-square-displacement": Displacement},
     check=check,

@@ -23,10 +23,12 @@ ROUNDING = 1e-5  # of a diameter: files keep places as float32
 ARRAYS = ("positions", "velocities", "spins")
 
 
-def first_state(case: Case, made: Made, arrays: Mapping[str, Any], spin_kT: float) -> Started:
+def first_state(
+    case: Case, made: Made, arrays: Mapping[str, Any], spin_kT: float, *, hard: bool = True
+) -> Started:
     """Places, velocities and spins of all. Raises CaseError for arrays that do not fit.
 
-    Velocities and spins that nobody gives are drawn.
+    Velocities and spins that nobody gives are drawn. Only `hard` spheres must not overlap.
     """
     d, n = case.box.dimension, len(made.diameters)
     given = {name: arrays[name] for name in ARRAYS if arrays.get(name) is not None}
@@ -47,7 +49,8 @@ def first_state(case: Case, made: Made, arrays: Mapping[str, Any], spin_kT: floa
     diameters = placed.diameters if placed else None
     if placed is None or case.spheres.start.files():
         own = made.diameters if diameters is None else diameters
-        require_apart(positions, own, np.array(case.box.size, float), shut(case))
+        if hard:
+            require_apart(positions, own, np.array(case.box.size, float), shut(case))
     return Started(positions, velocities, spins, diameters)
 
 

@@ -18,7 +18,7 @@ from mesokit.method.soft_spheres.machine.groups import ENERGY, INVERSE, LARGEST,
 from mesokit.method.soft_spheres.machine.lists import ROLLING, SLIDING
 from mesokit.method.soft_spheres.machine.spring import Slider, stretched
 from mesokit.method.soft_spheres.pair.protocol import normal_energy, normal_force
-from mesokit.scalar.fixed_point import ROUNDER_BITS, fixed, quanta
+from mesokit.scalar.fixed_point import quanta
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
@@ -231,11 +231,12 @@ def forget(springs, i, s):
 
 @scalar
 def counted(total, vector, scale):
-    """A sum in whole quanta, and a vector more: of less than 2^51 quanta, see `LARGEST`."""
+    """A sum in whole quanta, and a vector more: cut off toward zero, so that what the other sphere
+    adds is exactly minus this."""
     return (
-        total[0] + fixed(vector[0], scale) - ROUNDER_BITS,
-        total[1] + fixed(vector[1], scale) - ROUNDER_BITS,
-        total[2] + fixed(vector[2], scale) - ROUNDER_BITS,
+        total[0] + np.int64(vector[0] * scale),
+        total[1] + np.int64(vector[1] * scale),
+        total[2] + np.int64(vector[2] * scale),
     )
 
 

@@ -152,7 +152,7 @@ class System:
                 f"two spheres, or a sphere and a wall, are {nearest:.3g} apart: the force is "
                 "beyond all bounds; expected a shorter timestep, or a start without overlaps"
             )
-        if law[:, groups.LARGEST].max() > 2.0**50:
+        if law[:, groups.LARGEST].max() > 2.0**61:
             raise RunError(
                 "a force of a contact is beyond all bounds; expected a shorter timestep, or a "
                 "start without overlaps"
