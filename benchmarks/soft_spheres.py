@@ -82,8 +82,8 @@ def table(rounds: int, seconds: float) -> Iterator[str]:
     yield (
         f"3D. Melt: LAMMPS' in.lj, {4 * CELLS**3} atoms, cut-off 2.5, skin 0.3, its style "
         f"`lj/cut/opt`. Bed: {BASE * BASE * LAYERS} grains at rest on a floor, spring and dashpot, "
-        "friction with history, `gran/hooke/history`. Millions of sphere-steps per second; LAMMPS on "
-        "one core."
+        "friction with history, `gran/hooke/history`. Millions of sphere-steps per second; LAMMPS "
+        "on one core."
     )
     yield ""
     yield "| workload | one thread | LAMMPS | ratio | two threads | over one |"
