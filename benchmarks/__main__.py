@@ -2,8 +2,7 @@
 
 python -m benchmarks [--rounds 5] [--seconds 3] [--only PART,PART]
 
-Parts: peers, cost, solids, bonded, solutes, event-driven, flocks, observe, memory,
-startup.
+Parts: peers, cost, solids, bonded, solutes, event-driven, soft, flocks, observe, memory, startup.
 """
 
 from __future__ import annotations
@@ -13,7 +12,16 @@ import datetime
 import platform
 from pathlib import Path
 
-from benchmarks import bonded, costs, event_driven, flocks, peers, solutes, startup
+from benchmarks import (
+    bonded,
+    costs,
+    event_driven,
+    flocks,
+    peers,
+    soft_spheres,
+    solutes,
+    startup,
+)
 
 PARTS = {
     "peers": peers.table,
@@ -22,6 +30,7 @@ PARTS = {
     "bonded": bonded.table,
     "solutes": solutes.table,
     "event-driven": event_driven.table,
+    "soft": soft_spheres.table,
     "flocks": flocks.table,
     "observe": costs.observables,
     "memory": costs.memory,

@@ -67,6 +67,7 @@ from mesokit.theory.kolmogorov import (
 )
 from mesokit.theory.kremer_grest import BondLength, kremer_grest_bond
 from mesokit.theory.lees_edwards import lees_edwards_relaxation_time, lees_edwards_velocity
+from mesokit.theory.lennard_jones_tail import LennardJonesTail, lennard_jones_tail
 from mesokit.theory.maxwell import (
     maxwell_component_cdf,
     maxwell_component_pdf,
@@ -104,6 +105,7 @@ from mesokit.theory.rouse_times import RouseTimes, rouse_times, rouse_times_from
 from mesokit.theory.second_virial import second_virial
 from mesokit.theory.self_diffusion import self_diffusion
 from mesokit.theory.slip_sphere import enskog_friction, slip_sphere_diffusion
+from mesokit.theory.slope import EndOfSliding, Rolling, down_slope, end_of_sliding
 from mesokit.theory.spring_dashpot import spring_dashpot
 from mesokit.theory.square_array import (
     square_array_drag,
@@ -155,12 +157,15 @@ __all__ = [
     "BondLength",
     "ChainExponents",
     "ChainInShear",
+    "EndOfSliding",
     "GaussianMolecule",
     "HeatAtWalls",
+    "LennardJonesTail",
     "NormalModes",
     "Origin",
     "PoiseuilleFit",
     "Reference",
+    "Rolling",
     "RouseTimes",
     "ShearStress",
     "SizeInShear",
@@ -202,9 +207,11 @@ __all__ = [
     "disordered_binder",
     "disordered_order",
     "dissipative_bounces",
+    "down_slope",
     "dumbbell_thinning",
     "dumbbell_viscosity",
     "elastic_share",
+    "end_of_sliding",
     "end_to_end_cdf",
     "enskog_diffusion",
     "enskog_friction",
@@ -230,6 +237,7 @@ __all__ = [
     "kremer_grest_bond",
     "lees_edwards_relaxation_time",
     "lees_edwards_velocity",
+    "lennard_jones_tail",
     "linear_modes",
     "loss_modulus",
     "maxwell_component_cdf",

@@ -4,7 +4,7 @@ from mesokit.scalar.jit import generic
 
 
 @generic
-def act(law, i, time, step, world, noted):
+def act(law, i, time, step, world, mine, noted):
     """Find force and torque on a sphere, by neighbours and walls; contacts grow by a step."""
 
 

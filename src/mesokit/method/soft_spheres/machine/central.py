@@ -38,7 +38,7 @@ def _(law):
 
 
 @act.register(Central)
-def _(law, i, time, step, world, noted):
+def _(law, i, time, step, world, mine, noted):
     bodies, box, lists, walls = world
     x, y, z = row(bodies.place, i)
     a, b, c, low = np.int64(0), np.int64(0), np.int64(0), FAR

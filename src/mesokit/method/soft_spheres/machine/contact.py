@@ -1,7 +1,9 @@
 """Forces of spheres that touch: along the normal, along the surface, and against rolling.
 
-Of every pair each sphere finds the force for itself. What one finds is bit for bit minus what the
-other does, for all the same numbers come in, with the other sign or in another order of two terms.
+Where both spheres of a pair are one thread's, the force is found once, from the one before in
+memory; else each finds it for itself. Nothing depends on which: what one finds is bit for bit
+minus what the other does, for all the same numbers come in, with the other sign or in another order
+of two terms. Springs are remembered where they are found; `mirror_springs` tells the other sphere.
 """
 
 import math
@@ -13,6 +15,7 @@ from mesokit.method.soft_spheres.machine.acting import act, quantum, tell, turns
 from mesokit.method.soft_spheres.machine.central import add_product
 from mesokit.method.soft_spheres.machine.geometry import cross, from_to, from_wall, reach, row
 from mesokit.method.soft_spheres.machine.groups import ENERGY, INVERSE, LARGEST, TOUCHING
+from mesokit.method.soft_spheres.machine.lists import ROLLING, SLIDING
 from mesokit.method.soft_spheres.machine.spring import Slider, stretched
 from mesokit.method.soft_spheres.pair.protocol import normal_energy, normal_force
 from mesokit.scalar.fixed_point import quanta
@@ -20,7 +23,6 @@ from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
 DAMPING_RATIO, FRICTION, OWN = 0, 1, 2  # columns of `Walls.own`, and their number
-SLIDING, ROLLING = 0, 3  # where in `springs` the two springs of a contact are
 
 
 class Contact(NamedTuple):
@@ -73,32 +75,42 @@ def _(law):
 
 
 @act.register(Contact)
-def _(law, i, time, step, world, noted):
+def _(law, i, time, step, world, mine, noted):
     bodies, box, lists, walls = world
+    first, last = mine
     r = row(bodies.place, i)
-    force = np.int64(0), np.int64(0), np.int64(0)
-    torque = force
+    force, torque = row(bodies.force, i), row(bodies.torque, i)
     largest = 0.0
     for s in range(lists.count[i]):
         j = lists.near[i, s]
+        if first <= j <= i:
+            continue  # found from there, or the list is filled up with the sphere itself
         way = from_to(box, bodies.place, j, r)
         square, sum_of_radii = dot(way, way), reach(bodies, i) + reach(bodies, j)
-        if square < sum_of_radii * sum_of_radii and j != i:
+        if square < sum_of_radii * sum_of_radii:
             touch = between(law, bodies, i, j, way, math.sqrt(square))
-            pushed, twisted = answer(law, touch, lists.springs, i, s, step)
-            force = counted(force, pushed, law.scale)
+            found = answer(law, touch, lists.springs, i, s, step)
+            twisted = torque_of(law, touch, found, touch.arm)
+            force = counted(force, found.force, law.scale)
             torque = counted(torque, twisted, law.scale)
-            largest = max(largest, abs_sum(pushed), abs_sum(twisted))
+            largest = max(largest, abs_sum(found.force), abs_sum(twisted))
+            if i < j < last:
+                other = Answer(found.force, found.along, opposite(found.against))
+                back = torque_of(law, touch, other, reach(bodies, j))
+                count(bodies.force, j, opposite(found.force), law.scale)
+                count(bodies.torque, j, back, law.scale)
+                largest = max(largest, abs_sum(back))
         else:
             forget(lists.springs, i, s)
     for w in range(len(walls.rows)):
         distance, out, moves = from_wall(walls.rows, w, box, r, time)
         if distance < reach(bodies, i):
             touch = at_wall(walls, bodies, i, w, distance, out, moves)
-            pushed, twisted = answer(law, touch, walls.springs, i, w, step)
-            force = counted(force, pushed, law.scale)
+            found = answer(law, touch, walls.springs, i, w, step)
+            twisted = torque_of(law, touch, found, touch.arm)
+            force = counted(force, found.force, law.scale)
             torque = counted(torque, twisted, law.scale)
-            largest = max(largest, abs_sum(pushed), abs_sum(twisted))
+            largest = max(largest, abs_sum(found.force), abs_sum(twisted))
         else:
             forget(walls.springs, i, w)
     for k in range(3):
@@ -140,12 +152,22 @@ def at_wall(walls, bodies, i, w, distance, out, moves):
     return Touch(arm - distance, out, mass, arm, arm, velocity, spin, ratio, friction)
 
 
+class Answer(NamedTuple):
+    """Force on the sphere, and the cross products of the normal with the force along the surface
+    and with that against rolling. The other sphere has minus the first and the third, and the
+    second as it is."""
+
+    force: tuple[float, float, float]
+    along: tuple[float, float, float]
+    against: tuple[float, float, float]
+
+
 @scalar
 def answer(law, touch, springs, i, s, step):
-    """Force and torque on the sphere; what the contact remembers is brought up to date."""
+    """What a contact does; what it remembers is brought up to date."""
     closing = -dot(touch.velocity, touch.normal)
     push, stiffness = normal_force(law.normal, touch.overlap, closing, touch.reduced, touch.ratio)
-    force, torque = scaled(push, touch.normal), (0.0, 0.0, 0.0)
+    force, along, against = scaled(push, touch.normal), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     if touch.friction > 0.0:
         sliding = added_scaled(touch.velocity, closing, touch.normal)
         slider = Slider(
@@ -153,10 +175,9 @@ def answer(law, touch, springs, i, s, step):
             law.damping * math.sqrt(stiffness * touch.reduced),
             touch.friction * abs(push),
         )
-        along, spring = stretched(slider, kept(springs, i, s, SLIDING), sliding, touch.normal, step)
+        drag, spring = stretched(slider, kept(springs, i, s, SLIDING), sliding, touch.normal, step)
         keep(springs, i, s, SLIDING, spring)
-        force = added(force, along)
-        torque = scaled(-touch.arm, cross(touch.normal, along))
+        force, along = added(force, drag), cross(touch.normal, drag)
     if law.rolling > 0.0:
         # the velocity with which the surfaces would slip if they did not roll (Luding 2008, eq. 22)
         rolling = scaled(-touch.roller, cross(touch.turning, touch.normal))
@@ -165,12 +186,25 @@ def answer(law, touch, springs, i, s, step):
             law.damping * math.sqrt(stiffness * touch.reduced),
             law.rolling * abs(push),
         )
-        against, spring = stretched(
-            slider, kept(springs, i, s, ROLLING), rolling, touch.normal, step
-        )
+        drag, spring = stretched(slider, kept(springs, i, s, ROLLING), rolling, touch.normal, step)
         keep(springs, i, s, ROLLING, spring)
-        torque = added_scaled(torque, -touch.roller, cross(touch.normal, against))
-    return force, torque
+        against = cross(touch.normal, drag)
+    return Answer(force, along, against)
+
+
+@scalar
+def torque_of(law, touch, found, arm):
+    """Torque on a sphere of this radius."""
+    torque = scaled(-arm, found.along)
+    if law.rolling > 0.0:
+        torque = added_scaled(torque, -touch.roller, found.against)
+    return torque
+
+
+@scalar
+def opposite(vector):
+    """Minus a vector."""
+    return -vector[0], -vector[1], -vector[2]
 
 
 @scalar
@@ -204,6 +238,13 @@ def counted(total, vector, scale):
         total[1] + np.int64(vector[1] * scale),
         total[2] + np.int64(vector[2] * scale),
     )
+
+
+@scalar
+def count(sums, i, vector, scale):
+    """Add a vector to those of sphere i, in whole quanta."""
+    a, b, c = counted(row(sums, i), vector, scale)
+    sums[i, 0], sums[i, 1], sums[i, 2] = a, b, c
 
 
 @scalar

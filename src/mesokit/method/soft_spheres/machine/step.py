@@ -49,8 +49,9 @@ def advance(team, counter, steps, law, motion, world, noted):
                 pending = True
                 break
         time = motion.step * float(now.step + np.uint64(1))
+        clear(law, world.bodies, first, last)
         for i in range(first, last):
-            act(law, i, time, motion.step, world, mine)
+            act(law, i, time, motion.step, world, (first, last), mine)
         meet(team)
         for i in range(first, last):
             kick(law, motion, world.bodies, i)
@@ -63,8 +64,17 @@ def advance(team, counter, steps, law, motion, world, noted):
 def find_forces(team, time, law, world, noted):
     """The forces on spheres where they start from. No contact grows meanwhile."""
     first, last = share(len(world.bodies.number), team.thread, team.threads)
+    clear(law, world.bodies, first, last)
     for i in range(first, last):
-        act(law, i, time, 0.0, world, noted[team.thread])
+        act(law, i, time, 0.0, world, (first, last), noted[team.thread])
+
+
+@scalar
+def clear(law, bodies, first, last):
+    """No forces yet, for laws that add to them from both sides of a contact."""
+    if turns(law):
+        bodies.force[first:last] = 0
+        bodies.torque[first:last] = 0
 
 
 @scalar

@@ -11,7 +11,13 @@ from mesokit.errors import RunError
 from mesokit.execute.cpu.threads import Threads
 from mesokit.method.soft_spheres.machine import groups
 from mesokit.method.soft_spheres.machine.groups import Bodies, Box, Lists, Motion, Walls, World
-from mesokit.method.soft_spheres.machine.lists import GROUP, carry_springs, make_lists, sort
+from mesokit.method.soft_spheres.machine.lists import (
+    GROUP,
+    carry_springs,
+    make_lists,
+    mirror_springs,
+    sort,
+)
 from mesokit.method.soft_spheres.machine.reading import tell_all
 from mesokit.method.soft_spheres.machine.step import advance, find_forces
 from mesokit.scalar.random import Counter
@@ -159,6 +165,7 @@ class System:
         bodies, spare = self.bodies, self.spare
         if not np.isfinite(bodies.place).all():
             raise RunError("places are no numbers any more; expected a shorter timestep")
+        self._mirror()
         sort(self.grid, bodies.place, self.cell, self.begins, self.order)
         for old, new in zip(bodies, spare, strict=True):
             np.take(old, self.order, axis=0, out=new, mode="clip")
@@ -192,6 +199,11 @@ class System:
                 self.bodies.number,
             )
 
+    def _mirror(self) -> None:
+        """Both spheres of each contact remember it."""
+        if self.given.width:
+            self.team.run(mirror_springs, self.lists)
+
     # --- reading ----------------------------------------------------------------------------------
 
     def by_number(self, rows: NDArray[Any]) -> NDArray[Any]:
@@ -203,11 +215,13 @@ class System:
     def told(self, time: float) -> NDArray[np.int64]:
         """What `acting.tell` says of every sphere, by number, in quanta."""
         told = np.zeros((self.n, groups.TOLD), np.int64)
+        self._mirror()
         self.team.run(tell_all, time, self.given.law, self.world, told)
         return self.by_number(told)
 
     def state(self) -> dict[str, NDArray[Any]]:
         """All that the next step depends on, by particle number."""
+        self._mirror()
         bodies, found = self.bodies, {}
         for name in ("place", "velocity", "spin", "force", "torque", "images"):
             found[name] = self.by_number(getattr(bodies, name)[:, :3])
