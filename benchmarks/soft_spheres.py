@@ -106,9 +106,7 @@ def table(rounds: int, seconds: float) -> Iterator[str]:
                 guess = 2e6 if name == "melt" else 5e6
                 steps = max(50, int(seconds * guess / one.n))
                 given = {"data": data} if name == "bed" else {}
-                took = bonded.loop_time(
-                    f"in.lammps_{'lj' if name == 'melt' else 'bed'}", steps=steps, **given
-                )
+                took = bonded.loop_time(f"in.lammps_{name}", steps=steps, **given)
                 found["theirs"].append(one.n * steps / took / 1e6)
                 found["two"].append(rate(two, seconds) / 1e6)
             ratio = median(a / b for a, b in zip(found["one"], found["theirs"], strict=True))
