@@ -1,0 +1,323 @@
+"""Hard disks and spheres: pressure, collision rates, diffusion, cooling, contact times, gravity."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from common import BLUE, RED, Page, long, main, mean_and_error, plt
+
+from mesokit import (
+    Box,
+    Comparison,
+    HardCollision,
+    HardSpheres,
+    Plates,
+    RandomStart,
+    Run,
+    Simulation,
+    SphereKind,
+    theory,
+)
+
+BLOCKS = 20
+# 870 disks in a square box, beta P d^2: Li, Nishikawa, Hoellmer, Carillo, Maggs and Krauth (2022)
+DISKS = {0.67: 7.986779, 0.68: 8.513249, 0.69: 8.969898, 0.70: 9.12966, 0.71: 9.06469}
+# 4000 disks, e = 0.9, packing fraction 0.1: temperature at these times over t_H, another program
+COOLED = {
+    0.5: (0.4482, 0.0018),
+    1.0: (0.2537, 0.0011),
+    1.5: (0.1641, 0.0007),
+    2.0: (0.1153, 0.0008),
+}
+ELASTIC = {0.02: 0.0370, 0.1: 0.1697, 0.3: 0.4299}  # shares at rate * contact time, the same
+
+
+def spheres(size: Any, walls: Any = (), seed: int = 1, **given: Any) -> Any:
+    """The engine of some hard spheres, from a random start unless said."""
+    given.setdefault("start", RandomStart())
+    return Simulation(
+        run=Run(steps=0, seed=seed, method="event-driven"),
+        box=Box(size),
+        walls=walls,
+        spheres=HardSpheres(**given),
+    ).engine
+
+
+def pressure(engine: Any, time: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Z and the collisions of a sphere per time, with their errors, over so much time."""
+    steps = max(BLOCKS, round(long(time) / engine.timestep))
+    engine.advance(max(1, steps // 5))
+    d, n = engine.dimension, engine.n
+    kT = 2 * engine.totals()[2] / (d * (n - 1))
+    zs, rates = [], []
+    for _ in range(BLOCKS):
+        virial, events, began = engine.virial, engine.collisions[0], engine.time
+        engine.advance(steps // BLOCKS)
+        passed = engine.time - began
+        zs.append(1 + (engine.virial - virial) / (d * n * kT * passed))
+        rates.append(2 * (engine.collisions[0] - events) / (n * passed))
+    return mean_and_error(zs), mean_and_error(rates)
+
+
+def three_dimensions(page: Page) -> None:
+    """E3: equation of state in 3D."""
+    page.heading("Spheres: pressure and collision rate (E3)")
+    page.text(
+        "1372 spheres, periodic. Z by the virial beside Kolafa's equation of state, the rate of collisions "
+        "beside the one that belongs to that Z, and Z by the rate beside Z by the virial, which is exact."
+    )
+    rows, worst, identity = [], 0.0, 0.0
+    for phi, time in ((0.1, 900.0), (0.3, 160.0), (0.45, 70.0)):
+        size = [(1372 * math.pi / 6 / phi) ** (1 / 3)] * 3
+        engine = spheres(size, number=1372, timestep=time / 200)
+        (z, dz), (rate, drate) = pressure(engine, time)
+        known = theory.compressibility(phi, 3)
+        rows.append(Comparison(f"Z at {phi}", z, dz, known))
+        worst = max(worst, abs(z / known - 1))
+        expected = 6 * (known - 1) / math.sqrt(math.pi)
+        rows.append(Comparison(f"collision rate at {phi}", rate, drate, expected, "1/tau"))
+        identity = max(identity, abs((z - 1) / (rate * math.sqrt(math.pi) / 6) - 1))
+    page.table(rows)
+    page.check(f"Z within {100 * worst:.2f} % (0.3 %)", worst < 0.003)
+    page.check(f"Z - 1 and the rate agree within {100 * identity:.3f} % (0.2 %)", identity < 0.002)
+
+
+def two_dimensions(page: Page) -> None:
+    """E4: equation of state in 2D."""
+    page.heading("Disks: pressure (E4)")
+    page.text("4000 disks, periodic, beside the virial series to its tenth coefficient.")
+    rows, worst, densities = [], 0.0, (0.2, 0.4, 0.5, 0.6)
+    measured = []
+    for phi in densities:
+        size = [math.sqrt(4000 * math.pi / 4 / phi)] * 2
+        engine = spheres(size, number=4000, timestep=1.0)
+        (z, dz), _ = pressure(engine, 60 / phi)
+        known = theory.compressibility(phi, 2)
+        note = "approximate: the series ends" if phi > 0.5 else ""
+        rows.append(Comparison(f"Z at {phi}", z, dz, known, "", note))
+        measured.append((z, dz))
+        if phi <= 0.5:
+            worst = max(worst, abs(z / known - 1))
+    page.table(rows)
+    page.check(f"Z within {100 * worst:.2f} % up to 0.5 (0.3 %)", worst < 0.003)
+    fig, ax = plt.subplots(figsize=(5, 3.6))
+    line = np.linspace(0.05, 0.65, 60)
+    ax.plot(line, [theory.compressibility(x, 2) for x in line], color=RED, label="virial series")
+    values, errors = np.array(measured).T
+    ax.errorbar(densities, values, errors, fmt="o", color=BLUE, mfc="white", label="measured")
+    ax.set_xlabel("packing fraction")
+    ax.set_ylabel(r"$P/(n k_B T)$")
+    ax.legend()
+    page.figure(
+        fig, "Disks: pressure beside the virial series; error bars are smaller than the points."
+    )
+
+
+def many_disks(page: Page) -> None:
+    """E5: 870 disks about the freezing."""
+    page.heading("870 disks in a square box (E5)")
+    page.text(
+        "beta P d^2 near freezing, where boxes of this size have a loop; beside Li et al., J. Chem. Phys. "
+        "157, 234111 (2022), who have eight digits by event-chain Monte Carlo."
+    )
+    rows, worst = [], 0.0
+    for phi, known in DISKS.items():
+        engine = spheres([30, 30], number=870, packing_fraction=phi, timestep=1.0)
+        (z, dz), _ = pressure(engine, 1500.0)
+        factor = phi * 4 / math.pi
+        rows.append(Comparison(f"beta P d^2 at {phi}", factor * z, factor * dz, known))
+        if phi < 0.685:
+            worst = max(worst, abs(factor * z / known - 1))
+    page.table(rows)
+    page.check(f"within {100 * worst:.2f} % at 0.67 and 0.68 (0.1 %)", worst < 0.001)
+    deviation = max(abs(row.deviation) for row in rows)
+    page.check(f"all within {deviation:.1f} standard errors (3.5)", deviation < 3.5)
+
+
+def motion(page: Page) -> None:
+    """E7 and S2: free times, diffusion, free paths."""
+    page.heading("Free times, free paths and diffusion (E7)")
+    page.text(
+        "1372 spheres at a density of 0.5; Lue (2005) has a mean free time of 0.13031 and, for a box of "
+        "this size, D = 0.247. Dilute gases whose free path is 500 radii: sqrt(2) times the flux of others "
+        "gives 0.5554/phi radii in 2D and 0.2357/phi in 3D."
+    )
+    engine = spheres([14] * 3, number=1372, timestep=1.0)
+    _, (rate, drate) = pressure(engine, 200.0)
+    rows = [Comparison("mean free time", 1 / rate, drate / rate**2, 0.13031, "tau")]
+    shifts, lag = [], 10
+    for _ in range(max(4, long(60))):
+        start = engine.positions(unwrapped=True)
+        engine.advance(2)
+        early = engine.positions(unwrapped=True) - start
+        engine.advance(lag - 2)
+        late = engine.positions(unwrapped=True) - start
+        shifts.append(((late**2).sum(1) - (early**2).sum(1)).mean() / (6 * (lag - 2)))
+    value, error = mean_and_error(shifts)
+    rows.append(Comparison("D", value, error, 0.247, "a^2/tau", "approximate: known to 2 %"))
+    paths = []
+    for d, phi, factor in ((2, 1.11e-3, 0.5554), (3, 4.7e-4, 0.2357)):
+        volume = math.pi / 4 if d == 2 else math.pi / 6
+        gas = spheres([(2000 * volume / phi) ** (1 / d)] * d, number=2000, timestep=100.0)
+        _, (rate, drate) = pressure(gas, 40_000.0)
+        speed = float(np.linalg.norm(gas.velocities(), axis=1).mean())
+        mean_speed = math.sqrt(math.pi / 2) if d == 2 else math.sqrt(8 / math.pi)
+        path, expected = mean_speed / rate * 2, factor / phi
+        what = f"free path in radii, {d}D, packing fraction {phi}"
+        rows.append(Comparison(what, path, path * drate / rate, expected))
+        paths.append(abs(path / expected - 1))
+        assert abs(speed / mean_speed - 1) < 0.1
+    page.table(rows)
+    page.check(
+        f"mean free time within {abs(rows[0].percent):.2f} % (0.5 %)", abs(rows[0].percent) < 0.5
+    )
+    page.check(f"D within {abs(rows[1].percent):.1f} % (4 %)", abs(rows[1].percent) < 4)
+    page.check(f"free paths within {100 * max(paths):.2f} % (2 %)", max(paths) < 0.02)
+
+
+def cooling(page: Page) -> None:
+    """E8: Haff's law."""
+    page.heading("A gas that cools (E8)")
+    haff = theory.haff_time(0.9, theory.enskog_rate(0.4 / math.pi, 1.0, 1.0, 0.1, 2), 2)
+    page.text(
+        f"4000 disks, e = 0.9, packing fraction 0.1, t_H = {haff:.2f}: temperature over that of the start, mean of "
+        "four runs, beside Haff's law, which holds as long as the gas is uniform, and another program."
+    )
+    gases = [
+        spheres(
+            [math.sqrt(1000 * math.pi / 0.1)] * 2,
+            seed=seed,
+            number=4000,
+            timestep=haff / 2,
+            collision=HardCollision(0.9),
+        )
+        for seed in range(1, 5)
+    ]
+    rows, worst, other = [], 0.0, 0.0
+    for time, (known, _) in COOLED.items():
+        for gas in gases:
+            gas.advance(1)
+        value, error = mean_and_error([gas.totals()[2] / (gas.n - 1) for gas in gases])
+        law = float(theory.haff_temperature(time, 1.0))
+        note = f"approximate: law of a uniform gas; another program {known}"
+        rows.append(Comparison(f"T at {time} t_H", value, error, law, "", note))
+        worst, other = max(worst, abs(value / law - 1)), max(other, abs(value / known - 1))
+    page.table(rows)
+    page.check(f"within {100 * worst:.1f} % of the law (5 %)", worst < 0.05)
+    page.check(f"within {100 * other:.1f} % of the other program (3 %)", other < 0.03)
+
+
+def contact_times(page: Page) -> None:
+    """E9, E10: what a contact time does."""
+    page.heading("Contact times (E9, E10)")
+    rate = theory.enskog_rate(1 / math.pi, 1.0, 1.0, 0.25, 2)
+    page.text(
+        "Elastic disks at 0.25: the share of collisions that come sooner than the contact time after the "
+        "last of one of both, beside another program. A gas with e = 0.2 stalls without one."
+    )
+    rows = []
+    for x, known in ELASTIC.items():
+        engine = spheres(
+            [56.05] * 2,
+            number=1000,
+            timestep=20.0,
+            collision=HardCollision(contact_time=x / rate),
+        )
+        engine.advance(1)
+        engine.end_warmup()
+        engine.advance(max(2, long(60)))
+        pairs, _, elastic = engine.collisions
+        share = elastic / pairs
+        error = math.sqrt(share * (1 - share) / pairs)
+        rows.append(Comparison(f"share at rate t_c = {x}", share, error, known))
+    page.table(rows)
+    worst = max(abs(row.percent) for row in rows)
+    page.check(f"shares within {worst:.1f} % (2 %)", worst < 2)
+
+
+def mixtures(page: Page) -> None:
+    """E11: two sizes."""
+    page.heading("Mixtures (E11)")
+    page.text("Half of diameter 1, half of 0.6, packing fraction 0.4.")
+    kinds, rows = [SphereKind(1.0), SphereKind(0.6)], []
+    for size, moments in (([11] * 3, (0.8, 0.68, 0.608)), ([40] * 2, (0.8, 0.68))):
+        engine = spheres(size, kinds=kinds, packing_fraction=0.4, timestep=0.5)
+        (z, dz), _ = pressure(engine, 160.0)
+        d = len(size)
+        phi = sum(engine.diameters() ** d) * (math.pi / (4 if d == 2 else 6)) / size[0] ** d
+        known = theory.mixture_compressibility(phi, moments, d)
+        rows.append(Comparison(f"Z in {d}D", z, dz, known))
+    page.table(rows)
+    worst = max(abs(row.percent) for row in rows)
+    page.check(f"within {worst:.2f} % (0.5 %)", worst < 0.5)
+
+
+def gravity(page: Page) -> None:
+    """E12: weight and heights."""
+    page.heading("Gravity (E12)")
+    page.text(
+        "30 disks in a tall box: impulse on the plates over N m g t, and the mean height, which is kT/mg + r."
+    )
+    engine = spheres([300, 400], walls=[Plates("y")], number=30, gravity=[0, -0.1], timestep=500.0)
+    engine.advance(1)
+    before, momentum = engine.wall_impulse.copy(), engine.totals()[1][1]
+    began = engine.time
+    heights, temperatures = [], []
+    for _ in range(max(40, long(2000))):
+        engine.advance(1)
+        heights.append(engine.positions()[:, 1].mean())
+        temperatures.append((engine.velocities()[:, 1] ** 2).mean())
+    taken = -(engine.wall_impulse - before)[:, 1].sum()
+    passed = engine.time - began
+    change = engine.totals()[1][1] - momentum
+    page.table(
+        [
+            Comparison(
+                "impulse over N m g t",
+                (taken - change) / (30 * 0.1 * passed),
+                0.0,
+                1.0,
+                "",
+                "exact",
+            ),
+            Comparison(
+                "mean height over kT/mg",
+                *mean_and_error(
+                    np.reshape(
+                        (np.array(heights) - 0.5)[: len(heights) // BLOCKS * BLOCKS], (BLOCKS, -1)
+                    ).mean(1)
+                    * 0.1
+                    / np.mean(temperatures)
+                ),
+                1.0,
+                "",
+                "",
+            ),
+        ]
+    )
+    page.check(
+        "the plates take what gravity gives", abs((taken - change) / (3 * passed) - 1) < 1e-9
+    )
+
+
+def make() -> int:
+    """The page; how many requirements were not met."""
+    page = Page("hard_spheres", "Hard disks and spheres")
+    for part in (
+        three_dimensions,
+        two_dimensions,
+        many_disks,
+        motion,
+        cooling,
+        contact_times,
+        mixtures,
+        gravity,
+    ):
+        part(page)
+    return page.write()
+
+
+if __name__ == "__main__":
+    main(make)
