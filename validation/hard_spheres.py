@@ -65,8 +65,9 @@ def three_dimensions(page: Page) -> None:
     """E3: equation of state in 3D."""
     page.heading("Spheres: pressure and collision rate (E3)")
     page.text(
-        "1372 spheres, periodic. Z by the virial beside Kolafa's equation of state, the rate of collisions "
-        "beside the one that belongs to that Z, and Z by the rate beside Z by the virial, which is exact."
+        "1372 spheres, periodic. Z by the virial beside Kolafa's equation of state, the rate "
+        "of collisions beside the one that belongs to that Z, and Z by the rate beside Z by "
+        "the virial, which is exact."
     )
     rows, worst, identity = [], 0.0, 0.0
     for phi, time in ((0.1, 900.0), (0.3, 160.0), (0.45, 70.0)):
@@ -110,17 +111,16 @@ def two_dimensions(page: Page) -> None:
     ax.set_xlabel("packing fraction")
     ax.set_ylabel(r"$P/(n k_B T)$")
     ax.legend()
-    page.figure(
-        fig, "Disks: pressure beside the virial series; error bars are smaller than the points."
-    )
+    caption = "Disks: pressure beside the virial series; error bars are smaller than the points."
+    page.figure(fig, caption)
 
 
 def many_disks(page: Page) -> None:
     """E5: 870 disks about the freezing."""
     page.heading("870 disks in a square box (E5)")
     page.text(
-        "beta P d^2 near freezing, where boxes of this size have a loop; beside Li et al., J. Chem. Phys. "
-        "157, 234111 (2022), who have eight digits by event-chain Monte Carlo."
+        "beta P d^2 near freezing, where boxes of this size have a loop; beside Li et al., J. "
+        "Chem. Phys. 157, 234111 (2022), who have eight digits by event-chain Monte Carlo."
     )
     rows, worst = [], 0.0
     for phi, known in DISKS.items():
@@ -140,9 +140,9 @@ def motion(page: Page) -> None:
     """E7 and S2: free times, diffusion, free paths."""
     page.heading("Free times, free paths and diffusion (E7)")
     page.text(
-        "1372 spheres at a density of 0.5; Lue (2005) has a mean free time of 0.13031 and, for a box of "
-        "this size, D = 0.247. Dilute gases whose free path is 500 radii: sqrt(2) times the flux of others "
-        "gives 0.5554/phi radii in 2D and 0.2357/phi in 3D."
+        "1372 spheres at a density of 0.5; Lue (2005) has a mean free time of 0.13031 and, "
+        "for a box of this size, D = 0.247. Dilute gases whose free path is 500 radii: "
+        "sqrt(2) times the flux of others gives 0.5554/phi radii in 2D and 0.2357/phi in 3D."
     )
     engine = spheres([14] * 3, number=1372, timestep=1.0)
     _, (rate, drate) = pressure(engine, 200.0)
@@ -182,8 +182,9 @@ def cooling(page: Page) -> None:
     page.heading("A gas that cools (E8)")
     haff = theory.haff_time(0.9, theory.enskog_rate(0.4 / math.pi, 1.0, 1.0, 0.1, 2), 2)
     page.text(
-        f"4000 disks, e = 0.9, packing fraction 0.1, t_H = {haff:.2f}: temperature over that of the start, mean of "
-        "four runs, beside Haff's law, which holds as long as the gas is uniform, and another program."
+        f"4000 disks, e = 0.9, packing fraction 0.1, t_H = {haff:.2f}: temperature over that "
+        "of the start, mean of four runs, beside Haff's law, which holds as long as the gas "
+        "is uniform, and another program."
     )
     gases = [
         spheres(
@@ -214,8 +215,9 @@ def contact_times(page: Page) -> None:
     page.heading("Contact times (E9, E10)")
     rate = theory.enskog_rate(1 / math.pi, 1.0, 1.0, 0.25, 2)
     page.text(
-        "Elastic disks at 0.25: the share of collisions that come sooner than the contact time after the "
-        "last of one of both, beside another program. A gas with e = 0.2 stalls without one."
+        "Elastic disks at 0.25: the share of collisions that come sooner than the contact "
+        "time after the last of one of both, beside another program. A gas with e = 0.2 "
+        "stalls without one."
     )
     rows = []
     for x, known in ELASTIC.items():
@@ -258,7 +260,8 @@ def gravity(page: Page) -> None:
     """E12: weight and heights."""
     page.heading("Gravity (E12)")
     page.text(
-        "30 disks in a tall box: impulse on the plates over N m g t, and the mean height, which is kT/mg + r."
+        "30 disks in a tall box: impulse on the plates over N m g t, and the mean height, "
+        "which is kT/mg + r."
     )
     engine = spheres([300, 400], walls=[Plates("y")], number=30, gravity=[0, -0.1], timestep=500.0)
     engine.advance(1)
