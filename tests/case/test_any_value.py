@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from mesokit import Case, CaseError
 from mesokit.case.toml import parse
 from mesokit.method import templates
-from mesokit.method.mpcd.derived import derive
+from mesokit.method.protocol import method_of
 
 TEMPLATES = [Path(str(path)) for path in templates().values()]
 
@@ -52,7 +52,7 @@ def test_any_value_anywhere(place: tuple[Path, str], more: str, value: Any) -> N
         assert len(str(error).splitlines()) == 1
         assert path.name in str(error)
     else:
-        derive(case, 1)
+        method_of(case).summary(case, 1)
 
 
 @given(st.text())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mesokit.case.component import param
+from mesokit.geometry.shape import Wall
 from mesokit.method.protocol import Method, Summary
 from mesokit.observe import Observable
 from mesokit.spheres.groups import FIELDS, groups
@@ -19,6 +20,7 @@ class Sections:
     """What its cases have."""
 
     spheres: Spheres = param(Spheres(), doc="the spheres")
+    walls: tuple[Wall, ...] = param((), doc="walls")
 
 
 class Flying:

@@ -26,7 +26,7 @@ from mesokit.report.flow.source import sources
 from mesokit.report.flow.vorticity import smoothing, vorticity
 
 SIZE = (12, 10)
-OF_FLUIDS = [kind for kind in KINDS if kind != "disks"]
+OF_FLUIDS = [kind for kind in KINDS if kind not in ("disks", "flock")]
 
 
 @pytest.fixture

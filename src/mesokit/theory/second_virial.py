@@ -6,8 +6,6 @@ import itertools
 import math
 from collections.abc import Callable
 
-from scipy.integrate import quad
-
 
 def second_virial(
     energy: Callable[[float], float], kT: float, cutoff: float, dimension: int
@@ -36,6 +34,8 @@ def second_virial(
     >>> round(second_virial(energy, 1.0, 200.0, 3), 3)
     -5.316
     """
+    from scipy.integrate import quad
+
     around = 2 * math.pi if dimension == 2 else 4 * math.pi
 
     def integrand(r: float) -> float:

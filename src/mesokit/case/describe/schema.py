@@ -30,7 +30,7 @@ def schema() -> dict[str, Any]:
         >>> found["definitions"]["SRD"]["properties"]["angle"]["description"]
         'rotation angle [degrees]'
         >>> sorted(found["properties"])[:4]
-        ['box', 'brownian', 'fluid', 'log']
+        ['box', 'brownian', 'flock', 'fluid']
     """
     cases = {name: _case_class(name) for name in methods.modules()}
     found, definitions = plain_schemas(cases)

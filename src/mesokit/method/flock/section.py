@@ -38,7 +38,7 @@ class Flock:
     """Birds that fly at one speed, as the mean of those in reach, and err (Vicsek et al. 1995)."""
 
     density: float | None = param(
-        None, doc="birds per cell", unit="1/a^d", gt=0, unless_said=DENSITY
+        None, doc="birds per cell (2 unless a number is given)", unit="1/a^d", gt=0
     )
     number: int | None = param(None, doc="birds in all, in place of the density", ge=1)
     radius: float = param(1.0, doc="reach of a bird's sight", unit="a", gt=0)
