@@ -49,6 +49,9 @@ from mesokit.method.mpcd.field.sampled import Nodes
 from mesokit.method.mpcd.field.scheduled import Points
 from mesokit.method.mpcd.streaming import fall, halfway, vector
 from mesokit.method.mpcd.thermostat import protocol as thermostats
+from mesokit.method.soft_spheres.pair import protocol as contacts
+from mesokit.method.soft_spheres.pair.hertz import Hertz as HertzContact
+from mesokit.method.soft_spheres.pair.spring_dashpot import Linear
 from mesokit.potential import ANGLES, BONDS, PAIRS
 from mesokit.potential import protocol as potentials
 from mesokit.potential.angle import bend
@@ -158,6 +161,8 @@ ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     cut.roomy: lambda p, d: (vec(d),),
     cut.home: lambda p, d: (vec(d),),
     cut.grip: lambda p, d: (WHOLE, vec(d)),
+    contacts.normal_force: lambda p, d: (1.0, 1.0, 1.0, 1.0),
+    contacts.normal_energy: lambda p, d: (1.0, 1.0),
     birds.counted: lambda p, d: (),
     birds.turned: lambda p, d: (COUNTER, WHOLE, vec(d), vec(d), WHOLE),
     flown: lambda p, d: (vec(d), vec(d), vec(d)),
@@ -195,6 +200,7 @@ def parts(d: int) -> Iterator[Any]:
     yield interactions.Force(1.0, np.zeros(8, np.int64), 1.0, 1, faults)
     yield interactions.Energy()
     yield from (rule().kernel() for rule in (*RULES, *NOISES))
+    yield from (Linear(1.0, 0.0, 1.0, 0.0, 1.0), HertzContact(1.0, 1.0, 1.0))
     yield interactions.Virial(1.0, tensor, 1.0)
 
 

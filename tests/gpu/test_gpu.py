@@ -48,8 +48,12 @@ def modules() -> Iterator[ModuleType]:
             yield importlib.import_module(found.name)
 
 
-# Of these the implementations are loops over lanes of a strip: the CPU's own.
-LOOPS = ("mesokit.execute.beads.links", "mesokit.execute.beads.verlet")
+# Of these the implementations are loops over lanes of a strip, or over lists: the CPU's own.
+LOOPS = (
+    "mesokit.execute.beads.links",
+    "mesokit.execute.beads.verlet",
+    "mesokit.method.soft_spheres.machine.acting",
+)
 
 
 def generic_functions() -> set[Callable]:
