@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from mesokit.case.component import show
 from mesokit.errors import CaseError
-from mesokit.method.event_driven.walls import surface_rows
 from mesokit.method.soft_spheres import scales
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw
+from mesokit.spheres.wall.surfaces import surface_rows
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.method.event_driven.walls import room_of, surface_rows
 from mesokit.method.soft_spheres.machine.central import Central
 from mesokit.method.soft_spheres.machine.contact import OWN, Contact
 from mesokit.method.soft_spheres.machine.groups import Motion
@@ -15,6 +14,7 @@ from mesokit.method.soft_spheres.machine.system import Given
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw, damping_ratio
 from mesokit.method.soft_spheres.scales import timestep_of
 from mesokit.potential.protocol import central
+from mesokit.spheres.wall.surfaces import room_of, surface_rows
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

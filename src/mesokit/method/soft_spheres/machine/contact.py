@@ -13,14 +13,14 @@ import numpy as np
 
 from mesokit.method.soft_spheres.machine.acting import act, quantum, tell, turns
 from mesokit.method.soft_spheres.machine.central import add_product
-from mesokit.method.soft_spheres.machine.geometry import cross, from_to, from_wall, reach, row
+from mesokit.method.soft_spheres.machine.geometry import from_to, from_wall, reach, row
 from mesokit.method.soft_spheres.machine.groups import ENERGY, INVERSE, LARGEST, TOUCHING
 from mesokit.method.soft_spheres.machine.lists import ROLLING, SLIDING
 from mesokit.method.soft_spheres.machine.spring import Slider, stretched
 from mesokit.method.soft_spheres.pair.protocol import normal_energy, normal_force
 from mesokit.scalar.fixed_point import quanta
 from mesokit.scalar.jit import scalar
-from mesokit.scalar.vector import added, added_scaled, dot, scaled
+from mesokit.scalar.vector import added, added_scaled, dot, outer, scaled
 
 DAMPING_RATIO, FRICTION, OWN = 0, 1, 2  # columns of `Walls.own`, and their number
 
@@ -126,7 +126,7 @@ def between(law, bodies, i, j, way, distance):
     spin, spin_of_other = row(bodies.spin, i), row(bodies.spin, j)
     rolled = added(scaled(arm, spin), scaled(other, spin_of_other))
     velocity = added_scaled(row(bodies.velocity, i), -1.0, row(bodies.velocity, j))
-    velocity = added_scaled(velocity, -1.0, cross(rolled, normal))
+    velocity = added_scaled(velocity, -1.0, outer(rolled, normal))
     inverse = bodies.velocity[i, INVERSE] + bodies.velocity[j, INVERSE]
     return Touch(
         arm + other - distance,
@@ -146,7 +146,7 @@ def at_wall(walls, bodies, i, w, distance, out, moves):
     """The contact of sphere i with a wall."""
     arm, spin = reach(bodies, i), row(bodies.spin, i)
     velocity = added_scaled(row(bodies.velocity, i), -1.0, moves)
-    velocity = added_scaled(velocity, -1.0, cross(scaled(arm, spin), out))
+    velocity = added_scaled(velocity, -1.0, outer(scaled(arm, spin), out))
     mass = 1.0 / bodies.velocity[i, INVERSE]
     ratio, friction = walls.own[w, DAMPING_RATIO], walls.own[w, FRICTION]
     return Touch(arm - distance, out, mass, arm, arm, velocity, spin, ratio, friction)
@@ -177,10 +177,10 @@ def answer(law, touch, springs, i, s, step):
         )
         drag, spring = stretched(slider, kept(springs, i, s, SLIDING), sliding, touch.normal, step)
         keep(springs, i, s, SLIDING, spring)
-        force, along = added(force, drag), cross(touch.normal, drag)
+        force, along = added(force, drag), outer(touch.normal, drag)
     if law.rolling > 0.0:
         # the velocity with which the surfaces would slip if they did not roll (Luding 2008, eq. 22)
-        rolling = scaled(-touch.roller, cross(touch.turning, touch.normal))
+        rolling = scaled(-touch.roller, outer(touch.turning, touch.normal))
         slider = Slider(
             law.stiffness * stiffness,
             law.damping * math.sqrt(stiffness * touch.reduced),
@@ -188,7 +188,7 @@ def answer(law, touch, springs, i, s, step):
         )
         drag, spring = stretched(slider, kept(springs, i, s, ROLLING), rolling, touch.normal, step)
         keep(springs, i, s, ROLLING, spring)
-        against = cross(touch.normal, drag)
+        against = outer(touch.normal, drag)
     return Answer(force, along, against)
 
 
