@@ -49,7 +49,7 @@ ROWS = {
     "spheres/start/from_file.py": ("case", "errors", "io.snapshot_file", "spheres"),
     "spheres/start/from_run.py": ("case", "errors", "io.earlier_spheres", "spheres"),
     "method/__init__.py": (),
-    "method/protocol.py": ("case", "engine", "=method"),
+    "method/protocol.py": ("case", "engine", "=method", "running.cores"),
     "method/mpcd/": MPCD,
     "method/mpcd/columns.py": (*MPCD, "method.protocol"),
     "method/mpcd/summary.py": (*MPCD, "method.protocol"),
@@ -80,7 +80,7 @@ ROWS = {
     ),
     "io/": (
         "case", "errors", "geometry", "io", "method.protocol", "observe.shared.named",
-        "observe.shared.result",
+        "observe.shared.pooled", "observe.shared.result",
     ),
     "io/open.py": (
         "case", "errors", "io", "method.protocol", "observe.shared.named", "observe.shared.result",
