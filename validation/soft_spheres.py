@@ -29,6 +29,7 @@ from mesokit.potential.wca import WCA
 
 UNITS = "diameter and mass of a sphere, kT at the start are 1"
 BLOCKS = 20
+LOOKS = 1500  # at the forces of a block: few spheres touch at a time
 PHASES = np.arange(20) / 20  # of a step, at which spheres first touch
 NIST = Path(__file__).parent.parent / "tests" / "laws" / "nist_lj_cfg4.txt"
 
@@ -362,8 +363,8 @@ def compression(engine: Any, time: float) -> float:
     """Pressure over n kT, mean over a time."""
     d, n = engine.dimension, engine.n
     volume, found = float(np.prod(engine.box)), []
-    for _ in range(40):
-        engine.advance(max(1, round(time / engine.timestep / 40)))
+    for _ in range(LOOKS):
+        engine.advance(max(1, round(time / engine.timestep / LOOKS)))
         kT = 2 * engine.totals()[2] / (d * (n - 1))
         found.append(1 - float(np.trace(engine.stress["pair"])) / d * volume / (n * kT))
     return float(np.mean(found))

@@ -46,6 +46,7 @@ ROWS = {
     "potential/": ("case", "errors", "potential", "scalar", "theory"),
     "spheres/": ("case", "errors", "geometry", "scalar", "spheres"),
     "spheres/start/random.py": ("case", "method.event_driven.grow", "spheres"),
+    "spheres/start/poured.py": ("case", "errors", "method.soft_spheres.settle", "spheres"),
     "spheres/start/from_file.py": ("case", "errors", "io.snapshot_file", "spheres"),
     "spheres/start/from_run.py": ("case", "errors", "io.earlier_spheres", "spheres"),
     "method/__init__.py": (),
