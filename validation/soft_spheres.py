@@ -21,6 +21,7 @@ from mesokit import (
     Run,
     Simulation,
     SoftSpheres,
+    SphereKind,
     SpringDashpot,
     theory,
 )
@@ -29,6 +30,7 @@ from mesokit.potential.wca import WCA
 
 UNITS = "diameter and mass of a sphere, kT at the start are 1"
 BLOCKS = 20
+STEP = "approximate: finite step"
 LOOKS = 1500  # at the forces of a block: few spheres touch at a time
 PHASES = np.arange(20) / 20  # of a step, at which spheres first touch
 NIST = Path(__file__).parent.parent / "tests" / "laws" / "nist_lj_cfg4.txt"
@@ -130,14 +132,14 @@ def hertz(page: Page) -> None:
     page.text("The same with F = k x^(3/2), k = 1e5, without damping, 50 steps in a contact.")
     law, expected = HertzLaw(stiffness=1e5), theory.hertz_contact(1e5, 0.5, 1.0)
     found = np.array([collision(law, 1.0, 50, phase) for phase in PHASES])
-    (e, time, deepest), spread = found.mean(0), found.std(0)
+    e, time, deepest = found.mean(0)
     linear = SpringDashpot(stiffness=1e5, damping=0)
     flat = np.array([collision(linear, 1.0, 50, phase)[2] for phase in PHASES])
     rows = [
-        Comparison("largest overlap", deepest, spread[2], expected.overlap),
-        Comparison("duration", time, spread[1], expected.time),
-        Comparison("restitution", e, spread[0], 1.0),
-        Comparison("overlap of a linear spring", flat.mean(), flat.std(), math.sqrt(0.5 / 1e5)),
+        Comparison("largest overlap", deepest, 0.0, expected.overlap, "", STEP),
+        Comparison("duration", time, 0.0, expected.time, "", STEP),
+        Comparison("restitution", e, 0.0, 1.0, "", STEP),
+        Comparison("overlap of a linear spring", flat.mean(), 0.0, math.sqrt(0.5 / 1e5), "", STEP),
     ]
     page.table(rows)
     worst = max(abs(row.percent) for row in rows)
@@ -181,15 +183,25 @@ def energy(page: Page) -> None:
 
 def elastic_contacts(page: Page) -> None:
     """What energy contacts without damping gain or lose."""
-    law, phases = SpringDashpot(1.0, contact_time=0.01), np.arange(400) / 400
+    law, phases = SpringDashpot(1.0, contact_time=0.01), (np.arange(400) + 0.5) / 400
     gains = np.array([collision(law, 1.0, 50, phase)[0] ** 2 - 1 for phase in phases])
-    drift = abs(gains.mean()) * 1e6 / 50
     page.text(
         f"A collision of two elastic disks, 50 steps in a contact: of its energy {gains.std():.1e} "
-        "comes or goes, by where in a step they touch; on the mean over 400 such places "
-        f"{gains.mean():.1e}."
+        "comes or goes, by where in a step they touch, and as much comes as goes: on the mean "
+        f"over 400 such places {gains.mean():.1e}. Two disks pressed together between plates "
+        "swing for 10^6 steps, never apart: the energy of the last tenth beside that of the first."
     )
-    page.check(f"drift over 10^6 steps, all in contact: {drift:.1e} (1e-6)", drift < 1e-6)
+    places, velocities = [[2.0, 0.5], [2.0, 1.5]], np.array([[0.0, 0.5], [0.0, -0.7]])
+    given: dict[str, Any] = {"number": 2, "pair": law, "kinds": [SphereKind(1.02)]}
+    engine = soft([4.0, 2.0], [Plates("y")], places, velocities, **given)
+    seen = []
+    for _ in range(max(10, long(1000))):
+        for _ in range(10):
+            engine.advance(97)
+            seen.append(total(engine))
+    tenths = np.array_split(seen, 10)
+    drift = abs(tenths[-1].mean() - tenths[0].mean()) / tenths[0].mean()
+    page.check(f"drift over 10^6 steps: {drift:.1e} (1e-6)", drift < 1e-6)
 
 
 def liquid(page: Page) -> None:
@@ -252,7 +264,7 @@ def dilute(page: Page) -> None:
         )
         engine.advance(4000)
         found = []
-        for _ in range(max(BLOCKS, long(4000))):
+        for _ in range(max(BLOCKS, long(10_000))):
             engine.advance(25)
             found.append(-np.trace(engine.stress["pair"]) / 3)
         second, third = virial(law, kT)
