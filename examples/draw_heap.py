@@ -1,0 +1,106 @@
+"""Columns of grains that fall down: the heaps that friction leaves, and how steep they are.
+
+python draw_heap.py        writes heap.png; some minutes
+"""
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import PatchCollection
+from matplotlib.patches import Circle
+
+from mesokit import Box, Case, Plates, Run, Simulation, SoftSpheres, SphereKind, SpringDashpot
+
+WIDE, HIGH, LENGTH = 20, 28, 90
+FRICTIONS = (0.05, 0.2, 0.4, 0.8)  # between grains, and with the floor
+SEEDS = (1, 2, 3)
+REST = 1e-4  # kinetic energy of a grain over its weight times a diameter
+CALL = 20_000  # steps between two looks
+
+
+def heap(friction, seed):
+    """Places and diameters of the grains of a column that has come to rest."""
+    law = SpringDashpot(restitution=0.4, contact_time=0.02, friction=friction, rolling=0.05)
+    case = Case(
+        run=Run(0, method="soft-spheres", seed=seed),
+        box=Box([LENGTH, HIGH + 4]),
+        walls=[Plates("y")],
+        spheres=SoftSpheres(
+            number=WIDE * HIGH,
+            kinds=[SphereKind(0.9, spread=0.1)],
+            kT=0.01,
+            gravity=[0, -1],
+            pair=law,
+        ),
+    )
+    x, y = np.meshgrid(np.arange(WIDE) - (WIDE - 1) / 2, np.arange(HIGH))
+    x = x + 0.25 * (-1.0) ** y
+    places = np.column_stack([LENGTH / 2 + x.ravel(), 0.5 + y.ravel()])
+    engine = Simulation(case, positions=places).engine
+    while True:
+        engine.advance(CALL)
+        fastest = 0.5 * (engine.velocities() ** 2).sum(axis=1).max()
+        if engine.time > 30 and fastest < REST:
+            return engine.positions(), engine.diameters()
+
+
+def slope(places, diameters):
+    """The angle of the flanks, in degrees: lines through the highest grains, from 15 to 85 % of
+    the height."""
+    x, top = places[:, 0], places[:, 1] + diameters / 2
+    edges = np.arange(0, LENGTH + 1.5, 1.5)
+    which = np.digitize(x, edges) - 1
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    high = np.array([top[which == k].max(initial=0.0) for k in range(len(middles))])
+    angles = []
+    for side in (middles < LENGTH / 2, middles >= LENGTH / 2):
+        flank = side & (high > 0.15 * high.max()) & (high < 0.85 * high.max())
+        angles.append(np.degrees(np.arctan(abs(np.polyfit(middles[flank], high[flank], 1)[0]))))
+    return float(np.mean(angles))
+
+
+def main():
+    """Draw three heaps, and the angle of repose against friction."""
+    figure, axes = plt.subplots(2, 2, figsize=(10, 5), layout="constrained")
+    measured = []
+    for k, friction in enumerate(FRICTIONS):
+        angles = []
+        for seed in SEEDS:
+            places, diameters = heap(friction, seed)
+            angles.append(slope(places, diameters))
+            if seed == SEEDS[0] and k != 1:
+                panel(axes.flat[k - (k > 1)], places, diameters, friction)
+        measured.append((np.mean(angles), np.std(angles, ddof=1) / np.sqrt(len(angles))))
+        print(f"friction {friction}: {measured[-1][0]:.1f} +- {measured[-1][1]:.1f} degrees")
+    ax = axes[1, 1]
+    ax.errorbar(
+        FRICTIONS, *np.transpose(measured), fmt="o", color="black", mfc="white", label="measured"
+    )
+    line = np.linspace(0, 0.9, 100)
+    ax.plot(
+        line, np.degrees(np.arctan(line)), color="0.5", label=r"block on a slope: $\arctan\,\mu$"
+    )
+    ax.set(
+        xlabel=r"friction $\mu$", ylabel="angle of repose / degrees", xlim=(0, 0.9), ylim=(0, 45)
+    )
+    ax.legend(fontsize=8)
+    figure.savefig("heap.png", dpi=150)
+
+
+def panel(ax, places, diameters, friction):
+    """One heap, to scale; layers of the column that it was in grey."""
+    layer = np.arange(len(places)) // (4 * WIDE) % 2
+    circles = [Circle(r, d / 2) for r, d in zip(places, diameters, strict=True)]
+    shades = np.where(layer == 0, 0.35, 0.75)
+    ax.add_collection(
+        PatchCollection(circles, facecolors=[str(s) for s in shades], edgecolors="none")
+    )
+    ax.set(xlim=(0, LENGTH), ylim=(0, 30), aspect="equal", ylabel="$y$ / diameter")
+    ax.set_title(rf"$\mu = {friction:g}$", fontsize=10, loc="left")
+    ax.set_xlabel("$x$ / diameter")
+
+
+if __name__ == "__main__":
+    main()
