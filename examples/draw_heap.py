@@ -13,7 +13,7 @@ from matplotlib.patches import Circle
 
 from mesokit import Box, Case, Plates, Run, Simulation, SoftSpheres, SphereKind, SpringDashpot
 
-WIDE, HIGH, LENGTH = 20, 28, 90
+WIDE, HIGH, LENGTH = 40, 16, 110
 FRICTIONS = (0.05, 0.2, 0.4, 0.8)  # between grains, and with the floor
 SEEDS = (1, 2, 3)
 REST = 1e-4  # kinetic energy of a grain over its weight times a diameter

@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING
 
 from mesokit.case.component import show
 from mesokit.errors import CaseError
+from mesokit.geometry.solids.solids import Solids
+from mesokit.geometry.surface import Surface
 from mesokit.method.soft_spheres import scales
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw
-from mesokit.spheres.wall.surfaces import surface_rows
+from mesokit.spheres.wall.surfaces import other_walls, room_of, surface_rows
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -47,21 +49,38 @@ def check(case: Case) -> None:
 
 def _walls(case: Case) -> None:
     """Walls do what contacts do, and no more."""
-    touching = isinstance(case.spheres.pair, ContactLaw)
-    for i, surface in surface_rows(case).surfaces:
-        key, contact = f"wall[#{i + 1}]", surface.contact
-        if surface.rule == "diffuse":
-            raise CaseError(f"{key}.rule = 'diffuse': not with method 'soft-spheres'")
-        if contact is None:
-            continue
-        for name in ("temperature", "tangential"):
-            if getattr(contact, name) is not None:
-                raise CaseError(f"{key}: contact.{name}: not with method 'soft-spheres'")
-        if contact.restitution == 0:
-            raise CaseError(f"{key}: contact.restitution = 0: expected more than 0")
-        for name in ("restitution", "friction"):
-            if not touching and getattr(contact, name) is not None:
-                raise CaseError(f"{key}: contact.{name}: a potential has none")
+    touching, others = isinstance(case.spheres.pair, ContactLaw), other_walls(case)
+    surface_rows(case, others)
+    if others and not touching:
+        raise CaseError(
+            f"wall[#{others[0] + 1}]: a potential acts at plates, at round walls and within boxes; "
+            "other shapes are for laws of contact"
+        )
+    if others:
+        Solids(case.walls, case.box, only=others)
+    for i, wall in enumerate(case.walls):
+        if wall.virtual != "extrapolate":
+            raise CaseError(f"wall[#{i + 1}].virtual = {show(wall.virtual)}: spheres need none")
+        for body in wall.bodies(room_of(case), ""):
+            _surface(f"wall[#{i + 1}]", body.surface, touching, i in others)
+
+
+def _surface(key: str, surface: Surface, touching: bool, other: bool) -> None:
+    contact = surface.contact
+    if surface.rule == "diffuse":
+        raise CaseError(f"{key}.rule = 'diffuse': not with method 'soft-spheres'")
+    if contact is None:
+        return
+    if other and contact.amplitude > 0:
+        raise CaseError(f"{key}: contact.amplitude: only plates vibrate")
+    for name in ("temperature", "tangential"):
+        if getattr(contact, name) is not None:
+            raise CaseError(f"{key}: contact.{name}: not with method 'soft-spheres'")
+    if contact.restitution == 0:
+        raise CaseError(f"{key}: contact.restitution = 0: expected more than 0")
+    for name in ("restitution", "friction"):
+        if not touching and getattr(contact, name) is not None:
+            raise CaseError(f"{key}: contact.{name}: a potential has none")
 
 
 def _potential(case: Case) -> None:

@@ -7,14 +7,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.geometry.solids.solids import Solids
+from mesokit.geometry.surface import Surface
+from mesokit.method.soft_spheres.machine import solid_contact  # noqa: F401  registers
 from mesokit.method.soft_spheres.machine.central import Central
 from mesokit.method.soft_spheres.machine.contact import OWN, Contact
 from mesokit.method.soft_spheres.machine.groups import Motion
-from mesokit.method.soft_spheres.machine.system import Given
+from mesokit.method.soft_spheres.machine.system import Given, Others
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw, damping_ratio
 from mesokit.method.soft_spheres.scales import speed_of_collision, timestep_of
 from mesokit.potential.protocol import central
-from mesokit.spheres.wall.surfaces import room_of, surface_rows
+from mesokit.spheres.wall.surfaces import other_walls, room_of, surface_rows
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -47,6 +50,7 @@ def given_of(case: Case, made: Made) -> Given:
         own,
         case.run.seed,
         section.skin_of(box),
+        others_of(case, made),
     )
 
 
@@ -115,15 +119,26 @@ def _motion(case: Case) -> Motion:
 
 def _walls(case: Case) -> tuple[Array, Array]:
     """Rows of walls, and damping ratio and friction of each: -1, and as of pairs, unless said."""
-    found, law = surface_rows(case), case.spheres.pair
-    own = np.zeros((len(found.rows), OWN))
-    for w, (_, surface) in enumerate(found.surfaces):
-        contact = surface.contact
-        restitution = None if contact is None else contact.restitution
-        friction = None if contact is None else contact.friction
-        usual = law.friction if isinstance(law, ContactLaw) else 0.0
-        own[w] = (
-            -1.0 if restitution is None else damping_ratio(restitution),
-            0.0 if surface.rule == "slip" else usual if friction is None else friction,
-        )
-    return found.rows, own
+    found = surface_rows(case, other_walls(case))
+    return found.rows, np.array([_own(case, s) for _, s in found.surfaces]).reshape(-1, OWN)
+
+
+def others_of(case: Case, made: Made) -> Others | None:
+    """Walls that are no rows, as solids in tables that reach as far as the largest sphere."""
+    if not (which := other_walls(case)):
+        return None
+    solids = Solids(case.walls, case.box, only=which)
+    away = float(made.diameters.max()) / 2 + _ahead(case)
+    own = np.array([_own(case, body.surface) for body in solids.bodies])
+    return Others(solids.reaching(away), solids.like, own, solids)
+
+
+def _own(case: Case, surface: Surface) -> tuple[float, float]:
+    contact, law = surface.contact, case.spheres.pair
+    restitution = None if contact is None else contact.restitution
+    friction = None if contact is None else contact.friction
+    usual = law.friction if isinstance(law, ContactLaw) else 0.0
+    return (
+        -1.0 if restitution is None else damping_ratio(restitution),
+        0.0 if surface.rule == "slip" else usual if friction is None else friction,
+    )

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import CaseError
-from mesokit.method.soft_spheres.laws import contact_of
+from mesokit.method.soft_spheres.laws import contact_of, others_of
 from mesokit.method.soft_spheres.machine.contact import OWN
 from mesokit.method.soft_spheres.machine.groups import INVERSE, Motion
 from mesokit.method.soft_spheres.machine.system import Given, System
 from mesokit.method.soft_spheres.pair.spring_dashpot import SpringDashpot
 from mesokit.spheres.wall.rows import AMPLITUDE, MOVES
-from mesokit.spheres.wall.surfaces import room_of, surface_rows
+from mesokit.spheres.wall.surfaces import other_walls, room_of, surface_rows
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -38,7 +38,10 @@ def settled(case: Case, made: Made, places: Array, friction: float) -> Array:
     rough, and at rest meanwhile. Raises CaseError where they do not come to rest.
     """
     size, gravity, room = case.box.size, case.spheres.gravity, room_of(case)
-    walls, (n, d) = surface_rows(case).rows, places.shape
+    walls, (n, d) = surface_rows(case, other_walls(case)).rows, places.shape
+    others = others_of(case, made)
+    if others is not None:
+        others.own[:] = -1.0, friction
     g = math.hypot(*gravity)
     height = math.fsum(abs(a) / g * length for a, length in zip(gravity, size, strict=True))
     largest, mass = float(made.diameters.max()), float(made.masses.max())
@@ -69,6 +72,7 @@ def settled(case: Case, made: Made, places: Array, friction: float) -> Array:
         own,
         0,
         SKIN * largest,
+        others,
     )
     system = System(given, threads=1)
     system.fill(places, np.zeros((n, d)), np.zeros(n if d == 2 else (n, 3)))

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 from mesokit.case.component import component, tag
+from mesokit.spheres.start.among_solids import among_solids
 from mesokit.spheres.start.protocol import Placed, SphereStart
-from mesokit.spheres.wall.surfaces import room_of, surface_rows
+from mesokit.spheres.wall.surfaces import other_walls, room_of, surface_rows
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -28,6 +29,8 @@ class RandomStart(SphereStart):
         """Places for all. Raises CaseError where there is no room."""
         from mesokit.method.event_driven.grow import grown
 
+        if not case.spheres.hard and other_walls(case):
+            return Placed(among_solids(case, made.diameters, room_of(case).closed))
         walls = surface_rows(case).rows
         fraction = case.spheres.fraction(case.box)
         closed = room_of(case).closed

@@ -34,14 +34,37 @@ class SurfaceRows(NamedTuple):
     names: tuple[str, ...]
 
 
-def surface_rows(case: Case) -> SurfaceRows:
-    """Where the walls of a case are and how they move, whatever they do to spheres."""
+class NotARow(CaseError):
+    """A wall of a shape that is no row of numbers."""
+
+
+def other_walls(case: Case) -> list[int]:
+    """Numbers of the walls that are no rows: neither planes nor round, nor boxes from within."""
+    room, found = room_of(case), []
+    for i, wall in enumerate(case.walls):
+        try:
+            for body in wall.bodies(room, ""):
+                if body.surface.rotation is not None:
+                    raise NotARow("it turns")
+                list(_parts(body, room, i, case.run.method))
+        except NotARow:
+            found.append(i)
+    return found
+
+
+def surface_rows(case: Case, without: Sequence[int] = ()) -> SurfaceRows:
+    """Where the walls of a case are and how they move, whatever they do to spheres.
+
+    Raises CaseError for those that are no rows, but for the walls that are left out.
+    """
     room, method = room_of(case), case.run.method
     rows: list[Array] = []
     surfaces: list[tuple[int, Surface]] = []
     body_of: list[int] = []
     names: list[str] = []
     for i, wall in enumerate(case.walls):
+        if i in without:
+            continue
         if not wall.closed_axes and any(length != int(length) for length in case.box.size):
             raise CaseError(
                 f"wall[#{i + 1}]: solids other than plates need a box of whole lengths, not "
@@ -80,7 +103,7 @@ def _parts(body: Any, room: Room, i: int, method: str) -> Iterator[Part]:
     for piece in body.pieces:
         part = _alone(piece.term, room)
         if part is None:
-            raise CaseError(f"wall[#{i + 1}]: not with method {method!r}; {ALLOWED}")
+            raise NotARow(f"wall[#{i + 1}]: not with method {method!r}; {ALLOWED}")
         if vibrates and part.kind != "half_space":
             raise CaseError(f"wall[#{i + 1}]: contact.amplitude: only plates vibrate")
         if part.kind == "brick" and part.sign < 0:
@@ -91,7 +114,7 @@ def _parts(body: Any, room: Room, i: int, method: str) -> Iterator[Part]:
             if _in_box(part, room):
                 yield part  # its images are found by the nearest one
         else:
-            raise CaseError(f"wall[#{i + 1}]: not with method {method!r}; {ALLOWED}")
+            raise NotARow(f"wall[#{i + 1}]: not with method {method!r}; {ALLOWED}")
 
 
 def _alone(term: Term, room: Room) -> Part | None:

@@ -24,6 +24,16 @@ def ahead(law):
 
 
 @generic
+def beside(solid, law, i, step, world, sums):
+    """Force and torque on a sphere, in quanta, and the largest of all, with what a solid adds."""
+
+
+@generic
+def tell_beside(solid, law, i, world, told):
+    """Add to what is told of a sphere what a solid adds."""
+
+
+@generic
 def tell(law, i, time, world, told):
     """Add up what readers ask of a sphere, in quanta, in a row of eight: twice its share of the
     potential energy, r F of its pairs (xx, yy, zz, xy, xz, yz), and how many touch it."""

@@ -12,7 +12,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mesokit.method.soft_spheres.machine.acting import act, ahead, quantum, tell, turns
+from mesokit.method.soft_spheres.machine.acting import (
+    act,
+    ahead,
+    beside,
+    quantum,
+    tell,
+    tell_beside,
+    turns,
+)
 from mesokit.method.soft_spheres.machine.central import add_product
 from mesokit.method.soft_spheres.machine.geometry import from_to, from_wall, reach, row
 from mesokit.method.soft_spheres.machine.groups import ENERGY, INVERSE, LARGEST, TOUCHING
@@ -109,20 +117,40 @@ def _(law, i, time, step, world, mine, noted):
                 largest = max(largest, abs_sum(back))
         else:
             forget(lists.springs, i, s)
+    sums = Sums(force, torque, largest)
     for w in range(len(walls.rows)):
         distance, out, moves = from_wall(walls.rows, w, box, r, time)
         if distance < reach(bodies, i) + law.ahead:
-            touch = at_wall(walls, bodies, bodies.seen, 0.5 * step, i, w, (distance, out, moves))
-            found = answer(law, touch, walls.springs, i, w, step)
-            twisted = torque_of(law, touch, found, touch.arm)
-            force = counted(force, found.force, law.scale)
-            torque = counted(torque, twisted, law.scale)
-            largest = max(largest, abs_sum(found.force), abs_sum(twisted))
+            there = Surface(
+                distance, out, moves, walls.own[w, DAMPING_RATIO], walls.own[w, FRICTION]
+            )
+            touch = at_wall(bodies, bodies.seen, 0.5 * step, i, there)
+            sums = with_wall(law, touch, answer(law, touch, walls.springs, i, w, step), sums)
         else:
             forget(walls.springs, i, w)
+    sums = beside(walls.solid, law, i, step, world, sums)
     for k in range(3):
-        bodies.force[i, k], bodies.torque[i, k] = force[k], torque[k]
-    noted[LARGEST] = max(noted[LARGEST], largest * law.scale)
+        bodies.force[i, k], bodies.torque[i, k] = sums.force[k], sums.torque[k]
+    noted[LARGEST] = max(noted[LARGEST], sums.largest * law.scale)
+
+
+class Sums(NamedTuple):
+    """Force and torque on a sphere, in quanta, and the largest force or torque of a contact."""
+
+    force: tuple[int, int, int]
+    torque: tuple[int, int, int]
+    largest: float
+
+
+@scalar
+def with_wall(law, touch, found, sums):
+    """What a contact with a wall adds."""
+    twisted = torque_of(law, touch, found, touch.arm)
+    return Sums(
+        counted(sums.force, found.force, law.scale),
+        counted(sums.torque, twisted, law.scale),
+        max(sums.largest, abs_sum(found.force), abs_sum(twisted)),
+    )
 
 
 @scalar
@@ -152,18 +180,33 @@ def between(law, bodies, seen, half, i, j, way):
     )
 
 
+class Surface(NamedTuple):
+    """A surface beside a sphere: distance of its centre, normal, velocity of the surface there,
+    damping ratio (-1: as of pairs) and friction."""
+
+    distance: float
+    out: tuple[float, float, float]
+    moves: tuple[float, float, float]
+    ratio: float
+    friction: float
+
+
 @scalar
-def at_wall(walls, bodies, seen, half, i, w, there):
-    """The contact of sphere i with a wall: `there` are its distance, normal and velocity."""
-    distance, out, moves = there
-    arm, spin = reach(bodies, i), row(bodies.spin, i)
-    foreseen = added_scaled(row(seen, i), -1.0, moves)
-    velocity = added_scaled(row(bodies.velocity, i), -1.0, moves)
+def surface(distance, out, moves, own, w):
+    """A surface whose damping ratio and friction are in a row of `own`."""
+    return Surface(distance, out, moves, own[w, DAMPING_RATIO], own[w, FRICTION])
+
+
+@scalar
+def at_wall(bodies, seen, half, i, there):
+    """The contact of sphere i with a surface."""
+    arm, spin, out = reach(bodies, i), row(bodies.spin, i), there.out
+    foreseen = added_scaled(row(seen, i), -1.0, there.moves)
+    velocity = added_scaled(row(bodies.velocity, i), -1.0, there.moves)
     closing = Closing(-dot(foreseen, out), -dot(velocity, out), half)
     velocity = added_scaled(velocity, -1.0, outer(scaled(arm, spin), out))
-    mass = 1.0 / bodies.velocity[i, INVERSE]
-    ratio, friction = walls.own[w, DAMPING_RATIO], walls.own[w, FRICTION]
-    return Touch(arm - distance, out, mass, arm, arm, closing, velocity, spin, ratio, friction)
+    mass, overlap = 1.0 / bodies.velocity[i, INVERSE], arm - there.distance
+    return Touch(overlap, out, mass, arm, arm, closing, velocity, spin, there.ratio, there.friction)
 
 
 class Answer(NamedTuple):
@@ -289,10 +332,21 @@ def _(law, i, time, world, told):
     for w in range(len(walls.rows)):
         distance, out, moves = from_wall(walls.rows, w, box, r, time)
         if distance < reach(bodies, i):
-            touch = at_wall(walls, bodies, bodies.velocity, 0.0, i, w, (distance, out, moves))
-            energy, _ = at_rest(law, touch, walls.springs, i, w)
-            told[ENERGY] += quanta(2.0 * energy, law.scale)
-            told[TOUCHING] += 1
+            there = Surface(
+                distance, out, moves, walls.own[w, DAMPING_RATIO], walls.own[w, FRICTION]
+            )
+            tell_wall(
+                law, at_wall(bodies, bodies.velocity, 0.0, i, there), walls.springs, i, w, told
+            )
+    tell_beside(walls.solid, law, i, world, told)
+
+
+@scalar
+def tell_wall(law, touch, springs, i, s, told):
+    """Add what a contact with a wall tells."""
+    energy, _ = at_rest(law, touch, springs, i, s)
+    told[ENERGY] += quanta(2.0 * energy, law.scale)
+    told[TOUCHING] += 1
 
 
 @scalar

@@ -55,11 +55,24 @@ class Lists(NamedTuple):
 
 
 class Walls(NamedTuple):
-    """rows (walls, 14): as in event-driven dynamics; own (walls, 2): damping ratio and friction of
-    each; springs (n, walls, width): of contacts that remember."""
+    """rows (walls, 14): see `spheres.wall.rows`; own (walls, 2): damping ratio and friction of
+    each; springs (n, walls, width): of contacts that remember; solid: the others, see `solid`."""
 
     rows: Any
     own: Any
+    springs: Any
+    solid: Any
+
+
+class Solid(NamedTuple):
+    """Walls of any shape: tables of `geometry.solids`, like: a place in the box; own (bodies, 2):
+    damping ratio and friction of each; terms (n, 3): which terms a sphere touches, -1: none;
+    springs (n, 3, width): of these contacts."""
+
+    bodies: Any
+    like: Any
+    own: Any
+    terms: Any
     springs: Any
 
 

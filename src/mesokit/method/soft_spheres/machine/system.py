@@ -9,8 +9,18 @@ from numpy.typing import NDArray
 
 from mesokit.errors import RunError
 from mesokit.execute.cpu.threads import Threads
+from mesokit.geometry.solids.bodies import NOBODY
+from mesokit.geometry.solids.none import Nothing
 from mesokit.method.soft_spheres.machine import groups
-from mesokit.method.soft_spheres.machine.groups import Bodies, Box, Lists, Motion, Walls, World
+from mesokit.method.soft_spheres.machine.groups import (
+    Bodies,
+    Box,
+    Lists,
+    Motion,
+    Solid,
+    Walls,
+    World,
+)
 from mesokit.method.soft_spheres.machine.lists import (
     GROUP,
     carry_springs,
@@ -19,6 +29,7 @@ from mesokit.method.soft_spheres.machine.lists import (
     sort,
 )
 from mesokit.method.soft_spheres.machine.reading import tell_all
+from mesokit.method.soft_spheres.machine.solid import MOST
 from mesokit.method.soft_spheres.machine.step import advance, find_forces
 from mesokit.scalar.random import Counter
 
@@ -37,12 +48,22 @@ class Grid(NamedTuple):
     farthest: float
 
 
+class Others(NamedTuple):
+    """Walls of any shape: what compiled code takes, a place, own (bodies, 2), see `groups.Solid`;
+    and what keeps their tables in memory."""
+
+    bodies: Any
+    like: tuple[float, ...]
+    own: Array
+    kept: Any
+
+
 class Given(NamedTuple):
     """What does not change.
 
     size of the box and closed axes; reach, masses, inertia (n,); law of the forces, see `acting`;
     width: numbers that a contact remembers; nearest: no two come nearer, largest: no force exceeds
-    it; motion; walls: rows and own, see `Walls`; seed; skin.
+    it; motion; walls: rows and own, see `Walls`; seed; skin; others: walls of any shape.
     """
 
     size: tuple[float, ...]
@@ -58,6 +79,7 @@ class Given(NamedTuple):
     own: Array
     seed: int
     skin: float
+    others: Others | None = None
 
 
 class System:
@@ -70,7 +92,7 @@ class System:
         self.grid = _grid(given, self.box)
         self.bodies = _bodies(n)
         self.spare = _bodies(n)
-        self.walls = self._walls(np.zeros((n, len(given.rows), given.width)))
+        self.walls = self._no_contacts()
         self.lists = self._lists(GROUP)
         self.old = self._lists(GROUP)
         self.cell, self.order = np.zeros(n, np.int64), np.zeros(n, np.int64)
@@ -84,8 +106,17 @@ class System:
         self.noted.view(np.int64)[:, groups.NEAREST] = np.float64(np.inf).view(np.int64)
         self.noted[:, groups.LARGEST] = 0.0
 
-    def _walls(self, springs: Array) -> Walls:
-        return Walls(self.given.rows, self.given.own, springs)
+    def _walls(self, springs: Array, solid_terms: Any, solid_springs: Array) -> Walls:
+        given = self.given
+        solid: Any = Nothing()
+        if (others := given.others) is not None:
+            solid = Solid(others.bodies, others.like, others.own, solid_terms, solid_springs)
+        return Walls(given.rows, given.own, springs, solid)
+
+    def _no_contacts(self) -> Walls:
+        n, width = self.n, self.given.width
+        terms, solid_springs = np.full((n, MOST), NOBODY, np.int32), np.zeros((n, MOST, width))
+        return self._walls(np.zeros((n, len(self.given.rows), width)), terms, solid_springs)
 
     def _lists(self, most: int) -> Lists:
         n, width = self.n, self.given.width
@@ -110,7 +141,7 @@ class System:
         bodies.velocity[:, :d], bodies.velocity[:, groups.INVERSE] = velocities, 1 / given.masses
         self._set_spins(spins)
         bodies.spin[:, groups.INVERSE] = 1 / given.inertia
-        self.walls = self._walls(np.zeros_like(self.walls.springs))
+        self.walls = self._no_contacts()
         self.lists = self._lists(GROUP)
         self.renew()
 
@@ -171,6 +202,7 @@ class System:
             np.take(old, self.order, axis=0, out=new, mode="clip")
         self.bodies, self.spare = spare, bodies
         self.lists, self.old = self.old, self.lists
+        self._sort_walls()
         columns = np.ascontiguousarray(self.bodies.place.T)
         while True:
             self.team.run(
@@ -188,8 +220,6 @@ class System:
                 break
             self.lists = self._lists(longest + GROUP)
         if self.given.width:
-            if len(self.walls.rows):
-                self.walls = self._walls(self.walls.springs[self.order])
             self.team.run(
                 carry_springs,
                 self.order,
@@ -198,6 +228,15 @@ class System:
                 self.lists,
                 self.bodies.number,
             )
+
+    def _sort_walls(self) -> None:
+        """Contacts with walls, in the order of memory."""
+        walls, order = self.walls, self.order
+        if self.given.others is not None:
+            solid = walls.solid
+            self.walls = self._walls(walls.springs[order], solid.terms[order], solid.springs[order])
+        elif walls.springs.size:
+            self.walls = walls._replace(springs=walls.springs[order])
 
     def _mirror(self) -> None:
         """Both spheres of each contact remember it."""
@@ -234,6 +273,9 @@ class System:
             found["pairs"] = pairs[sorting]
             found["springs"] = self.lists.springs[i, s][sorting]
             found["wall_springs"] = self.by_number(self.walls.springs)
+        if self.given.others is not None:
+            found["solid_terms"] = self.by_number(self.walls.solid.terms)
+            found["solid_springs"] = self.by_number(self.walls.solid.springs)
         return found
 
     def restore(self, state: dict[str, NDArray[Any]]) -> None:
@@ -246,8 +288,12 @@ class System:
         for name in ("place", "velocity", "spin", "force", "torque", "images"):
             getattr(bodies, name)[:, :3] = state[name]
         self.lists = self._lists(GROUP)
+        self.walls = self._no_contacts()
         if given.width:
-            self.walls = self._walls(np.array(state["wall_springs"], float))
+            self.walls.springs[:] = state["wall_springs"]
+        if given.others is not None:
+            self.walls.solid.terms[:] = state["solid_terms"]
+            self.walls.solid.springs[:] = state["solid_springs"]
         self.renew()
         if given.width:
             self._remember(state["pairs"], state["springs"])
