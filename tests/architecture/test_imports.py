@@ -45,6 +45,7 @@ ROWS = {
     "geometry/": ("case", "errors", "geometry", "scalar"),
     "potential/": ("case", "errors", "potential", "scalar", "theory"),
     "spheres/": ("case", "errors", "geometry", "scalar", "spheres"),
+    "spheres/cost.py": ("case", "spheres", "theory"),
     "spheres/start/random.py": (
         "case", "method.event_driven.grow", "method.event_driven.walls", "spheres",
     ),
