@@ -23,7 +23,10 @@ PAGES = [
     "docs/studies.md",
     "docs/own.md",
     "docs/methods/brownian.md",
+    "docs/methods/event_driven.md",
     "docs/methods/flock.md",
+    "docs/methods/soft_spheres.md",
+    "docs/methods/spheres.md",
 ]
 SHORT = ["--set", "run.steps=40", "--set", "run.warmup=10"]
 
