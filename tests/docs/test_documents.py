@@ -27,6 +27,7 @@ PAGES = [
     "docs/methods/flock.md",
     "docs/methods/soft_spheres.md",
     "docs/methods/spheres.md",
+    "docs/methods/which_method.md",
 ]
 SHORT = ["--set", "run.steps=40", "--set", "run.warmup=10"]
 
