@@ -51,7 +51,7 @@ ROWS = {
     ),
     "spheres/start/from_file.py": ("case", "errors", "io.snapshot_file", "spheres"),
     "spheres/start/from_run.py": ("case", "errors", "io.earlier_spheres", "spheres"),
-    "spheres/walls.py": ("case", "geometry"),
+    "spheres/walls.py": ("case", "errors", "geometry"),
     "method/__init__.py": (),
     "method/protocol.py": ("case", "engine", "=method"),
     "method/mpcd/": MPCD,

@@ -9,6 +9,7 @@ from mesokit.errors import CaseError
 from mesokit.method.event_driven.walls import surface_rows
 from mesokit.method.soft_spheres import scales
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw
+from mesokit.spheres import walls
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -22,9 +23,7 @@ def check(case: Case) -> None:
         raise CaseError("box: not with shear in method 'soft-spheres'")
     if box.open:
         raise CaseError(f"box.open = {show(list(box.open))}: not with method 'soft-spheres'")
-    for i, wall in enumerate(case.walls):
-        if box.dimension not in wall.dimensions:
-            raise CaseError(f"wall[#{i + 1}]: {type(wall).__name__} is not for {box.dimension}D")
+    walls.check(case)
     _walls(case)
     _potential(case)
     reach = section.reach(box)
