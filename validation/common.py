@@ -63,8 +63,10 @@ def sources() -> str:
 class Page:
     """A page of docs/validation: text, tables, figures, and what had to be shown."""
 
-    def __init__(self, name: str, title: str) -> None:
-        self.name, self.title = name, title
+    def __init__(
+        self, name: str, title: str, units: str = "cell side a, kT and particle mass are 1"
+    ) -> None:
+        self.name, self.title, self.units = name, title, units
         self.parts: list[str] = []
         self.checks: list[tuple[str, bool]] = []
         self.began = time.perf_counter()
@@ -161,8 +163,7 @@ class Page:
         head = [
             f"# {self.title}\n",
             f"Made by `python validation/{self.name}.py` on {date.today()} in {seconds:.0f} s, "
-            f"one thread; {versions}. Units: cell side a, kT and particle mass are 1. "
-            "Errors are one standard error.\n",
+            f"one thread; {versions}. Units: {self.units}. Errors are one standard error.\n",
         ]
         marks = [f"- {'met' if met else '**not met**'}: {what}" for what, met in self.checks]
         if marks:

@@ -276,7 +276,7 @@ def jump(page: Page, axis: Any) -> None:
 
 def make() -> int:
     """Write the page."""
-    page = Page("flocks", "Flocks")
+    page = Page("flocks", "Flocks", "range of sight and timestep are 1")
     fig, axes = plt.subplots(1, 3, figsize=(11, 3.6))
     alone(page)
     crowd(page)

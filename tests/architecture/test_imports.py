@@ -46,12 +46,9 @@ ROWS = {
     "potential/": ("case", "errors", "potential", "scalar", "theory"),
     "spheres/": ("case", "errors", "geometry", "scalar", "spheres"),
     "spheres/cost.py": ("case", "spheres", "theory"),
-    "spheres/start/random.py": (
-        "case", "method.event_driven.grow", "method.event_driven.walls", "spheres",
-    ),
+    "spheres/start/random.py": ("case", "method.event_driven.grow", "spheres"),
     "spheres/start/from_file.py": ("case", "errors", "io.snapshot_file", "spheres"),
     "spheres/start/from_run.py": ("case", "errors", "io.earlier_spheres", "spheres"),
-    "spheres/walls.py": ("case", "errors", "geometry"),
     "method/__init__.py": (),
     "method/protocol.py": ("case", "engine", "=method"),
     "method/mpcd/": MPCD,
@@ -70,8 +67,7 @@ ROWS = {
     ),
     "method/soft_spheres/": (
         "case", "engine", "errors", "execute.cells", "execute.cpu.strips.layout",
-        "execute.cpu.threads", "geometry", "method.event_driven.machine.walls",
-        "method.event_driven.walls", "method.protocol", "method.soft_spheres", "observe",
+        "execute.cpu.threads", "geometry", "method.protocol", "method.soft_spheres", "observe",
         "potential", "running.cores", "scalar", "spheres", "statistics", "theory",
     ),
     "method/brownian/": (

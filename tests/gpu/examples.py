@@ -161,7 +161,7 @@ ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     cut.roomy: lambda p, d: (vec(d),),
     cut.home: lambda p, d: (vec(d),),
     cut.grip: lambda p, d: (WHOLE, vec(d)),
-    contacts.normal_force: lambda p, d: (1.0, 1.0, 1.0, 1.0),
+    contacts.normal_force: lambda p, d: (1.0, contacts.Closing(1.0, 1.0, 0.1), 1.0, 1.0),
     contacts.normal_energy: lambda p, d: (1.0, 1.0),
     birds.counted: lambda p, d: (),
     birds.turned: lambda p, d: (COUNTER, WHOLE, vec(d), vec(d), WHOLE),

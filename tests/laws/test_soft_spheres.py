@@ -28,14 +28,11 @@ PHASES = np.arange(10) / 10  # of the first touch within a step
     SpringDashpot(stiffness=1e5, damping=400, pulls=False), SpringDashpot(0.5, contact_time=0.01),
 ])  # fmt: skip
 def test_two_spheres_bounce_as_schwager_and_poschel_say(law):
-    # the dashpot sees velocities half a step old: an error of first order in the step, which is
-    # taken off; at the usual step it is below 0.3 % unless damping is strong
+    # of second order in the step; what it depends on when within a step they touch is small too
     expected = law.restitution_of(0.5, 1.0)
-    at = {n: np.mean([collision(law, 1.0, n, p)[1] for p in PHASES]) for n in (50, 200, 400)}
-    if expected > 0.8:
-        assert abs(at[50] / expected - 1) < 0.001
-    assert abs(at[400] - expected) < abs(at[50] - expected) / 4
-    assert abs(2 * at[400] - at[200] - expected) < 0.0005  # of the speed before
+    at = {n: np.array([collision(law, 1.0, n, p)[1] for p in PHASES]) for n in (50, 200)}
+    assert abs(at[50].mean() / expected - 1) < 0.001 > at[50].std() / expected
+    assert abs(at[200].mean() - expected) < abs(at[50].mean() - expected) / 8 + 1e-6
 
 
 def test_a_collision_takes_the_contact_time():

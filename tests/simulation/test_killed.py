@@ -20,6 +20,65 @@ pytestmark = [
 
 KILLS = 6
 STEPS = 8000
+SIBLINGS = {
+    "event-driven": """
+[run]
+steps = 600
+[box]
+size = [20.5, 24]
+[spheres]
+number = 250
+gravity = [0, -0.5]
+timestep = 0.5
+[spheres.collision]
+rule = "hard"
+restitution = 0.9
+tangential = 0.2
+friction = 0.4
+contact_time = 1e-4
+[[wall]]
+shape = "plates"
+axis = "y"
+lower = { contact = { amplitude = 0.2, frequency = 10 } }
+[[observe]]
+quantity = "granular-temperature"
+""",
+    "soft-spheres": """
+[run]
+steps = 60000
+[box]
+size = [20.5, 24]
+[spheres]
+number = 300
+gravity = [0, -1]
+[spheres.pair]
+rule = "spring-dashpot"
+restitution = 0.6
+contact_time = 0.015
+friction = 0.5
+rolling = 0.1
+[[wall]]
+shape = "plates"
+axis = "y"
+[[observe]]
+quantity = "mean-square-displacement"
+every = 50
+""",
+    "flock": """
+[run]
+steps = 6000
+[box]
+size = [16, 16]
+[flock]
+density = 3
+[[wall]]
+shape = "disk"
+centre = [8, 8]
+radius = 3
+[[observe]]
+quantity = "polar-order"
+""",
+}
 LONG = ["--set", f"run.steps={STEPS}", "--set", "run.checkpoint_every=100"]
 SOURCE = str(Path(mesokit.__file__).parent.parent)
 
@@ -100,6 +159,39 @@ def test_killed_at_random_moments(whole, case_file, tmp_path):
     _, errors = process.communicate()
     assert process.returncode == 0, errors
     assert_same_end(folder, reference)
+
+
+@pytest.mark.parametrize("method", SIBLINGS)
+def test_other_methods_killed(method, tmp_path):
+    """Contacts that remember, queues of events and headings survive as well."""
+    case_file, checkpoint = tmp_path / "case.toml", tmp_path / "killed" / "checkpoint.npz"
+    case_file.write_text(SIBLINGS[method])
+    often = ["--set", f"run.method={method}", "--set", "run.checkpoint_every=50"]
+    start = ["run", case_file, *often, "--set", "trajectory.every=200", "--output"]
+    _, errors = mesokit_process(*start, tmp_path / "whole").communicate()
+    assert not errors
+    process, steps = mesokit_process(*start, checkpoint.parent), []
+    for moment in np.random.default_rng(21).uniform(0.0, 1.0, 3):
+        before = written(checkpoint)
+        while process.poll() is None and written(checkpoint) == before:
+            time.sleep(0.001)
+        time.sleep(0.3 * moment)
+        process.kill()
+        process.communicate()
+        steps.append(steps_of(checkpoint.parent))
+        process = mesokit_process("resume", checkpoint.parent)
+    _, errors = process.communicate()
+    assert process.returncode == 0, errors
+    killed, whole = mesokit.open(checkpoint.parent), mesokit.open(tmp_path / "whole")
+    assert 0 < steps[0] < steps[-1] < whole.case.run.steps
+    assert killed.results == whole.results
+    assert len(killed.trajectory) == len(whole.trajectory) > 1
+    np.testing.assert_array_equal(
+        killed.trajectory[-1]["position"], whole.trajectory[-1]["position"]
+    )
+    for name, array in np.load(tmp_path / "whole" / "checkpoint.npz").items():
+        if name.startswith("engine/"):
+            np.testing.assert_array_equal(np.load(checkpoint)[name], array)
 
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGUSR1"])

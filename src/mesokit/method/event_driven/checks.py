@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.event_driven.walls import wall_rows
-from mesokit.spheres import walls
+from mesokit.spheres.wall import solids
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -21,7 +21,7 @@ def check(case: Case) -> None:
         raise CaseError("box: not with shear in method 'event-driven'")
     if box.open:
         raise CaseError(f"box.open = {show(list(box.open))}: not with method 'event-driven'")
-    walls.check(case)
+    solids.check(case)
     wall_rows(case)
     largest = section.largest(box)
     shut = {axis for wall in case.walls for axis in wall.closed_axes}

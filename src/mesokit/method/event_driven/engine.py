@@ -14,9 +14,10 @@ from mesokit.method.event_driven.heating.protocol import Motion
 from mesokit.method.event_driven.machine import groups
 from mesokit.method.event_driven.machine.collide import Rules
 from mesokit.method.event_driven.machine.system import Given, System
-from mesokit.method.event_driven.walls import room_of, wall_rows
+from mesokit.method.event_driven.walls import wall_rows
 from mesokit.method.event_driven.window import instant, window
 from mesokit.spheres.made import made
+from mesokit.spheres.wall.surfaces import room_of
 
 Array = NDArray[np.float64]
 

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 from mesokit.case.component import show
 from mesokit.errors import CaseError
-from mesokit.method.event_driven.walls import surface_rows
 from mesokit.method.soft_spheres import scales
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw
-from mesokit.spheres import walls
+from mesokit.spheres.wall import solids
+from mesokit.spheres.wall.surfaces import surface_rows
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -23,7 +23,7 @@ def check(case: Case) -> None:
         raise CaseError("box: not with shear in method 'soft-spheres'")
     if box.open:
         raise CaseError(f"box.open = {show(list(box.open))}: not with method 'soft-spheres'")
-    walls.check(case)
+    solids.check(case)
     _walls(case)
     _potential(case)
     reach = section.reach(box)

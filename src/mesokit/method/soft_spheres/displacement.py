@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from mesokit.errors import CaseError
-from mesokit.spheres.walls import closed_axes
+from mesokit.spheres.wall.solids import closed_axes
 from mesokit.statistics import spread_ids
 
 if TYPE_CHECKING:

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.method.event_driven.walls import room_of, surface_rows
 from mesokit.method.soft_spheres.machine.central import Central
 from mesokit.method.soft_spheres.machine.contact import OWN, Contact
 from mesokit.method.soft_spheres.machine.groups import Motion
 from mesokit.method.soft_spheres.machine.system import Given
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw, damping_ratio
-from mesokit.method.soft_spheres.scales import timestep_of
+from mesokit.method.soft_spheres.scales import speed_of_collision, timestep_of
 from mesokit.potential.protocol import central
+from mesokit.spheres.wall.surfaces import room_of, surface_rows
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -58,9 +58,17 @@ def contact_of(case: Case, law: ContactLaw) -> Contact:
         law.friction,
         float(law.tangential == "history"),
         law.rolling,
+        float(_ahead(case)),
         float(1 / scale),
         float(scale),
     )
+
+
+def _ahead(case: Case) -> float:
+    """How far spheres may come nearer in half a step."""
+    section, box = case.spheres, case.box
+    way = 0.5 * timestep_of(section, box) * speed_of_collision(section, box)
+    return min(way, 0.25 * section.skin_of(box))
 
 
 def central_of(case: Case, law: Any) -> Central:

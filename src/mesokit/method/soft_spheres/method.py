@@ -16,7 +16,7 @@ from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
 from mesokit.spheres.groups import FIELDS, groups
 from mesokit.spheres.made import made
 from mesokit.spheres.start.first_state import ARRAYS, first_state, missing_files, starts
-from mesokit.spheres.walls import closed_axes, solids
+from mesokit.spheres.wall.solids import closed_axes, solids
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 from mesokit.case.component import component, tag
 from mesokit.spheres.start.protocol import Placed, SphereStart
+from mesokit.spheres.wall.surfaces import room_of, surface_rows
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -26,7 +27,6 @@ class RandomStart(SphereStart):
     def place(self, case: Case, made: Made) -> Placed:
         """Places for all. Raises CaseError where there is no room."""
         from mesokit.method.event_driven.grow import grown
-        from mesokit.method.event_driven.walls import room_of, surface_rows
 
         walls = surface_rows(case).rows
         fraction = case.spheres.fraction(case.box)

@@ -11,21 +11,20 @@ from mesokit.method.event_driven.machine.groups import (
     IN_A_ROW,
     INERTIA,
     LAST,
-    LOST_ENERGY,
     MASS,
     PAIRS,
     RADIUS,
     SPIN,
-    STEPS,
     VELOCITY,
     VIRIAL,
     WALLS,
 )
 from mesokit.method.event_driven.machine.motion import bring_to, entries, nearest_image, put_entries
-from mesokit.method.event_driven.machine.walls import MOVES, outward, vibration
+from mesokit.method.event_driven.machine.walls import outward
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.random import METHOD, Counter, normals, unit, words
 from mesokit.scalar.vector import added_scaled, dot, outer, scaled
+from mesokit.spheres.wall.rows import MOVES, vibration
 
 THERMAL = METHOD + np.uint64(70)  # purpose of the random numbers of thermal walls
 
@@ -119,7 +118,6 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
         total = scaled(over_step(masses, dot(added_scaled(v_i, -1.0, v_j), n), energy), n)
         put_entries(state, i, VELOCITY, added_scaled(v_i, 1.0 / body[i, MASS], total))
         put_entries(state, j, VELOCITY, added_scaled(v_j, -1.0 / body[j, MASS], total))
-        tally.counts[STEPS] += 1
         tally.sums[VIRIAL] += dot(apart, total)
         return
     lever_i, lever_j = scaled(-state[i, RADIUS], n), scaled(state[j, RADIUS], n)
@@ -148,7 +146,6 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
     body[i, LAST] = body[j, LAST] = time
     tally.counts[PAIRS] += 1
     tally.sums[VIRIAL] += dot(apart, total)
-    tally.sums[LOST_ENERGY] += 0.5 * (1.0 - e * e) * closing * closing / masses
 
 
 @scalar

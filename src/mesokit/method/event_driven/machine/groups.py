@@ -88,7 +88,7 @@ class Queue(NamedTuple):
 
 
 class Tally(NamedTuple):
-    """What has happened: counts (8,), sums (2,), momentum that each wall has taken (walls, d)."""
+    """What has happened: counts (4,), sums (1,), momentum that each wall has taken (walls, d)."""
 
     counts: Any
     sums: Any
@@ -96,5 +96,5 @@ class Tally(NamedTuple):
 
 
 # places in `Tally.counts`, and in `Tally.sums`
-PAIRS, WALLS, ELASTIC, STEPS, RENEWALS, PREDICTIONS, IN_A_ROW, COUNTS = 0, 1, 2, 3, 4, 5, 6, 8
-VIRIAL, LOST_ENERGY, SUMS = 0, 1, 2
+PAIRS, WALLS, ELASTIC, IN_A_ROW, COUNTS = 0, 1, 2, 3, 4
+VIRIAL, SUMS = 0, 1

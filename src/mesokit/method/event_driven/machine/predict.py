@@ -10,7 +10,6 @@ from mesokit.method.event_driven.machine.groups import (
     NOTHING,
     PARTNER,
     PARTNER_HITS,
-    PREDICTIONS,
     WIDTH,
 )
 from mesokit.method.event_driven.machine.lists import time_to_leave
@@ -29,7 +28,7 @@ EIGHT = 8  # lengths of lists are multiples of it
 
 
 @scalar
-def predict(world, rules, spheres, lists, queue, tally, i, now):
+def predict(world, rules, spheres, lists, queue, i, now):
     """Find the next event of sphere i, and write it down; the queue is told by the caller."""
     state, number = spheres.state, spheres.number
     r, v = place_at(world, state, i, now), velocity_at(world, state, i, now)
@@ -54,7 +53,6 @@ def predict(world, rules, spheres, lists, queue, tally, i, now):
     queue.time[i], queue.event[i, PARTNER] = best, partner
     if partner >= 0:
         queue.event[i, PARTNER_HITS] = np.int32(spheres.hits[partner])
-    tally.counts[PREDICTIONS] += 1
 
 
 @scalar

@@ -14,7 +14,6 @@ from mesokit.method.event_driven.machine.groups import (
     PARTNER,
     PARTNER_HITS,
     RADIUS,
-    RENEWALS,
     TIME,
 )
 from mesokit.method.event_driven.machine.lists import find, link, renew
@@ -50,7 +49,6 @@ def advance(world, rules, spheres, lists, queue, tally, end):
                 if tally.counts[IN_A_ROW] >= MANY:
                     return COLLAPSED
         elif partner == LEAVES:
-            tally.counts[RENEWALS] += 1
             if not renew(world, lists, spheres.state, i, boxed(world, spheres.state, i, now)):
                 return FULL
         elif partner <= FIRST_WALL:
@@ -59,7 +57,7 @@ def advance(world, rules, spheres, lists, queue, tally, end):
                 return COLLAPSED
         for k in (i, other):
             remove(queue, number, k)
-            predict(world, rules, spheres, lists, queue, tally, k, now)
+            predict(world, rules, spheres, lists, queue, k, now)
             insert(queue, number, k)
             if other == i:
                 break
@@ -75,7 +73,7 @@ def boxed(world, state, i, now):
 
 
 @kernel
-def rebuild(world, rules, spheres, lists, queue, tally, now):
+def rebuild(world, rules, spheres, lists, queue, now):
     """All lists and all predictions anew, from the states as they are; whether lists had room."""
     n, room = len(spheres.number), True
     lists.head[:] = -1
@@ -91,7 +89,7 @@ def rebuild(world, rules, spheres, lists, queue, tally, now):
     queue.now[0] = int(now * queue.per_time)
     queue.now[1] = 0
     for i in range(n):
-        predict(world, rules, spheres, lists, queue, tally, i, now)
+        predict(world, rules, spheres, lists, queue, i, now)
         insert(queue, spheres.number, i)
     return True
 

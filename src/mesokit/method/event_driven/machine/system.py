@@ -14,7 +14,7 @@ from mesokit.method.event_driven.machine import groups
 from mesokit.method.event_driven.machine.collide import Rules
 from mesokit.method.event_driven.machine.groups import Lists, Queue, Spheres, Tally, World
 from mesokit.method.event_driven.machine.run import advance, read, rebuild, synchronise
-from mesokit.method.event_driven.machine.walls import FREQUENCY, PHASE
+from mesokit.spheres.wall.rows import FREQUENCY, PHASE
 
 if TYPE_CHECKING:
     from mesokit.engine import State
@@ -156,9 +156,7 @@ class System:
 
     def _rebuild(self) -> bool:
         rules, spheres = self.given.rules, self.spheres
-        return bool(
-            rebuild(self.world, rules, spheres, self.lists, self.queue, self.tally, self.now)
-        )
+        return bool(rebuild(self.world, rules, spheres, self.lists, self.queue, self.now))
 
     def _lists(self) -> Lists:
         n, d, size = self.n, self.d, np.array(self.given.size, float)

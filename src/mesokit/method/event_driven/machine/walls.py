@@ -1,7 +1,6 @@
 """When a sphere touches a wall, and where the wall is then.
 
-A wall is a row of numbers: its kind, a place, a unit vector, its radius, velocity of the surface,
-and how it vibrates. Planes at rest are met in closed form; other walls are approached by steps that
+Planes at rest are met in closed form; other walls are approached by steps that
 are too short to come through: from a lower bound of the distance, a parabola.
 """
 
@@ -13,27 +12,20 @@ from mesokit.scalar.elementary import rint
 from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.vector import added_scaled, dot, scaled
+from mesokit.spheres.wall.rows import (
+    AMPLITUDE,
+    AXIS,
+    INSIDE,
+    KIND,
+    OUTSIDE,
+    PLACE,
+    PLANE,
+    ROUND,
+    vibration,
+)
 
-# columns: kind, place of three, unit vector of three (normal of a plane, axis of a cylinder),
-# radius, velocity of three, amplitude, frequency, phase at the start of the window
-KIND, PLACE, AXIS, ROUND, MOVES = 0, 1, 4, 7, 8
-AMPLITUDE, FREQUENCY, PHASE, COLUMNS = 11, 12, 13, 14
-PLANE, OUTSIDE, INSIDE = 0.0, 1.0, -1.0  # kinds: a plane; fluid outside or inside of a round wall
 CLOSE = 1e-13  # of the radius of a sphere: it touches
 STEPS = 1_000_000
-
-
-@scalar
-def vibration(walls, w, time):
-    """How far a wall has moved along its normal, how fast it does, and the bound of its
-    acceleration."""
-    amplitude, frequency = walls[w, AMPLITUDE], walls[w, FREQUENCY]
-    phase = frequency * time + walls[w, PHASE]
-    return (
-        amplitude * math.sin(phase),
-        amplitude * frequency * math.cos(phase),
-        amplitude * frequency * frequency,
-    )
 
 
 @scalar

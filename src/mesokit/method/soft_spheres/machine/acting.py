@@ -19,6 +19,11 @@ def turns(law):
 
 
 @generic
+def ahead(law):
+    """How far beyond the reach a pair is looked at."""
+
+
+@generic
 def tell(law, i, time, world, told):
     """Add up what readers ask of a sphere, in quanta, in a row of eight: twice its share of the
     potential energy, r F of its pairs (xx, yy, zz, xy, xz, yz), and how many touch it."""

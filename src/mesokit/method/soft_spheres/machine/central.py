@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mesokit.method.soft_spheres.machine.acting import act, quantum, tell, turns
+from mesokit.method.soft_spheres.machine.acting import act, ahead, quantum, tell, turns
 from mesokit.method.soft_spheres.machine.geometry import from_to, from_wall, reach, row
 from mesokit.method.soft_spheres.machine.groups import ENERGY, NEAREST, VIRIAL
 from mesokit.potential.protocol import central
@@ -30,6 +30,11 @@ class Central(NamedTuple):
 @quantum.register(Central)
 def _(law):
     return law.quantum
+
+
+@ahead.register(Central)
+def _(law):
+    return 0.0
 
 
 @turns.register(Central)

@@ -4,6 +4,7 @@ Where both spheres of a pair are one thread's, the force is found once, from the
 memory; else each finds it for itself. Nothing depends on which: what one finds is bit for bit
 minus what the other does, for all the same numbers come in, with the other sign or in another order
 of two terms. Springs are remembered where they are found; `mirror_springs` tells the other sphere.
+Pairs that will touch within half a step have a force as well, of the dashpot alone.
 """
 
 import math
@@ -11,16 +12,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mesokit.method.soft_spheres.machine.acting import act, quantum, tell, turns
+from mesokit.method.soft_spheres.machine.acting import act, ahead, quantum, tell, turns
 from mesokit.method.soft_spheres.machine.central import add_product
-from mesokit.method.soft_spheres.machine.geometry import cross, from_to, from_wall, reach, row
+from mesokit.method.soft_spheres.machine.geometry import from_to, from_wall, reach, row
 from mesokit.method.soft_spheres.machine.groups import ENERGY, INVERSE, LARGEST, TOUCHING
 from mesokit.method.soft_spheres.machine.lists import ROLLING, SLIDING
 from mesokit.method.soft_spheres.machine.spring import Slider, stretched
-from mesokit.method.soft_spheres.pair.protocol import normal_energy, normal_force
+from mesokit.method.soft_spheres.pair.protocol import Closing, normal_energy, normal_force
 from mesokit.scalar.fixed_point import quanta
 from mesokit.scalar.jit import scalar
-from mesokit.scalar.vector import added, added_scaled, dot, scaled
+from mesokit.scalar.vector import added, added_scaled, dot, outer, scaled
 
 DAMPING_RATIO, FRICTION, OWN = 0, 1, 2  # columns of `Walls.own`, and their number
 
@@ -31,7 +32,7 @@ class Contact(NamedTuple):
     normal: force along the normal; stiffness, damping: of the spring along the surface, over the
     normal stiffness and over sqrt(normal stiffness * mass); friction: Coulomb's coefficient;
     memory: 1 for a spring along the surface, 0 for the dashpot alone; rolling: its coefficient;
-    quantum and its inverse.
+    ahead: how far spheres may come nearer in half a step; quantum and its inverse.
     """
 
     normal: Any
@@ -40,6 +41,7 @@ class Contact(NamedTuple):
     friction: float
     memory: float
     rolling: float
+    ahead: float
     quantum: float
     scale: float
 
@@ -48,9 +50,8 @@ class Touch(NamedTuple):
     """One contact, as one of the two spheres sees it.
 
     overlap; normal: from the other to this; reduced: mass; arm: radius of this; roller: reduced
-    radius;
-    velocity: of this against the other at the contact; turning: difference of the angular
-    velocities; ratio, friction: of damping and of Coulomb.
+    radius; closing: how fast the overlap grows; velocity: of this against the other at the contact;
+    turning: difference of the angular velocities; ratio, friction: of damping and of Coulomb.
     """
 
     overlap: float
@@ -58,6 +59,7 @@ class Touch(NamedTuple):
     reduced: float
     arm: float
     roller: float
+    closing: Closing
     velocity: tuple[float, float, float]
     turning: tuple[float, float, float]
     ratio: float
@@ -67,6 +69,11 @@ class Touch(NamedTuple):
 @quantum.register(Contact)
 def _(law):
     return law.quantum
+
+
+@ahead.register(Contact)
+def _(law):
+    return law.ahead
 
 
 @turns.register(Contact)
@@ -87,8 +94,8 @@ def _(law, i, time, step, world, mine, noted):
             continue  # found from there, or the list is filled up with the sphere itself
         way = from_to(box, bodies.place, j, r)
         square, sum_of_radii = dot(way, way), reach(bodies, i) + reach(bodies, j)
-        if square < sum_of_radii * sum_of_radii:
-            touch = between(law, bodies, i, j, way, math.sqrt(square))
+        if square < (sum_of_radii + law.ahead) * (sum_of_radii + law.ahead):
+            touch = between(law, bodies, bodies.seen, 0.5 * step, i, j, way)
             found = answer(law, touch, lists.springs, i, s, step)
             twisted = torque_of(law, touch, found, touch.arm)
             force = counted(force, found.force, law.scale)
@@ -104,8 +111,8 @@ def _(law, i, time, step, world, mine, noted):
             forget(lists.springs, i, s)
     for w in range(len(walls.rows)):
         distance, out, moves = from_wall(walls.rows, w, box, r, time)
-        if distance < reach(bodies, i):
-            touch = at_wall(walls, bodies, i, w, distance, out, moves)
+        if distance < reach(bodies, i) + law.ahead:
+            touch = at_wall(walls, bodies, bodies.seen, 0.5 * step, i, w, (distance, out, moves))
             found = answer(law, touch, walls.springs, i, w, step)
             twisted = torque_of(law, touch, found, touch.arm)
             force = counted(force, found.force, law.scale)
@@ -119,14 +126,17 @@ def _(law, i, time, step, world, mine, noted):
 
 
 @scalar
-def between(law, bodies, i, j, way, distance):
-    """The contact of sphere i with sphere j, which is `distance` away."""
+def between(law, bodies, seen, half, i, j, way):
+    """The contact of sphere i with sphere j, which is `way` off; dashpots see velocities `seen`."""
+    distance = math.sqrt(dot(way, way))
     arm, other = reach(bodies, i), reach(bodies, j)
     normal = scaled(1.0 / distance, way)
     spin, spin_of_other = row(bodies.spin, i), row(bodies.spin, j)
     rolled = added(scaled(arm, spin), scaled(other, spin_of_other))
+    foreseen = added_scaled(row(seen, i), -1.0, row(seen, j))
     velocity = added_scaled(row(bodies.velocity, i), -1.0, row(bodies.velocity, j))
-    velocity = added_scaled(velocity, -1.0, cross(rolled, normal))
+    closing = Closing(-dot(foreseen, normal), -dot(velocity, normal), half)
+    velocity = added_scaled(velocity, -1.0, outer(rolled, normal))
     inverse = bodies.velocity[i, INVERSE] + bodies.velocity[j, INVERSE]
     return Touch(
         arm + other - distance,
@@ -134,6 +144,7 @@ def between(law, bodies, i, j, way, distance):
         1.0 / inverse,
         arm,
         arm * other / (arm + other),
+        closing,
         velocity,
         added_scaled(spin, -1.0, spin_of_other),
         -1.0,
@@ -142,14 +153,17 @@ def between(law, bodies, i, j, way, distance):
 
 
 @scalar
-def at_wall(walls, bodies, i, w, distance, out, moves):
-    """The contact of sphere i with a wall."""
+def at_wall(walls, bodies, seen, half, i, w, there):
+    """The contact of sphere i with a wall: `there` are its distance, normal and velocity."""
+    distance, out, moves = there
     arm, spin = reach(bodies, i), row(bodies.spin, i)
+    foreseen = added_scaled(row(seen, i), -1.0, moves)
     velocity = added_scaled(row(bodies.velocity, i), -1.0, moves)
-    velocity = added_scaled(velocity, -1.0, cross(scaled(arm, spin), out))
+    closing = Closing(-dot(foreseen, out), -dot(velocity, out), half)
+    velocity = added_scaled(velocity, -1.0, outer(scaled(arm, spin), out))
     mass = 1.0 / bodies.velocity[i, INVERSE]
     ratio, friction = walls.own[w, DAMPING_RATIO], walls.own[w, FRICTION]
-    return Touch(arm - distance, out, mass, arm, arm, velocity, spin, ratio, friction)
+    return Touch(arm - distance, out, mass, arm, arm, closing, velocity, spin, ratio, friction)
 
 
 class Answer(NamedTuple):
@@ -165,11 +179,15 @@ class Answer(NamedTuple):
 @scalar
 def answer(law, touch, springs, i, s, step):
     """What a contact does; what it remembers is brought up to date."""
-    closing = -dot(touch.velocity, touch.normal)
-    push, stiffness = normal_force(law.normal, touch.overlap, closing, touch.reduced, touch.ratio)
+    push, stiffness = normal_force(
+        law.normal, touch.overlap, touch.closing, touch.reduced, touch.ratio
+    )
     force, along, against = scaled(push, touch.normal), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    if touch.overlap <= 0.0:
+        forget(springs, i, s)
+        return Answer(force, along, against)
     if touch.friction > 0.0:
-        sliding = added_scaled(touch.velocity, closing, touch.normal)
+        sliding = added_scaled(touch.velocity, -dot(touch.velocity, touch.normal), touch.normal)
         slider = Slider(
             law.memory * law.stiffness * stiffness,
             law.damping * math.sqrt(stiffness * touch.reduced),
@@ -177,10 +195,10 @@ def answer(law, touch, springs, i, s, step):
         )
         drag, spring = stretched(slider, kept(springs, i, s, SLIDING), sliding, touch.normal, step)
         keep(springs, i, s, SLIDING, spring)
-        force, along = added(force, drag), cross(touch.normal, drag)
+        force, along = added(force, drag), outer(touch.normal, drag)
     if law.rolling > 0.0:
         # the velocity with which the surfaces would slip if they did not roll (Luding 2008, eq. 22)
-        rolling = scaled(-touch.roller, cross(touch.turning, touch.normal))
+        rolling = scaled(-touch.roller, outer(touch.turning, touch.normal))
         slider = Slider(
             law.stiffness * stiffness,
             law.damping * math.sqrt(stiffness * touch.reduced),
@@ -188,7 +206,7 @@ def answer(law, touch, springs, i, s, step):
         )
         drag, spring = stretched(slider, kept(springs, i, s, ROLLING), rolling, touch.normal, step)
         keep(springs, i, s, ROLLING, spring)
-        against = cross(touch.normal, drag)
+        against = outer(touch.normal, drag)
     return Answer(force, along, against)
 
 
@@ -263,7 +281,7 @@ def _(law, i, time, world, told):
         way = from_to(box, bodies.place, j, r)
         square, sum_of_radii = dot(way, way), reach(bodies, i) + reach(bodies, j)
         if square < sum_of_radii * sum_of_radii and j != i:
-            touch = between(law, bodies, i, j, way, math.sqrt(square))
+            touch = between(law, bodies, bodies.velocity, 0.0, i, j, way)
             energy, force = at_rest(law, touch, lists.springs, i, s)
             told[ENERGY] += quanta(energy, law.scale)
             told[TOUCHING] += 1
@@ -271,7 +289,7 @@ def _(law, i, time, world, told):
     for w in range(len(walls.rows)):
         distance, out, moves = from_wall(walls.rows, w, box, r, time)
         if distance < reach(bodies, i):
-            touch = at_wall(walls, bodies, i, w, distance, out, moves)
+            touch = at_wall(walls, bodies, bodies.velocity, 0.0, i, w, (distance, out, moves))
             energy, _ = at_rest(law, touch, walls.springs, i, w)
             told[ENERGY] += quanta(2.0 * energy, law.scale)
             told[TOUCHING] += 1
@@ -281,8 +299,9 @@ def _(law, i, time, world, told):
 def at_rest(law, touch, springs, i, s):
     """Energy of the springs of a contact, and its force; dashpots along the surface count as they
     are, and nothing changes."""
-    closing = -dot(touch.velocity, touch.normal)
-    push, stiffness = normal_force(law.normal, touch.overlap, closing, touch.reduced, touch.ratio)
+    push, stiffness = normal_force(
+        law.normal, touch.overlap, touch.closing, touch.reduced, touch.ratio
+    )
     energy = normal_energy(law.normal, touch.overlap, touch.reduced)
     force = scaled(push, touch.normal)
     if touch.friction > 0.0:
@@ -292,7 +311,7 @@ def at_rest(law, touch, springs, i, s):
             law.damping * math.sqrt(stiffness * touch.reduced),
             touch.friction * abs(push),
         )
-        sliding = added_scaled(touch.velocity, closing, touch.normal)
+        sliding = added_scaled(touch.velocity, -dot(touch.velocity, touch.normal), touch.normal)
         along, _ = stretched(slider, spring, sliding, touch.normal, 0.0)
         force = added(force, along)
         energy += 0.5 * slider.stiffness * dot(spring, spring)

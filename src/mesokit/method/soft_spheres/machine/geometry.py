@@ -2,20 +2,19 @@
 
 import math
 
-from mesokit.method.event_driven.machine.walls import (
-    AMPLITUDE,
+from mesokit.method.soft_spheres.machine.groups import REACH
+from mesokit.scalar.elementary import rint
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.vector import added_scaled, dot, scaled
+from mesokit.spheres.wall.rows import (
     AXIS,
-    FREQUENCY,
     KIND,
     MOVES,
     PLACE,
     PLANE,
     ROUND,
+    vibration,
 )
-from mesokit.method.soft_spheres.machine.groups import REACH
-from mesokit.scalar.elementary import rint
-from mesokit.scalar.jit import scalar
-from mesokit.scalar.vector import added_scaled, dot, scaled
 
 
 @scalar
@@ -41,16 +40,6 @@ def from_to(box, place, j, r):
 
 
 @scalar
-def cross(a, b):
-    """The cross product."""
-    return (
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    )
-
-
-@scalar
 def three(rows, w, column):
     """Three numbers of a wall, from a column on."""
     return rows[w, column], rows[w, column + 1], rows[w, column + 2]
@@ -62,10 +51,8 @@ def from_wall(rows, w, box, r, time):
     way, axis = added_scaled(r, -1.0, three(rows, w, PLACE)), three(rows, w, AXIS)
     moves = three(rows, w, MOVES)
     if rows[w, KIND] == PLANE:
-        amplitude, frequency = rows[w, AMPLITUDE], rows[w, FREQUENCY]
-        phase = frequency * time
-        distance = dot(way, axis) - amplitude * math.sin(phase)
-        return distance, axis, added_scaled(moves, amplitude * frequency * math.cos(phase), axis)
+        shift, speed, _ = vibration(rows, w, time)
+        return dot(way, axis) - shift, axis, added_scaled(moves, speed, axis)
     way = nearest(box, way)
     across = added_scaled(way, -dot(way, axis), axis)
     length = math.sqrt(dot(across, across))

@@ -17,13 +17,14 @@ ENERGY, VIRIAL, TOUCHING, TOLD = 0, 1, 7, 8  # columns of what is told of a sphe
 class Bodies(NamedTuple):
     """The spheres in the order of memory.
 
-    place (n, 4): coordinates in the box and reach; velocity (n, 4): and inverse mass; spin (n, 4):
-    angular velocity and inverse moment of inertia; force, torque (n, 3): in whole quanta;
-    images (n, 3): boxes away; number (n,): of the particle.
+    place (n, 4): coordinates in the box and reach; velocity (n, 4): and inverse mass; seen (n, 4):
+    velocity that dashpots see; spin (n, 4): angular velocity and inverse moment of inertia;
+    force, torque (n, 3): in whole quanta; images (n, 3): boxes away; number (n,): of the particle.
     """
 
     place: Any
     velocity: Any
+    seen: Any
     spin: Any
     force: Any
     torque: Any

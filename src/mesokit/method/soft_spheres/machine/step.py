@@ -1,9 +1,9 @@
 """Velocity Verlet, by the threads of a team, until the lists are stale.
 
-Half a kick and the drift, the forces at the new places with the velocities of the half step, half a
-kick. Forces are whole numbers of quanta, each of which a sphere adds up for itself: the sum has no
-order. With a bath velocities are drawn between two halves of the drift (BAOAB; Leimkuhler and
-Matthews 2013).
+Half a kick and the drift, the forces at the new places, half a kick. Dashpots along
+the normal see the velocities at the end of the step, others those of the half step. Forces are
+whole numbers of quanta, each of which a sphere adds up for itself: the sum has no order. With a
+bath velocities are drawn between two halves of the drift (BAOAB; Leimkuhler and Matthews 2013).
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 from mesokit.execute.cells import worn
 from mesokit.execute.cpu.strips.layout import share
 from mesokit.execute.cpu.threads import meet
-from mesokit.method.soft_spheres.machine.acting import act, quantum, turns
+from mesokit.method.soft_spheres.machine.acting import act, ahead, quantum, turns
 from mesokit.method.soft_spheres.machine.groups import DONE, FARTHEST, INVERSE, PENDING
 from mesokit.scalar.cache import kernel
 from mesokit.scalar.elementary import rint
@@ -40,12 +40,13 @@ def advance(team, counter, steps, law, motion, world, noted):
             for i in range(first, last):
                 kick(law, motion, world.bodies, i)
                 drift(motion, now, world.bodies, world.box, i)
+                foresee(law, motion, world.bodies, i)
                 farthest = max(farthest, moved(world.bodies, world.box, world.lists, i))
             mine[FARTHEST] = farthest
             meet(team)
             for t in range(team.threads):
                 farthest = max(farthest, noted[t, FARTHEST])
-            if worn(farthest, 0.0, world.lists.skin):
+            if worn(farthest, 0.0, world.lists.skin - ahead(law)):
                 pending = True
                 break
         time = motion.step * float(now.step + np.uint64(1))
@@ -65,6 +66,9 @@ def find_forces(team, time, law, world, noted):
     """The forces on spheres where they start from. No contact grows meanwhile."""
     first, last = share(len(world.bodies.number), team.thread, team.threads)
     clear(law, world.bodies, first, last)
+    for i in range(len(world.bodies.number)):
+        for k in range(3):
+            world.bodies.seen[i, k] = world.bodies.velocity[i, k]
     for i in range(first, last):
         act(law, i, time, 0.0, world, (first, last), noted[team.thread])
 
@@ -89,6 +93,16 @@ def kick(law, motion, bodies, i):
         per_inertia = bodies.spin[i, INVERSE] * quantum(law)
         for k in range(3):
             bodies.spin[i, k] += half * (float(bodies.torque[i, k]) * per_inertia)
+
+
+@scalar
+def foresee(law, motion, bodies, i):
+    """The velocity at the end of the step, if forces are then what they were at its start."""
+    if turns(law):
+        per_mass = bodies.velocity[i, INVERSE] * quantum(law)
+        for k in range(3):
+            acceleration = float(bodies.force[i, k]) * per_mass + motion.gravity[k]
+            bodies.seen[i, k] = bodies.velocity[i, k] + 0.5 * motion.step * acceleration
 
 
 @scalar

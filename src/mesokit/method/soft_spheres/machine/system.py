@@ -289,7 +289,7 @@ def _grid(given: Given, box: Box) -> Grid:
 
 
 def _bodies(n: int) -> Bodies:
-    place, velocity, spin = np.zeros((n, 4)), np.zeros((n, 4)), np.zeros((n, 4))
+    place, velocity, seen, spin = (np.zeros((n, 4)) for _ in range(4))
     force, torque = np.zeros((n, 3), np.int64), np.zeros((n, 3), np.int64)
     images, number = np.zeros((n, 3), np.int32), np.zeros(n, np.int64)
-    return Bodies(place, velocity, spin, force, torque, images, number)
+    return Bodies(place, velocity, seen, spin, force, torque, images, number)

@@ -7,7 +7,12 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from mesokit import theory
 from mesokit.case.component import component, param, tag
-from mesokit.method.soft_spheres.pair.protocol import ContactLaw, normal_energy, normal_force
+from mesokit.method.soft_spheres.pair.protocol import (
+    ContactLaw,
+    normal_energy,
+    normal_force,
+    rate_of_now,
+)
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -70,11 +75,14 @@ class Hertz(NamedTuple):
 
 @normal_force.register(Hertz)
 def _(law, overlap, closing, reduced, ratio):
+    overlap = max(overlap, 0.0)
     stiffness = 1.5 * law.stiffness * math.sqrt(overlap)
     damping = law.damping * stiffness
     if ratio >= 0.0:
         damping = ratio * math.sqrt(stiffness * reduced)
-    force = stiffness * overlap / 1.5 + damping * closing
+    spring = stiffness * overlap / 1.5
+    rate = rate_of_now(overlap, closing, spring, stiffness, damping, reduced)
+    force = spring + damping * rate
     return (force if law.pulls > 0.5 else max(force, 0.0)), stiffness
 
 

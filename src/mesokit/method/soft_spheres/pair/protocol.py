@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from mesokit.case.component import component, param
 from mesokit.case.registry import family
 from mesokit.potential.protocol import Pair
-from mesokit.scalar.jit import generic
+from mesokit.scalar.jit import generic, scalar
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -115,12 +115,35 @@ def damping_ratio(restitution: float) -> float:
     return -2.0 * log / math.hypot(math.pi, log)
 
 
+class Closing(NamedTuple):
+    """How fast an overlap grows: now, if forces are what they were a step ago; on the mean of the
+    step before; and half the time of a step (0: nothing changes meanwhile)."""
+
+    now: float
+    before: float
+    half: float
+
+
 @generic
 def normal_force(law, overlap, closing, reduced, ratio):
-    """Force along the normal at an overlap that grows at the rate `closing`, and the stiffness.
+    """Force along the normal at an overlap (below 0: a gap), and the stiffness.
 
-    `reduced` is the reduced mass, `ratio` the damping ratio of a surface that has its own, else -1.
+    `closing` is how fast it grows, `reduced` the reduced mass, `ratio` the damping ratio of a
+    surface that has its own, else -1.
     """
+
+
+@scalar
+def rate_of_now(overlap, closing, spring, stiffness, damping, reduced):
+    """The rate at which an overlap grows, to second order in the step: `closing.now`, and what half
+    a step of the change of the pair's own force adds; where spheres have just touched all of that
+    force is new."""
+    per_mass = closing.half / reduced
+    grown = 2.0 * closing.half * closing.before
+    more = -spring
+    if overlap > grown:
+        more = damping * (2.0 * closing.before - closing.now) - stiffness * grown
+    return (closing.now + per_mass * more) / (1.0 + per_mass * damping)
 
 
 @generic

@@ -14,6 +14,7 @@ from mesokit.method.soft_spheres.pair.protocol import (
     damping_ratio,
     normal_energy,
     normal_force,
+    rate_of_now,
 )
 
 if TYPE_CHECKING:
@@ -130,7 +131,18 @@ def _(law, overlap, closing, reduced, ratio):
     damping = law.damping + law.ratio * math.sqrt(stiffness * reduced)
     if ratio >= 0.0:
         damping = ratio * math.sqrt(stiffness * reduced)
-    force = stiffness * overlap + damping * closing
+    spring = stiffness * max(overlap, 0.0)
+    rate = closing.now
+    if overlap > 0.0:
+        rate = rate_of_now(overlap, closing, spring, stiffness, damping, reduced)
+    # the dashpot's force begins and ends at once: of a step in which spheres touch or part it acts
+    # for as long as they overlap
+    way = closing.half * abs(rate)
+    if abs(overlap) < way:
+        rate *= 0.5 + 0.5 * overlap / way
+    elif overlap <= 0.0:
+        rate = 0.0
+    force = spring + damping * rate
     return (force if law.pulls > 0.5 else max(force, 0.0)), stiffness
 
 

@@ -1,0 +1,1 @@
+"""Walls of spheres: rows of numbers for the loops, solids for pictures."""
