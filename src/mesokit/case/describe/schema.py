@@ -79,9 +79,9 @@ def _any_of_both(
             else:
                 joint[inside] = {**inner, "description": f"method '{name}': {_told(inner)}"}
     title, names = key.capitalize(), " and ".join(f"'{name}'" for name in both)
-    told = f"Of the methods {names}. Keys of one alone say so."
+    about = f"Of the methods {names}. Keys of one alone say so."
     first = next(iter(tables.values()))
-    definitions[title] = {**first, "title": title, "description": told, "properties": joint}
+    definitions[title] = {**first, "title": title, "description": about, "properties": joint}
     return {**next(iter(both.values())), "allOf": [{"$ref": f"{PLACE}{title}"}]}
 
 
