@@ -1,6 +1,7 @@
 """What observables of hard spheres say of real ones, beside theory."""
 
 import math
+
 import numpy as np
 import pytest
 from hard_spheres import gas
@@ -42,9 +43,7 @@ def test_elastic_disks_collide_as_often_as_their_pressure_says():
 def test_dilute_spheres_fly_five_hundred_radii(size, steps, fraction, law):
     """Maxwell's mean free path: 1/(sqrt(8) n d) of disks, 1/(sqrt(2) pi n d^2) of spheres."""
     _, path = observed(
-        gas(
-            size, steps, observe=[CollisionRate(every=1)], packing_fraction=fraction, timestep=20.0
-        )
+        gas(size, steps, observe=[CollisionRate(every=1)], packing_fraction=fraction, timestep=20.0)
     )
     radii = 2 * path.measured
     assert law / fraction == pytest.approx(500, rel=5e-3)
