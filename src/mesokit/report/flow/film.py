@@ -99,7 +99,7 @@ def animate(
     if not isinstance(fps, numbers.Real) or not 0 < fps <= FASTEST:
         raise CaseError(f"fps = {show(fps)}: expected a number above 0, at most {FASTEST:g}")
     kind = kind or method_of(case).picture or "speed"
-    panels = panels_of(kind, case)
+    panels = panels_of(kind, case, view.colour)
     found = sources(case, results, trajectory, view)
     source = choose_one(found, {panel.NEEDS for panel in panels}, kind)
     frames = frames_in(source.time, view.window)

@@ -59,7 +59,7 @@ def picture(
     """
     view = View(**choices)
     window, kind = view.window, kind or method_of(case).picture or "four"
-    panels = panels_of(kind, case)
+    panels = panels_of(kind, case, view.colour)
     found = sources(case, results, trajectory, view)
     chosen = [choose(found, panel.NEEDS, kind, window is not None) for panel in panels]
     section = Section(case, chosen[0].axes, view.at)
