@@ -180,6 +180,7 @@ from mesokit.spheres.kinds import SphereKind as SphereKind
 from mesokit.spheres.start.from_file import FileStart as FileStart
 from mesokit.spheres.start.from_run import RunStart as RunStart
 from mesokit.spheres.start.lattice import LatticeStart as LatticeStart
+from mesokit.spheres.start.poured import PouredStart as PouredStart
 from mesokit.spheres.start.protocol import SphereStart as SphereStart
 from mesokit.spheres.start.random import RandomStart as RandomStart
 from mesokit.study.merge import merge as merge

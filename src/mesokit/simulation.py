@@ -30,6 +30,7 @@ from mesokit.running.compiling import telling
 from mesokit.running.given import case_and_arrays, next_chunk, threads_of
 from mesokit.running.log import RunLog
 from mesokit.running.longer import longer, require_steps
+from mesokit.running.replicas import Replicas
 from mesokit.running.results import write_results
 from mesokit.running.schedule import Schedule
 from mesokit.running.seen import Seen
@@ -37,7 +38,6 @@ from mesokit.running.signals import Stopped, catching
 from mesokit.running.until import Goal, limit_of, next_length
 
 if TYPE_CHECKING:
-    from mesokit.observe.shared.protocol import Accumulator
     from mesokit.observe.shared.result import Result
 
 
@@ -87,11 +87,9 @@ class Simulation(Seen):
         self.callbacks = Callbacks(callbacks)
         self.case, arrays = case_and_arrays(case, parts)
         self.threads = threads_of(threads)
-        method = method_of(self.case)
-        state = method.first_state(self.case, arrays)
         with blaming(self.case):
             self._build()
-            method.start(self.engine, state)
+            self.replicas.start(arrays)
         self.directory: RunDirectory | None = None
         if output is not None:
             self.write_to(output)
@@ -151,11 +149,10 @@ class Simulation(Seen):
         self._build()
         self._attach(directory)
         if directory.checkpoint_file.exists():
-            meta = take_up(directory, self.case, self.engine, self.accumulators)
+            meta = take_up(directory, self.case, self.replicas.parts())
             self._looked = bool(meta["looked"])
         else:
-            method = method_of(self.case)
-            method.start(self.engine, method.first_state(self.case, {}))
+            self.replicas.start({})
         if self.writer is not None:
             require_frames(directory, self.case, self.step if self._looked else NONE_YET)
             self.writer.resume(self.step)
@@ -170,11 +167,9 @@ class Simulation(Seen):
         return self
 
     def _build(self) -> None:
-        measures = {name for observable in self.case.observe for name in observable.measures}
-        self.engine = method_of(self.case).engine(self.case, self.threads, sorted(measures))
-        self.accumulators: dict[str, Accumulator] = {
-            observable.label: observable.accumulator(self.case) for observable in self.case.observe
-        }
+        self.replicas = Replicas(self.case, self.threads)
+        self.engine = self.replicas.first.engine
+        self.accumulators = self.replicas.first.accumulators
         self.log = RunLog(self.case)
         self.callbacks.given[:0] = self.log.callbacks()  # first: others may write a checkpoint
         self.writer: TrajectoryWriter | None = None
@@ -208,12 +203,12 @@ class Simulation(Seen):
         if name not in self.accumulators:
             known = ", ".join(self.accumulators) or "none"
             raise KeyError(f"no observable {name!r}; there are {known}")
-        return self.accumulators[name].result()
+        return self.replicas.result(name)
 
     @property
     def results(self) -> dict[str, Result]:
         """What all observables say so far, by name."""
-        return {name: accumulator.result() for name, accumulator in self.accumulators.items()}
+        return {name: self.replicas.result(name) for name in self.accumulators}
 
     # --- running --------------------------------------------------------------------------------
 
@@ -361,7 +356,7 @@ class Simulation(Seen):
             target = min(self.step + chunk, last, *stops)
             steps, due = target - self.step, self.schedule.due(target)
             stress = any("stress" in observable.measures for observable in due)
-            self.engine.advance(steps, measure_stress=stress)
+            self.replicas.advance(steps, stress)
             chunk = next_chunk(steps, perf_counter() - began)
             self._observe()
             self.callbacks.call(self)
@@ -380,18 +375,19 @@ class Simulation(Seen):
     def _observe(self) -> None:
         """Take the samples and the frame that are due at this step."""
         if self.step == self.case.run.warmup:
-            self.engine.end_warmup()
+            self.replicas.each(lambda one: one.engine.end_warmup())
         for observable in self.schedule.due(self.step):
             began = perf_counter()
-            self.accumulators[observable.label].observe(self.engine)
+            self.replicas.observe(observable.label)
             self._observe_seconds[observable.label] += perf_counter() - began
         if self.writer and self.schedule.frame_due(self.step):
             self.writer.record(self.engine)
         self._looked = self.step >= self.case.run.warmup
 
     def _end(self) -> None:
-        if self.directory is None:  # a checkpoint is checked when it is written
-            return self.engine.check()
+        self.replicas.check()
+        if self.directory is None:
+            return
         self.checkpoint()
         write_results(self.directory, self.case, self.results, self.timings, self.writer)
 
@@ -411,7 +407,7 @@ class Simulation(Seen):
             self.writer.flush()
         self.log.sync()
         meta = {"step": self.step, "looked": self._looked}
-        keep(self.directory, self.case, meta, self.engine, self.accumulators)
+        keep(self.directory, self.case, meta, self.replicas.state())
 
     def _checkpoint_due(self, seconds: float) -> bool:
         if self.directory is None or self._stopping:

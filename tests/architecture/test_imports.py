@@ -47,10 +47,11 @@ ROWS = {
     "spheres/": ("case", "errors", "geometry", "scalar", "spheres"),
     "spheres/cost.py": ("case", "spheres", "theory"),
     "spheres/start/random.py": ("case", "method.event_driven.grow", "spheres"),
+    "spheres/start/poured.py": ("case", "errors", "method.soft_spheres.settle", "spheres"),
     "spheres/start/from_file.py": ("case", "errors", "io.snapshot_file", "spheres"),
     "spheres/start/from_run.py": ("case", "errors", "io.earlier_spheres", "spheres"),
     "method/__init__.py": (),
-    "method/protocol.py": ("case", "engine", "=method"),
+    "method/protocol.py": ("case", "engine", "=method", "running.cores"),
     "method/mpcd/": MPCD,
     "method/mpcd/columns.py": (*MPCD, "method.protocol"),
     "method/mpcd/summary.py": (*MPCD, "method.protocol"),
@@ -81,7 +82,7 @@ ROWS = {
     ),
     "io/": (
         "case", "errors", "geometry", "io", "method.protocol", "observe.shared.named",
-        "observe.shared.result",
+        "observe.shared.pooled", "observe.shared.result",
     ),
     "io/open.py": (
         "case", "errors", "io", "method.protocol", "observe.shared.named", "observe.shared.result",

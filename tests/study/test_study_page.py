@@ -141,7 +141,7 @@ def test_several_warnings_at_one_point(study, monkeypatch):
         strong = case.fluid.force.acceleration[0] > 0.03
         return SimpleNamespace(warnings=["fast", "hot"] if strong else [])
 
-    monkeypatch.setattr(document, "method_of", lambda case: SimpleNamespace(summary=summary))
+    monkeypatch.setattr(document, "summary_of", summary)
     at = "(at acceleration = 0.04)"
     assert document._warnings(study) == [f"fast {at}", f"hot {at}"]
 

@@ -15,6 +15,13 @@ class Run:
     steps: int = param(doc="steps to run after the warm-up", ge=0)
     warmup: int = param(0, doc="steps before them that no observable sees", ge=0)
     seed: int = param(1, doc="the same seed gives the same bits", ge=0, lt=2**56)
+    replicas: int = param(
+        1,
+        doc="independent copies that run side by side, each from the next seed; results are those "
+        "of all of them, frames and the log of the first",
+        ge=1,
+        le=4096,
+    )
     method: str = param(methods.DEFAULT, doc="how the particles move")
     checkpoint_minutes: float = param(
         10.0, doc="write a checkpoint this often", unit="minutes", gt=0

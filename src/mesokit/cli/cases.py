@@ -111,14 +111,14 @@ def check(
 ) -> None:
     """Check CASE, show it with all defaults, what follows from it, and what to mind."""
     from mesokit.case.kind import has_run
-    from mesokit.method.protocol import method_of
+    from mesokit.method.protocol import method_of, summary_of
 
     with patience(READING):
         full = read(case, settings)
         method = method_of(full)
         with naming(case):
             method.first_state(full, {})
-        summary = method.summary(full, threads)
+        summary = summary_of(full, threads)
     if axes is not None and picture is None:
         raise CaseError("--axes: only for a picture; add --picture")
     drawn = None if picture is None else _draw(full, case, picture, axes)

@@ -52,7 +52,7 @@ def run(
     With --seeds, runs with so many seeds lie in OUTPUT/runs, and their pooled results in
     OUTPUT/runs/merged; the same command goes on with what was stopped.
     """
-    from mesokit.method.protocol import method_of
+    from mesokit.method.protocol import summary_of
     from mesokit.report.progress import Reporter
 
     if seed is not None:
@@ -69,7 +69,7 @@ def run(
         full = read(case, settings)
     _claim(output, overwrite)
     if not quiet:
-        for warning in method_of(full).summary(full, threads).warnings:
+        for warning in summary_of(full, threads).warnings:
             say(f"warning: {warning}")
     from mesokit.simulation import Simulation
 

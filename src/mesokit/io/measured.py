@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,37 +11,35 @@ from mesokit.errors import CheckpointError
 from mesokit.io import checkpoint
 from mesokit.io.run_directory import RunDirectory
 from mesokit.method.protocol import method_of
+from mesokit.observe.shared.pooled import pool
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 
 def keep(
-    directory: RunDirectory,
-    case: Case,
-    meta: Mapping[str, Any],
-    engine: Any,
-    accumulators: Mapping[str, Any],
+    directory: RunDirectory, case: Case, meta: Mapping[str, Any], arrays: Mapping[str, Any]
 ) -> None:
-    """Write a checkpoint. Raises RunError."""
-    arrays = {f"engine/{key}": value for key, value in engine.state().items()}
-    for name, accumulator in accumulators.items():
-        arrays |= {f"observe/{name}/{key}": v for key, v in accumulator.state().items()}
-    checkpoint.write(directory.checkpoint_file, arrays, dict(meta), _motion(directory, case))
+    """Write a checkpoint of these arrays. Raises RunError."""
+    checkpoint.write(directory.checkpoint_file, dict(arrays), dict(meta), _motion(directory, case))
 
 
 def take_up(
-    directory: RunDirectory, case: Case, engine: Any, accumulators: Mapping[str, Any]
+    directory: RunDirectory, case: Case, parts: Iterable[tuple[str, Any]]
 ) -> dict[str, Any]:
-    """Let an engine and accumulators go on from the checkpoint; what else was kept with it.
+    """Let engines and accumulators go on from the checkpoint; what else was kept with it.
+
+    `parts` are replicas, each with what the names of its arrays begin with.
 
     Raises CheckpointError if it is damaged or of another case.
     """
     path = directory.checkpoint_file
     arrays, meta = _read(directory, case)
     with fitting(path):
-        engine.restore(checkpoint.part(arrays, "engine/"))
-        restore(accumulators, arrays)
+        for prefix, replica in parts:
+            own = checkpoint.part(arrays, prefix)
+            replica.engine.restore(checkpoint.part(own, "engine/"))
+            restore(replica.accumulators, own)
     return meta
 
 
@@ -57,13 +55,20 @@ def _motion(directory: RunDirectory, case: Case) -> str:
 def measured(directory: RunDirectory, case: Case) -> tuple[dict[str, Any], int]:
     """The accumulators of a run by name, as its last checkpoint has them, and the step of it.
 
-    Raises CheckpointError if there is none or it is damaged.
+    Those of replicas are pooled. Raises CheckpointError if there is none or it is damaged.
     """
     arrays, meta = _read(directory, case)
-    made = {observable.label: observable.accumulator(case) for observable in case.observe}
+    pooled: dict[str, Any] = {}
     with fitting(directory.checkpoint_file):
-        restore(made, arrays)
-    return made, int(meta["step"])
+        for k in range(case.run.replicas):
+            made = {observable.label: observable.accumulator(case) for observable in case.observe}
+            restore(made, checkpoint.part(arrays, f"replica-{k}/") if k else arrays)
+            for name, accumulator in made.items():
+                if k:
+                    pool(name, pooled[name], accumulator)
+                else:
+                    pooled[name] = accumulator
+    return pooled, int(meta["step"])
 
 
 def restore(accumulators: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import method as methods
+from mesokit.case.amounts import duration_text
+from mesokit.running.cores import usable_cores
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -155,3 +158,21 @@ def method_of(case: Case) -> Method:
     """The method of a case."""
     found: Method = methods.load(case.run.method)
     return found
+
+
+def summary_of(case: Case, threads: int | None = None) -> Summary:
+    """What follows from a case, by its method; of replicas how long all of them take."""
+    number = case.run.replicas
+    if number == 1:
+        return method_of(case).summary(case, threads)
+    cores = usable_cores() if threads is None else threads
+    one = method_of(case).summary(case, max(1, cores // number))
+    seconds = one.seconds * math.ceil(number / cores)
+    last = case.run.seed + number - 1
+    rows = [("replicas", str(number), f"seeds {case.run.seed} to {last}, side by side")]
+    for name, value, note in one.rows:
+        if name == "run time":
+            rows.append((name, duration_text(seconds), f"estimate: of all, {cores} threads"))
+        else:
+            rows.append((name, value, "estimate: of each" if name == "memory" else note))
+    return Summary(tuple(rows), one.warnings, seconds, {**one.numbers, "replicas": number})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from typing import ClassVar
 
 from pydantic import field_validator, model_validator
 
@@ -27,6 +28,8 @@ class Spheres:
     Their number follows from `number`, `density` or `packing_fraction`. Where the packing fraction
     is given beside one of the others, diameters are scaled so that both hold.
     """
+
+    hard: ClassVar[bool] = True  # none may lie on another
 
     number: int | None = param(None, doc="how many", ge=1, le=MOST_PARTICLES)
     density: float | None = param(None, doc="number per area or volume", unit="1/a^d", gt=0)

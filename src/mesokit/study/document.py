@@ -11,7 +11,7 @@ from mesokit.case.case import Case
 from mesokit.errors import CaseError, MesokitError, RunError
 from mesokit.io.atomic import write_text
 from mesokit.io.run_directory import RunDirectory
-from mesokit.method.protocol import Row, method_of
+from mesokit.method.protocol import Row, summary_of
 from mesokit.report.document.links import link_to
 from mesokit.report.document.pictures import Picture, drawn
 from mesokit.report.document.record import citation, install, origin_rows, timing_rows, when
@@ -174,7 +174,7 @@ def _warnings(study: Studied) -> list[str]:
     for runs in points:
         try:
             case = Case.from_toml(RunDirectory(runs[0].path).case_file)
-            warnings = method_of(case).summary(case, None).warnings
+            warnings = summary_of(case, None).warnings
         except (MesokitError, OSError):  # a file that the start was made from may be gone
             continue
         names = zip(short_names(study.keys), point_words(runs[0].point), strict=True)

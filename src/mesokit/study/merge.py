@@ -17,12 +17,21 @@ from mesokit.io import h5md
 from mesokit.io.measured import measured
 from mesokit.io.open import RunFiles
 from mesokit.io.run_directory import RunDirectory, now, provenance
+from mesokit.observe.shared.pooled import pool
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.observe.shared.result import Result
 
-MAY_DIFFER = ("run.seed", "run.steps", "run.checkpoint_", "trajectory.", "log.", "title")
+MAY_DIFFER = (
+    "run.seed",
+    "run.replicas",
+    "run.steps",
+    "run.checkpoint_",
+    "trajectory.",
+    "log.",
+    "title",
+)
 
 
 def merge(runs: Sequence[str | Path], output: str | Path) -> RunFiles:
@@ -57,7 +66,7 @@ def merge(runs: Sequence[str | Path], output: str | Path) -> RunFiles:
     for each in files[1:]:
         more, steps = measured(each.directory, each.case)
         for name, accumulator in pooled.items():
-            _pool(name, accumulator, more[name])
+            pool(name, accumulator, more[name])
         record.append(_record(each, steps))
     results = [accumulator.result() for accumulator in pooled.values()]
     return _write(files[0].case, results, record, output)
@@ -81,18 +90,6 @@ def _record(files: RunFiles, step: int) -> dict[str, Any]:
     return {"run": str(files.path.resolve()), "seed": files.case.run.seed, "step": step}
 
 
-def _pool(name: str, accumulator: Any, other: Any) -> None:
-    if not hasattr(accumulator, "pool"):
-        raise RunError(
-            f"observable {show(name)}: its runs cannot be pooled; {type(accumulator).__name__} has "
-            "no method pool"
-        )
-    try:
-        accumulator.pool(other)
-    except ValueError as error:
-        raise RunError(f"observable {show(name)}: {error}") from None
-
-
 def _require_alike(files: Sequence[RunFiles]) -> None:
     """Raise RunError unless all runs are of one case, each with a seed of its own."""
     first = files[0]
@@ -107,13 +104,14 @@ def _require_alike(files: Sequence[RunFiles]) -> None:
                 f"{each.path}: another case than {first.path}: {key} = {show(there.get(key))}, "
                 f"not {show(here.get(key))}"
             )
-        seed = each.case.run.seed
-        if seed in seeds:
-            raise RunError(
-                f"{each.path}: run.seed = {seed}, as in {seeds[seed]}: the same run would count "
-                "twice"
-            )
-        seeds[seed] = each.path
+        run = each.case.run
+        for seed in range(run.seed, run.seed + run.replicas):
+            if seed in seeds:
+                raise RunError(
+                    f"{each.path}: run.seed = {seed}, as in {seeds[seed]}: the same run would "
+                    "count twice"
+                )
+            seeds[seed] = each.path
 
 
 def different_key(

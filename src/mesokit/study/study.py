@@ -15,7 +15,7 @@ from mesokit.case.describe.shown import Shown
 from mesokit.case.outside import outside_parts
 from mesokit.errors import CaseError, RunError
 from mesokit.io.atomic import write_text
-from mesokit.method.protocol import method_of
+from mesokit.method.protocol import summary_of
 from mesokit.running.cores import usable_cores
 from mesokit.study import table as tables
 from mesokit.study.axes import Axis
@@ -174,7 +174,7 @@ class Study(Shown):
         found: dict[str, list[Planned]] = {}
         for run in points:
             case = run.files.case
-            for text in method_of(case).summary(case, 1).warnings:
+            for text in summary_of(case, 1).warnings:
                 found.setdefault(text, []).append(run)
         return [
             text if len(runs) == len(points) else f"{runs[0].path.parent.name}: {text}"

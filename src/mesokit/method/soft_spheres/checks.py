@@ -19,6 +19,7 @@ def check(case: Case) -> None:
     """Raise CaseError for a case without a meaning."""
     section, box = case.spheres, case.box
     section.check(box)
+    section.start.check(case)
     if box.sheared or box.shear is not None or box.shear_frequency:
         raise CaseError("box: not with shear in method 'soft-spheres'")
     if box.open:

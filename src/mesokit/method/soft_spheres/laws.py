@@ -37,7 +37,9 @@ def given_of(case: Case, made: Made) -> Given:
         made.diameters / 2 if touching else np.full(len(made.masses), 0.5 * law.reach),
         made.masses,
         made.inertia,
-        contact_of(case, law) if touching else central_of(case, law),
+        contact_of(law, law.largest_force(case), _ahead(case))
+        if touching
+        else central_of(case, law),
         law.width if touching else 0,
         0.0 if touching else nearest(law),
         _motion(case),
@@ -48,9 +50,10 @@ def given_of(case: Case, made: Made) -> Given:
     )
 
 
-def contact_of(case: Case, law: ContactLaw) -> Contact:
-    """A law of contact."""
-    scale = 2.0 ** np.floor(np.log2(PARTS / law.largest_force(case)))
+def contact_of(law: ContactLaw, largest: float, ahead: float) -> Contact:
+    """A law of contact, from the force of an overlap of a diameter and how far spheres come in half
+    a step."""
+    scale = 2.0 ** np.floor(np.log2(PARTS / largest))
     return Contact(
         law.normal(),
         law.tangential_stiffness,
@@ -58,7 +61,7 @@ def contact_of(case: Case, law: ContactLaw) -> Contact:
         law.friction,
         float(law.tangential == "history"),
         law.rolling,
-        float(_ahead(case)),
+        float(ahead),
         float(1 / scale),
         float(scale),
     )

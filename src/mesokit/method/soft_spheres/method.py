@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def _first_state(case: Case, arrays: Mapping[str, Any]) -> Started:
-    return first_state(case, made(case), arrays, case.spheres.first_spin_kT, hard=False)
+    return first_state(case, made(case), arrays, case.spheres.first_spin_kT)
 
 
 def _engine(case: Case, threads: int, measures: Sequence[str]) -> SoftEngine:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from mesokit.case.box import Box
 from mesokit.case.component import component, param
 from mesokit.case.describe.hints import Many
@@ -30,6 +32,8 @@ class SoftSpheres(Spheres):
     >>> SoftSpheres(packing_fraction=0.5).count(Box([40, 40]))
     1019
     """
+
+    hard: ClassVar[bool] = False
 
     pair: PairLaw = param(SpringDashpot(), doc="what two spheres do to one another")
     thermostat: SoftThermostat | None = param(

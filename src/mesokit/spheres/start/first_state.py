@@ -23,12 +23,10 @@ ROUNDING = 1e-5  # of a diameter: files keep places as float32
 ARRAYS = ("positions", "velocities", "spins")
 
 
-def first_state(
-    case: Case, made: Made, arrays: Mapping[str, Any], spin_kT: float, *, hard: bool = True
-) -> Started:
+def first_state(case: Case, made: Made, arrays: Mapping[str, Any], spin_kT: float) -> Started:
     """Places, velocities and spins of all. Raises CaseError for arrays that do not fit.
 
-    Velocities and spins that nobody gives are drawn. Only `hard` spheres must not overlap.
+    Velocities and spins that nobody gives are drawn. Only hard spheres must not overlap.
     """
     d, n = case.box.dimension, len(made.diameters)
     given = {name: arrays[name] for name in ARRAYS if arrays.get(name) is not None}
@@ -49,7 +47,7 @@ def first_state(
     diameters = placed.diameters if placed else None
     if placed is None or case.spheres.start.files():
         own = made.diameters if diameters is None else diameters
-        if hard:
+        if case.spheres.hard:
             require_apart(positions, own, np.array(case.box.size, float), shut(case))
     return Started(positions, velocities, spins, diameters)
 
