@@ -38,7 +38,8 @@ def draw(ax, side, noise, steps):
     for way, end, tint in zip(np.moveaxis(ways, 1, 0), last, colour, strict=True):
         ax.plot(*(way - way[-1] + end).T, color=tint, lw=0.7)
     ax.quiver(
-        *last.T, *heading.T, color=colour, scale=26, width=0.012, headwidth=5, headlength=6,
+        *last.T, *heading.T, color=colour, scale=26 if side < 10 else 40,  # shorter where crowded
+        width=0.012 if side < 10 else 0.008, headwidth=5, headlength=6,
         headaxislength=5, pivot="tip" if steps else "mid",
     )  # fmt: skip
     ax.set(xlim=(0, side), ylim=(0, side), aspect="equal")
@@ -53,6 +54,8 @@ def main():
         draw(ax, *panel)
         side, noise, steps = panel
         ax.set_title(f"{name}: $L={side}$, $\\eta={noise}$, $t={steps}$", fontsize=9, loc="left")
+    figure.supxlabel("$x$, in reaches of sight", fontsize=9)
+    figure.supylabel("$y$, in reaches of sight", fontsize=9)
     figure.savefig("vicsek_1995.png", dpi=150)
 
 

@@ -17,6 +17,12 @@ FOLDER = "reference/python"
 GROUPS = (  # page, its title, where its names are; the first that fits decides
     ("errors", "Errors", ("mesokit.errors",)),
     ("fluid", "Fluid, collision rules, thermostats, forces", ("mesokit.method.mpcd",)),
+    (
+        "spheres",
+        "Event-driven dynamics, soft spheres",
+        ("mesokit.method.event_driven", "mesokit.method.soft_spheres", "mesokit.spheres"),
+    ),
+    ("flock", "Flocks", ("mesokit.method.flock",)),
     ("walls", "Walls", ("mesokit.geometry",)),
     ("observables", "Observables and results", ("mesokit.observe",)),
     ("potentials", "Potentials", ("mesokit.potential",)),

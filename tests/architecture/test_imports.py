@@ -45,6 +45,7 @@ ROWS = {
     "geometry/": ("case", "errors", "geometry", "scalar"),
     "potential/": ("case", "errors", "potential", "scalar", "theory"),
     "spheres/": ("case", "errors", "geometry", "scalar", "spheres"),
+    "spheres/cost.py": ("case", "spheres", "theory"),
     "spheres/start/random.py": ("case", "method.event_driven.grow", "spheres"),
     "spheres/start/poured.py": ("case", "errors", "method.soft_spheres.settle", "spheres"),
     "spheres/start/from_file.py": ("case", "errors", "io.snapshot_file", "spheres"),

@@ -23,7 +23,11 @@ PAGES = [
     "docs/studies.md",
     "docs/own.md",
     "docs/methods/brownian.md",
+    "docs/methods/event_driven.md",
     "docs/methods/flock.md",
+    "docs/methods/soft_spheres.md",
+    "docs/methods/spheres.md",
+    "docs/methods/which_method.md",
 ]
 SHORT = ["--set", "run.steps=40", "--set", "run.warmup=10"]
 

@@ -1,5 +1,7 @@
 """What observables of hard spheres say of real ones, beside theory."""
 
+import math
+
 import numpy as np
 import pytest
 from hard_spheres import gas
@@ -23,18 +25,37 @@ def observed(simulation):
 
 
 def test_elastic_disks_collide_as_often_as_their_pressure_says():
-    (rate,) = observed(
+    rate, path = observed(
         gas([40, 40], 200, observe=[CollisionRate(every=1)], packing_fraction=0.4, timestep=0.5)
     )
+    assert abs(path.measured / path.expected - 1) < 3 * path.error / path.expected
     assert abs(rate.measured / rate.expected - 1) < 3 * rate.error / rate.expected
     assert rate.error / rate.expected < 5e-3
+
+
+@pytest.mark.parametrize(
+    ("size", "steps", "fraction", "law"),
+    [
+        ([600, 600], 2000, 1.11e-3, math.pi / (4 * math.sqrt(2))),
+        ([120] * 3, 300, 4.7e-4, math.sqrt(2) / 6),
+    ],
+)
+def test_dilute_spheres_fly_five_hundred_radii(size, steps, fraction, law):
+    """Maxwell's mean free path: 1/(sqrt(8) n d) of disks, 1/(sqrt(2) pi n d^2) of spheres."""
+    _, path = observed(
+        gas(size, steps, observe=[CollisionRate(every=1)], packing_fraction=fraction, timestep=20.0)
+    )
+    radii = 2 * path.measured
+    assert law / fraction == pytest.approx(500, rel=5e-3)
+    assert radii == pytest.approx(law / fraction, rel=0.02)
+    assert 2 * path.error / radii < 0.01
 
 
 @pytest.mark.parametrize("product", [0.1, 0.3])
 def test_contact_time_makes_a_known_share_elastic(product):
     rate = 2 * 2 * (theory.compressibility(0.25, 2) - 1) / np.sqrt(np.pi)  # mass and kT are 1
     contact = HardCollision(1.0, contact_time=product / rate)
-    pairs, elastic = observed(
+    pairs, elastic, _ = observed(
         gas(
             [80, 80],
             200,

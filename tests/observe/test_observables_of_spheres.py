@@ -65,8 +65,10 @@ def test_rates_are_those_of_the_counts():
     case = hard([CollisionRate(every=1)], number=1000, size=(90, 90))
     accumulator = CollisionRate(every=1).accumulator(case)
     sampled(accumulator, FakeSpheres(case), 200)
-    (found,) = accumulator.result().comparisons
+    found, path = accumulator.result().comparisons
     assert abs(found.measured - 6.0) < 4 * found.error and found.error < 0.01
+    speed = np.linalg.norm(FakeSpheres(case).v, axis=1).mean()
+    assert path.measured == pytest.approx(speed / found.measured, rel=0.02)
 
 
 def test_expected_rate_is_enskogs():

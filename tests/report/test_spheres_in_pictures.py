@@ -372,9 +372,18 @@ class TestRefused:
         with pytest.raises(CaseError, match="colour = 'psi6': expected disks in a periodic 2D box"):
             run((6, 6, 6)).flow(colour="psi6")
 
+    def test_colours_of_another_kind(self, run):
+        with pytest.raises(CaseError, match="colour = 'spin': not with kind 'speed'"):
+            run().flow("speed", colour="spin")
+
     def test_no_trajectory(self, case_of):
         with pytest.raises(RunError, match=r"needs positions of spheres, .*add to the case.*traj"):
             picture(case_of((6, 6)), {})
+
+    def test_no_trajectory_where_there_are_no_flow_frames(self):
+        case = Case(run=Run(10, method="event-driven"), box=Box([9, 9]))
+        with pytest.raises(RunError, match=r"needs velocities, .*: \[trajectory\] with fields"):
+            picture(case, {}, kind="speed")
 
 
 def test_plates_stand_where_they_are_in_a_box_of_any_lengths():

@@ -8,7 +8,8 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from mesokit.case.box import AXES
-from mesokit.case.component import name_of, nearest, one_of, show, tag_of
+from mesokit.case.component import name_of, nearest, one_of, show
+from mesokit.case.registry import family_of
 from mesokit.case.trajectory import Group, written
 from mesokit.errors import CaseError
 
@@ -39,8 +40,11 @@ def offered(case: Any, method: str, observables: tuple[type, ...]) -> Iterator[s
     """Observables of the method, or of somebody who says that they are for it."""
     for i, observable in enumerate(case.observe):
         if not isinstance(observable, observables) and method not in observable.methods:
-            found = [tag_of(each) for each in observables]
-            known = [name for _, name in filter(None, found)]
+            known = sorted(
+                name
+                for name, part in family_of(observable).parts.items()
+                if issubclass(part, observables) or method in part.methods
+            )
             yield (
                 f"observe[#{i + 1}].quantity = {show(name_of(observable))}: method {show(method)} "
                 f"does not offer it; expected {one_of(known)}"

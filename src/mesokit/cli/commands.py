@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     help="A Python module, of this folder or installed, with parts of one's own. May be repeated.",
 )
 def cli(modules: Sequence[str]) -> None:
-    """Mesoscale fluid simulation, from a case file to a figure with the theory on it.
+    """Mesoscale particle simulation, from a case file to a figure with the theory on it.
 
     Start with: mesokit new poiseuille, then mesokit run poiseuille.toml
     """

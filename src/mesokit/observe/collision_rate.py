@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.component import component, tag
+from mesokit.observe.shared.estimate import of_mean
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Comparison, Result
 from mesokit.statistics import Blocks
@@ -26,9 +27,10 @@ KINDS = ("pairs", "walls", "elastic by contact time")
 class CollisionRate(Observable):
     """Collisions of a sphere per time: with others, with walls, and made elastic by a contact time.
 
-    A collision of two counts for both; what a contact time does is told without walls. Theory is
-    that of a uniform gas of equal spheres: the rate that belongs to the pressure, at the
-    temperature as it is in time.
+    A collision of two counts for both; what a contact time does is told without walls. The mean
+    free path is the mean speed over the rate with others. Theory is that of a uniform gas of equal
+    spheres with Maxwell's velocities: the rate that belongs to the pressure, at the temperature as
+    it is in time.
     """
 
     quantity: Literal["collision-rate"] = tag("collision-rate")
@@ -45,19 +47,21 @@ class CollisionRateAccumulator:
 
     def __init__(self, observable: CollisionRate, case: Case) -> None:
         self.name, self.case = observable.label, case
-        self.blocks = Blocks((4,))  # three rates, the root of the temperature
-        self.before = np.full(5, np.nan)  # time, three counts, root of temperature at the last
+        self.blocks = Blocks((5,))  # three rates, the root of the temperature, the mean speed
+        self.before = np.full(6, np.nan)  # time, three counts, root of temperature, mean speed
 
     def observe(self, spheres: RunningSpheres) -> None:
         """Take one sample: of what has happened since the last."""
         still = 0 if self.case.walls else 1  # without walls the momentum is zero
         degrees = spheres.dimension * max(spheres.n - still, 1)
         root = math.sqrt(2 * spheres.totals()[2] / degrees)
-        now = np.array([spheres.time, *spheres.collisions, root])
+        speed = float(np.linalg.norm(spheres.velocities(), axis=1).mean())
+        now = np.array([spheres.time, *spheres.collisions, root, speed])
         elapsed = now[0] - self.before[0]
         if elapsed > 0:  # false at the first, which is nan
             pairs, walls, elastic = (now - self.before)[1:4] / elapsed / spheres.n
-            self.blocks.add([2 * pairs, walls, 2 * elastic, 0.5 * (root + self.before[4])])
+            between = 0.5 * (now[4:] + self.before[4:])
+            self.blocks.add([2 * pairs, walls, 2 * elastic, *between])
         self.before = now
 
     def state(self) -> State:
@@ -95,6 +99,8 @@ class CollisionRateAccumulator:
             )
             for k in shown
         ]
+        if value[0] > 0 and not self.case.walls:
+            listed.append(self.free_path(note))
         return Result(
             quantity="collision-rate",
             drawing="curve",
@@ -109,6 +115,18 @@ class CollisionRateAccumulator:
             comparisons=tuple(listed) if self.blocks.count else (),
             samples=self.blocks.count,
         )
+
+    def free_path(self, note: str) -> Comparison:
+        """Mean speed over the rate, which Maxwell's velocities relate to one another."""
+        found = of_mean(self.blocks)
+        rate, _, _, root, speed = found.value
+        d = self.case.box.dimension
+        mass = self.case.spheres.kinds[0].mean_mass(d)
+        maxwell = math.sqrt((math.pi / 2 if d == 2 else 8 / math.pi) / mass) * root
+        path, error = found.scalar(
+            speed / rate, np.array([-speed / rate**2, 0.0, 0.0, 0.0, 1 / rate])
+        )
+        return Comparison("mean free path", path, error, maxwell / self.expected(root), "a", note)
 
     def expected(self, root: float) -> float:
         """The rate of a uniform fluid of equal hard spheres, nan of all others."""

@@ -53,6 +53,20 @@ def symbols(unit: str) -> str:
     return f"${_SYMBOLS[unit]}$" if unit in _SYMBOLS else mathematics(unit)
 
 
+def rounded(value: float, digits: int = 4) -> str:
+    """A number to so many digits, as it stands in a formula.
+
+    >>> rounded(41000.0), rounded(0.12345), rounded(2.5e7)
+    ('41000', '0.1235', '2.5\\\\times 10^{7}')
+    """
+    mantissa, _, exponent = f"{value:.{digits}g}".partition("e")
+    if not exponent:
+        return mantissa
+    if 0 < int(exponent) < 6:
+        return f"{float(f'{value:.{digits}g}'):.0f}"
+    return rf"{mantissa}\times 10^{{{int(exponent)}}}"
+
+
 def mathematics(text: str) -> str:
     """Plain words with the formulas in them set as such.
 

@@ -106,6 +106,11 @@ def _plain(node: Schema) -> Schema:
     return made
 
 
+def _said(table: Schema) -> Schema:
+    """A table without what nobody has said."""
+    return {key: each for key, each in table.items() if each not in (None, [])}
+
+
 def _settle_default(made: Schema) -> None:
     """Leave out a default that says nothing: a table of defaults, or what stands for one that is
     found later."""
@@ -114,6 +119,8 @@ def _settle_default(made: Schema) -> None:
     if isinstance(default, dict):
         named = any(tag in default for tag in TAGS)
         default = {key: each for key, each in default.items() if named and each not in (None, [])}
+    if isinstance(default, list):  # a part in a list says what it has
+        default = [_said(each) if isinstance(each, dict) else each for each in default]
     limited = isinstance(default, float | int) and (
         default <= made.get("exclusiveMinimum", float("-inf"))
         or default < made.get("minimum", float("-inf"))

@@ -36,12 +36,14 @@ def schema() -> dict[str, Any]:
     found, definitions = plain_schemas(cases)
     sections = {name: _by_key(cases[name], each["properties"]) for name, each in found.items()}
     together: dict[str, Any] = {}
-    for each in reversed(sections.values()):  # the usual method says what a shared key means
+    whose: dict[str, str] = {}
+    for name, each in reversed(sections.items()):  # the usual method says what shared keys mean
         for key, inner in each.items():
             if key not in together or key in sections[methods.DEFAULT]:
-                together[key] = inner
+                together[key], whose[key] = inner, name
             elif together[key] != inner:
-                together[key] = _any_of_both(key, together[key], inner, definitions)
+                both = {whose[key]: together[key], name: inner}
+                together[key] = _any_of_both(key, both, definitions)
     order = [*sections[methods.DEFAULT], *sorted(together)]
     return {
         "$schema": DIALECT,
@@ -57,19 +59,43 @@ def schema() -> dict[str, Any]:
 
 
 def _any_of_both(
-    key: str, one: dict[str, Any], other: dict[str, Any], definitions: dict[str, Any]
+    key: str, both: dict[str, dict[str, Any]], definitions: dict[str, Any]
 ) -> dict[str, Any]:
-    """A section of several methods, each of which says below which of the keys are its own."""
-    tables = [definitions[each["allOf"][0]["$ref"].removeprefix(PLACE)] for each in (one, other)]
-    mine, theirs = (table["properties"] for table in tables)
-    joint = dict(theirs | mine)
-    for name in mine.keys() & theirs.keys():
-        if mine[name] != theirs[name]:
-            told = mine[name].get("description", "")
-            joint[name] = {"anyOf": [mine[name], theirs[name]], "description": told}
-    name = key.capitalize()
-    definitions[name] = {**tables[0], "title": name, "properties": joint}
-    return {**one, "allOf": [{"$ref": f"{PLACE}{name}"}]}
+    """A section of two methods, each of which says below which of the keys are its own."""
+    tables = {
+        name: definitions[each["allOf"][0]["$ref"].removeprefix(PLACE)]
+        for name, each in both.items()
+    }
+    joint: dict[str, Any] = {}
+    for name, table in tables.items():
+        for inside, inner in table["properties"].items():
+            if all(inside in other["properties"] for other in tables.values()):
+                known = joint.setdefault(inside, inner)
+                if known != inner:
+                    told = {
+                        name: _told(each["properties"][inside]) for name, each in tables.items()
+                    }
+                    joint[inside] = {"anyOf": [known, inner], "description": _told_by(told)}
+            else:
+                joint[inside] = {**inner, "description": f"method '{name}': {_told(inner)}"}
+    title, names = key.capitalize(), " and ".join(f"'{name}'" for name in both)
+    about = f"Of the methods {names}. Keys of one alone say so."
+    first = next(iter(tables.values()))
+    definitions[title] = {**first, "title": title, "description": about, "properties": joint}
+    return {**next(iter(both.values())), "allOf": [{"$ref": f"{PLACE}{title}"}]}
+
+
+def _told_by(told: dict[str, str]) -> str:
+    """What a key means by each method, once if it is the same."""
+    if len(set(told.values())) == 1:
+        return next(iter(told.values()))
+    return "; ".join(f"method '{name}': {words}" for name, words in told.items())
+
+
+def _told(inner: dict[str, Any]) -> str:
+    """What a key means."""
+    told: str = inner.get("description", "")
+    return told
 
 
 def schema_text() -> str:

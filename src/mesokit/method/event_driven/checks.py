@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.event_driven.walls import wall_rows
+from mesokit.spheres.wall import solids
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -20,9 +21,7 @@ def check(case: Case) -> None:
         raise CaseError("box: not with shear in method 'event-driven'")
     if box.open:
         raise CaseError(f"box.open = {show(list(box.open))}: not with method 'event-driven'")
-    for i, wall in enumerate(case.walls):
-        if box.dimension not in wall.dimensions:
-            raise CaseError(f"wall[#{i + 1}]: {type(wall).__name__} is not for {box.dimension}D")
+    solids.check(case)
     wall_rows(case)
     largest = section.largest(box)
     shut = {axis for wall in case.walls for axis in wall.closed_axes}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mesokit import theory
 from mesokit.case.amounts import duration_text, number, size_text
@@ -11,11 +11,11 @@ from mesokit.case.trajectory import stored_bytes
 from mesokit.case.warnings import run_warnings
 from mesokit.method.event_driven.window import collision_rate
 from mesokit.method.protocol import Row, Summary
+from mesokit.spheres import cost
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
-RATE = 0.5e6  # collisions per second, where the project measures (docs/benchmark.md)
 BYTES = 350  # for each sphere: states, lists, queue
 FREEZES = {2: 0.70, 3: 0.494}  # packing fraction above which they order in equilibrium
 
@@ -26,7 +26,10 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     steps, rate = case.run.warmup + case.run.steps, collision_rate(case)
     time, phi = steps * section.timestep, section.fraction(box)
     events = 0.5 * rate * case.particles * time
-    seconds = events / RATE
+    flight = cost.flight_of(section, box)
+    seconds = events * cost.COLLISION[box.dimension]
+    if flight is not None:
+        seconds = max(seconds, time * cost.hard_seconds(flight))
     memory = case.particles * BYTES + 200_000_000
     stored = stored_bytes(case.trajectory, case.groups, box.dimension, case.run.steps)
     rows: list[Row] = [
@@ -38,15 +41,48 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     if section.kT > 0 and len(section.kinds) == 1:
         z = theory.compressibility(phi, box.dimension)
         rows.append(("pressure", number(z, "n kT"), "in equilibrium without walls"))
+    numbers: dict[str, Any] = {
+        "packing_fraction": phi, "collision_rate": rate, "collisions": events, "seconds": seconds,
+    }  # fmt: skip
+    rows.append(("run time", duration_text(max(seconds, 0.1)), "estimate: one thread"))
+    rows += _beside(case, flight, time, numbers)
     rows += [
-        ("run time", duration_text(seconds), "estimate: one thread"),
         ("memory", size_text(memory), "estimate"),
     ]
     if stored:
         rows.append(("trajectory", size_text(stored), "estimate"))
-    numbers = {"packing_fraction": phi, "collision_rate": rate, "collisions": events}
     warnings = (*run_warnings(case, memory, stored), *_warnings(case))
     return Summary(tuple(rows), warnings, seconds, numbers)
+
+
+def _beside(
+    case: Case, flight: cost.Flight | None, time: float, numbers: dict[str, Any]
+) -> Iterator[Row]:
+    """What the same spheres would cost as soft ones, and which method is cheaper."""
+    section = case.spheres
+    if flight is None or section.collision.reach > 1:
+        return
+    contact = cost.contact_time_as_hard(flight)
+    step = contact / cost.STEPS
+    rubs = section.collision.rough
+    soft = time / step * cost.soft_seconds(flight.number, flight.listed_by_soft, rubs)
+    per_flight = 1 / (flight.rate * step)
+    loses, heated = not section.collision.elastic, section.heating is not None
+    rests = cost.comes_to_rest(case, loses, heated)
+    numbers |= {
+        "soft_seconds": soft,
+        "soft_steps_per_flight": per_flight,
+        "cheaper": "soft-spheres" if rests else "event-driven",
+    }
+    yield (
+        "as soft spheres",
+        duration_text(max(soft, 0.1)),
+        f"contacts of {contact:.3g}, {cost.STEPS} steps each: {per_flight:.3g} in a free flight",
+    )
+    if rests:
+        yield cost.AT_REST
+    else:
+        yield cost.cheaper("event-driven", soft / numbers["seconds"])
 
 
 def _warnings(case: Case) -> Iterator[str]:

@@ -10,6 +10,7 @@ from mesokit.geometry.solids.solids import Solids
 from mesokit.geometry.surface import Surface
 from mesokit.method.soft_spheres import scales
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw
+from mesokit.spheres.wall import solids
 from mesokit.spheres.wall.surfaces import other_walls, room_of, surface_rows
 
 if TYPE_CHECKING:
@@ -25,9 +26,7 @@ def check(case: Case) -> None:
         raise CaseError("box: not with shear in method 'soft-spheres'")
     if box.open:
         raise CaseError(f"box.open = {show(list(box.open))}: not with method 'soft-spheres'")
-    for i, wall in enumerate(case.walls):
-        if box.dimension not in wall.dimensions:
-            raise CaseError(f"wall[#{i + 1}]: {type(wall).__name__} is not for {box.dimension}D")
+    solids.check(case)
     _walls(case)
     _potential(case)
     reach = section.reach(box)

@@ -12,10 +12,12 @@ from mesokit.method.soft_spheres.pair import PairLaw
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw
 from mesokit.method.soft_spheres.pair.spring_dashpot import SpringDashpot
 from mesokit.method.soft_spheres.thermostat import SoftThermostat
+from mesokit.spheres.kinds import ball_volume
 from mesokit.spheres.section import Spheres
 
 KEYS = {"walls": "wall"}  # field -> key in the file, where they differ: one [[wall]] each
-CONTACT_SKIN, POTENTIAL_SKIN = 0.1, 0.16  # of the largest reach of two
+CONTACT_SKIN, POTENTIAL_SKIN, WIDEST_SKIN = 0.1, 0.16, 1.0  # of the largest reach of two
+ALONE = 0.1  # others within reach and skin: where there are so few, a wide skin costs nothing
 
 
 @component
@@ -48,7 +50,7 @@ class SoftSpheres(Spheres):
     skin: float | None = param(
         None,
         doc="how far lists of neighbours go beyond the reach: changes the speed alone (0.1 of the "
-        "reach of contacts, 0.16 of that of potentials unless said)",
+        "reach of contacts, up to 1 where spheres are few; 0.16 of that of potentials unless said)",
         unit="a",
         gt=0,
         le=1e6,
@@ -85,8 +87,14 @@ class SoftSpheres(Spheres):
         """How far lists go beyond that."""
         if self.skin is not None:
             return self.skin
-        part = CONTACT_SKIN if isinstance(self.pair, ContactLaw) else POTENTIAL_SKIN
-        return part * self.reach(box)
+        reach = self.reach(box)
+        if not isinstance(self.pair, ContactLaw):
+            return POTENTIAL_SKIN * reach
+        d = box.dimension
+        within = self.count(box) / box.volume * ball_volume(d, 2 * reach)
+        wanted = ((ALONE / within) ** (1 / d) - 1) * reach
+        widest = min(WIDEST_SKIN * reach, 0.49 * min(box.size) - reach)  # none twice on a list
+        return float(max(min(wanted, widest), CONTACT_SKIN * reach))
 
 
 class Sections:

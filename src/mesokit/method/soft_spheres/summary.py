@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mesokit.case.amounts import duration_text, number, size_text
 from mesokit.case.trajectory import stored_bytes
@@ -13,15 +13,14 @@ from mesokit.method.protocol import Row, Summary
 from mesokit.method.soft_spheres import scales
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw
 from mesokit.running.cores import usable_cores
+from mesokit.spheres import cost
+from mesokit.spheres.kinds import ball_volume
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
-RATE_OF_CONTACTS, RATE_OF_POTENTIALS = (
-    6e6,
-    2.5e6,
-)  # sphere-steps per second and core (docs/benchmark)
-USUAL_NEIGHBOURS = 66.0  # within the reach, where the second was measured
+RATE_OF_POTENTIALS = 2.5e6  # sphere-steps per second and core (docs/benchmark)
+USUAL_NEIGHBOURS = 66.0  # within the reach, where this was measured
 BYTES = 600  # for each sphere: states twice, lists
 DEEP = 0.05  # overlap, in diameters, beyond which spheres are not hard
 
@@ -39,12 +38,12 @@ def summary(case: Case, threads: int | None = None) -> Summary:
         ("packing fraction", number(phi), ""),
         ("timestep", number(step, "time"), "" if section.timestep else "unless said"),
     ]
-    numbers = {"packing_fraction": phi, "timestep": step}
-    rate = RATE_OF_POTENTIALS
+    numbers: dict[str, Any] = {"packing_fraction": phi, "timestep": step}
+    reach, density = section.reach(box), case.particles / box.volume
     if isinstance(section.pair, ContactLaw):
-        rate, speed = RATE_OF_CONTACTS, scales.speed_of_collision(section, box)
+        speed = scales.speed_of_collision(section, box)
         time, mass = scales.shortest_contact(section, box), 0.5 * scales.lightest(section, box)
-        overlap = section.pair.overlap_of(mass, speed) / section.reach(box)
+        overlap = section.pair.overlap_of(mass, speed) / reach
         numbers |= {"contact_time": time, "steps_per_contact": time / step, "overlap": overlap}
         rows += [
             ("contact time", number(time, "time"), "of the lightest two"),
@@ -56,12 +55,17 @@ def summary(case: Case, threads: int | None = None) -> Summary:
             ),
             ("overlap", number(overlap, "diameters"), "expected at that speed"),
         ]
+        listed = density * ball_volume(box.dimension, 2 * cost.LIST_REACH * reach)
+        of_core = steps * cost.soft_seconds(case.particles, listed, section.turns)
     else:
-        within = case.particles / box.volume * _ball(box.dimension, section.reach(box))
-        rate *= USUAL_NEIGHBOURS / max(within, 10.0)
-    seconds = steps * case.particles / (rate * min(cores, max(case.particles // 500, 1)))
+        within = density * ball_volume(box.dimension, 2 * reach)
+        rate = RATE_OF_POTENTIALS * USUAL_NEIGHBOURS / max(within, 10.0)
+        of_core = steps * case.particles / rate
+    seconds = of_core / min(cores, max(case.particles // 500, 1))
+    numbers["seconds"] = seconds
+    rows.append(("run time", duration_text(max(seconds, 0.1)), f"estimate: {cores} threads"))
+    rows += _beside(case, steps, of_core, numbers)
     rows += [
-        ("run time", duration_text(seconds), f"estimate: {cores} threads"),
         ("memory", size_text(memory), "estimate"),
     ]
     if stored:
@@ -70,8 +74,38 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     return Summary(tuple(rows), warnings, seconds, numbers)
 
 
-def _ball(dimension: int, radius: float) -> float:
-    return math.pi * radius**2 if dimension == 2 else 4 / 3 * math.pi * radius**3
+def _beside(case: Case, steps: int, of_core: float, numbers: dict[str, Any]) -> Iterator[Row]:
+    """What the same spheres would cost as hard ones, and which method is cheaper."""
+    section, step = case.spheres, numbers["timestep"]
+    flight = cost.flight_of(section, case.box)
+    if flight is None or not isinstance(section.pair, ContactLaw):
+        return
+    hard = steps * step * cost.hard_seconds(flight)
+    rests = cost.comes_to_rest(case, _loses(case), section.thermostat is not None)
+    numbers |= {
+        "hard_seconds": hard,
+        "steps_per_flight": 1 / (flight.rate * step),
+        "cheaper": "soft-spheres" if rests or of_core < hard else "event-driven",
+    }
+    yield "steps per flight", number(numbers["steps_per_flight"]), "from a collision to the next"
+    yield (
+        "as hard spheres",
+        duration_text(max(hard, 0.1)),
+        "estimate: event-driven, while they fly as at first",
+    )
+    if rests:
+        yield cost.AT_REST
+    elif of_core < hard:
+        yield cost.cheaper("soft spheres", hard / of_core)
+    else:
+        yield cost.cheaper("event-driven", of_core / hard)
+
+
+def _loses(case: Case) -> bool:
+    """Whether contacts take energy."""
+    section, box = case.spheres, case.box
+    mass, speed = 0.5 * scales.lightest(section, box), scales.speed_of_collision(section, box)
+    return section.turns or section.pair.restitution_of(mass, speed) < 1
 
 
 def _warnings(case: Case, numbers: dict[str, float]) -> Iterator[str]:

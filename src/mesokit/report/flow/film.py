@@ -17,7 +17,7 @@ from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.io.atomic import replacing
 from mesokit.method.protocol import method_of
-from mesokit.report.caption import symbols
+from mesokit.report.caption import rounded, symbols
 from mesokit.report.finish.origin import origin_of
 from mesokit.report.finish.saving import foot_strip
 from mesokit.report.flow.beads import BeadFrames, frames_of
@@ -99,7 +99,7 @@ def animate(
     if not isinstance(fps, numbers.Real) or not 0 < fps <= FASTEST:
         raise CaseError(f"fps = {show(fps)}: expected a number above 0, at most {FASTEST:g}")
     kind = kind or method_of(case).picture or "speed"
-    panels = panels_of(kind, case)
+    panels = panels_of(kind, case, view.colour)
     found = sources(case, results, trajectory, view)
     source = choose_one(found, {panel.NEEDS for panel in panels}, kind)
     frames = frames_in(source.time, view.window)
@@ -150,7 +150,7 @@ def _pictures(
     for done, frame in enumerate(frames, start=1):
         beads = solutes.at(source.time[frame]) if solutes else None
         flow = replace(source.flow(np.array([frame])), smoothing=width, beads=beads)
-        stamp = f"$t = {source.time[frame]:.4g}$ {symbols('tau')}"
+        stamp = f"$t = {rounded(source.time[frame])}$ {symbols('tau')}"
         drawn.show([flow] * len(drawn.panels), stamp)
         canvas.draw()
         yield np.asarray(canvas.buffer_rgba())[..., :3]

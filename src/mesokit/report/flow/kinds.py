@@ -69,13 +69,18 @@ def quieted(
     return width, lambda flow: vorticity.note(flow, clear)
 
 
-def panels_of(kind: str, case: Case) -> tuple[Panel, ...]:
-    """The panels of a kind of picture. Raises CaseError for an unknown one, and one of what the
-    particles of the case have not."""
+def panels_of(kind: str, case: Case, colour: str | None = None) -> tuple[Panel, ...]:
+    """The panels of a kind of picture. Raises CaseError for an unknown one, one of what the
+    particles of the case have not, and a choice of colours that it does not have."""
     if kind not in KINDS:
         known = list(KINDS)
         raise CaseError(f"kind = {show(kind)}: expected {one_of(known)}{nearest(str(kind), known)}")
-    if any(panel.NEEDS == "spheres" for panel in KINDS[kind]) and not method_of(case).spheres:
+    of_spheres = any(panel.NEEDS == "spheres" for panel in KINDS[kind])
+    if colour is not None and not of_spheres:
+        raise CaseError(
+            f"colour = {show(colour)}: not with kind {show(kind)}; expected 'disks', of spheres"
+        )
+    if of_spheres and not method_of(case).spheres:
         raise CaseError(
             f"kind = {show(kind)}: particles of method {show(case.run.method)} have no size; "
             "expected 'particles', or another kind"

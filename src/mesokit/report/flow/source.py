@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import show
 from mesokit.errors import CaseError, RunError
+from mesokit.method.protocol import method_of
+from mesokit.observe.flow_frames import FlowFrames
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.view import View
 
@@ -37,19 +39,28 @@ REMEDY = {
     "spheres": "[trajectory]",
     "headings": '[trajectory] with fields = ["position", "velocity"]',
 }
+OF_TRAJECTORIES = {  # of methods that offer no flow-frames
+    **REMEDY,
+    "velocity": REMEDY["headings"],
+    "density": REMEDY["spheres"],
+    "particles": REMEDY["spheres"],
+}
 
 
 class Found(list["Source"]):
-    """Sources over two axes, and the axes of the maps that were kept but are over others."""
+    """Sources over two axes, the axes of the maps that were kept but are over others, and what
+    would give what is not there."""
 
-    def __init__(self, axes: Axes, others: Sequence[Axes] = ()) -> None:
+    def __init__(
+        self, axes: Axes, others: Sequence[Axes] = (), remedy: Mapping[str, str] = REMEDY
+    ) -> None:
         super().__init__()
-        self.axes, self.others = axes, list(dict.fromkeys(others))
+        self.axes, self.others, self.remedy = axes, list(dict.fromkeys(others)), remedy
 
     def lack(self, needs: str, kept: str) -> str:
         """What was kept, and what to add to the case; of the case as it is, if it has the maps."""
         if not self.others or needs in AT_ONCE:
-            return f"{kept}; add to the case and run it again: {REMEDY[needs]}"
+            return f"{kept}; add to the case and run it again: {self.remedy[needs]}"
         maps = " and ".join(",".join(axes) for axes in self.others)
         return (
             f"maps over {maps}, not over {','.join(self.axes)}; add to the case and run it again: "
@@ -100,7 +111,8 @@ def sources(
     axes = view.axes
     _check(case, axes)
     chosen = axes or (maps[0][0] if maps else ("x", "y"))
-    found = Found(chosen, [axes for axes, _ in maps if set(axes) != set(chosen)])
+    remedy = REMEDY if issubclass(FlowFrames, method_of(case).observables) else OF_TRAJECTORIES
+    found = Found(chosen, [axes for axes, _ in maps if set(axes) != set(chosen)], remedy)
     for over, result in maps:
         if set(over) == set(chosen):
             make = FrameSource if result.drawing == "frames" else FieldSource

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mesokit.method.protocol import method_of
+from mesokit.report.caption import rounded
 from mesokit.report.flow.beads import frames_of
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.kinds import Panel, panels_of, quieted
@@ -58,7 +59,7 @@ def picture(
     """
     view = View(**choices)
     window, kind = view.window, kind or method_of(case).picture or "four"
-    panels = panels_of(kind, case)
+    panels = panels_of(kind, case, view.colour)
     found = sources(case, results, trajectory, view)
     chosen = [choose(found, panel.NEEDS, kind, window is not None) for panel in panels]
     section = Section(case, chosen[0].axes, view.at)
@@ -73,12 +74,12 @@ def picture(
     reaches = [panel.reach(flow, shown) for panel, flow in zip(panels, flows, strict=True)]
     averaged = [f for f, panel in zip(flows, panels, strict=True) if panel.NEEDS not in AT_ONCE]
     mean = _mean(averaged[0], window) if averaged else ""
-    when = rf"solutes at $t = {beads.time:.4g}\,\tau$" if beads else ""
+    when = rf"solutes at $t = {rounded(beads.time)}\,\tau$" if beads else ""
     how = "projection" if all(panel.NEEDS in AT_ONCE for panel in panels) else "mean"
     notes = [section.note(how), mean, note(flows[0]), _few(case, panels, flows), when]
     notes += [text for flow in flows for text in _spheres(flow)]
     if any(panel.NEEDS == "headings" for panel in panels):
-        notes.append(rf"at $t = {flows[0].time:.6g}\,\tau$")
+        notes.append(rf"at $t = {rounded(flows[0].time, 6)}\,\tau$")
     drawn = Canvas(panels, flows, reaches, shown, section, notes=notes)
     drawn.show(flows)
     return drawn.figure
@@ -88,7 +89,7 @@ def _mean(flow: Flow, window: tuple[float, float] | None) -> str:
     """What velocities and densities are means of, and how sure they are."""
     text = "mean of the run"
     if window is not None:
-        text = rf"mean of $t = {window[0]:g}$ to ${window[1]:g}\,\tau$"
+        text = rf"mean of $t = {rounded(window[0], 6)}$ to ${rounded(window[1], 6)}\,\tau$"
     error = flow.error if flow.error is None or flow.sure is None else flow.error[flow.sure]
     if error is not None and (error > 0).any():
         size = float(np.nanmedian(error[error > 0]))
@@ -100,7 +101,7 @@ def _spheres(flow: Flow) -> list[str]:
     """When spheres are where they are, and which of them are shown."""
     if flow.spheres is None:
         return []
-    return [rf"at $t = {flow.spheres.time:.4g}\,\tau$", flow.spheres.note]
+    return [rf"at $t = {rounded(flow.spheres.time)}\,\tau$", flow.spheres.note]
 
 
 def _few(case: Case, panels: Sequence[Panel], flows: Sequence[Flow]) -> str:

@@ -4,12 +4,29 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mesokit.case.component import name_of, show
+from mesokit.errors import CaseError
 from mesokit.geometry import shape_protocol
 from mesokit.geometry.solids.solids import solids_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.geometry.solids.solids import Solids
+
+
+def check(case: Case) -> None:
+    """Raise CaseError for a wall that the box cannot have."""
+    box, seen = case.box, dict[str, int]()
+    for i, wall in enumerate(case.walls):
+        key = f"wall[#{i + 1}]"
+        if box.dimension not in wall.dimensions:
+            raise CaseError(f"{key}.shape = {show(name_of(wall))}: not in {box.dimension}D")
+        for axis in wall.closed_axes:
+            if axis not in box.axes:
+                raise CaseError(f"{key}.axis = {show(axis)}: a 2D box has only 'x' and 'y'")
+            if axis in seen:
+                raise CaseError(f"{key}.axis = {show(axis)}: wall[#{seen[axis]}] closes it already")
+            seen[axis] = i + 1
 
 
 def closed_axes(case: Case) -> set[int]:

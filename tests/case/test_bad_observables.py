@@ -1,0 +1,126 @@
+"""Wrong observables of spheres and flocks: each is refused with one line that names the key."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mesokit import Case
+from mesokit.errors import CaseError
+
+BOX = "[box]\nsize = [20, 20]\n"
+HARD = '[run]\nsteps = 10\nmethod = "event-driven"\n' + BOX + "[spheres]\nnumber = 30\n"
+SOFT = HARD.replace("event-driven", "soft-spheres")
+BIRDS = '[run]\nsteps = 10\nmethod = "flock"\n' + BOX + "[flock]\ndensity = 2\n"
+THREE = {"[20, 20]": "[20, 20, 20]"}
+ONE, TWO, THREE_SPHERES = ({"number = 30": f"number = {n}"} for n in (1, 2, 3))
+SPREAD = {"number = 30": "number = 30\nkinds = [{ spread = 0.1 }]"}
+KINDS = {"number = 30": "number = 30\nkinds = [{ diameter = 1 }, { diameter = 2 }]"}
+LOSSY = {"number = 30": 'number = 30\ncollision = { rule = "hard", restitution = 0.9 }'}
+FALL = {"number = 30": "number = 30\ngravity = [0, -1]"}
+PLATES = '[[wall]]\nshape = "plates"\naxis = "{}"\n'
+# (good case, what is replaced, walls, quantity, its keys, what the message must say)
+BAD: list[tuple[str, dict[str, str], str, str, str, tuple[str, ...]]] = [
+    *(
+        (case, {}, "", quantity, "every = 0", ("observe[#1].every = 0", "at least 1"))
+        for case, quantity in (
+            (HARD, "collision-rate"),
+            (HARD, "velocity-cumulant"),
+            (SOFT, "contact-clusters"),
+            (BIRDS, "polar-order"),
+        )
+    ),
+    *(
+        (case, {}, "", quantity, "evry = 2", ("observe[#1].evry", "'every'"))
+        for case, quantity in (
+            (HARD, "equation-of-state"),
+            (SOFT, "hexatic-order"),
+            (BIRDS, "density-bands"),
+        )
+    ),
+    (HARD, {}, "", "collision-rat", "", ("quantity = 'collision-rat'", "'collision-rate'")),
+    (SOFT, {}, "", "collision-rates", "", ("quantity", "'collision-rate'")),
+    (BIRDS, {}, "", "polar-ordr", "", ("quantity", "'polar-order'")),
+    (HARD, {}, "", "polar-order", "", ("observe[#1].quantity", "does not offer")),
+    (SOFT, {}, "", "number-fluctuations", "", ("observe[#1].quantity", "does not offer")),
+    (BIRDS, {}, "", "collision-rate", "", ("observe[#1].quantity", "does not offer")),
+    (BIRDS, {}, "", "height-profile", "", ("observe[#1].quantity", "does not offer")),
+    (HARD, {}, "", "cell-occupancy", "", ("does not offer", "'collision-rate'", "'wall-force'")),
+    (SOFT, {}, "", "flow-rate", "", ("observe[#1].quantity", "does not offer")),
+    (HARD, LOSSY, "", "equation-of-state", "", ("observe[#1]", "keep energy")),
+    (HARD, {}, PLATES.format("y"), "equation-of-state", "", ("observe[#1]", "beside a wall")),
+    (HARD, FALL, PLATES.format("y"), "equation-of-state", "", ("observe[#1]", "gravity")),
+    (HARD, {}, "", "wall-force", "", ("observe[#1]", "[[wall]]")),
+    (HARD, {}, "", "height-profile", "", ("observe[#1]", "gravity along one axis")),
+    (HARD, FALL, PLATES.format("y"), "height-profile", "bins = 1", ("bins = 1", "at least 2")),
+    (SOFT, {}, PLATES.format("y"), "height-profile", "", ("observe[#1]", "gravity")),
+    (HARD, THREE, "", "hexatic-order", "", ("observe[#1]", "2D")),
+    (SOFT, THREE, "", "hexatic-order", "", ("observe[#1]", "2D")),
+    (HARD, {}, PLATES.format("x"), "hexatic-order", "", ("observe[#1]", "beside a wall")),
+    (HARD, THREE_SPHERES, "", "hexatic-order", "", ("observe[#1]", "3 disks", "4 at least")),
+    (HARD, TWO, "", "velocity-cumulant", "", ("observe[#1]", "2 spheres", "3 at least")),
+    (HARD, KINDS, "", "velocity-cumulant", "", ("observe[#1]", "one kind")),
+    (SOFT, SPREAD, "", "velocity-cumulant", "", ("observe[#1]", "without spread")),
+    (HARD, {}, "", "contact-clusters", "gap = 0", ("gap = 0", "above 0")),
+    (SOFT, {}, "", "contact-clusters", "gap = -1", ("gap = -1", "above 0")),
+    (SOFT, {}, "", "contact-clusters", 'gap = "wide"', ("gap", "a number")),
+    (SOFT, {}, "", "contact-clusters", "distance = 1", ("distance", "unknown key")),
+    (HARD, {}, "", "mean-square-displacement", "max_lag = 0", ("max_lag = 0", "at least 1")),
+    (HARD, {}, "", "mean-square-displacement", 'components = ["z"]', ("components", "'z'")),
+    (SOFT, {}, "", "mean-square-displacement", 'of = "beads"', ("of", "'particles'")),
+    (SOFT, {}, PLATES.format("x") + PLATES.format("y"), "mean-square-displacement", "",
+     ("observe[#1]", "every axis is closed")),
+    (BIRDS, {}, "", "mean-square-displacement", 'of = "centres"', ("of", "'particles'")),
+    (BIRDS, {}, "", "mean-square-displacement", "particles = 0", ("particles = 0", "at least 1")),
+    (BIRDS, {}, "", "number-fluctuations", "sides = []", ("sides",)),
+    (BIRDS, {}, "", "number-fluctuations", "sides = [30]", ("sides", "30")),
+    (BIRDS, {}, "", "number-fluctuations", "sides = [-1]", ("sides",)),
+    (BIRDS, {}, PLATES.format("y"), "number-fluctuations", "", ("observe[#1]", "wall")),
+    (BIRDS, {}, "", "density-bands", "bins = 3", ("bins = 3", "at least 4")),
+    (BIRDS, {}, "", "density-bands", 'axis = "z"', ("axis = 'z'",)),
+    (BIRDS, {}, PLATES.format("y"), "density-bands", 'axis = "y"', ("observe[#1]", "wall")),
+    (BIRDS, {}, "", "cluster-sizes", "distance = 0", ("distance = 0", "above 0")),
+    (BIRDS, {}, "", "cluster-sizes", "distance = 50", ("distance = 50",)),
+    (BIRDS, {}, "", "cluster-sizes", "gap = 1", ("gap", "unknown key")),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("good", "changes", "walls", "quantity", "keys", "expected"),
+    BAD,
+    ids=[f"{'hard' if b[0] == HARD else 'soft' if b[0] == SOFT else 'birds'}-{b[3]}-{k}"
+         for k, b in enumerate(BAD)],
+)  # fmt: skip
+def test_a_wrong_observable_is_refused(
+    good: str,
+    changes: dict[str, str],
+    walls: str,
+    quantity: str,
+    keys: str,
+    expected: tuple[str, ...],
+    tmp_path: Path,
+) -> None:
+    text = good
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new)
+    file = tmp_path / "bad.toml"
+    file.write_text(text + walls)
+    Case.from_toml(file)
+    file.write_text(f'{text}{walls}[[observe]]\nquantity = "{quantity}"\n{keys}\n')
+    with pytest.raises(CaseError) as refused:
+        Case.from_toml(file)
+    message = str(refused.value)
+    assert "\n" not in message
+    for words in expected:
+        assert words in message, message
+
+
+@pytest.mark.parametrize("good", [HARD, SOFT, BIRDS])
+def test_twice_the_same_name(good: str, tmp_path: Path) -> None:
+    file = tmp_path / "bad.toml"
+    one = '[[observe]]\nquantity = "mean-square-displacement"\n'
+    file.write_text(good + one + one)
+    with pytest.raises(CaseError, match=r"observe\[#2\]\.name: .* observe\[#1\]"):
+        Case.from_toml(file)
