@@ -68,8 +68,14 @@ class KindTemperatureAccumulator(BlockAccumulator):
         expected = np.full(len(value), 1.0 if known else np.nan)
         names = [kind.name or str(k + 1) for k, kind in enumerate(self.case.spheres.kinds)]
         listed = tuple(
-            Comparison(f"temperature of kind {name} over that of all", *map(float, row), "")
-            for name, *row in zip(names, value, error, expected, strict=True)
+            Comparison(
+                f"temperature of kind {names[k]} over that of all",
+                float(value[k]),
+                float(error[k]),
+                float(expected[k]),
+                "",
+            )
+            for k in range(len(names))
         )
         return Result(
             quantity="kind-temperature",
