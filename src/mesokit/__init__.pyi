@@ -127,6 +127,7 @@ from mesokit.observe.forces import Forces as Forces
 from mesokit.observe.granular_temperature import GranularTemperature as GranularTemperature
 from mesokit.observe.height_profile import HeightProfile as HeightProfile
 from mesokit.observe.hexatic_order import HexaticOrder as HexaticOrder
+from mesokit.observe.kind_temperature import KindTemperature as KindTemperature
 from mesokit.observe.longitudinal_modes import LongitudinalModes as LongitudinalModes
 from mesokit.observe.mean_square_displacement import (
     MeanSquareDisplacement as MeanSquareDisplacement,

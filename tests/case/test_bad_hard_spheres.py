@@ -86,6 +86,8 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "observable of a fluid": ({'"granular-temperature"': '"velocity-field"'}, ("observe[#1]",)),
     "pressure beside walls": ({'"granular-temperature"': '"equation-of-state"'},
                               ("observe[#1]", "wall")),
+    "temperatures of one kind": ({'"granular-temperature"': '"kind-temperature"'},
+                                 ("observe[#1]", "two kinds")),
     "units": ({"[[wall]]": '[units]\ncell = 1e-6\nmatch = "reynolds"\n[[wall]]'}, ("units",)),
 }  # fmt: skip
 

@@ -11,7 +11,9 @@ from mesokit import (
     HardCollision,
     HeightProfile,
     Kicks,
+    KindTemperature,
     Plates,
+    SphereKind,
     VelocityCumulant,
     theory,
 )
@@ -84,6 +86,26 @@ def test_kicked_inelastic_spheres_have_the_fourth_cumulant_of_theory():
     # of spheres that cool it would be 0.15: it is the kicks that make it 0.057
     assert found.expected == pytest.approx(0.057, abs=1e-3) and found.error < 0.005
     assert abs(found.measured - found.expected) < 3 * found.error
+
+
+@pytest.mark.parametrize("restitution", [1.0, 0.7])
+def test_kinds_share_energy_where_collisions_are_elastic(restitution):
+    simulation = gas(
+        [40, 40],
+        150,
+        observe=[KindTemperature(every=1)],
+        packing_fraction=0.2,
+        kinds=[SphereKind(1.0, mass=10.0), SphereKind(1.0, mass=1.0)],
+        collision=HardCollision(restitution),
+        timestep=0.5,
+    )
+    heavy, light = observed(simulation)
+    if restitution == 1:
+        for found in (heavy, light):
+            assert abs(found.measured - 1) < 4 * found.error and found.error < 0.03
+    else:  # the heavy ones stay warmer
+        assert np.isnan(heavy.expected)
+        assert heavy.measured - light.measured > 4 * np.hypot(heavy.error, light.error)
 
 
 def test_a_dilute_gas_lies_as_the_barometric_law_says():

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import numpy as np
 
-from mesokit import Box, Case, HardSpheres, Plates, Run
+from mesokit import Box, Case, HardSpheres, Plates, Run, SphereKind
 from mesokit.errors import CaseError
 from mesokit.spheres.made import made
 
@@ -22,11 +24,13 @@ def hard(observe, size=(9, 9), walls=(), **spheres):
 
 
 def hard_case_for(observable, **spheres):
-    """A case in which it can be measured: without walls, or under gravity between plates."""
-    try:
-        return hard([observable], **spheres)
-    except CaseError:
-        return hard([observable], walls=[Plates("y")], gravity=(0, -1), **spheres)
+    """A case in which it can be measured: plain, of two kinds, or in gravity between plates."""
+    two = {"kinds": [SphereKind(1.0), SphereKind(0.5)]}
+    fall = {"walls": [Plates("y")], "gravity": (0, -1)}
+    for more in ({}, two):
+        with suppress(CaseError):
+            return hard([observable], **more, **spheres)
+    return hard([observable], **fall, **spheres)
 
 
 class FakeSpheres:

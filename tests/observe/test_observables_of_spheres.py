@@ -8,6 +8,7 @@ from mesokit import (
     ClusterSize,
     CollisionRate,
     HeightProfile,
+    KindTemperature,
     Plates,
     SphereKind,
     VelocityCumulant,
@@ -98,6 +99,28 @@ def test_fourth_cumulant_of_even_velocities():
     assert accumulator.result().value[0] == pytest.approx(-0.3, abs=0.015)
 
 
+def test_kinds_of_one_temperature_have_a_ratio_of_one():
+    # 5 heavy disks hold most of the mass, and with it most of the mean velocity
+    kinds = [SphereKind(2.0, share=1), SphereKind(1.0, share=3)]
+    case = hard([KindTemperature()], number=20, kinds=kinds, size=(20, 20))
+    accumulator, spheres = KindTemperature().accumulator(case), FakeSpheres(case)
+    sampled(accumulator, spheres, 4000)
+    for found in accumulator.result().comparisons:
+        assert found.expected == 1.0 and found.error < 0.01
+        assert abs(found.measured - 1) < 4 * found.error
+    spheres.v = np.where(spheres.made.kinds[:, None] == 0, [1.0, 0.0], [-1.0, 0.0])
+    one = KindTemperature().accumulator(case)
+    one.observe(spheres)
+    m = spheres.made.masses
+    heavy, total = m[:5].sum(), m.sum()
+    light = total - heavy
+    # about the mean velocity the kinds move with 2 light/total and 2 heavy/total
+    energies = np.array([heavy * light**2, light * heavy**2])
+    free = np.array([5 - heavy / total, 15 - light / total])
+    known = energies / energies.sum() * 19 / free
+    assert one.result().value == pytest.approx(known)
+
+
 def test_clusters_reach_through_the_box_but_not_through_walls():
     places = np.array([[0.1, 5.0], [9.5, 5.0], [5.0, 0.5], [5.0, 9.9], [5.9, 0.5], [2.5, 2.5]])
     ones = np.ones(6)
@@ -143,3 +166,5 @@ def test_what_cannot_be_measured_is_refused():
         hard([HeightProfile()], walls=[Plates("x"), Plates("y")], gravity=(1, -1))
     with pytest.raises(CaseError, match="one kind"):
         hard([VelocityCumulant()], kinds=[SphereKind(1.0), SphereKind(0.5)])
+    with pytest.raises(CaseError, match="two kinds"):
+        hard([KindTemperature()])

@@ -7,8 +7,10 @@ def kicked_temperature(power: float, restitution: float, unit_rate: float) -> fl
     """Thermal energy at which kicks give as much as collisions take, in molecular chaos.
 
     A sphere loses (1 - e^2) kT/2 in each of its collisions (van Noije and Ernst 1998, to lowest
-    order in the fourth cumulant). Velocities of neighbours are correlated, which makes it some
-    percent hotter at e = 0.8.
+    order in the fourth cumulant). Kicks feed flows on long
+    waves, which collisions damp slowly (van Noije, Ernst, Trizac and Pagonabarraga 1999): what
+    spheres move together counts as temperature and is not lost in collisions. At e = 0.8 and a
+    packing fraction of 0.2 some 400 disks are 5 % hotter than this, 1,600 are 6 %, 25 are 1 %.
 
     Parameters
     ----------
