@@ -83,7 +83,10 @@ def main():
         line, np.degrees(np.arctan(line)), color="0.5", label=r"block on a slope: $\arctan\,\mu$"
     )
     ax.set(
-        xlabel=r"friction $\mu$", ylabel="angle of repose / degrees", xlim=(0, 0.9), ylim=(0, 45)
+        xlabel=r"friction $\mu$",
+        ylabel="angle of the flanks / degrees",
+        xlim=(0, 0.9),
+        ylim=(0, 45),
     )
     ax.legend(fontsize=8)
     figure.savefig("heap.png", dpi=150)
@@ -97,7 +100,7 @@ def panel(ax, places, diameters, friction):
     ax.add_collection(
         PatchCollection(circles, facecolors=[str(s) for s in shades], edgecolors="none")
     )
-    ax.set(xlim=(0, LENGTH), ylim=(0, 30), aspect="equal", ylabel="$y$ / diameter")
+    ax.set(xlim=(0, LENGTH), ylim=(0, 18), aspect="equal", ylabel="$y$ / diameter")
     ax.set_title(rf"$\mu = {friction:g}$", fontsize=10, loc="left")
     ax.set_xlabel("$x$ / diameter")
 

@@ -11,7 +11,7 @@ import numba
 import pytest
 
 from mesokit.method.mpcd.collision.srd import SRD
-from mesokit.scalar.cache import KernelFiles, classes, folder
+from mesokit.scalar.cache import KernelFiles, classes, digest, folder
 
 PART = "from typing import NamedTuple\nclass Mine(NamedTuple):\n    x: float\n"
 
@@ -34,6 +34,17 @@ def place(*arguments: object) -> str | None:
 def test_all_classes_are_seen() -> None:
     group = namedtuple("group", "a b")(Inner(1.0, 2.0), (3, Inner(4.0, 5.0)))
     assert {c.__name__ for c in classes((numba.typeof(group),))} == {"group", "Inner"}
+
+
+def test_a_change_of_any_file_that_kernels_are_made_of_is_another_folder(tmp_path: Path) -> None:
+    """Also of one that names neither numba nor what compiles: a law that registers itself."""
+    file = tmp_path / "method" / "law.py"
+    file.parent.mkdir()
+    file.write_text("from mesokit.method.protocol import force\n")
+    before = digest(tmp_path)
+    assert digest(tmp_path) == before
+    file.write_text("from mesokit.method.protocol import force  # twice\n")
+    assert digest(tmp_path) != before
 
 
 def test_parts_of_mesokit_share_a_folder() -> None:

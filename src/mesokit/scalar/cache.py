@@ -29,14 +29,17 @@ COMPILED = ("scalar", "case", "geometry", "potential", "spheres", "method", "exe
 @functools.cache
 def folder() -> str:
     """The folder named after the sources, in NUMBA_CACHE_DIR or the user's cache."""
-    root = Path(__file__).parent.parent
+    base = config.CACHE_DIR or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return str(Path(base) / "mesokit" / digest(Path(__file__).parent.parent))
+
+
+def digest(root: Path) -> str:
+    """A word for the state of all files of a package that kernels may be made of, whatever they
+    import: one may register what another has named."""
     code = hashlib.sha256()
     for path in sorted(path for name in COMPILED for path in (root / name).rglob("*.py")):
-        source = path.read_bytes()
-        if b"mesokit.scalar" in source or b"numba" in source:
-            code.update(path.name.encode() + source)
-    base = config.CACHE_DIR or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return str(Path(base) / "mesokit" / code.hexdigest()[:16])
+        code.update(str(path.relative_to(root)).encode() + path.read_bytes())
+    return code.hexdigest()[:16]
 
 
 def kernel(function: Callable) -> Any:

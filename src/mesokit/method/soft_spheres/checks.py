@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 def check(case: Case) -> None:
     """Raise CaseError for a case without a meaning."""
     section, box = case.spheres, case.box
+    solids.check(case)
     section.check(box)
     section.start.check(case)
     if box.sheared or box.shear is not None or box.shear_frequency:
         raise CaseError("box: not with shear in method 'soft-spheres'")
     if box.open:
         raise CaseError(f"box.open = {show(list(box.open))}: not with method 'soft-spheres'")
-    solids.check(case)
     _walls(case)
     _potential(case)
     reach = section.reach(box)
