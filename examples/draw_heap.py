@@ -87,9 +87,6 @@ def main():
         ylabel="angle of the flanks / degrees",
         xlim=(0, 0.9),
         ylim=(0, 45),
-        ylabel="angle of the flanks / degrees",
-        xlim=(0, 0.9),
-        ylim=(0, 45),
     )
     ax.legend(fontsize=8)
     figure.savefig("heap.png", dpi=150)
