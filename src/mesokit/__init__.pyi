@@ -115,6 +115,7 @@ from mesokit.observe.cell_occupancy import CellOccupancy as CellOccupancy
 from mesokit.observe.cluster_size import ClusterSize as ClusterSize
 from mesokit.observe.collision_rate import CollisionRate as CollisionRate
 from mesokit.observe.conservation import Conservation as Conservation
+from mesokit.observe.contact_stress import ContactStress as ContactStress
 from mesokit.observe.density_field import DensityField as DensityField
 from mesokit.observe.density_gradient import DensityGradient as DensityGradient
 from mesokit.observe.density_profile import DensityProfile as DensityProfile
