@@ -19,7 +19,7 @@ from mesokit import (
     theory,
 )
 
-KT, CUTOFF, NUMBER, STEP, BLOCKS = 0.85, 3.0, 500, 0.004, 20
+KT, CUTOFF, NUMBER, STEP, BLOCKS = 0.85, 3.0, 500, 0.002, 20
 # density: energy and pressure by Monte Carlo, diffusion by NVE: NIST Standard Reference Simulation
 # Website, Lennard-Jones, cut off at 3 with tail corrections, T = 0.85
 NIST = {
@@ -76,19 +76,19 @@ def make() -> int:
     for density, known in NIST.items():
         tail = theory.lennard_jones_tail(density, CUTOFF)
         molten = liquid(density, RescaleAll(kT=2.0, every=10))
-        molten.advance(max(500, long(5000)))
+        molten.advance(max(500, long(10_000)))
         engine = liquid(density, Langevin(kT=KT, friction=1.0), molten.state())
-        engine.advance(max(1000, long(20_000)))
+        engine.advance(max(1000, long(40_000)))
         seen = []
-        for _ in range(max(4 * BLOCKS, long(6000))):
-            engine.advance(10)
+        for _ in range(max(4 * BLOCKS, long(12_000))):
+            engine.advance(20)
             pair = -float(np.trace(engine.stress["pair"])) / 3
             seen.append((engine.energies()["contact"] / NUMBER, pair))
         blocks = np.array_split(np.array(seen), BLOCKS)
         (u, p), (du, dp) = mean_and_error([block.mean(0) for block in blocks])
         u, p = u + tail.energy, p + density * KT + tail.pressure
         hot = liquid(density, RescaleAll(kT=KT, every=10), engine.state())
-        hot.advance(500)
+        hot.advance(1000)
         d, dd = diffusion(liquid(density, None, hot.state()))
         rows += [
             Comparison(f"U/N at {density}", u, du, known[0]),
