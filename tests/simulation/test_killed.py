@@ -23,7 +23,7 @@ STEPS = 8000
 SIBLINGS = {
     "event-driven": """
 [run]
-steps = 600
+steps = 1500
 [box]
 size = [20.5, 24]
 [spheres]
@@ -45,7 +45,7 @@ quantity = "granular-temperature"
 """,
     "soft-spheres": """
 [run]
-steps = 60000
+steps = 20000
 [box]
 size = [20.5, 24]
 [spheres]
@@ -168,14 +168,19 @@ def test_other_methods_killed(method, tmp_path):
     case_file.write_text(SIBLINGS[method])
     often = ["--set", f"run.method={method}", "--set", "run.checkpoint_every=50"]
     start = ["run", case_file, *often, "--set", "trajectory.every=200", "--output"]
-    _, errors = mesokit_process(*start, tmp_path / "whole").communicate()
+    process = mesokit_process(*start, tmp_path / "whole")
+    wait_for(tmp_path / "whole" / "checkpoint.npz", process)
+    began = time.perf_counter()
+    _, errors = process.communicate()
     assert not errors
+    # Three kills in a third of the run at most: it must not end before them.
+    longest = 0.1 * (time.perf_counter() - began)
     process, steps = mesokit_process(*start, checkpoint.parent), []
     for moment in np.random.default_rng(21).uniform(0.0, 1.0, 3):
         before = written(checkpoint)
         while process.poll() is None and written(checkpoint) == before:
             time.sleep(0.001)
-        time.sleep(0.3 * moment)
+        time.sleep(longest * moment)
         process.kill()
         process.communicate()
         steps.append(steps_of(checkpoint.parent))
