@@ -88,9 +88,10 @@ def list_span(columns, box, lists, i, span, found, beside):
     """
     begin, end = span
     x, y, z = columns[0, i], columns[1, i], columns[2, i]
-    xs, ys, zs = columns[0, begin:end], columns[1, begin:end], columns[2, begin:end]
-    beyond, reaches = columns[3, i] + lists.skin, columns[3, begin:end]
-    for k in range(len(xs)):
+    whole = begin + ((end - begin + GROUP - 1) & -GROUP)
+    xs, ys, zs = columns[0, begin:whole], columns[1, begin:whole], columns[2, begin:whole]
+    beyond, reaches = columns[3, i] + lists.skin, columns[3, begin:whole]
+    for k in range(np.uint64(whole - begin)):
         way = nearest(box, (x - xs[k], y - ys[k], z - zs[k]))
         far = beyond + reaches[k]
         beside[k] = 1 if dot(way, way) <= far * far else 0

@@ -97,7 +97,7 @@ class System:
         self.old = self._lists(GROUP)
         self.cell, self.order = np.zeros(n, np.int64), np.zeros(n, np.int64)
         self.begins = np.zeros(int(np.prod(self.grid.cells)) + 1, np.int64)
-        self.scratch = np.zeros((threads, n), np.int64)
+        self.scratch = np.zeros((threads, n + GROUP), np.int64)
         self.noted = np.zeros((threads, groups.GAP))
         self.noted_forces()
 
@@ -203,7 +203,8 @@ class System:
         self.bodies, self.spare = spare, bodies
         self.lists, self.old = self.old, self.lists
         self._sort_walls()
-        columns = np.ascontiguousarray(self.bodies.place.T)
+        columns = np.zeros((4, self.n + GROUP))
+        columns[:, : self.n] = self.bodies.place.T
         while True:
             self.team.run(
                 make_lists,
