@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from mesokit.geometry.solids.solids import Solids
 from mesokit.geometry.surface import Surface
-from mesokit.method.soft_spheres.machine import solid_contact  # noqa: F401  registers
+from mesokit.method.soft_spheres.machine import contact_act, solid_contact  # noqa: F401  register
 from mesokit.method.soft_spheres.machine.central import Central
 from mesokit.method.soft_spheres.machine.contact import OWN, Contact
 from mesokit.method.soft_spheres.machine.groups import Motion
@@ -43,6 +43,7 @@ def given_of(case: Case, made: Made) -> Given:
         contact_of(law, law.largest_force(case), _ahead(case))
         if touching
         else central_of(case, law),
+        touching,
         law.width if touching else 0,
         0.0 if touching else nearest(law),
         _motion(case),

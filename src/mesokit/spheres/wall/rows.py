@@ -16,6 +16,8 @@ def vibration(walls, w, time):
     """How far a wall has moved along its normal, how fast it does, and the bound of its
     acceleration."""
     amplitude, frequency = walls[w, AMPLITUDE], walls[w, FREQUENCY]
+    if amplitude == 0.0:
+        return 0.0, 0.0, 0.0
     phase = frequency * time + walls[w, PHASE]
     return (
         amplitude * math.sin(phase),

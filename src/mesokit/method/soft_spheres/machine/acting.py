@@ -4,8 +4,9 @@ from mesokit.scalar.jit import generic
 
 
 @generic
-def act(law, i, time, step, world, mine, noted):
-    """Find force and torque on a sphere, by neighbours and walls; contacts grow by a step."""
+def act(law, mine, time, step, world, noted, room):
+    """Find forces and torques on the spheres of a thread, from `mine[0]` to before `mine[1]`, by
+    neighbours and walls; contacts grow by a step. `room` is for the loops here alone."""
 
 
 @generic
@@ -24,8 +25,8 @@ def ahead(law):
 
 
 @generic
-def beside(solid, law, i, step, world, sums):
-    """Force and torque on a sphere, in quanta, and the largest of all, with what a solid adds."""
+def beside(solid, law, i, step, world):
+    """Add what a solid does to a sphere; a bound of it."""
 
 
 @generic

@@ -43,12 +43,21 @@ def _(law):
 
 
 @act.register(Central)
-def _(law, i, time, step, world, mine, noted):
-    bodies, box, lists, walls = world
-    x, y, z = row(bodies.place, i)
+def _(law, mine, time, step, world, noted, room):
+    low = FAR
+    for i in range(mine[0], mine[1]):
+        low = min(low, push_from_list(law, i, world), push_from_walls(law, i, time, world))
+    noted[NEAREST] = min(noted[NEAREST], low)
+
+
+@scalar
+def push_from_list(law, i, world):
+    """The force on sphere i from others; bits of the square of the least distance."""
+    bodies, box, lists, _ = world
+    r = row(bodies.place, i)
     a, b, c, low = np.int64(0), np.int64(0), np.int64(0), FAR
     for s in range(lists.count[i]):
-        dx, dy, dz = from_to(box, bodies.place, lists.near[i, s], (x, y, z))
+        dx, dy, dz = from_to(box, bodies.place, lists.near[i, s], r)
         square = dx * dx + dy * dy + dz * dz
         _, push = central(law.potential, square)
         a += fixed(push * dx, law.scale)
@@ -61,14 +70,22 @@ def _(law, i, time, step, world, mine, noted):
         b - rounders,
         c - rounders,
     )
+    return low
+
+
+@scalar
+def push_from_walls(law, i, time, world):
+    """Add the force of walls on sphere i; bits of the square of the least distance."""
+    bodies, box, _, walls = world
+    low, r = FAR, row(bodies.place, i)
     for w in range(len(walls.rows)):
-        distance, out, _ = from_wall(walls.rows, w, box, (x, y, z), time)
+        distance, out, _ = from_wall(walls.rows, w, box, r, time)
         if distance < 2.0 * reach(bodies, i):
             _, push = central(law.potential, distance * distance)
             low = min(low, bits(distance * distance) if distance > 0.0 else np.int64(0))
             for k in range(3):
                 bodies.force[i, k] += quanta(push * distance * out[k], law.scale)
-    noted[NEAREST] = min(noted[NEAREST], low)
+    return low
 
 
 @scalar

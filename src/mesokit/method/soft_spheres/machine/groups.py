@@ -43,12 +43,14 @@ class Lists(NamedTuple):
     """Who is near whom, by places in memory.
 
     skin: how far lists go beyond the reach; count (n,) and near (n, most): the lists, filled up to
-    whole groups of eight with the sphere itself; springs (n, most, width): of contacts that
+    whole groups of eight with the sphere itself; own (n,): how many, from the front, this sphere
+    finds, for laws that take each pair once; springs (n, most, width): of contacts that
     remember; made_at (n, 4): where the spheres were.
     """
 
     skin: float
     count: Any
+    own: Any
     near: Any
     springs: Any
     made_at: Any

@@ -31,10 +31,10 @@ def sort(grid, place, cell, begins, order):
 
 
 @kernel
-def make_lists(team, grid, begins, columns, bodies, box, lists, scratch):
+def make_lists(team, grid, begins, columns, bodies, box, lists, scratch, halves):
     """All within reach and skin of each sphere. A list that has too little room is cut off, and
     tells its length. `columns` (4, n) are places once more, each coordinate together; `scratch`
-    (threads, n) is for the loops here alone."""
+    (threads, n) is for the loops here alone. `halves`: whether laws take each pair once."""
     first, last = share(len(bodies.number), team.thread, team.threads)
     beside = scratch[team.thread]
     for i in range(first, last):
@@ -52,6 +52,8 @@ def make_lists(team, grid, begins, columns, bodies, box, lists, scratch):
                     line = grid.cells[0] * (y_there + grid.cells[1] * z_there)
                     for span in spans(grid, box, begins, line, x_cell):
                         found = list_span(columns, box, lists, i, span, found, beside)
+        if halves:
+            lists.own[i] = own_first(lists, i, found, first)
         lists.count[i] = fill_up(lists, i, found)
         for k in range(3):
             lists.made_at[i, k] = bodies.place[i, k]
@@ -102,6 +104,19 @@ def list_span(columns, box, lists, i, span, found, beside):
         lists.near[i, np.uint64(min(found, last_place))] = np.int32(np.uint64(begin) + k)
         found += beside[k]
     return found
+
+
+@scalar
+def own_first(lists, i, found, first):
+    """Put those in front that are not found from the sphere before in memory; how many they are."""
+    own, room = 0, lists.near.shape[1]
+    for s in range(min(found, room)):
+        j, other = lists.near[i, s], lists.near[i, own]
+        mine = not first <= j < i
+        lists.near[i, s] = other if mine else j
+        lists.near[i, own] = j if mine else other
+        own += mine
+    return own
 
 
 @scalar

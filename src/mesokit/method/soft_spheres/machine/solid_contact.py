@@ -3,13 +3,8 @@
 from mesokit.geometry.solids.bodies import NOBODY
 from mesokit.geometry.solids.none import Nothing
 from mesokit.method.soft_spheres.machine.acting import ahead, beside, tell_beside
-from mesokit.method.soft_spheres.machine.contact import (
-    answer,
-    at_wall,
-    surface,
-    tell_wall,
-    with_wall,
-)
+from mesokit.method.soft_spheres.machine.contact import at_wall, body, surface
+from mesokit.method.soft_spheres.machine.contact_walls import push, tell_wall
 from mesokit.method.soft_spheres.machine.geometry import reach, row
 from mesokit.method.soft_spheres.machine.groups import Solid
 from mesokit.method.soft_spheres.machine.solid import (
@@ -26,8 +21,8 @@ FACELESS = (0.0, 0.0, 0.0)
 
 
 @beside.register(Nothing)
-def _(solid, law, i, step, world, sums):
-    return sums
+def _(solid, law, i, step, world):
+    return 0.0
 
 
 @tell_beside.register(Nothing)
@@ -58,16 +53,15 @@ def surface_at(solid, bodies, i, place):
 
 
 @beside.register(Solid)
-def _(solid, law, i, step, world, sums):
-    places = touched(law, solid, world.bodies, i)
+def _(solid, law, i, step, world):
+    bodies, largest = world.bodies, 0.0
+    places, one = touched(law, solid, bodies, i), body(bodies, bodies.seen, i)
     forget_others(solid, i, places[0].term, places[1].term, places[2].term)
     for place in places:
         if place.term != NOBODY:
-            there = surface_at(solid, world.bodies, i, place)
-            touch = at_wall(world.bodies, world.bodies.seen, 0.5 * step, i, there)
-            slot = slot_of(solid, i, place.term)
-            sums = with_wall(law, touch, answer(law, touch, solid.springs, i, slot, step), sums)
-    return sums
+            there, slot = surface_at(solid, bodies, i, place), slot_of(solid, i, place.term)
+            largest = max(largest, push(law, i, one, there, solid.springs, slot, step, bodies))
+    return largest
 
 
 @tell_beside.register(Solid)
@@ -75,5 +69,5 @@ def _(solid, law, i, world, told):
     for place in touched(law, solid, world.bodies, i):
         if place.term != NOBODY and place.distance < reach(world.bodies, i):
             there = surface_at(solid, world.bodies, i, place)
-            touch = at_wall(world.bodies, world.bodies.velocity, 0.0, i, there)
+            touch = at_wall(0.0, body(world.bodies, world.bodies.velocity, i), there)
             tell_wall(law, touch, solid.springs, i, slot_of(solid, i, place.term), told)

@@ -18,6 +18,13 @@ class Slider(NamedTuple):
     limit: float
 
 
+class Springs(NamedTuple):
+    """What a contact remembers: how far it slid and how far it rolled, held back by friction."""
+
+    sliding: tuple[float, float, float]
+    rolling: tuple[float, float, float]
+
+
 @scalar
 def stretched(slider, spring, velocity, normal, step):
     """The force, and the spring after a step: turned with the plane, stretched, and cut back to

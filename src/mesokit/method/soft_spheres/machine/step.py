@@ -14,6 +14,7 @@ from mesokit.execute.cells import worn
 from mesokit.execute.cpu.strips.layout import share
 from mesokit.execute.cpu.threads import meet
 from mesokit.method.soft_spheres.machine.acting import act, ahead, quantum, turns
+from mesokit.method.soft_spheres.machine.contact_room import Room
 from mesokit.method.soft_spheres.machine.groups import DONE, FARTHEST, INVERSE, PENDING
 from mesokit.scalar.cache import kernel
 from mesokit.scalar.elementary import rint
@@ -24,7 +25,7 @@ BATH, BATH_OF_SPINS = METHOD + np.uint64(1), METHOD + np.uint64(2)
 
 
 @kernel
-def advance(team, counter, steps, law, motion, world, noted):
+def advance(team, counter, steps, law, motion, world, noted, rooms):
     """So many steps, or fewer where lists must be made anew.
 
     `noted` says whether forces are due first, and then how many steps are done and whether forces
@@ -32,6 +33,7 @@ def advance(team, counter, steps, law, motion, world, noted):
     """
     first, last = share(len(world.bodies.number), team.thread, team.threads)
     mine = noted[team.thread]
+    room = Room(rooms.numbers[team.thread], rooms.who[team.thread])
     done, pending = 0, mine[PENDING] != 0.0
     while done < steps:
         now = Counter(counter.seed, counter.step + np.uint64(done))
@@ -51,8 +53,7 @@ def advance(team, counter, steps, law, motion, world, noted):
                 break
         time = motion.step * float(now.step + np.uint64(1))
         clear(law, world.bodies, first, last)
-        for i in range(first, last):
-            act(law, i, time, motion.step, world, (first, last), mine)
+        act(law, (first, last), time, motion.step, world, mine, room)
         meet(team)
         for i in range(first, last):
             kick(law, motion, world.bodies, i)
@@ -62,15 +63,15 @@ def advance(team, counter, steps, law, motion, world, noted):
 
 
 @kernel
-def find_forces(team, time, law, world, noted):
+def find_forces(team, time, law, world, noted, rooms):
     """The forces on spheres where they start from. No contact grows meanwhile."""
     first, last = share(len(world.bodies.number), team.thread, team.threads)
     clear(law, world.bodies, first, last)
     for i in range(len(world.bodies.number)):
         for k in range(3):
             world.bodies.seen[i, k] = world.bodies.velocity[i, k]
-    for i in range(first, last):
-        act(law, i, time, 0.0, world, (first, last), noted[team.thread])
+    room = Room(rooms.numbers[team.thread], rooms.who[team.thread])
+    act(law, (first, last), time, 0.0, world, noted[team.thread], room)
 
 
 @scalar

@@ -12,6 +12,7 @@ from mesokit.execute.cpu.threads import Threads
 from mesokit.geometry.solids.bodies import NOBODY
 from mesokit.geometry.solids.none import Nothing
 from mesokit.method.soft_spheres.machine import groups
+from mesokit.method.soft_spheres.machine.contact_room import rooms
 from mesokit.method.soft_spheres.machine.groups import (
     Bodies,
     Box,
@@ -62,8 +63,9 @@ class Given(NamedTuple):
     """What does not change.
 
     size of the box and closed axes; reach, masses, inertia (n,); law of the forces, see `acting`;
-    width: numbers that a contact remembers; nearest: no two come nearer, largest: no force exceeds
-    it; motion; walls: rows and own, see `Walls`; seed; skin; others: walls of any shape.
+    halves: whether each pair is taken once; width: numbers that a contact remembers; nearest: no
+    two come nearer, largest: no force exceeds it; motion; walls: rows and own, see `Walls`; seed;
+    skin; others: walls of any shape.
     """
 
     size: tuple[float, ...]
@@ -72,6 +74,7 @@ class Given(NamedTuple):
     masses: Array
     inertia: Array
     law: Any
+    halves: bool
     width: int
     nearest: float
     motion: Motion
@@ -99,6 +102,7 @@ class System:
         self.begins = np.zeros(int(np.prod(self.grid.cells)) + 1, np.int64)
         self.scratch = np.zeros((threads, n + GROUP), np.int64)
         self.noted = np.zeros((threads, groups.GAP))
+        self.rooms = rooms(threads)
         self.noted_forces()
 
     def noted_forces(self) -> None:
@@ -120,9 +124,13 @@ class System:
 
     def _lists(self, most: int) -> Lists:
         n, width = self.n, self.given.width
-        count, near = np.zeros(n, np.int64), np.zeros((n, most), np.int32)
+        count, own, near = (
+            np.zeros(n, np.int64),
+            np.zeros(n, np.int64),
+            np.zeros((n, most), np.int32),
+        )
         springs = np.zeros((n, most if width else 0, width))
-        return Lists(self.given.skin, count, near, springs, np.zeros((n, 4)))
+        return Lists(self.given.skin, count, own, near, springs, np.zeros((n, 4)))
 
     # --- start and steps --------------------------------------------------------------------------
 
@@ -158,7 +166,7 @@ class System:
 
     def find_forces(self, time: float) -> None:
         """The forces at the start."""
-        self.team.run(find_forces, time, self.given.law, self.world, self.noted)
+        self.team.run(find_forces, time, self.given.law, self.world, self.noted, self.rooms)
         self._look()
 
     def run(self, step: int, steps: int) -> None:
@@ -167,7 +175,8 @@ class System:
         self.noted[:, groups.PENDING] = 0.0
         while done < steps or steps == 0:
             counter = Counter(np.uint64(self.given.seed), np.uint64(step + done))
-            self.team.run(advance, counter, steps - done, law, motion, self.world, self.noted)
+            given = counter, steps - done, law, motion, self.world, self.noted, self.rooms
+            self.team.run(advance, *given)
             done += int(self.noted[0, groups.DONE])
             self._look()
             if self.noted[0, groups.PENDING]:
@@ -215,6 +224,7 @@ class System:
                 self.box,
                 self.lists,
                 self.scratch,
+                self.given.halves,
             )
             longest = int(self.lists.count.max())
             if longest < self.lists.near.shape[1]:  # one place is written beyond the end

@@ -1,0 +1,21 @@
+"""What contacts do to spheres, and what they tell: with spheres, and with walls."""
+
+from mesokit.method.soft_spheres.machine.acting import act, tell
+from mesokit.method.soft_spheres.machine.contact import Contact
+from mesokit.method.soft_spheres.machine.contact_pairs import push_pairs, tell_pairs
+from mesokit.method.soft_spheres.machine.contact_walls import push_from_walls, tell_walls
+from mesokit.method.soft_spheres.machine.groups import LARGEST
+
+
+@act.register(Contact)
+def _(law, mine, time, step, world, noted, room):
+    largest = push_pairs(law, mine, step, world, room)
+    for i in range(mine[0], mine[1]):
+        largest = max(largest, push_from_walls(law, i, time, step, world))
+    noted[LARGEST] = max(noted[LARGEST], largest * law.scale)
+
+
+@tell.register(Contact)
+def _(law, i, time, world, told):
+    tell_pairs(law, i, world, told)
+    tell_walls(law, i, time, world, told)

@@ -1,0 +1,149 @@
+"""Contacts of spheres with spheres, in batches.
+
+First who is near enough, without branches; then what they have, side by side; then the forces, in a
+loop over vectors; and the sums. Where both spheres of a pair are one thread's, the force is found
+once, from the one before in memory; else each finds it for itself. Nothing depends on which, and on
+batches neither. Springs are remembered where they are found; `mirror_springs` tells the other
+sphere.
+"""
+
+import numpy as np
+
+from mesokit.method.soft_spheres.machine.central import add_product
+from mesokit.method.soft_spheres.machine.contact import (
+    answer,
+    at_rest,
+    between,
+    body,
+    torque_of,
+    torque_on_other,
+)
+from mesokit.method.soft_spheres.machine.contact_room import (
+    BACK,
+    BATCH,
+    FIRST,
+    FORCE,
+    GROUP,
+    ONE,
+    OTHER,
+    PLACE,
+    SECOND,
+    TORQUE,
+    VECTOR,
+    WAY,
+    load,
+    load_body,
+    load_springs,
+    store,
+    store_body,
+    store_springs,
+)
+from mesokit.method.soft_spheres.machine.contact_sums import abs_sum, count, opposite
+from mesokit.method.soft_spheres.machine.geometry import from_to, reach, row
+from mesokit.method.soft_spheres.machine.groups import ENERGY, TOUCHING
+from mesokit.method.soft_spheres.machine.remembered import forget, keep, kept
+from mesokit.scalar.fixed_point import quanta
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.vector import dot
+
+PART = 16  # of a list at a time
+
+
+@scalar
+def push_pairs(law, mine, step, world, room):
+    """Forces and torques of all pairs that this thread finds; a bound of them."""
+    first, last = mine
+    i, begin, largest = first, 0, 0.0
+    while i < last:
+        n = 0
+        while i < last and n <= BATCH - PART:
+            end = min(begin + PART, world.lists.own[i])
+            n = find_near(law, i, begin, end, world, room, n)
+            begin = end
+            if begin == world.lists.own[i]:
+                i, begin = i + 1, 0
+        bring(world, room, n)
+        if law.rolling > 0.0:
+            follow(law, step, room, n, True)
+        else:
+            follow(law, step, room, n, False)
+        largest = max(largest, add_up(law, mine, world, room, n))
+    return largest
+
+
+@scalar
+def find_near(law, i, begin, end, world, room, n):
+    """Add those that sphere i touches, or soon will, in a part of its list; how many there are."""
+    bodies, box, lists, _ = world
+    r, far = row(bodies.place, i), reach(bodies, i)
+    for s in range(begin, end):
+        j = lists.near[i, s]
+        way = from_to(box, bodies.place, j, r)
+        apart = far + reach(bodies, j) + law.ahead
+        near = 1 if dot(way, way) < apart * apart else 0
+        c = np.uint64(n)
+        room.who[FIRST + c], room.who[SECOND + c], room.who[PLACE + c] = i, j, s
+        store(room.numbers, WAY, c, way)
+        forget(lists.springs, i, s, float(near))
+        n += near
+    return n
+
+
+@scalar
+def bring(world, room, n):
+    """What the spheres of a batch have, side by side."""
+    bodies = world.bodies
+    for c in range(np.uint64(n)):
+        i, j, s = room.who[FIRST + c], room.who[SECOND + c], room.who[PLACE + c]
+        store_body(room.numbers, ONE, c, body(bodies, bodies.seen, i))
+        store_body(room.numbers, OTHER, c, body(bodies, bodies.seen, j))
+        store_springs(room.numbers, c, kept(world.lists.springs, i, s))
+
+
+@scalar
+def follow(law, step, room, n, rolls):
+    """The forces and torques of a batch; `rolls`: whether rolling is resisted."""
+    numbers = room.numbers
+    for c in range(np.uint64((n + GROUP - 1) & -GROUP)):
+        one, other = load_body(numbers, ONE, c), load_body(numbers, OTHER, c)
+        touch = between(law, 0.5 * step, load(numbers, WAY, c, VECTOR), one, other)
+        found = answer(law, touch, load_springs(numbers, c), step, rolls)
+        store(numbers, FORCE, c, found.force)
+        store(numbers, TORQUE, c, torque_of(touch, found, one.reach, rolls))
+        store(numbers, BACK, c, torque_on_other(touch, found, other.reach, rolls))
+        store_springs(numbers, c, found.springs)
+
+
+@scalar
+def add_up(law, mine, world, room, n):
+    """Add a batch to the sums of its spheres; a bound of its forces and torques."""
+    bodies, largest = world.bodies, 0.0
+    for c in range(np.uint64(n)):
+        i, j, s = room.who[FIRST + c], room.who[SECOND + c], room.who[PLACE + c]
+        force = load(room.numbers, FORCE, c, VECTOR)
+        torque, back = load(room.numbers, TORQUE, c, VECTOR), load(room.numbers, BACK, c, VECTOR)
+        count(bodies.force, i, force, law.scale)
+        count(bodies.torque, i, torque, law.scale)
+        if mine[0] <= j < mine[1]:
+            count(bodies.force, j, opposite(force), law.scale)
+            count(bodies.torque, j, back, law.scale)
+        largest = max(largest, abs_sum(force), abs_sum(torque), abs_sum(back))
+        keep(world.lists.springs, i, s, load_springs(room.numbers, c))
+    return largest
+
+
+@scalar
+def tell_pairs(law, i, world, told):
+    """Add what the spheres that sphere i touches tell."""
+    bodies, box, lists, _ = world
+    r, one = row(bodies.place, i), body(bodies, bodies.velocity, i)
+    for s in range(lists.count[i]):
+        j = lists.near[i, s]
+        way = from_to(box, bodies.place, j, r)
+        square, sum_of_radii = dot(way, way), reach(bodies, i) + reach(bodies, j)
+        if square < sum_of_radii * sum_of_radii and j != i:
+            touch = between(law, 0.0, way, one, body(bodies, bodies.velocity, j))
+            energy, force = at_rest(law, touch, kept(lists.springs, i, s))
+            told[ENERGY] += quanta(energy, law.scale)
+            told[TOUCHING] += 1
+            add_product(told, law.scale, force, way)

@@ -1,0 +1,76 @@
+"""Room for a batch of contacts: rows at constant offsets, one number of each contact side by side.
+
+LLVM then sees that rows do not overlap, and makes of the loop over contacts one over vectors.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mesokit.execute.cpu.strips.layout import zeros
+from mesokit.method.soft_spheres.machine.contact import Body
+from mesokit.method.soft_spheres.machine.spring import Springs
+from mesokit.scalar.jit import elementwise, for_each, scalar
+
+BATCH = 64  # contacts; what they need fits in the first-level cache
+GROUP = 8  # of which so many are a vector at most
+ROW = np.uint64(BATCH + 8)
+VECTOR, BODY, SPRINGS = (0.0,) * 3, (0.0,) * 11, (0.0,) * 6  # how much there is of each
+# rows of numbers: where the vector, the two bodies, springs, force and torques begin
+WAY, ONE, OTHER, KEPT, FORCE, TORQUE, BACK = 0, 3, 14, 25, 31, 34, 37
+NUMBERS = 40
+FIRST, SECOND, PLACE = np.uint64(0), ROW, np.uint64(2) * ROW  # who, with whom, where in the list
+
+
+class Room(NamedTuple):
+    """numbers (40 rows) and who (3 rows) of a batch of contacts."""
+
+    numbers: Any
+    who: Any
+
+
+def rooms(threads: int) -> Room:
+    """One for each thread."""
+    return Room(zeros((threads, NUMBERS * int(ROW))), zeros((threads, 3 * int(ROW)), np.int64))
+
+
+@elementwise
+def load(numbers, start, c, like):
+    """Contact c of consecutive rows, as a tuple as long as `like`."""
+    return "numbers[np.uint64(start + {k}) * ROW + c]"
+
+
+@for_each
+def store(numbers, start, c, values):
+    """Write a tuple into consecutive rows of contact c."""
+    return "numbers[np.uint64(start + {k}) * ROW + c] = values[{k}]"
+
+
+@scalar
+def load_body(numbers, start, c):
+    """One of the two of contact c."""
+    a = load(numbers, start, c, BODY)
+    return Body(a[0], a[1], (a[2], a[3], a[4]), (a[5], a[6], a[7]), (a[8], a[9], a[10]))
+
+
+@scalar
+def store_body(numbers, start, c, body):
+    """Write one of the two of contact c."""
+    store(numbers, start, c, (body.reach, body.inverse))
+    store(numbers, start + 2, c, body.seen)
+    store(numbers, start + 5, c, body.velocity)
+    store(numbers, start + 8, c, body.spin)
+
+
+@scalar
+def load_springs(numbers, c):
+    """What contact c remembers."""
+    a = load(numbers, KEPT, c, SPRINGS)
+    return Springs((a[0], a[1], a[2]), (a[3], a[4], a[5]))
+
+
+@scalar
+def store_springs(numbers, c, springs):
+    """Write what contact c remembers."""
+    store(numbers, KEPT, c, springs.sliding)
+    store(numbers, KEPT + 3, c, springs.rolling)

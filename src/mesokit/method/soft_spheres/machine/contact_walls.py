@@ -1,0 +1,67 @@
+"""Contacts of spheres with walls."""
+
+from mesokit.method.soft_spheres.machine.acting import beside, tell_beside
+from mesokit.method.soft_spheres.machine.contact import (
+    answer,
+    at_rest,
+    at_wall,
+    body,
+    surface,
+    torque_of,
+)
+from mesokit.method.soft_spheres.machine.contact_sums import abs_sum, count
+from mesokit.method.soft_spheres.machine.geometry import from_wall, reach, row
+from mesokit.method.soft_spheres.machine.groups import ENERGY, TOUCHING
+from mesokit.method.soft_spheres.machine.remembered import forget, keep, kept
+from mesokit.scalar.fixed_point import quanta
+from mesokit.scalar.jit import scalar
+
+
+@scalar
+def push_from_walls(law, i, time, step, world):
+    """Add what walls do to sphere i; a bound of it."""
+    bodies, box, _, walls = world
+    r, one, largest = row(bodies.place, i), body(bodies, bodies.seen, i), 0.0
+    for w in range(len(walls.rows)):
+        distance, out, moves = from_wall(walls.rows, w, box, r, time)
+        if distance < reach(bodies, i) + law.ahead:
+            there = surface(distance, out, moves, walls.own, w)
+            largest = max(largest, push(law, i, one, there, walls.springs, w, step, bodies))
+        else:
+            forget(walls.springs, i, w, 0.0)
+    return max(largest, beside(walls.solid, law, i, step, world))
+
+
+@scalar
+def push(law, i, one, there, springs, s, step, bodies):
+    """Add the force and the torque of a contact with a wall to those of sphere i, and bring the
+    contact's springs up to date; a bound of both."""
+    rolls = law.rolling > 0.0
+    touch = at_wall(0.5 * step, one, there)
+    found = answer(law, touch, kept(springs, i, s), step, rolls)
+    torque = torque_of(touch, found, touch.arm, rolls)
+    keep(springs, i, s, found.springs)
+    count(bodies.force, i, found.force, law.scale)
+    count(bodies.torque, i, torque, law.scale)
+    return max(abs_sum(found.force), abs_sum(torque))
+
+
+@scalar
+def tell_walls(law, i, time, world, told):
+    """Add what the walls that sphere i touches tell."""
+    bodies, box, _, walls = world
+    r, one = row(bodies.place, i), body(bodies, bodies.velocity, i)
+    for w in range(len(walls.rows)):
+        distance, out, moves = from_wall(walls.rows, w, box, r, time)
+        if distance < reach(bodies, i):
+            there = surface(distance, out, moves, walls.own, w)
+            tell_wall(law, at_wall(0.0, one, there), walls.springs, i, w, told)
+    tell_beside(walls.solid, law, i, world, told)
+
+
+@scalar
+def tell_wall(law, touch, springs, i, s, told):
+    """Add what a contact with a wall tells."""
+    energy, _ = at_rest(law, touch, kept(springs, i, s))
+    told[ENERGY] += quanta(2.0 * energy, law.scale)
+    told[TOUCHING] += 1
