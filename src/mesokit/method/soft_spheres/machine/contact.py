@@ -96,25 +96,50 @@ def body(bodies, seen, i):
     )
 
 
+class Meeting(NamedTuple):
+    """Two spheres of a contact: their radii, the sum of their inverse masses, the difference of the
+    velocities that dashpots see and of those there are, the sum of radii times angular velocities,
+    and the difference of the angular velocities."""
+
+    reach: float
+    other: float
+    inverse: float
+    foreseen: tuple[float, float, float]
+    velocity: tuple[float, float, float]
+    rolled: tuple[float, float, float]
+    turning: tuple[float, float, float]
+
+
 @scalar
-def between(law, half, way, one, other):
+def meeting(one, other):
+    """What a contact of two spheres depends on, but for their places."""
+    return Meeting(
+        one.reach,
+        other.reach,
+        one.inverse + other.inverse,
+        added_scaled(one.seen, -1.0, other.seen),
+        added_scaled(one.velocity, -1.0, other.velocity),
+        added(scaled(one.reach, one.spin), scaled(other.reach, other.spin)),
+        added_scaled(one.spin, -1.0, other.spin),
+    )
+
+
+@scalar
+def between(law, half, way, met):
     """The contact of one sphere with another, which is `way` off, half a step long."""
     distance = math.sqrt(dot(way, way))
-    normal = scaled(1.0 / distance, way)
-    rolled = added(scaled(one.reach, one.spin), scaled(other.reach, other.spin))
-    foreseen = added_scaled(one.seen, -1.0, other.seen)
-    velocity = added_scaled(one.velocity, -1.0, other.velocity)
-    closing = Closing(-dot(foreseen, normal), -dot(velocity, normal), half)
-    velocity = added_scaled(velocity, -1.0, outer(rolled, normal))
+    normal, both = scaled(1.0 / distance, way), met.reach + met.other
+    closing = Closing(-dot(met.foreseen, normal), -dot(met.velocity, normal), half)
+    velocity = added_scaled(met.velocity, -1.0, outer(met.rolled, normal))
     return Touch(
-        one.reach + other.reach - distance,
+        both - distance,
         normal,
-        1.0 / (one.inverse + other.inverse),
-        one.reach,
-        one.reach * other.reach / (one.reach + other.reach),
+        1.0 / met.inverse,
+        met.reach,
+        met.reach * met.other / both,
         closing,
         velocity,
-        added_scaled(one.spin, -1.0, other.spin),
+        met.turning,
         -1.0,
         law.friction,
     )

@@ -15,6 +15,7 @@ from mesokit.method.soft_spheres.machine.contact import (
     at_rest,
     between,
     body,
+    meeting,
     torque_of,
     torque_on_other,
 )
@@ -24,18 +25,16 @@ from mesokit.method.soft_spheres.machine.contact_room import (
     FIRST,
     FORCE,
     GROUP,
-    ONE,
-    OTHER,
     PLACE,
     SECOND,
     TORQUE,
     VECTOR,
     WAY,
     load,
-    load_body,
+    load_meeting,
     load_springs,
     store,
-    store_body,
+    store_meeting,
     store_springs,
 )
 from mesokit.method.soft_spheres.machine.contact_sums import abs_sum, count, opposite
@@ -95,8 +94,8 @@ def bring(world, room, n):
     bodies = world.bodies
     for c in range(np.uint64(n)):
         i, j, s = room.who[FIRST + c], room.who[SECOND + c], room.who[PLACE + c]
-        store_body(room.numbers, ONE, c, body(bodies, bodies.seen, i))
-        store_body(room.numbers, OTHER, c, body(bodies, bodies.seen, j))
+        met = meeting(body(bodies, bodies.seen, i), body(bodies, bodies.seen, j))
+        store_meeting(room.numbers, c, met)
         store_springs(room.numbers, c, kept(world.lists.springs, i, s))
 
 
@@ -105,12 +104,12 @@ def follow(law, step, room, n, rolls):
     """The forces and torques of a batch; `rolls`: whether rolling is resisted."""
     numbers = room.numbers
     for c in range(np.uint64((n + GROUP - 1) & -GROUP)):
-        one, other = load_body(numbers, ONE, c), load_body(numbers, OTHER, c)
-        touch = between(law, 0.5 * step, load(numbers, WAY, c, VECTOR), one, other)
+        met = load_meeting(numbers, c)
+        touch = between(law, 0.5 * step, load(numbers, WAY, c, VECTOR), met)
         found = answer(law, touch, load_springs(numbers, c), step, rolls)
         store(numbers, FORCE, c, found.force)
-        store(numbers, TORQUE, c, torque_of(touch, found, one.reach, rolls))
-        store(numbers, BACK, c, torque_on_other(touch, found, other.reach, rolls))
+        store(numbers, TORQUE, c, torque_of(touch, found, met.reach, rolls))
+        store(numbers, BACK, c, torque_on_other(touch, found, met.other, rolls))
         store_springs(numbers, c, found.springs)
 
 
@@ -142,7 +141,7 @@ def tell_pairs(law, i, world, told):
         way = from_to(box, bodies.place, j, r)
         square, sum_of_radii = dot(way, way), reach(bodies, i) + reach(bodies, j)
         if square < sum_of_radii * sum_of_radii and j != i:
-            touch = between(law, 0.0, way, one, body(bodies, bodies.velocity, j))
+            touch = between(law, 0.0, way, meeting(one, body(bodies, bodies.velocity, j)))
             energy, force = at_rest(law, touch, kept(lists.springs, i, s))
             told[ENERGY] += quanta(energy, law.scale)
             told[TOUCHING] += 1

@@ -8,22 +8,21 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mesokit.execute.cpu.strips.layout import zeros
-from mesokit.method.soft_spheres.machine.contact import Body
+from mesokit.method.soft_spheres.machine.contact import Meeting
 from mesokit.method.soft_spheres.machine.spring import Springs
 from mesokit.scalar.jit import elementwise, for_each, scalar
 
 BATCH = 64  # contacts; what they need fits in the first-level cache
 GROUP = 8  # of which so many are a vector at most
 ROW = np.uint64(BATCH + 8)
-VECTOR, BODY, SPRINGS = (0.0,) * 3, (0.0,) * 11, (0.0,) * 6  # how much there is of each
-# rows of numbers: where the vector, the two bodies, springs, force and torques begin
-WAY, ONE, OTHER, KEPT, FORCE, TORQUE, BACK = 0, 3, 14, 25, 31, 34, 37
-NUMBERS = 40
+VECTOR, MEETING, SPRINGS = (0.0,) * 3, (0.0,) * 15, (0.0,) * 6  # how much there is of each
+# rows of numbers: where the vector, what the two have, springs, force and torques begin
+WAY, MET, KEPT, FORCE, TORQUE, BACK, NUMBERS = 0, 3, 18, 24, 27, 30, 33
 FIRST, SECOND, PLACE = np.uint64(0), ROW, np.uint64(2) * ROW  # who, with whom, where in the list
 
 
 class Room(NamedTuple):
-    """numbers (40 rows) and who (3 rows) of a batch of contacts."""
+    """numbers (33 rows) and who (3 rows) of a batch of contacts."""
 
     numbers: Any
     who: Any
@@ -47,19 +46,22 @@ def store(numbers, start, c, values):
 
 
 @scalar
-def load_body(numbers, start, c):
-    """One of the two of contact c."""
-    a = load(numbers, start, c, BODY)
-    return Body(a[0], a[1], (a[2], a[3], a[4]), (a[5], a[6], a[7]), (a[8], a[9], a[10]))
+def load_meeting(numbers, c):
+    """What the two of contact c have."""
+    a = load(numbers, MET, c, MEETING)
+    foreseen, velocity = (a[3], a[4], a[5]), (a[6], a[7], a[8])
+    rolled, turning = (a[9], a[10], a[11]), (a[12], a[13], a[14])
+    return Meeting(a[0], a[1], a[2], foreseen, velocity, rolled, turning)
 
 
 @scalar
-def store_body(numbers, start, c, body):
-    """Write one of the two of contact c."""
-    store(numbers, start, c, (body.reach, body.inverse))
-    store(numbers, start + 2, c, body.seen)
-    store(numbers, start + 5, c, body.velocity)
-    store(numbers, start + 8, c, body.spin)
+def store_meeting(numbers, c, met):
+    """Write what the two of contact c have."""
+    store(numbers, MET, c, (met.reach, met.other, met.inverse))
+    store(numbers, MET + 3, c, met.foreseen)
+    store(numbers, MET + 6, c, met.velocity)
+    store(numbers, MET + 9, c, met.rolled)
+    store(numbers, MET + 12, c, met.turning)
 
 
 @scalar

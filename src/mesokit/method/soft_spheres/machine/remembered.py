@@ -28,5 +28,11 @@ def keep(springs, i, s, now):
 @scalar
 def forget(springs, i, s, still):
     """Forget a contact, unless it is still there (1.0 or 0.0)."""
-    for k in range(springs.shape[2]):
-        springs[i, s, k] *= still
+    if springs.shape[2] > SLIDING:
+        springs[i, s, 0] *= still
+        springs[i, s, 1] *= still
+        springs[i, s, 2] *= still
+    if springs.shape[2] > ROLLING:
+        springs[i, s, 3] *= still
+        springs[i, s, 4] *= still
+        springs[i, s, 5] *= still
