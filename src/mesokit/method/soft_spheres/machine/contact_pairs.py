@@ -3,8 +3,7 @@
 First who is near enough, without branches; then what they have, side by side; then the forces, in a
 loop over vectors; and the sums. Where both spheres of a pair are one thread's, the force is found
 once, from the one before in memory; else each finds it for itself. Nothing depends on which, and on
-batches neither. Springs are remembered where they are found; `mirror_springs` tells the other
-sphere.
+batches neither. Springs are remembered where forces are found.
 """
 
 import numpy as np
@@ -40,7 +39,7 @@ from mesokit.method.soft_spheres.machine.contact_room import (
 from mesokit.method.soft_spheres.machine.contact_sums import abs_sum, count, opposite
 from mesokit.method.soft_spheres.machine.geometry import from_to, reach, row
 from mesokit.method.soft_spheres.machine.groups import ENERGY, TOUCHING
-from mesokit.method.soft_spheres.machine.remembered import forget, keep, kept
+from mesokit.method.soft_spheres.machine.remembered import forget, keep, kept, kept_between
 from mesokit.scalar.fixed_point import quanta
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import dot
@@ -74,16 +73,17 @@ def push_pairs(law, mine, step, world, room):
 def find_near(law, i, begin, end, world, room, n):
     """Add those that sphere i touches, or soon will, in a part of its list; how many there are."""
     bodies, box, lists, _ = world
-    r, far = row(bodies.place, i), reach(bodies, i)
+    r, far, kept_at = row(bodies.place, i), reach(bodies, i), lists.begin[i]
     for s in range(begin, end):
-        j = lists.near[i, s]
+        j = np.uint64(lists.near[i, s])
         way = from_to(box, bodies.place, j, r)
         apart = far + reach(bodies, j) + law.ahead
         near = 1 if dot(way, way) < apart * apart else 0
         c = np.uint64(n)
-        room.who[FIRST + c], room.who[SECOND + c], room.who[PLACE + c] = i, j, s
+        at = np.uint64(kept_at + s)
+        room.who[FIRST + c], room.who[SECOND + c], room.who[PLACE + c] = np.uint64(i), j, at
         store(room.numbers, WAY, c, way)
-        forget(lists.springs, i, s, float(near))
+        forget(lists.springs, at, float(near))
         n += near
     return n
 
@@ -93,10 +93,10 @@ def bring(world, room, n):
     """What the spheres of a batch have, side by side."""
     bodies = world.bodies
     for c in range(np.uint64(n)):
-        i, j, s = room.who[FIRST + c], room.who[SECOND + c], room.who[PLACE + c]
+        i, j = room.who[FIRST + c], room.who[SECOND + c]
         met = meeting(body(bodies, bodies.seen, i), body(bodies, bodies.seen, j))
         store_meeting(room.numbers, c, met)
-        store_springs(room.numbers, c, kept(world.lists.springs, i, s))
+        store_springs(room.numbers, c, kept(world.lists.springs, room.who[PLACE + c]))
 
 
 @scalar
@@ -118,16 +118,16 @@ def add_up(law, mine, world, room, n):
     """Add a batch to the sums of its spheres; a bound of its forces and torques."""
     bodies, largest = world.bodies, 0.0
     for c in range(np.uint64(n)):
-        i, j, s = room.who[FIRST + c], room.who[SECOND + c], room.who[PLACE + c]
+        i, j = room.who[FIRST + c], room.who[SECOND + c]
         force = load(room.numbers, FORCE, c, VECTOR)
         torque, back = load(room.numbers, TORQUE, c, VECTOR), load(room.numbers, BACK, c, VECTOR)
         count(bodies.force, i, force, law.scale)
         count(bodies.torque, i, torque, law.scale)
-        if mine[0] <= j < mine[1]:
+        if mine[0] <= np.int64(j) < mine[1]:
             count(bodies.force, j, opposite(force), law.scale)
             count(bodies.torque, j, back, law.scale)
         largest = max(largest, abs_sum(force), abs_sum(torque), abs_sum(back))
-        keep(world.lists.springs, i, s, load_springs(room.numbers, c))
+        keep(world.lists.springs, room.who[PLACE + c], load_springs(room.numbers, c))
     return largest
 
 
@@ -142,7 +142,7 @@ def tell_pairs(law, i, world, told):
         square, sum_of_radii = dot(way, way), reach(bodies, i) + reach(bodies, j)
         if square < sum_of_radii * sum_of_radii and j != i:
             touch = between(law, 0.0, way, meeting(one, body(bodies, bodies.velocity, j)))
-            energy, force = at_rest(law, touch, kept(lists.springs, i, s))
+            energy, force = at_rest(law, touch, kept_between(lists, i, j))
             told[ENERGY] += quanta(energy, law.scale)
             told[TOUCHING] += 1
             add_product(told, law.scale, force, way)

@@ -18,7 +18,7 @@ ROW = np.uint64(BATCH + 8)
 VECTOR, MEETING, SPRINGS = (0.0,) * 3, (0.0,) * 15, (0.0,) * 6  # how much there is of each
 # rows of numbers: where the vector, what the two have, springs, force and torques begin
 WAY, MET, KEPT, FORCE, TORQUE, BACK, NUMBERS = 0, 3, 18, 24, 27, 30, 33
-FIRST, SECOND, PLACE = np.uint64(0), ROW, np.uint64(2) * ROW  # who, with whom, where in the list
+FIRST, SECOND, PLACE = np.uint64(0), ROW, np.uint64(2) * ROW  # who, with whom, which contact
 
 
 class Room(NamedTuple):
@@ -30,7 +30,7 @@ class Room(NamedTuple):
 
 def rooms(threads: int) -> Room:
     """One for each thread."""
-    return Room(zeros((threads, NUMBERS * int(ROW))), zeros((threads, 3 * int(ROW)), np.int64))
+    return Room(zeros((threads, NUMBERS * int(ROW))), zeros((threads, 3 * int(ROW)), np.uint64))
 
 
 @elementwise

@@ -26,21 +26,22 @@ def push_from_walls(law, i, time, step, world):
         distance, out, moves = from_wall(walls.rows, w, box, r, time)
         if distance < reach(bodies, i) + law.ahead:
             there = surface(distance, out, moves, walls.own, w)
-            largest = max(largest, push(law, i, one, there, walls.springs, w, step, bodies))
+            c = i * len(walls.rows) + w
+            largest = max(largest, push(law, i, one, there, walls.springs, c, step, bodies))
         else:
-            forget(walls.springs, i, w, 0.0)
+            forget(walls.springs, i * len(walls.rows) + w, 0.0)
     return max(largest, beside(walls.solid, law, i, step, world))
 
 
 @scalar
-def push(law, i, one, there, springs, s, step, bodies):
-    """Add the force and the torque of a contact with a wall to those of sphere i, and bring the
-    contact's springs up to date; a bound of both."""
+def push(law, i, one, there, springs, c, step, bodies):
+    """Add the force and the torque of a contact with a wall to those of sphere i, and bring its
+    springs, row c, up to date; a bound of both."""
     rolls = law.rolling > 0.0
     touch = at_wall(0.5 * step, one, there)
-    found = answer(law, touch, kept(springs, i, s), step, rolls)
+    found = answer(law, touch, kept(springs, c), step, rolls)
     torque = torque_of(touch, found, touch.arm, rolls)
-    keep(springs, i, s, found.springs)
+    keep(springs, c, found.springs)
     count(bodies.force, i, found.force, law.scale)
     count(bodies.torque, i, torque, law.scale)
     return max(abs_sum(found.force), abs_sum(torque))
@@ -55,13 +56,14 @@ def tell_walls(law, i, time, world, told):
         distance, out, moves = from_wall(walls.rows, w, box, r, time)
         if distance < reach(bodies, i):
             there = surface(distance, out, moves, walls.own, w)
-            tell_wall(law, at_wall(0.0, one, there), walls.springs, i, w, told)
+            c = i * len(walls.rows) + w
+            tell_wall(law, at_wall(0.0, one, there), kept(walls.springs, c), told)
     tell_beside(walls.solid, law, i, world, told)
 
 
 @scalar
-def tell_wall(law, touch, springs, i, s, told):
+def tell_wall(law, touch, springs, told):
     """Add what a contact with a wall tells."""
-    energy, _ = at_rest(law, touch, kept(springs, i, s))
+    energy, _ = at_rest(law, touch, springs)
     told[ENERGY] += quanta(2.0 * energy, law.scale)
     told[TOUCHING] += 1

@@ -44,21 +44,22 @@ class Lists(NamedTuple):
 
     skin: how far lists go beyond the reach; count (n,) and near (n, most): the lists, filled up to
     whole groups of eight with the sphere itself; own (n,): how many, from the front, this sphere
-    finds, for laws that take each pair once; springs (n, most, width): of contacts that
-    remember; made_at (n, 4): where the spheres were.
+    finds, for laws that take each pair once; begin (n,): its first contact, and springs
+    (contacts, width): what they remember; made_at (n, 4): where the spheres were.
     """
 
     skin: float
     count: Any
     own: Any
     near: Any
+    begin: Any
     springs: Any
     made_at: Any
 
 
 class Walls(NamedTuple):
     """rows (walls, 14): see `spheres.wall.rows`; own (walls, 2): damping ratio and friction of
-    each; springs (n, walls, width): of contacts that remember; solid: the others, see `solid`."""
+    each; springs (n * walls, width): what contacts remember; solid: the others, see `solid`."""
 
     rows: Any
     own: Any
@@ -69,7 +70,7 @@ class Walls(NamedTuple):
 class Solid(NamedTuple):
     """Walls of any shape: tables of `geometry.solids`, like: a place in the box; own (bodies, 2):
     damping ratio and friction of each; terms (n, 3): which terms a sphere touches, -1: none;
-    springs (n, 3, width): of these contacts."""
+    springs (n * 3, width): of these contacts."""
 
     bodies: Any
     like: Any

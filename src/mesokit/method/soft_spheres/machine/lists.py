@@ -9,7 +9,6 @@ from mesokit.scalar.cache import kernel
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import dot
 
-SLIDING, ROLLING = 0, 3  # where in `springs` the two springs of a contact are
 GROUP = 8  # lists are filled up to whole groups, for which loops over vectors need no rest
 
 
@@ -126,43 +125,3 @@ def fill_up(lists, i, found):
     for s in range(found, min(whole, lists.near.shape[1])):
         lists.near[i, s] = np.int32(i)
     return whole
-
-
-@kernel
-def carry_springs(team, order, old, old_number, new, number):
-    """Bring what contacts remember from old lists to new ones, by numbers of the spheres."""
-    first, last = share(len(number), team.thread, team.threads)
-    for i in range(first, last):
-        was = order[i]
-        new.springs[i] = 0.0
-        for s in range(old.count[was]):
-            if stretched(old.springs, was, s):
-                wanted = old_number[old.near[was, s]]
-                for t in range(new.count[i]):
-                    if number[new.near[i, t]] == wanted:
-                        new.springs[i, t] = old.springs[was, s]
-
-
-@kernel
-def mirror_springs(team, lists):
-    """Bring what contacts remember from the sphere before in memory, which keeps it up to date, to
-    the other one: springs along the surface with the other sign, those of rolling as they are."""
-    first, last = share(len(lists.count), team.thread, team.threads)
-    for i in range(first, last):
-        for s in range(lists.count[i]):
-            j = lists.near[i, s]
-            if first <= j < i:
-                for t in range(lists.count[j]):
-                    if lists.near[j, t] == i:
-                        for k in range(lists.springs.shape[2]):
-                            spring = lists.springs[j, t, k]
-                            lists.springs[i, s, k] = -spring if k < ROLLING else spring
-
-
-@scalar
-def stretched(springs, i, s):
-    """Whether a contact has anything to remember."""
-    found = False
-    for k in range(springs.shape[2]):
-        found |= springs[i, s, k] != 0.0
-    return found

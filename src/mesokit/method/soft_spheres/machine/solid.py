@@ -22,6 +22,7 @@ from mesokit.geometry.solids.bodies import (
     surface_velocity,
     term_clearance,
 )
+from mesokit.method.soft_spheres.machine.remembered import forget
 from mesokit.scalar.jit import by_type, elementwise, scalar, seldom
 from mesokit.scalar.pointer import whole, word
 from mesokit.scalar.vector import added_scaled, dot, scaled
@@ -115,18 +116,17 @@ def body_of(solid, term):
 
 
 @scalar
-def slot_of(solid, i, term):
-    """Where sphere i remembers its contact with a term: one that is free if it is new."""
+def contact_of(solid, i, term):
+    """Which contact sphere i has with a term: one that is free if it is new."""
     free = 0
     for s in range(MOST):
         if solid.terms[i, s] == term:
-            return s
+            return i * MOST + s
         if solid.terms[i, s] == NOBODY:
             free = s
-    for k in range(solid.springs.shape[2]):
-        solid.springs[i, free, k] = 0.0
+    forget(solid.springs, i * MOST + free, 0.0)
     solid.terms[i, free] = np.int64(term)
-    return free
+    return i * MOST + free
 
 
 @scalar

@@ -7,12 +7,13 @@ from mesokit.method.soft_spheres.machine.contact import at_wall, body, surface
 from mesokit.method.soft_spheres.machine.contact_walls import push, tell_wall
 from mesokit.method.soft_spheres.machine.geometry import reach, row
 from mesokit.method.soft_spheres.machine.groups import Solid
+from mesokit.method.soft_spheres.machine.remembered import kept
 from mesokit.method.soft_spheres.machine.solid import (
     Place,
     body_of,
+    contact_of,
     forget_others,
     place_at_solid,
-    slot_of,
     solid_moves,
 )
 from mesokit.scalar.jit import scalar
@@ -59,8 +60,8 @@ def _(solid, law, i, step, world):
     forget_others(solid, i, places[0].term, places[1].term, places[2].term)
     for place in places:
         if place.term != NOBODY:
-            there, slot = surface_at(solid, bodies, i, place), slot_of(solid, i, place.term)
-            largest = max(largest, push(law, i, one, there, solid.springs, slot, step, bodies))
+            there, c = surface_at(solid, bodies, i, place), contact_of(solid, i, place.term)
+            largest = max(largest, push(law, i, one, there, solid.springs, c, step, bodies))
     return largest
 
 
@@ -70,4 +71,5 @@ def _(solid, law, i, world, told):
         if place.term != NOBODY and place.distance < reach(world.bodies, i):
             there = surface_at(solid, world.bodies, i, place)
             touch = at_wall(0.0, body(world.bodies, world.bodies.velocity, i), there)
-            tell_wall(law, touch, solid.springs, i, slot_of(solid, i, place.term), told)
+            springs = kept(solid.springs, contact_of(solid, i, place.term))
+            tell_wall(law, touch, springs, told)

@@ -22,14 +22,10 @@ from mesokit.method.soft_spheres.machine.groups import (
     Walls,
     World,
 )
-from mesokit.method.soft_spheres.machine.lists import (
-    GROUP,
-    carry_springs,
-    make_lists,
-    mirror_springs,
-    sort,
-)
+from mesokit.method.soft_spheres.machine.lists import GROUP, make_lists, sort
+from mesokit.method.soft_spheres.machine.pairs import pairs_of, remember
 from mesokit.method.soft_spheres.machine.reading import tell_all
+from mesokit.method.soft_spheres.machine.remembered import carry_springs
 from mesokit.method.soft_spheres.machine.solid import MOST
 from mesokit.method.soft_spheres.machine.step import advance, find_forces
 from mesokit.scalar.random import Counter
@@ -119,8 +115,8 @@ class System:
 
     def _no_contacts(self) -> Walls:
         n, width = self.n, self.given.width
-        terms, solid_springs = np.full((n, MOST), NOBODY, np.int32), np.zeros((n, MOST, width))
-        return self._walls(np.zeros((n, len(self.given.rows), width)), terms, solid_springs)
+        terms, solid_springs = np.full((n, MOST), NOBODY, np.int32), np.zeros((n * MOST, width))
+        return self._walls(np.zeros((n * len(self.given.rows), width)), terms, solid_springs)
 
     def _lists(self, most: int) -> Lists:
         n, width = self.n, self.given.width
@@ -129,8 +125,8 @@ class System:
             np.zeros(n, np.int64),
             np.zeros((n, most), np.int32),
         )
-        springs = np.zeros((n, most if width else 0, width))
-        return Lists(self.given.skin, count, own, near, springs, np.zeros((n, 4)))
+        begin, springs = np.zeros(n, np.int64), np.zeros((n * width, width))
+        return Lists(self.given.skin, count, own, near, begin, springs, np.zeros((n, 4)))
 
     # --- start and steps --------------------------------------------------------------------------
 
@@ -205,7 +201,6 @@ class System:
         bodies, spare = self.bodies, self.spare
         if not np.isfinite(bodies.place).all():
             raise RunError("places are no numbers any more; expected a shorter timestep")
-        self._mirror()
         sort(self.grid, bodies.place, self.cell, self.begins, self.order)
         for old, new in zip(bodies, spare, strict=True):
             np.take(old, self.order, axis=0, out=new, mode="clip")
@@ -230,29 +225,32 @@ class System:
             if longest < self.lists.near.shape[1]:  # one place is written beyond the end
                 break
             self.lists = self._lists(longest + GROUP)
-        if self.given.width:
-            self.team.run(
-                carry_springs,
-                self.order,
-                self.old,
-                self.spare.number,
-                self.lists,
-                self.bodies.number,
-            )
+        if self.given.halves:
+            self._carry_springs()
+
+    def _carry_springs(self) -> None:
+        lists = self.lists
+        np.cumsum(lists.own[:-1], out=lists.begin[1:])
+        contacts = int(lists.own.sum())
+        if len(lists.springs) < contacts:
+            springs = np.zeros((contacts + contacts // 8, self.given.width))
+            self.lists = lists._replace(springs=springs)
+        self.team.run(carry_springs, self.order, self.old, self.lists)
 
     def _sort_walls(self) -> None:
         """Contacts with walls, in the order of memory."""
         walls, order = self.walls, self.order
+        springs = self._of_each(walls.springs)[order].reshape(walls.springs.shape)
         if self.given.others is not None:
             solid = walls.solid
-            self.walls = self._walls(walls.springs[order], solid.terms[order], solid.springs[order])
+            beside = self._of_each(solid.springs)[order].reshape(solid.springs.shape)
+            self.walls = self._walls(springs, solid.terms[order], beside)
         elif walls.springs.size:
-            self.walls = walls._replace(springs=walls.springs[order])
+            self.walls = walls._replace(springs=springs)
 
-    def _mirror(self) -> None:
-        """Both spheres of each contact remember it."""
-        if self.given.width:
-            self.team.run(mirror_springs, self.lists)
+    def _of_each(self, springs: Array) -> Array:
+        """What contacts with walls remember, sphere by sphere."""
+        return springs.reshape(self.n, len(springs) // self.n, springs.shape[1])
 
     # --- reading ----------------------------------------------------------------------------------
 
@@ -265,28 +263,20 @@ class System:
     def told(self, time: float) -> NDArray[np.int64]:
         """What `acting.tell` says of every sphere, by number, in quanta."""
         told = np.zeros((self.n, groups.TOLD), np.int64)
-        self._mirror()
         self.team.run(tell_all, time, self.given.law, self.world, told)
         return self.by_number(told)
 
     def state(self) -> dict[str, NDArray[Any]]:
         """All that the next step depends on, by particle number."""
-        self._mirror()
         bodies, found = self.bodies, {}
         for name in ("place", "velocity", "spin", "force", "torque", "images"):
             found[name] = self.by_number(getattr(bodies, name)[:, :3])
         if self.given.width:
-            i, s = np.nonzero((self.lists.springs != 0).any(axis=2))
-            kept = s < self.lists.count[i]
-            i, s = i[kept], s[kept]
-            pairs = np.stack([bodies.number[i], bodies.number[self.lists.near[i, s]]], axis=1)
-            sorting = np.lexsort((pairs[:, 1], pairs[:, 0]))
-            found["pairs"] = pairs[sorting]
-            found["springs"] = self.lists.springs[i, s][sorting]
-            found["wall_springs"] = self.by_number(self.walls.springs)
+            found["pairs"], found["springs"] = pairs_of(self.lists, bodies.number)
+            found["wall_springs"] = self.by_number(self._of_each(self.walls.springs))
         if self.given.others is not None:
             found["solid_terms"] = self.by_number(self.walls.solid.terms)
-            found["solid_springs"] = self.by_number(self.walls.solid.springs)
+            found["solid_springs"] = self.by_number(self._of_each(self.walls.solid.springs))
         return found
 
     def restore(self, state: dict[str, NDArray[Any]]) -> None:
@@ -301,19 +291,13 @@ class System:
         self.lists = self._lists(GROUP)
         self.walls = self._no_contacts()
         if given.width:
-            self.walls.springs[:] = state["wall_springs"]
+            self._of_each(self.walls.springs)[:] = state["wall_springs"]
         if given.others is not None:
             self.walls.solid.terms[:] = state["solid_terms"]
-            self.walls.solid.springs[:] = state["solid_springs"]
+            self._of_each(self.walls.solid.springs)[:] = state["solid_springs"]
         self.renew()
         if given.width:
-            self._remember(state["pairs"], state["springs"])
-
-    def _remember(self, pairs: NDArray[np.int64], springs: Array) -> None:
-        slot = np.empty(self.n, np.int64)
-        slot[self.bodies.number] = np.arange(self.n)
-        for (a, b), spring in zip(slot[pairs], springs, strict=True):
-            self.lists.springs[a, self.lists.near[a] == b] = spring
+            remember(self.lists, self.bodies.number, state["pairs"], state["springs"])
 
 
 def _box(given: Given) -> Box:
