@@ -21,10 +21,13 @@ from mesokit.method.soft_spheres.machine.contact import (
 from mesokit.method.soft_spheres.machine.contact_room import (
     BACK,
     BATCH,
+    BOUND,
+    COUNT,
     FIRST,
     FORCE,
     GROUP,
     PLACE,
+    ROW,
     SECOND,
     TORQUE,
     VECTOR,
@@ -36,10 +39,10 @@ from mesokit.method.soft_spheres.machine.contact_room import (
     store_meeting,
     store_springs,
 )
-from mesokit.method.soft_spheres.machine.contact_sums import abs_sum, count, opposite
+from mesokit.method.soft_spheres.machine.contact_sums import abs_sum, add, counted, subtract
 from mesokit.method.soft_spheres.machine.geometry import from_to, reach, row
 from mesokit.method.soft_spheres.machine.groups import ENERGY, TOUCHING
-from mesokit.method.soft_spheres.machine.remembered import forget, keep, kept, kept_between
+from mesokit.method.soft_spheres.machine.remembered import NO_SPRINGS, keep, kept, kept_between
 from mesokit.scalar.fixed_point import quanta
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import dot
@@ -50,17 +53,20 @@ PART = 16  # of a list at a time
 @scalar
 def push_pairs(law, mine, step, world, room):
     """Forces and torques of all pairs that this thread finds; a bound of them."""
-    first, last = mine
-    i, begin, largest = first, 0, 0.0
+    lists, largest = world.lists, 0.0
+    i, last, begin, next_contact = mine[0], mine[1], 0, lists.begin[mine[0]]
     while i < last:
-        n = 0
+        n, first_contact = 0, next_contact
         while i < last and n <= BATCH - PART:
-            end = min(begin + PART, world.lists.own[i])
+            end = min(begin + PART, lists.own[i])
             n = find_near(law, i, begin, end, world, room, n)
+            next_contact += end - begin
             begin = end
-            if begin == world.lists.own[i]:
+            if begin == lists.own[i]:
                 i, begin = i + 1, 0
         bring(world, room, n)
+        for c in range(first_contact, next_contact):
+            keep(lists.springs, c, NO_SPRINGS)  # those that are over; others are written again
         if law.rolling > 0.0:
             follow(law, step, room, n, True)
         else:
@@ -83,7 +89,6 @@ def find_near(law, i, begin, end, world, room, n):
         at = np.uint64(kept_at + s)
         room.who[FIRST + c], room.who[SECOND + c], room.who[PLACE + c] = np.uint64(i), j, at
         store(room.numbers, WAY, c, way)
-        forget(lists.springs, at, float(near))
         n += near
     return n
 
@@ -107,9 +112,12 @@ def follow(law, step, room, n, rolls):
         met = load_meeting(numbers, c)
         touch = between(law, 0.5 * step, load(numbers, WAY, c, VECTOR), met)
         found = answer(law, touch, load_springs(numbers, c), step, rolls)
-        store(numbers, FORCE, c, found.force)
-        store(numbers, TORQUE, c, torque_of(touch, found, met.reach, rolls))
-        store(numbers, BACK, c, torque_on_other(touch, found, met.other, rolls))
+        torque = torque_of(touch, found, met.reach, rolls)
+        back = torque_on_other(touch, found, met.other, rolls)
+        store(room.counts, FORCE, c, counted(found.force, law.scale))
+        store(room.counts, TORQUE, c, counted(torque, law.scale))
+        store(room.counts, BACK, c, counted(back, law.scale))
+        store(numbers, BOUND, c, (max(abs_sum(found.force), abs_sum(torque), abs_sum(back)),))
         store_springs(numbers, c, found.springs)
 
 
@@ -119,14 +127,13 @@ def add_up(law, mine, world, room, n):
     bodies, largest = world.bodies, 0.0
     for c in range(np.uint64(n)):
         i, j = room.who[FIRST + c], room.who[SECOND + c]
-        force = load(room.numbers, FORCE, c, VECTOR)
-        torque, back = load(room.numbers, TORQUE, c, VECTOR), load(room.numbers, BACK, c, VECTOR)
-        count(bodies.force, i, force, law.scale)
-        count(bodies.torque, i, torque, law.scale)
+        force = load(room.counts, FORCE, c, COUNT)
+        add(bodies.force, i, force)
+        add(bodies.torque, i, load(room.counts, TORQUE, c, COUNT))
         if mine[0] <= np.int64(j) < mine[1]:
-            count(bodies.force, j, opposite(force), law.scale)
-            count(bodies.torque, j, back, law.scale)
-        largest = max(largest, abs_sum(force), abs_sum(torque), abs_sum(back))
+            subtract(bodies.force, j, force)
+            add(bodies.torque, j, load(room.counts, BACK, c, COUNT))
+        largest = max(largest, room.numbers[np.uint64(BOUND) * ROW + c])
         keep(world.lists.springs, room.who[PLACE + c], load_springs(room.numbers, c))
     return largest
 

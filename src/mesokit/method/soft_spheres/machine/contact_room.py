@@ -15,22 +15,30 @@ from mesokit.scalar.jit import elementwise, for_each, scalar
 BATCH = 64  # contacts; what they need fits in the first-level cache
 GROUP = 8  # of which so many are a vector at most
 ROW = np.uint64(BATCH + 8)
-VECTOR, MEETING, SPRINGS = (0.0,) * 3, (0.0,) * 15, (0.0,) * 6  # how much there is of each
-# rows of numbers: where the vector, what the two have, springs, force and torques begin
-WAY, MET, KEPT, FORCE, TORQUE, BACK, NUMBERS = 0, 3, 18, 24, 27, 30, 33
+# how much there is of each
+COUNT, VECTOR, MEETING, SPRINGS = (0,) * 3, (0.0,) * 3, (0.0,) * 15, (0.0,) * 6
+# rows of numbers: where the vector, what the two have and springs begin, and the bound of forces
+WAY, MET, KEPT, BOUND, NUMBERS = 0, 3, 18, 24, 25
+FORCE, TORQUE, BACK, COUNTS = 0, 3, 6, 9  # rows of counts: on the one, and the torque on the other
 FIRST, SECOND, PLACE = np.uint64(0), ROW, np.uint64(2) * ROW  # who, with whom, which contact
 
 
 class Room(NamedTuple):
-    """numbers (33 rows) and who (3 rows) of a batch of contacts."""
+    """numbers (25 rows), counts (9 rows), in quanta, and who (3 rows) of a batch of contacts."""
 
     numbers: Any
+    counts: Any
     who: Any
 
 
 def rooms(threads: int) -> Room:
     """One for each thread."""
-    return Room(zeros((threads, NUMBERS * int(ROW))), zeros((threads, 3 * int(ROW)), np.uint64))
+    row = int(ROW)
+    return Room(
+        zeros((threads, NUMBERS * row)),
+        zeros((threads, COUNTS * row), np.int64),
+        zeros((threads, 3 * row), np.uint64),
+    )
 
 
 @elementwise

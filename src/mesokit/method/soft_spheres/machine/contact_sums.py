@@ -2,26 +2,34 @@
 
 import numpy as np
 
-from mesokit.method.soft_spheres.machine.geometry import row
 from mesokit.scalar.jit import scalar
 
 
 @scalar
-def counted(total, vector, scale):
-    """A sum in whole quanta, and a vector more: cut off toward zero, so that what the other sphere
-    adds is exactly minus this."""
+def counted(vector, scale):
+    """A vector in whole quanta: cut off toward zero, so that what the other sphere has is exactly
+    minus this."""
     return (
-        total[0] + np.int64(vector[0] * scale),
-        total[1] + np.int64(vector[1] * scale),
-        total[2] + np.int64(vector[2] * scale),
+        np.int64(vector[0] * scale),
+        np.int64(vector[1] * scale),
+        np.int64(vector[2] * scale),
     )
 
 
 @scalar
-def count(sums, i, vector, scale):
-    """Add a vector to those of sphere i, in whole quanta."""
-    a, b, c = counted(row(sums, i), vector, scale)
-    sums[i, 0], sums[i, 1], sums[i, 2] = a, b, c
+def add(sums, i, counts):
+    """Add quanta to those of sphere i."""
+    sums[i, 0] += counts[0]
+    sums[i, 1] += counts[1]
+    sums[i, 2] += counts[2]
+
+
+@scalar
+def subtract(sums, i, counts):
+    """Subtract quanta from those of sphere i."""
+    sums[i, 0] -= counts[0]
+    sums[i, 1] -= counts[1]
+    sums[i, 2] -= counts[2]
 
 
 @scalar

@@ -9,10 +9,10 @@ from mesokit.method.soft_spheres.machine.contact import (
     surface,
     torque_of,
 )
-from mesokit.method.soft_spheres.machine.contact_sums import abs_sum, count
+from mesokit.method.soft_spheres.machine.contact_sums import abs_sum, add, counted
 from mesokit.method.soft_spheres.machine.geometry import from_wall, reach, row
 from mesokit.method.soft_spheres.machine.groups import ENERGY, TOUCHING
-from mesokit.method.soft_spheres.machine.remembered import forget, keep, kept
+from mesokit.method.soft_spheres.machine.remembered import NO_SPRINGS, keep, kept
 from mesokit.scalar.fixed_point import quanta
 from mesokit.scalar.jit import scalar
 
@@ -21,29 +21,29 @@ from mesokit.scalar.jit import scalar
 def push_from_walls(law, i, time, step, world):
     """Add what walls do to sphere i; a bound of it."""
     bodies, box, _, walls = world
-    r, one, largest = row(bodies.place, i), body(bodies, bodies.seen, i), 0.0
+    r, largest = row(bodies.place, i), 0.0
     for w in range(len(walls.rows)):
         distance, out, moves = from_wall(walls.rows, w, box, r, time)
         if distance < reach(bodies, i) + law.ahead:
             there = surface(distance, out, moves, walls.own, w)
             c = i * len(walls.rows) + w
-            largest = max(largest, push(law, i, one, there, walls.springs, c, step, bodies))
+            largest = max(largest, push(law, i, there, walls.springs, c, step, bodies))
         else:
-            forget(walls.springs, i * len(walls.rows) + w, 0.0)
+            keep(walls.springs, i * len(walls.rows) + w, NO_SPRINGS)
     return max(largest, beside(walls.solid, law, i, step, world))
 
 
 @scalar
-def push(law, i, one, there, springs, c, step, bodies):
+def push(law, i, there, springs, c, step, bodies):
     """Add the force and the torque of a contact with a wall to those of sphere i, and bring its
     springs, row c, up to date; a bound of both."""
     rolls = law.rolling > 0.0
-    touch = at_wall(0.5 * step, one, there)
+    touch = at_wall(0.5 * step, body(bodies, bodies.seen, i), there)
     found = answer(law, touch, kept(springs, c), step, rolls)
     torque = torque_of(touch, found, touch.arm, rolls)
     keep(springs, c, found.springs)
-    count(bodies.force, i, found.force, law.scale)
-    count(bodies.torque, i, torque, law.scale)
+    add(bodies.force, i, counted(found.force, law.scale))
+    add(bodies.torque, i, counted(torque, law.scale))
     return max(abs_sum(found.force), abs_sum(torque))
 
 

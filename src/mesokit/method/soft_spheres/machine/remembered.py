@@ -7,6 +7,7 @@ from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import scaled
 
 SLIDING, ROLLING = 0, 3  # where the two springs of a contact are
+NO_SPRINGS = Springs((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
 @scalar
@@ -30,19 +31,6 @@ def keep(springs, c, now):
 
 
 @scalar
-def forget(springs, c, still):
-    """Forget a contact, unless it is still there (1.0 or 0.0)."""
-    if springs.shape[1] > SLIDING:
-        springs[c, 0] *= still
-        springs[c, 1] *= still
-        springs[c, 2] *= still
-    if springs.shape[1] > ROLLING:
-        springs[c, 3] *= still
-        springs[c, 4] *= still
-        springs[c, 5] *= still
-
-
-@scalar
 def kept_between(lists, i, j):
     """The springs of spheres i and j as i sees them: along the surface with the other sign if j
     keeps them, those of rolling as they are."""
@@ -53,7 +41,7 @@ def kept_between(lists, i, j):
         if lists.near[j, s] == i:
             found = kept(lists.springs, lists.begin[j] + s)
             return Springs(scaled(-1.0, found.sliding), found.rolling)
-    return Springs((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    return NO_SPRINGS
 
 
 @kernel

@@ -22,7 +22,7 @@ from mesokit.geometry.solids.bodies import (
     surface_velocity,
     term_clearance,
 )
-from mesokit.method.soft_spheres.machine.remembered import forget
+from mesokit.method.soft_spheres.machine.remembered import NO_SPRINGS, keep
 from mesokit.scalar.jit import by_type, elementwise, scalar, seldom
 from mesokit.scalar.pointer import whole, word
 from mesokit.scalar.vector import added_scaled, dot, scaled
@@ -124,7 +124,7 @@ def contact_of(solid, i, term):
             return i * MOST + s
         if solid.terms[i, s] == NOBODY:
             free = s
-    forget(solid.springs, i * MOST + free, 0.0)
+    keep(solid.springs, i * MOST + free, NO_SPRINGS)
     solid.terms[i, free] = np.int64(term)
     return i * MOST + free
 

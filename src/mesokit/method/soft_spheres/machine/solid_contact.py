@@ -56,12 +56,12 @@ def surface_at(solid, bodies, i, place):
 @beside.register(Solid)
 def _(solid, law, i, step, world):
     bodies, largest = world.bodies, 0.0
-    places, one = touched(law, solid, bodies, i), body(bodies, bodies.seen, i)
+    places = touched(law, solid, bodies, i)
     forget_others(solid, i, places[0].term, places[1].term, places[2].term)
     for place in places:
         if place.term != NOBODY:
             there, c = surface_at(solid, bodies, i, place), contact_of(solid, i, place.term)
-            largest = max(largest, push(law, i, one, there, solid.springs, c, step, bodies))
+            largest = max(largest, push(law, i, there, solid.springs, c, step, bodies))
     return largest
 
 
