@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 
 from mesokit.geometry.solids.solids import Solids
 from mesokit.geometry.surface import Surface
-from mesokit.method.soft_spheres.machine import contact_act, solid_contact  # noqa: F401  register
 from mesokit.method.soft_spheres.machine.central import Central
-from mesokit.method.soft_spheres.machine.contact import OWN, Contact
+from mesokit.method.soft_spheres.machine.contact.force import OWN, Contact
 from mesokit.method.soft_spheres.machine.groups import Motion
 from mesokit.method.soft_spheres.machine.system import Given, Others
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw, damping_ratio

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mesokit.errors import CaseError
 from mesokit.method.soft_spheres.laws import contact_of, others_of
-from mesokit.method.soft_spheres.machine.contact import OWN
+from mesokit.method.soft_spheres.machine.contact.force import OWN
 from mesokit.method.soft_spheres.machine.groups import INVERSE, Motion
 from mesokit.method.soft_spheres.machine.system import Given, System
 from mesokit.method.soft_spheres.pair.spring_dashpot import SpringDashpot
@@ -65,6 +65,7 @@ def settled(case: Case, made: Made, places: Array, friction: float) -> Array:
         made.masses,
         made.inertia,
         contact_of(law, stiffness * largest, 0.0),
+        True,
         law.width,
         0.0,
         Motion(step, (pull[0], pull[1], pull[2]), 1.0, 0.0, (1.0, 1.0, float(d == 3)), turns),

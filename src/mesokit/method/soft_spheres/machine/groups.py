@@ -42,13 +42,15 @@ class Box(NamedTuple):
 class Lists(NamedTuple):
     """Who is near whom, by places in memory.
 
-    skin: how far lists go beyond the reach; count (n,) and near (n, most): the lists, filled up to
-    whole groups of eight with the sphere itself; own (n,): how many, from the front, this sphere
-    finds, for laws that take each pair once; begin (n,): its first contact, and springs
-    (contacts, width): what they remember; made_at (n, 4): where the spheres were.
+    skin: how far lists go beyond the reach; halves: whether laws take each pair once; count (n,)
+    and near (n, most): the lists, filled up to whole groups of eight with the sphere itself; own
+    (n,): how many, from the front, this sphere finds, where each pair is taken once; begin (n,):
+    its first contact, and springs (contacts, width): what they remember; made_at (n, 4): where the
+    spheres were.
     """
 
     skin: float
+    halves: bool
     count: Any
     own: Any
     near: Any

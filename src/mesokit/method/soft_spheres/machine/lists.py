@@ -30,10 +30,10 @@ def sort(grid, place, cell, begins, order):
 
 
 @kernel
-def make_lists(team, grid, begins, columns, bodies, box, lists, scratch, halves):
+def make_lists(team, grid, begins, columns, bodies, box, lists, scratch):
     """All within reach and skin of each sphere. A list that has too little room is cut off, and
     tells its length. `columns` (4, n) are places once more, each coordinate together; `scratch`
-    (threads, n) is for the loops here alone. `halves`: whether laws take each pair once."""
+    (threads, n) is for the loops here alone."""
     first, last = share(len(bodies.number), team.thread, team.threads)
     beside = scratch[team.thread]
     for i in range(first, last):
@@ -51,7 +51,7 @@ def make_lists(team, grid, begins, columns, bodies, box, lists, scratch, halves)
                     line = grid.cells[0] * (y_there + grid.cells[1] * z_there)
                     for span in spans(grid, box, begins, line, x_cell):
                         found = list_span(columns, box, lists, i, span, found, beside)
-        if halves:
+        if lists.halves:
             lists.own[i] = own_first(lists, i, found, first)
         lists.count[i] = fill_up(lists, i, found)
         for k in range(3):

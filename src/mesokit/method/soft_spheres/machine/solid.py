@@ -22,7 +22,7 @@ from mesokit.geometry.solids.bodies import (
     surface_velocity,
     term_clearance,
 )
-from mesokit.method.soft_spheres.machine.remembered import NO_SPRINGS, keep
+from mesokit.method.soft_spheres.machine.contact.remembered import NO_SPRINGS, keep
 from mesokit.scalar.jit import by_type, elementwise, scalar, seldom
 from mesokit.scalar.pointer import whole, word
 from mesokit.scalar.vector import added_scaled, dot, scaled

@@ -12,7 +12,9 @@ from mesokit.execute.cpu.threads import Threads
 from mesokit.geometry.solids.bodies import NOBODY
 from mesokit.geometry.solids.none import Nothing
 from mesokit.method.soft_spheres.machine import groups
-from mesokit.method.soft_spheres.machine.contact_room import rooms
+from mesokit.method.soft_spheres.machine.contact.by_number import pairs_of, remember
+from mesokit.method.soft_spheres.machine.contact.remembered import carry_springs
+from mesokit.method.soft_spheres.machine.contact.room import rooms
 from mesokit.method.soft_spheres.machine.groups import (
     Bodies,
     Box,
@@ -23,9 +25,7 @@ from mesokit.method.soft_spheres.machine.groups import (
     World,
 )
 from mesokit.method.soft_spheres.machine.lists import GROUP, make_lists, sort
-from mesokit.method.soft_spheres.machine.pairs import pairs_of, remember
 from mesokit.method.soft_spheres.machine.reading import tell_all
-from mesokit.method.soft_spheres.machine.remembered import carry_springs
 from mesokit.method.soft_spheres.machine.solid import MOST
 from mesokit.method.soft_spheres.machine.step import advance, find_forces
 from mesokit.scalar.random import Counter
@@ -126,7 +126,9 @@ class System:
             np.zeros((n, most), np.int32),
         )
         begin, springs = np.zeros(n, np.int64), np.zeros((n * width, width))
-        return Lists(self.given.skin, count, own, near, begin, springs, np.zeros((n, 4)))
+        return Lists(
+            self.given.skin, self.given.halves, count, own, near, begin, springs, np.zeros((n, 4))
+        )
 
     # --- start and steps --------------------------------------------------------------------------
 
@@ -219,7 +221,6 @@ class System:
                 self.box,
                 self.lists,
                 self.scratch,
-                self.given.halves,
             )
             longest = int(self.lists.count.max())
             if longest < self.lists.near.shape[1]:  # one place is written beyond the end

@@ -3,11 +3,11 @@
 from mesokit.geometry.solids.bodies import NOBODY
 from mesokit.geometry.solids.none import Nothing
 from mesokit.method.soft_spheres.machine.acting import ahead, beside, tell_beside
-from mesokit.method.soft_spheres.machine.contact import at_wall, body, surface
-from mesokit.method.soft_spheres.machine.contact_walls import push, tell_wall
+from mesokit.method.soft_spheres.machine.contact.force import at_wall, body, surface
+from mesokit.method.soft_spheres.machine.contact.remembered import kept
+from mesokit.method.soft_spheres.machine.contact.walls import push, tell_wall
 from mesokit.method.soft_spheres.machine.geometry import reach, row
 from mesokit.method.soft_spheres.machine.groups import Solid
-from mesokit.method.soft_spheres.machine.remembered import kept
 from mesokit.method.soft_spheres.machine.solid import (
     Place,
     body_of,

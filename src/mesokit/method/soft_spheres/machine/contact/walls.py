@@ -1,7 +1,7 @@
 """Contacts of spheres with walls."""
 
 from mesokit.method.soft_spheres.machine.acting import beside, tell_beside
-from mesokit.method.soft_spheres.machine.contact import (
+from mesokit.method.soft_spheres.machine.contact.force import (
     answer,
     at_rest,
     at_wall,
@@ -9,10 +9,10 @@ from mesokit.method.soft_spheres.machine.contact import (
     surface,
     torque_of,
 )
-from mesokit.method.soft_spheres.machine.contact_sums import abs_sum, add, counted
+from mesokit.method.soft_spheres.machine.contact.remembered import NO_SPRINGS, keep, kept
+from mesokit.method.soft_spheres.machine.contact.sums import abs_sum, add, counted
 from mesokit.method.soft_spheres.machine.geometry import from_wall, reach, row
 from mesokit.method.soft_spheres.machine.groups import ENERGY, TOUCHING
-from mesokit.method.soft_spheres.machine.remembered import NO_SPRINGS, keep, kept
 from mesokit.scalar.fixed_point import quanta
 from mesokit.scalar.jit import scalar
 

@@ -9,10 +9,10 @@ import math
 from typing import Any, NamedTuple
 
 from mesokit.method.soft_spheres.machine.acting import ahead, quantum, turns
-from mesokit.method.soft_spheres.machine.contact_sums import opposite
+from mesokit.method.soft_spheres.machine.contact.spring import Slider, Springs, stretched
+from mesokit.method.soft_spheres.machine.contact.sums import opposite
 from mesokit.method.soft_spheres.machine.geometry import reach, row
 from mesokit.method.soft_spheres.machine.groups import INVERSE
-from mesokit.method.soft_spheres.machine.spring import Slider, Springs, stretched
 from mesokit.method.soft_spheres.pair.protocol import Closing, normal_energy, normal_force
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import added, added_scaled, dot, outer, scaled

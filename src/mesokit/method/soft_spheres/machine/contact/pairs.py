@@ -9,7 +9,7 @@ batches neither. Springs are remembered where forces are found.
 import numpy as np
 
 from mesokit.method.soft_spheres.machine.central import add_product
-from mesokit.method.soft_spheres.machine.contact import (
+from mesokit.method.soft_spheres.machine.contact.force import (
     answer,
     at_rest,
     between,
@@ -18,7 +18,13 @@ from mesokit.method.soft_spheres.machine.contact import (
     torque_of,
     torque_on_other,
 )
-from mesokit.method.soft_spheres.machine.contact_room import (
+from mesokit.method.soft_spheres.machine.contact.remembered import (
+    NO_SPRINGS,
+    keep,
+    kept,
+    kept_between,
+)
+from mesokit.method.soft_spheres.machine.contact.room import (
     BACK,
     BATCH,
     BOUND,
@@ -39,10 +45,9 @@ from mesokit.method.soft_spheres.machine.contact_room import (
     store_meeting,
     store_springs,
 )
-from mesokit.method.soft_spheres.machine.contact_sums import abs_sum, add, counted, subtract
+from mesokit.method.soft_spheres.machine.contact.sums import abs_sum, add, counted, subtract
 from mesokit.method.soft_spheres.machine.geometry import from_to, reach, row
 from mesokit.method.soft_spheres.machine.groups import ENERGY, TOUCHING
-from mesokit.method.soft_spheres.machine.remembered import NO_SPRINGS, keep, kept, kept_between
 from mesokit.scalar.fixed_point import quanta
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import dot

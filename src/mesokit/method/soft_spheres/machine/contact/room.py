@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mesokit.execute.cpu.strips.layout import zeros
-from mesokit.method.soft_spheres.machine.contact import Meeting
-from mesokit.method.soft_spheres.machine.spring import Springs
+from mesokit.method.soft_spheres.machine.contact.force import Meeting
+from mesokit.method.soft_spheres.machine.contact.spring import Springs
 from mesokit.scalar.jit import elementwise, for_each, scalar
 
 BATCH = 64  # contacts; what they need fits in the first-level cache

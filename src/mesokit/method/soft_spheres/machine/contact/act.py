@@ -1,9 +1,9 @@
 """What contacts do to spheres, and what they tell: with spheres, and with walls."""
 
 from mesokit.method.soft_spheres.machine.acting import act, tell
-from mesokit.method.soft_spheres.machine.contact import Contact
-from mesokit.method.soft_spheres.machine.contact_pairs import push_pairs, tell_pairs
-from mesokit.method.soft_spheres.machine.contact_walls import push_from_walls, tell_walls
+from mesokit.method.soft_spheres.machine.contact.force import Contact
+from mesokit.method.soft_spheres.machine.contact.pairs import push_pairs, tell_pairs
+from mesokit.method.soft_spheres.machine.contact.walls import push_from_walls, tell_walls
 from mesokit.method.soft_spheres.machine.groups import LARGEST
 
 

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.method.soft_spheres.machine.contact.remembered import ROLLING
 from mesokit.method.soft_spheres.machine.groups import Lists
-from mesokit.method.soft_spheres.machine.remembered import ROLLING
 
 Array = NDArray[np.float64]
 Pairs = NDArray[np.int64]
