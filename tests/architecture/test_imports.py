@@ -90,6 +90,7 @@ ROWS = {
     ),
     "report/": ("case", "errors", "geometry", "io", "method.protocol", "observe", "report"),
     "report/flow/state.py": ("case", "method.protocol"),
+    "report/flow/moving_plates.py": ("case", "report", "spheres.wall"),
     "report/flow/shaded.py": ("report", "scalar.cache"),
     "study/": (
         "case", "errors", "io", "method.protocol", "observe.shared", "report", "running",

@@ -13,11 +13,13 @@ from fake_spheres import METHOD
 from PIL import Image
 
 import mesokit
-from mesokit import Box, Case, CaseError, Plates, Run, RunError, Simulation, Trajectory
+from mesokit import Box, Case, CaseError, HardSpheres, Plates, Run, RunError, Simulation, Trajectory
 from mesokit.cli import main
 from mesokit.report.flow import KINDS, animate, disks, picture
 from mesokit.report.flow.colouring import COLOURS, MOST
+from mesokit.report.flow.moving_plates import plates_at
 from mesokit.report.flow.shaded import PALE, SHADE, Balls, shaded
+from mesokit.report.flow.solids import Section
 from mesokit.spheres.kinds import SphereKind
 from mesokit.spheres.section import Spheres
 
@@ -233,6 +235,19 @@ class TestColours:
         assert dots.get_xydata().tolist() == [[1, 2]]
         assert crosses.get_xydata().tolist() == [[3, 2]]
 
+    def test_speeds_of_a_gas_that_cools_are_relative(self, case_of):
+        """Else all but the first frame would have one colour."""
+        places, hot = np.array([[[1, 2], [3, 2]]] * 2, float), np.array([[3, 0], [4, 0]], float)
+        for factor, label in ((0.25, "speed over"), (0.5, "speed  [")):
+            frames = frames_of(places, velocity=np.array([hot, factor * hot]))
+            figure = picture(case_of((9, 5), number=2), {}, frames)
+            assert figure.axes[1].get_ylabel().startswith(label)
+        _, fills, (low, high) = self.numbers(case_of((9, 5), number=2), frames, "relative-speed")
+        usual = np.sqrt(12.5)
+        np.testing.assert_allclose(
+            fills, self.expected("viridis", low, high, [3 / usual, 4 / usual])
+        )
+
     def test_neighbours_in_a_triangular_lattice_are_six(self, case_of):
         x, y = np.meshgrid(np.arange(6.0), np.arange(6.0))
         rows = 1.1 * np.stack([x + 0.5 * (y % 2), y * np.sqrt(0.75)], axis=-1).reshape(-1, 2)
@@ -317,7 +332,7 @@ class TestWhatIsDrawn:
         places = np.array([[[1, 2], [3, 2]]] * 3, float)
         velocity = np.array([[[1, 0], [0, 0]], [[2, 0], [0, 0]], [[4, 0], [0, 0]]], float)
         frames = frames_of(places, velocity=velocity)
-        film = animate(case_of((9, 5)), {}, frames, tmp_path / "a.gif")
+        film = animate(case_of((9, 5)), {}, frames, tmp_path / "a.gif", colour="speed")
         assert film.frames == 3
         with Image.open(film.path) as image:
             shown = []
@@ -397,3 +412,18 @@ def test_plates_stand_where_they_are_in_a_box_of_any_lengths():
         CaseError, match=r"wall\[#1\]: solids other than plates need a box of whole"
     ):
         Solids([mesokit.Disk(centre=(4, 4), radius=1)], Box([9.3, 7.5]))
+
+
+def test_plates_that_vibrate_are_drawn_where_they_are():
+    lower = {"contact": {"amplitude": 0.5, "frequency": 2.0}}
+    case = Case(
+        run=Run(1, method="event-driven"),
+        box=Box([8, 10]),
+        walls=[Plates("y", lower=lower)],
+        spheres=HardSpheres(number=4),
+    )
+    section, x = Section(case, ("x", "y")), np.full(5, 3.0)
+    y = np.array([-0.6, -0.2, 0.2, 0.6, 9.0])
+    for time, shift in ((0.0, 0.0), (np.pi / 4, 0.5), (3 * np.pi / 4, -0.5)):
+        found = section.distance(x, y, plates_at(case, time))
+        np.testing.assert_allclose(found, [*(y[:4] - shift), 1.0], atol=1e-12)

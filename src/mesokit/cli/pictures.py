@@ -66,7 +66,7 @@ CHOICES: Sequence[Callable[[Any], Any]] = (
         "--colour",
         shell_complete=colours,
         metavar="NAME",
-        help="Of disks and spheres: speed, spin, neighbours, psi6 or kind.  [speed]",
+        help="Of spheres: speed, relative-speed, spin, neighbours, psi6 or kind.  [speed]",
     ),
 )
 

@@ -56,6 +56,7 @@ class Canvas:
         notes: Sequence[str] = (),
     ) -> None:
         self.panels, self.reaches, self.region = panels, reaches, region
+        self.section = section
         scales = [p.scale(f, r) for p, f, r in zip(panels, flows, reaches, strict=True)]
         self.view = section.view(region)
         bars = [scale is not None for scale in scales]
@@ -70,7 +71,8 @@ class Canvas:
             self.figure = ShownFigure(figsize=self.place.size)
             self.axes = [self._add(box) for box in self.place.panels]
             for number, (ax, scale) in enumerate(zip(self.axes, scales, strict=True)):
-                section.draw(ax, self.view)
+                if not _plates(flows[number]):
+                    section.draw(ax, self.view)
                 self._frame(ax, number, flows[0].axes)
                 if scale is not None:
                     self._bar(self.place.bars[number], scale)
@@ -134,9 +136,16 @@ class Canvas:
                     artist.remove()
                 limits = ax.get_xlim(), ax.get_ylim()
                 panel.draw(ax, flow, self.region, reach)
+                if _plates(flow):
+                    self.section.draw(ax, self.view, _plates(flow))
                 if flow.beads is not None:
                     beads.draw(ax, flow.beads, self.region)
                 ax.set(xlim=limits[0], ylim=limits[1])
+
+
+def _plates(flow: Flow) -> tuple[Any, ...]:
+    """Those that move, and are drawn anew in each frame."""
+    return () if flow.spheres is None else flow.spheres.plates
 
 
 def _ticks(bar: Any, scale: Scale, most: int) -> None:

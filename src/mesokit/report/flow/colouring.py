@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from mesokit.report.flow.state import State
 
 REACH = 1.2  # times the sum of their radii: how far neighbours are apart at most
+MUCH = 3.0  # times, by which speeds change
 MOST = 12  # neighbours with a colour of their own
 
 
@@ -51,6 +52,13 @@ class Colouring(NamedTuple):
 def speed(now: Frame) -> Array:
     """Of the centre, in all directions."""
     return np.asarray(np.linalg.norm(now.fields["velocity"], axis=1))
+
+
+def relative(now: Frame) -> Array:
+    """Over the root mean square of all."""
+    found = speed(now)
+    usual = float(np.sqrt((found**2).mean()))
+    return found / usual if usual > 0 else found
 
 
 def spin(now: Frame) -> Array:
@@ -92,6 +100,10 @@ def kind(now: Frame) -> Array:
 
 def _speeds(case: Case, reach: float) -> Scale:
     return Scale(0.0, reach, "viridis", labelled("speed", "a/tau"))
+
+
+def _relative(case: Case, reach: float) -> Scale:
+    return Scale(0.0, reach, "viridis", "speed over the root mean square of all")
 
 
 def _spins(case: Case, reach: float) -> Scale:
@@ -137,6 +149,7 @@ def _steps(colours: Any, names: list[str], label: str) -> Scale:
 
 COLOURS: dict[str, Colouring] = {
     "speed": Colouring(speed, _speeds, ("velocity",)),
+    "relative-speed": Colouring(relative, _relative, ("velocity",)),
     "spin": Colouring(spin, _spins, ("spin",)),
     "neighbours": Colouring(neighbours, _counts, all=True, counted=True),
     "psi6": Colouring(hexatic, _order, all=True),
@@ -144,14 +157,24 @@ COLOURS: dict[str, Colouring] = {
 }
 
 
+def _changes(reader: TrajectoryReader | State) -> bool:
+    """Whether speeds change by more than MUCH from the first frame to the last."""
+    ends = [np.asarray(reader[k]["velocity"], float) for k in (0, len(reader) - 1)]
+    first, last = (float((v**2).sum(axis=1).mean()) for v in ends)
+    return not MUCH**-2 < last / first < MUCH**2 if first > 0 else last > 0
+
+
 def chosen(case: Case, reader: TrajectoryReader | State, colour: str | None) -> Colouring | None:
-    """The colouring of that name; unless said speeds, else kinds, else none.
+    """The colouring of that name; unless said speeds, else kinds, else none. Where spheres cool
+    down or heat up by much, no scale is for all frames: speeds are then relative.
 
     Raises CaseError for an unknown one, RunError where the trajectory lacks what it needs.
     """
     if colour is None:
         several = len(np.unique(reader.species)) > 1
-        colour = "speed" if "velocity" in reader.fields else "kind" if several else None
+        colour = "kind" if several else None
+        if "velocity" in reader.fields:
+            colour = "relative-speed" if _changes(reader) else "speed"
         return None if colour is None else COLOURS[colour]
     if colour not in COLOURS:
         known = list(COLOURS)

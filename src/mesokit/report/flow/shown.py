@@ -28,6 +28,7 @@ class Spheres:
     repeats: vectors (2,) by which all of it repeats, the first of them 0.
     time: of the frame.
     note: what of the box is shown.
+    plates: that are not where they are at rest, see `moving_plates`.
     """
 
     places: Array
@@ -40,6 +41,7 @@ class Spheres:
     repeats: tuple[tuple[float, float], ...]
     time: float
     note: str = ""
+    plates: tuple[Any, ...] = ()
 
     def seen(
         self, low: tuple[float, float], high: tuple[float, float]

@@ -17,6 +17,7 @@ from mesokit.report.flow.region import Region
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.geometry.solids.solids import Solids
+    from mesokit.report.flow.moving_plates import Plate
 
 POINTS = 600  # along the longer side of a picture
 BEYOND = 0.02, 0.08  # of the longer and the shorter side: the strip of a plate that is shown
@@ -63,14 +64,18 @@ class Section:
         at = rf"; solids at ${axis} = {self.at:g}\,a$"
         return f"{how} along ${axis}$" + at * bool(self.solids)
 
-    def distance(self, x: Array, y: Array) -> Array:
-        """Signed distance from the nearest surface at points of the plane, negative in a solid."""
+    def distance(self, x: Array, y: Array, plates: tuple[Plate, ...] = ()) -> Array:
+        """Signed distance from the nearest surface at points of the plane, negative in a solid;
+        `plates` are not where they are at rest."""
         assert self.solids is not None
         points = np.zeros((x.size, self.case.box.dimension))
         points[:, self.columns] = np.stack([x.ravel(), y.ravel()], axis=1)
         if self.third is not None:
             points[:, self.third] = self.at
-        return np.asarray(self.solids.distance(points)).reshape(x.shape)
+        found: Array = np.asarray(self.solids.distance(points))
+        for plate in plates:
+            found = plate.moved(points, found)
+        return found.reshape(x.shape)
 
     def closed(self) -> tuple[bool, bool]:
         """Whether a solid closes the box along each axis: there is nothing else beyond its end."""
@@ -96,8 +101,8 @@ class Section:
                 high[axis] += strip
         return Region((low[0], low[1]), (high[0], high[1]))
 
-    def draw(self, ax: Any, view: Region) -> None:
-        """Fill and outline what is solid in the view."""
+    def draw(self, ax: Any, view: Region, plates: tuple[Plate, ...] = ()) -> None:
+        """Fill and outline what is solid in the view; `plates` are not where they are at rest."""
         if self.solids is None:
             return
         step = max(view.extent) / POINTS
@@ -105,7 +110,7 @@ class Section:
             np.linspace(a, b, max(2, round((b - a) / step) + 1))
             for a, b in zip(view.low, view.high, strict=True)
         )
-        distance = self.distance(*np.meshgrid(x, y))
+        distance = self.distance(*np.meshgrid(x, y), plates)
         if not (distance < 0).any():
             return
         filled = ax.contourf(x, y, distance, [-np.inf, 0], colors=[FILL], hatches=[HATCH], zorder=4)

@@ -14,6 +14,7 @@ from mesokit.case.box import AXES
 from mesokit.method.protocol import method_of
 from mesokit.report.flow.colouring import Frame, chosen
 from mesokit.report.flow.data import Array, Flow
+from mesokit.report.flow.moving_plates import plates_at
 from mesokit.report.flow.setting import Setting
 from mesokit.report.flow.shown import Spheres
 from mesokit.report.flow.view import View
@@ -56,6 +57,7 @@ class SphereSource:
             scale=functools.partial(colouring.scale, self.case) if colouring else None,
             repeats=self._repeats(float(self.time[frame])),
             time=float(self.time[frame]),
+            plates=plates_at(self.case, float(self.time[frame])),
         )
         if box.dimension == 3:
             spheres = self._deep(spheres, self.towards * position[:, self.third])
