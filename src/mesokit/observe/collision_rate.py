@@ -94,7 +94,7 @@ class CollisionRateAccumulator:
                 float(value[k]),
                 float(error[k]),
                 float(known[k]),
-                "1/time",
+                "1/tau",
                 note,
             )
             for k in shown
@@ -109,7 +109,7 @@ class CollisionRateAccumulator:
             value=value[:drawn],
             error=error[:drawn],
             label="collisions of a sphere per time",
-            units={"value": "1/time", "with": ""},
+            units={"value": "1/tau", "with": ""},
             expected=known[:drawn],
             theory="Enskog",
             comparisons=tuple(listed) if self.blocks.count else (),

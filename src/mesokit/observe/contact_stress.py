@@ -54,6 +54,7 @@ class ContactStressAccumulator(BlockAccumulator):
         self.name, self.case = observable.label, case
         self.volume = float(np.prod(case.box.size))
         self.floor = _floor(case)
+        self.unit = "m/tau^2" if case.box.dimension == 2 else "m/(a tau^2)"
         self.blocks = Blocks((7,))
 
     def observe(self, spheres: Any) -> None:
@@ -83,7 +84,7 @@ class ContactStressAccumulator(BlockAccumulator):
             value=value[:2],
             error=error[:2],
             label="pressure",
-            units={"value": "m/(a^(d-2) time^2)", "by": ""},
+            units={"value": self.unit, "by": ""},
             expected=None,
             theory="",
             comparisons=tuple(self.comparisons()) if self.blocks.count else (),
@@ -95,7 +96,7 @@ class ContactStressAccumulator(BlockAccumulator):
         found = of_mean(self.blocks)
         kinetic, forces, kT, contacts, flux, weight, above = found.value
         total, error = found.scalar(kinetic + forces, np.array([1.0, 1, 0, 0, 0, 0, 0]))
-        listed = [Comparison("pressure", total, error, unit="m/(a^(d-2) time^2)")]
+        listed = [Comparison("pressure", total, error, unit=self.unit)]
         density = self.case.particles / self.volume
         if self.floor is None and not self.case.walls and kT > 0:
             per = 1 / (density * kT)
