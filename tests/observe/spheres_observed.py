@@ -59,13 +59,13 @@ class FakeSpheres:
         return 1.0 * self.step
 
     def positions(self, ids=None, unwrapped=False):
-        return self.r
+        return self.r if ids is None else self.r[ids]
 
     def velocities(self, ids=None):
-        return self.v
+        return self.v if ids is None else self.v[ids]
 
     def masses(self, ids=None):
-        return self.made.masses
+        return self.made.masses if ids is None else self.made.masses[ids]
 
     def diameters(self, ids=None):
         return self.made.diameters

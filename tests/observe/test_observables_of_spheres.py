@@ -10,6 +10,8 @@ from mesokit import (
     HeightProfile,
     KindTemperature,
     Plates,
+    RadialDistribution,
+    Simulation,
     SphereKind,
     VelocityCumulant,
     theory,
@@ -168,3 +170,40 @@ def test_what_cannot_be_measured_is_refused():
         hard([VelocityCumulant()], kinds=[SphereKind(1.0), SphereKind(0.5)])
     with pytest.raises(CaseError, match="two kinds"):
         hard([KindTemperature()])
+
+
+class TestRadialDistribution:
+    def test_spheres_that_do_not_know_of_others_are_an_ideal_gas(self):
+        """Of one kind, and between two, by number or name."""
+        kinds = [SphereKind(1.0, name="large"), SphereKind(0.5, share=2.0)]
+        for chosen in ((), (2,), ("large", 2)):
+            given = RadialDistribution(kinds=chosen, bins=4)
+            case = hard([given], number=90, kinds=kinds)
+            accumulator = given.accumulator(case)
+            sampled(accumulator, FakeSpheres(case), 400)
+            result = accumulator.result()
+            deviations = (result.value - 1) / result.error
+            assert abs(deviations).max() < 4 and result.error.max() < 0.03
+            assert not any(c.what == "g at contact" for c in result.comparisons)
+
+    def test_kinds_that_there_are_not(self):
+        for kind in (3, "blue", 0):
+            with pytest.raises(CaseError, match="expected 1 to 2 or 'large'"):
+                hard(
+                    [RadialDistribution(kinds=[kind])],
+                    kinds=[SphereKind(1.0, name="large"), SphereKind(0.5)],
+                )
+        with pytest.raises(CaseError, match="of = 'beads': expected 'particles'"):
+            hard([RadialDistribution(of="beads")])
+
+    @pytest.mark.parametrize(("dimension", "fraction"), [(2, 0.5), (3, 0.3)])
+    def test_hard_spheres_touch_as_often_as_their_pressure_says(self, dimension, fraction):
+        volume = np.pi / 4 if dimension == 2 else np.pi / 6
+        side = (500 * volume / fraction) ** (1 / dimension)
+        case = hard([RadialDistribution(every=5)], [side] * dimension, number=500, timestep=0.1)
+        simulation = Simulation(case, threads=1)
+        simulation.run(800)
+        (found,) = (
+            c for c in simulation["radial-distribution"].comparisons if c.what == "g at contact"
+        )
+        assert abs(found.deviation) < 3.5 and found.error < 0.02 * found.expected

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Literal
+import math
+from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,8 @@ from mesokit.case.describe.hints import Many
 from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.molecules import Group, free_diffusion, kind_of
-from mesokit.observe.shared.estimate import of_mean
+from mesokit.method.protocol import method_of
+from mesokit.observe.shared.estimate import Estimate, of_mean
 from mesokit.observe.shared.pair_counts import count_pairs, count_within, shells
 from mesokit.observe.shared.protocol import BlockAccumulator, Observable
 from mesokit.observe.shared.result import Array, Comparison, Result
@@ -26,23 +28,34 @@ Ids = NDArray[np.int64]
 FARTHEST = 5.0  # unless a reach is given
 ENOUGH = 100.0  # times of diffusion over the reach, for error bars
 ROUNDING = 1e-12
+BEYOND, SHELLS = 1.1, 5  # contact diameters to which shells reach, and their number
+
+
+class Neighbours(Protocol):
+    """What a method knows of equal spheres: their diameter and g at contact, nan if not known."""
+
+    diameter: float
+    value: float
 
 
 @component
 class RadialDistribution(Observable):
     """Pairs at a distance r over those of as many independent particles, in a periodic box.
 
-    Of the fluid some particles are looked at, which changes the error bars and not the mean; of
-    solutes all beads.
+    Of a fluid some particles are looked at, which changes the error bars and not the mean; of
+    solutes all beads, and of other methods all spheres. Of equal hard spheres g at contact is told,
+    by shells just beyond it.
     """
 
     quantity: Literal["radial-distribution"] = tag("radial-distribution")
+    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
     needs_fluid: ClassVar[bool] = False
     of: Literal["beads", "particles"] | None = param(None, doc=OF)
     kinds: Many[int | str] = param(
         (),
         doc="one kind, or two: those of the second about one of the first (all unless said); names "
-        "or numbers from 1, of solutes.polymers or fluid.species; 'fluid': its molecules",
+        "or numbers from 1, of solutes.polymers, fluid.species or spheres.kinds; 'fluid': its "
+        "molecules",
         max_length=2,
     )
     pairs: Literal["all", "between"] = param(
@@ -103,12 +116,18 @@ class RadialDistributionAccumulator(BlockAccumulator):
         reach = observable.reach or min(FARTHEST, min(case.box.size) / 2)
         self.edges = np.linspace(0.0, reach, observable.bins + 1)
         self.shells = shells(self.edges, case.box.dimension)
-        self.blocks = Blocks((observable.bins,))
+        known = method_of(case).expected.get("radial-distribution")
+        self.theory: Neighbours | None = None if known is None else known(case, observable)
+        self.near = np.zeros(0) if self.theory is None else _beyond(self.theory.diameter)
+        self.blocks = Blocks((observable.bins + max(0, len(self.near) - 1),))
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        found = self.counts(fluid) * self.box.prod() / self.shells
-        self.blocks.add(found / self.number())
+        found = self.counts(fluid, self.edges) / self.shells
+        if len(self.near):
+            beyond = self.counts(fluid, self.near) / shells(self.near, self.case.box.dimension)
+            found = np.concatenate([found, beyond])
+        self.blocks.add(found * self.box.prod() / self.number())
 
     def number(self) -> float:
         """Pairs that there are at any distance, of all molecules and not only the sample."""
@@ -117,21 +136,21 @@ class RadialDistributionAccumulator(BlockAccumulator):
             return float(_size(self.first) * _size(self.second))
         return between if self.observable.pairs == "between" else within + between
 
-    def counts(self, fluid: RunningFluid) -> Array:
-        """Pairs (bins,) of all, as far as the sample knows."""
+    def counts(self, fluid: RunningFluid, edges: Array) -> Array:
+        """Pairs (bins,) of all between distances, as far as the sample knows."""
         places = self.places(fluid, self.first, self.beads)
         one = np.concatenate(places)
         if self.second:
             other = np.concatenate(self.places(fluid, self.second, self.others))
             share = len(one) * len(other) / self.number()
-            return count_pairs(one, other, self.box, self.edges) / share
-        seen = count_pairs(one, None, self.box, self.edges)
+            return count_pairs(one, other, self.box, edges) / share
+        seen = count_pairs(one, None, self.box, edges)
         looked = [g._replace(number=len(b)) for g, b in zip(self.first, self.beads, strict=True)]
         if looked == self.first and self.observable.pairs == "all":
             return seen.astype(float)
         inside = np.zeros(len(seen), np.int64)
         for beads, r in zip(self.beads, places, strict=True):
-            inside += count_within(r.reshape(*beads.shape, -1), self.box, self.edges)
+            inside += count_within(r.reshape(*beads.shape, -1), self.box, edges)
         # molecules are taken as wholes: of pairs within them another part than of all others
         (within, between), (within_seen, between_seen) = _pairs(self.first), _pairs(looked)
         found = (seen - inside) * (between / between_seen if between_seen else 0.0)
@@ -151,12 +170,12 @@ class RadialDistributionAccumulator(BlockAccumulator):
 
     def result(self) -> Result:
         """g(r), beside 1 where nobody knows of others."""
-        expected, found = self.expected(), of_mean(self.blocks)
+        expected, found = self.expected(), self.means()
         return Result(
             quantity="radial-distribution",
             name=self.name,
             x={"r": (self.edges[1:] + self.edges[:-1]) / 2},
-            value=self.blocks.mean(),
+            value=found.value,
             error=_unless_fixed(found.value, found.error),
             label="g(r)",
             units={"value": "", "r": "a"},
@@ -166,6 +185,11 @@ class RadialDistributionAccumulator(BlockAccumulator):
             samples=self.blocks.count,
             extra={"edges": self.edges},
         )
+
+    def means(self) -> Estimate:
+        """g in the bins."""
+        found, bins = of_mean(self.blocks), len(self.shells)
+        return found._replace(value=found.value[:bins], residuals=found.residuals[:, :bins])
 
     def expected(self) -> float | None:
         """1 of what is independent of all others; None within molecules, and with potentials."""
@@ -179,7 +203,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
         """Neighbours within the reach; without a theory also where g is largest."""
         if not self.blocks.count:
             return []
-        found, about = of_mean(self.blocks), self.number() / _size(self.first)
+        found, about = self.means(), self.number() / _size(self.first)
         density = about * (1 if self.second else 2) / float(self.box.prod())
         weights = density * self.shells
         value, error = found.scalar(weights @ found.value, weights)
@@ -195,7 +219,18 @@ class RadialDistributionAccumulator(BlockAccumulator):
             height = float(found.value[top])
             error = float(_unless_fixed(height, found.error[top]))
             listed.append(Comparison("largest g(r)", height, error, note=note))
+        if self.theory is not None and len(self.near):
+            listed.append(self.contact(self.theory))
         return listed
+
+    def contact(self, theory: Neighbours) -> Comparison:
+        """g at contact: a parabola through the shells beyond it."""
+        found, centres = of_mean(self.blocks), (self.near[1:] + self.near[:-1]) / 2
+        powers = np.vander(centres / theory.diameter - 1.0, 3, increasing=True)
+        weights = np.zeros(len(found.value))
+        weights[len(self.shells) :] = np.linalg.pinv(powers)[0]
+        value, error = found.scalar(weights @ found.value, weights)
+        return Comparison("g at contact", value, error, theory.value)
 
     def times(self) -> float:
         """How often in a run two of them diffuse over the reach, after which their distance is
@@ -206,12 +241,19 @@ class RadialDistributionAccumulator(BlockAccumulator):
             return np.nan
         slowest = min(found for found in centres[: len(self.first)] if found)
         other = min([found for found in centres[len(self.first) :] if found], default=slowest)
-        run = self.blocks.count / self.blocks.series * self.observable.every * case.fluid.timestep
+        run = (
+            self.blocks.count
+            / self.blocks.series
+            * self.observable.every
+            * method_of(case).timestep(case)
+        )
         reach = float(self.edges[-1])
         return run * 2 * case.box.dimension * (slowest + other) / reach**2
 
     def diffusion(self, group: Group, of: str) -> float | None:
         """Coefficient of the molecules of a group, by molecular chaos: Rouse's."""
+        if method_of(self.case).spheres:
+            return None
         alone = free_diffusion(self.case, of, kind_of(self.case, group))
         return None if alone is None else alone / group.length
 
@@ -230,9 +272,14 @@ def _unless_fixed(value: Array | float, error: Array | float) -> Array:
 
 def _sample(case: Case, group: Group, most: int) -> Ids:
     """Beads (molecules, length) of a group; of the fluid of so many as have `most` at least."""
-    if group.first >= case.particles:
+    if group.first >= case.particles or method_of(case).spheres:
         return group.beads()
     return group.beads(min(group.number, max(2, most // group.length)))
+
+
+def _beyond(diameter: float) -> Array:
+    """Edges of shells from contact on; none without a diameter of all."""
+    return np.zeros(0) if math.isnan(diameter) else diameter * np.linspace(1.0, BEYOND, SHELLS + 1)
 
 
 def _size(groups: list[Group]) -> int:

@@ -23,6 +23,8 @@ class Displacement:
     """Ballistic at first, diffusive when the velocity is forgotten: 2 D (t - T + T exp(-t/T)) along
     each axis, T = m D/kT, with the D of Enskog."""
 
+    of = "mean-square-displacement"
+
     def __init__(self, case: Case, observable: Any) -> None:
         if observable.of != "particles" or observable.kind is not None:
             raise CaseError("of: expected 'particles'; there are no molecules")
@@ -68,7 +70,7 @@ def _shut(case: Case, axis: str) -> bool:
 
 
 def _enskog(case: Case) -> tuple[float, float]:
-    """D and the memory of the velocity, nan where there is no theory."""
+    """Diffusion coefficient and memory of the velocity, nan where there is no theory."""
     section, box = case.spheres, case.box
     kind, d = section.kinds[0], box.dimension
     alike = len(section.kinds) == 1 and kind.spread == 0 and case.particles > 1

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from mesokit.method.event_driven.checks import check
 from mesokit.method.event_driven.displacement import Displacement
 from mesokit.method.event_driven.engine import EventDriven
+from mesokit.method.event_driven.neighbours import Neighbours
 from mesokit.method.event_driven.section import KEYS, Sections
 from mesokit.method.event_driven.summary import summary
 from mesokit.method.protocol import Columns, Method
@@ -54,7 +55,7 @@ METHOD = Method(
     closed_axes=closed_axes,
     solids=solids,
     observables=(MeanSquareDisplacement,),
-    expected={"mean-square-displacement": Displacement},
+    expected={theory.of: theory for theory in (Displacement, Neighbours)},
     check=check,
     groups=groups,
     timestep=lambda case: float(case.spheres.timestep),

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import Group, group_of, kind_of
 from mesokit.method.mpcd.molecule import FLUID
+from mesokit.method.protocol import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -19,6 +21,8 @@ def default_of(case: Case, of: str | None) -> str:
     """What was asked for, or else beads where there are any."""
     if of is not None:
         return of
+    if method_of(case).spheres:
+        return "particles"
     beads = case.solutes is not None or case.fluid.molecule is not None
     return "beads" if beads else "particles"
 
@@ -28,10 +32,27 @@ def groups_of(case: Case, of: str, kind: int | str | None = None) -> list[Group]
 
     Beads of all kinds of solutes are a group for each, particles of all species are one.
     """
+    if method_of(case).spheres:
+        return [_spheres(case, of, kind)]
     if kind is None and of != "particles" and case.solutes is not None:
         kinds = range(1, len(case.solutes.polymers) + 1)
         return [group_of(case, of, number) for number in kinds]
     return [group_of(case, of, kind)]
+
+
+def _spheres(case: Case, of: str, kind: int | str | None) -> Group:
+    """Spheres of a kind, by number or name, or all."""
+    if of != "particles":
+        raise CaseError(f"of = {show(of)}: expected 'particles'; there are no molecules")
+    counts = case.spheres.counts(case.box)
+    if kind is None:
+        return Group(0, 1, sum(counts), None)
+    names = [one.name for one in case.spheres.kinds]
+    place = names.index(kind) if kind in names else kind - 1 if isinstance(kind, int) else -1
+    if not 0 <= place < len(counts):
+        named = "".join(f" or {show(name)}" for name in names if name)
+        raise CaseError(f"kind = {show(kind)}: expected 1 to {len(counts)}{named}")
+    return Group(sum(counts[:place]), 1, counts[place], None)
 
 
 def at_rest(case: Case) -> bool:
@@ -41,6 +62,8 @@ def at_rest(case: Case) -> bool:
 
 def strangers(case: Case, of: str, groups: list[Group]) -> bool:
     """Whether particles, or molecules as wholes, are independent of all others."""
+    if method_of(case).spheres:
+        return False
     solutes = case.solutes
     if not at_rest(case) or (solutes is not None and solutes.solvent_pair is not None):
         return False
