@@ -9,10 +9,12 @@ from mesokit import (
     CollisionRate,
     HeightProfile,
     KindTemperature,
+    MeanSquareDisplacement,
     Plates,
     RadialDistribution,
     Simulation,
     SphereKind,
+    VelocityAutocorrelation,
     VelocityCumulant,
     theory,
 )
@@ -207,3 +209,32 @@ class TestRadialDistribution:
             c for c in simulation["radial-distribution"].comparisons if c.what == "g at contact"
         )
         assert abs(found.deviation) < 3.5 and found.error < 0.02 * found.expected
+
+
+def test_velocities_are_forgotten_as_displacements_say():
+    """The integral of the autocorrelation is the diffusion coefficient; thin gases are Enskog's."""
+    side = (500 * np.pi / 6 / 0.05) ** (1 / 3)
+    given = [
+        VelocityAutocorrelation(every=1, max_lag=200),
+        MeanSquareDisplacement(every=4, max_lag=300),
+    ]
+    simulation = Simulation(hard(given, [side] * 3, number=500, timestep=0.05), threads=1)
+    simulation.run(6000)
+    level, share, integral = simulation["velocity-autocorrelation"].comparisons
+    assert level.expected == pytest.approx(1 - 1 / 500) and abs(level.deviation) < 3.5
+    assert share.measured == pytest.approx(share.expected, rel=2e-3)
+    (straight,) = (
+        c for c in simulation["mean-square-displacement"].comparisons if "diffusion" in c.what
+    )
+    spread = np.hypot(integral.error, straight.error)
+    assert spread < 0.03 * straight.measured
+    assert integral.measured == pytest.approx(straight.measured, abs=3.5 * spread)
+    assert integral.measured == pytest.approx(integral.expected, rel=0.06)
+
+
+def test_velocities_along_gravity_and_between_walls_are_left_out():
+    fall = {"gravity": (0, -1), "number": 5}
+    case = hard([VelocityAutocorrelation()], walls=[Plates("y")], **fall)
+    assert case.observe[0].accumulator(case).axes == [0]
+    with pytest.raises(CaseError, match="every axis has gravity or a wall"):
+        hard([VelocityAutocorrelation()], walls=[Plates("x"), Plates("y")], **fall)

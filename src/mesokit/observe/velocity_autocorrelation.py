@@ -1,19 +1,16 @@
-"""Velocity autocorrelation of fluid particles."""
+"""Velocity autocorrelation of particles."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit import theory
 from mesokit.case.component import component, option, param, tag
 from mesokit.engine import RunningFluid
-from mesokit.errors import CaseError
-from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.expected.molecules import self_diffusion
+from mesokit.method.protocol import method_of
 from mesokit.observe.shared.estimate import Estimate
 from mesokit.observe.shared.origins import Origins
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
@@ -23,25 +20,66 @@ from mesokit.statistics import spread_ids
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
+Integers = NDArray[np.int64]
+
+
+class VelocityMemory(Protocol):
+    """What a method says of how long its particles remember their velocity.
+
+    It is made of a case and the observable, and raises CaseError where there is nothing to follow.
+    `axes` are those that count.
+    """
+
+    axes: tuple[int, ...]
+
+    def expected(self, steps: Integers) -> Array | None:
+        """The autocorrelation of a component after so many steps; None without a theory."""
+
+    def legend(self) -> str:
+        """What the theory is called in a figure."""
+
+    def level(self, error: float, runs: int) -> tuple[float, float] | None:
+        """The value at lag 0, nan if it is not known, and the error of the measured one over so
+        many runs with what their starts add to it; None if it is not told."""
+
+    def share(self, every: int) -> str | None:
+        """What to say of the share that is left after a lag; None if it is not told."""
+
+    def diffusion(self, every: int) -> tuple[float, str] | None:
+        """The diffusion coefficient that the integral is, and what to say of it; None if it is
+        not told."""
+
+    def tail(self, time: Array) -> Array | None:
+        """A hydrodynamic tail, nan where it does not hold; None without one."""
+
+    def crossing(self) -> float:
+        """The time until which the tail holds."""
+
 
 @component
 class VelocityAutocorrelation(Observable):
     """Mean product of a particle's velocity at two times, one component: kT/m at lag 0.
 
-    Axes along which the fluid flows or that a wall closes are left out.
+    Axes along which the fluid flows or that a wall closes are left out. The integral is a diffusion
+    coefficient.
     """
 
     quantity: Literal["velocity-autocorrelation"] = tag("velocity-autocorrelation")
+    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
     asks_transport: ClassVar[bool] = True
     in_open_box: ClassVar[bool] = True
     every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
     particles: int = param(2000, doc="particles followed", ge=1)
     max_lag: int = param(200, doc="longest lag", unit="steps", ge=1)
 
+    def memory(self, case: Case) -> VelocityMemory:
+        """What the method of a case says of it. Raises CaseError if there is nothing to follow."""
+        found: VelocityMemory = method_of(case).expected["velocity-autocorrelation"](case, self)
+        return found
+
     def check(self, case: Case) -> None:
         """Raise CaseError without an axis to follow."""
-        if not setting.quiet_axes(case):
-            raise CaseError("velocity-autocorrelation: every axis has a flow or a wall")
+        self.memory(case)
 
     def accumulator(self, case: Case) -> VelocityAutocorrelationAccumulator:
         """An empty memory for it."""
@@ -52,9 +90,12 @@ class VelocityAutocorrelationAccumulator:
     """Velocities at many origins."""
 
     def __init__(self, observable: VelocityAutocorrelation, case: Case) -> None:
-        observable.check(case)
-        self.observable, self.case, self.name = observable, case, observable.label
-        self.axes = list(setting.quiet_axes(case))
+        self.observable, self.name, self.theory = (
+            observable,
+            observable.label,
+            observable.memory(case),
+        )
+        self.axes, self.timestep = list(self.theory.axes), method_of(case).timestep(case)
         self.ids = spread_ids(observable.particles, case.particles)
         max_lag = max(1, observable.max_lag // observable.every)
         self.origins = Origins(len(self.ids), len(self.axes), max_lag)
@@ -81,17 +122,8 @@ class VelocityAutocorrelationAccumulator:
         total, axes = self.origins.estimate(), len(self.axes)
         kept = Estimate(total.value / axes, total.residuals / axes, total.weights)
         steps = self.origins.sampled() * self.observable.every
-        time = steps * self.case.fluid.timestep
-        fluid, coefficients = self.case.fluid, setting.transport(self.case)
-        expected, extra = None, {}
-        if coefficients is not None:
-            g = theory.decorrelation_from_diffusion(
-                coefficients.diffusion, fluid.timestep, fluid.kT, fluid.mass
-            )
-            expected = theory.vacf_molecular_chaos(steps, g, fluid.kT, fluid.mass)
-            extra["tail"] = self.tail(time, coefficients)
-        elif self._keep_velocities():
-            expected = np.full(len(time), fluid.kT / fluid.mass)
+        time = steps * self.timestep
+        expected, tail = self.theory.expected(steps), self.theory.tail(time)
         return Result(
             quantity="velocity-autocorrelation",
             drawing="memory",
@@ -102,80 +134,45 @@ class VelocityAutocorrelationAccumulator:
             label="velocity autocorrelation",
             units={"value": "a^2/tau^2", "time": "tau"},
             expected=expected,
-            theory=setting.chaos_label(self.case) if fluid.collision.acts else "free flight",
-            comparisons=tuple(self.comparisons(time, kept, expected, coefficients, extra)),
+            theory=self.theory.legend(),
+            comparisons=tuple(self.comparisons(time, kept, expected, tail)),
             samples=self.origins.count,
-            extra=extra,
+            extra={} if tail is None else {"tail": tail},
         )
 
-    def _keep_velocities(self) -> bool:
-        """Whether particles fly freely, and so for ever as they started."""
-        case = self.case
-        bound = case.walls or case.fluid.molecule is not None or case.fluid.mixed
-        return not (case.fluid.collision.acts or bound or case.fluid.force.acts)
-
-    def tail(self, time: Array, coefficients: theory.Transport) -> Array:
-        """The hydrodynamic tail in this box once sound has left the cell, nan before."""
-        tail, fluid = np.full(len(time), np.nan), self.case.fluid
-        late = time >= 5 / coefficients.sound_speed
-        nu, diffusion = coefficients.viscosity, coefficients.diffusion
-        if late.any() and not self.case.walls:
-            size = np.array(self.case.box.size, float)
-            tail[late] = theory.vacf_modes(
-                time[late], nu, diffusion, fluid.density, size, fluid.kT, fluid.mass
-            )
-        return tail
-
     def comparisons(
-        self,
-        time: Array,
-        kept: Estimate,
-        expected: Array | None,
-        coefficients: theory.Transport | None,
-        extra: Mapping[str, Array],
+        self, time: Array, kept: Estimate, expected: Array | None, tail: Array | None
     ) -> list[Comparison]:
         """Equipartition, what the first collisions leave, the diffusion coefficient, the tail."""
         if not len(time):
             return []
-        fluid, n = self.case.fluid, len(time)
+        n, every, found = len(time), self.observable.every, []
         first = np.eye(n)[0]
         value, error = kept.scalar(kept.value[0], first)
-        found = []
-        if not fluid.mixed:
-            equipartition = fluid.kT / fluid.mass
-            error = setting.with_start(self.case, error, equipartition, self.origins.series)
-            found.append(Comparison("value at lag 0", value, error, equipartition, "a^2/tau^2"))
-        if coefficients is None or expected is None or n < 3:
+        if (level := self.theory.level(error, self.origins.series)) is not None:
+            known, error = level
+            found.append(Comparison("value at lag 0", value, error, known, "a^2/tau^2"))
+        if n < 3:
             return found
-        share = kept.value[1] / kept.value[0]
-        gradient = (np.eye(n)[1] - share * first) / kept.value[0]
-        value, error = kept.scalar(share, gradient)
-        what = f"share left after {time[1]:g} tau"
-        # particles of a fluid at rest have not met before their first collision: it is exact
-        note = "" if self.observable.every == 1 else setting.chaos(self.case, "memory lasts longer")
-        found.append(Comparison(what, value, error, float(expected[1] / expected[0]), "", note))
-        if self.observable.every == 1:  # else the sum over steps is not known
+        if (note := self.theory.share(every)) is not None and expected is not None:
+            share = kept.value[1] / kept.value[0]
+            gradient = (np.eye(n)[1] - share * first) / kept.value[0]
+            value, error = kept.scalar(share, gradient)
+            what, known = f"share left after {time[1]:g} tau", float(expected[1] / expected[0])
+            found.append(Comparison(what, value, error, known, "", note))
+        if (diffusion := self.theory.diffusion(every)) is not None:
             widths = np.diff(time)
             trapezoid = np.zeros(n)
             trapezoid[1:] += widths / 2
             trapezoid[:-1] += widths / 2
             value, error = kept.scalar(trapezoid @ kept.value, trapezoid)
-            diffusion, note = self_diffusion(self.case)
-            found.append(
-                Comparison(
-                    f"diffusion coefficient up to {time[-1]:g} tau",
-                    value,
-                    error,
-                    diffusion,
-                    "a^2/tau",
-                    note,
-                )
-            )
-        crossing = max(self.case.box.size) ** 2 / (4 * np.pi**2 * coefficients.viscosity)
-        window = np.isfinite(extra["tail"]) & (time <= crossing)
-        if window.sum() >= 3:
-            weight = np.where(window, extra["tail"], 0.0)  # as the noise is the same everywhere
-            weight /= (weight**2).sum()
-            value, error = kept.scalar(weight @ kept.value, weight)
-            found.append(Comparison("ratio to the hydrodynamic tail", value, error, 1.0))
+            what = f"diffusion coefficient up to {time[-1]:g} tau"
+            found.append(Comparison(what, value, error, diffusion[0], "a^2/tau", diffusion[1]))
+        if tail is not None:
+            window = np.isfinite(tail) & (time <= self.theory.crossing())
+            if window.sum() >= 3:
+                weight = np.where(window, tail, 0.0)  # as the noise is the same everywhere
+                weight /= (weight**2).sum()
+                value, error = kept.scalar(weight @ kept.value, weight)
+                found.append(Comparison("ratio to the hydrodynamic tail", value, error, 1.0))
         return found

@@ -23,7 +23,7 @@ class Displacement:
     """Ballistic at first, diffusive when the velocity is forgotten: 2 D (t - T + T exp(-t/T)) along
     each axis, T = m D/kT, with the D of Enskog."""
 
-    of = "mean-square-displacement"
+    answers = "mean-square-displacement"
 
     def __init__(self, case: Case, observable: Any) -> None:
         if observable.of != "particles" or observable.kind is not None:
@@ -34,7 +34,7 @@ class Displacement:
         self.axes = tuple(case.box.index(axis, "components") for axis in chosen)
         self.length, self.number = 1, case.particles
         self.timestep = case.spheres.timestep
-        self.diffusion, self.memory = _enskog(case)
+        self.diffusion, self.memory = enskog(case)
 
     def beads(self, wanted: int) -> Integers:
         """Numbers (n, 1) of so many spheres, evenly spread."""
@@ -69,7 +69,7 @@ def _shut(case: Case, axis: str) -> bool:
     return any(axis in wall.closed_axes for wall in case.walls)
 
 
-def _enskog(case: Case) -> tuple[float, float]:
+def enskog(case: Case) -> tuple[float, float]:
     """Diffusion coefficient and memory of the velocity, nan where there is no theory."""
     section, box = case.spheres, case.box
     kind, d = section.kinds[0], box.dimension

@@ -11,6 +11,7 @@ from mesokit.method.event_driven.engine import EventDriven
 from mesokit.method.event_driven.neighbours import Neighbours
 from mesokit.method.event_driven.section import KEYS, Sections
 from mesokit.method.event_driven.summary import summary
+from mesokit.method.event_driven.velocity_memory import EnskogMemory
 from mesokit.method.protocol import Columns, Method
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
 from mesokit.spheres.groups import FIELDS, groups
@@ -55,7 +56,7 @@ METHOD = Method(
     closed_axes=closed_axes,
     solids=solids,
     observables=(MeanSquareDisplacement,),
-    expected={theory.of: theory for theory in (Displacement, Neighbours)},
+    expected={theory.answers: theory for theory in (Displacement, EnskogMemory, Neighbours)},
     check=check,
     groups=groups,
     timestep=lambda case: float(case.spheres.timestep),

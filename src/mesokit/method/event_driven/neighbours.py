@@ -16,7 +16,7 @@ class Neighbours:
     is 2^(d-1) times the packing fraction and g; nan of unlike spheres and of those that lose
     energy. `diameter` is where, nan of unlike ones."""
 
-    of = "radial-distribution"
+    answers = "radial-distribution"
 
     def __init__(self, case: Case, observable: Any) -> None:
         section, box = case.spheres, case.box

@@ -17,6 +17,7 @@ from mesokit.method.mpcd.checks import combinations
 from mesokit.method.mpcd.columns import columns
 from mesokit.method.mpcd.expected.displacement import Displacement
 from mesokit.method.mpcd.expected.setting import aperiodic_axes
+from mesokit.method.mpcd.expected.velocity_memory import VelocityMemory
 from mesokit.method.mpcd.groups import bonds, groups
 from mesokit.method.mpcd.sections import KEYS, Sections
 from mesokit.method.mpcd.start.fluid import start
@@ -129,7 +130,7 @@ METHOD = Method(
     engine=_engine,
     start=_start,
     keep_files=_keep_files,
-    expected={"mean-square-displacement": Displacement},
+    expected={theory.answers: theory for theory in (Displacement, VelocityMemory)},
     log=columns,
     si=_si,
 )

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 class Displacement:
     """What the observable asks; theory knows of no such fluid."""
 
+    answers = "mean-square-displacement"
+
     def __init__(self, case: Case, observable: Any) -> None:
         if observable.of != "particles" or observable.kind is not None:
             raise CaseError("of: expected 'particles'; there are no molecules")

@@ -16,6 +16,7 @@ from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
 from mesokit.spheres.groups import FIELDS, groups
 from mesokit.spheres.made import made
 from mesokit.spheres.start.first_state import ARRAYS, first_state, missing_files, starts
+from mesokit.spheres.velocity_memory import VelocityMemory
 from mesokit.spheres.wall.solids import closed_axes, solids
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ METHOD = Method(
     spheres=True,
     picture="disks",
     observables=(MeanSquareDisplacement,),
-    expected={"mean-square-displacement": Displacement},
+    expected={theory.answers: theory for theory in (Displacement, VelocityMemory)},
     check=check,
     groups=groups,
     timestep=lambda case: float(timestep_of(case.spheres, case.box)),

@@ -40,6 +40,8 @@ class Displacement:
     Raises CaseError without an axis or a molecule to follow.
     """
 
+    answers = "mean-square-displacement"
+
     def __init__(self, case: Case, observable: Any) -> None:
         self.case, self.of = case, observable.of
         self.species = observable.kind if case.fluid.species else None
