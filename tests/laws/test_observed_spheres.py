@@ -7,12 +7,18 @@ import pytest
 from hard_spheres import gas
 
 from mesokit import (
+    Box,
     CollisionRate,
     HardCollision,
     HeightProfile,
     Kicks,
     KindTemperature,
+    Langevin,
+    LennardJones,
     Plates,
+    Run,
+    Simulation,
+    SoftSpheres,
     SphereKind,
     VelocityCumulant,
     theory,
@@ -125,3 +131,18 @@ def test_a_dilute_gas_lies_as_the_barometric_law_says():
     filled = 0.0005 * 60 / 20
     assert height.error < 0.003 * height.expected
     assert abs(height.measured - height.expected) < 3 * height.error + filled * height.expected
+
+
+def test_a_liquid_in_a_bath_has_velocities_of_maxwell():
+    simulation = Simulation(
+        run=Run(4000, warmup=500, method="soft-spheres"),
+        box=Box([9.0, 9.0, 9.0]),
+        spheres=SoftSpheres(
+            number=400, pair=LennardJones(), timestep=0.005, thermostat=Langevin(friction=2.0)
+        ),
+        observe=[VelocityCumulant(every=20)],
+        threads=1,
+    )
+    (found,) = observed(simulation)
+    assert found.expected == 0.0 and found.error < 0.01
+    assert abs(found.measured) < 3.5 * found.error

@@ -88,9 +88,12 @@ class VelocityCumulantAccumulator(BlockAccumulator):
 
     def expected(self) -> tuple[float, str]:
         """What theory knows: of elastic spheres, and of smooth ones of constant restitution."""
-        collision = getattr(self.case.spheres, "collision", None)
-        if collision is None or self.case.walls:
+        section = self.case.spheres
+        if self.case.walls:
             return math.nan, ""
+        if (collision := getattr(section, "collision", None)) is None:
+            keeps_energy = getattr(section.pair, "elastic", True)  # a potential does
+            return (0.0, "Maxwell") if keeps_energy else (math.nan, "")
         if collision.elastic:
             return 0.0, "Maxwell"
         heating = self.case.spheres.heating

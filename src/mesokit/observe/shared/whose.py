@@ -51,7 +51,8 @@ def _spheres(case: Case, of: str, kind: int | str | None) -> Group:
     place = names.index(kind) if kind in names else kind - 1 if isinstance(kind, int) else -1
     if not 0 <= place < len(counts):
         named = "".join(f" or {show(name)}" for name in names if name)
-        raise CaseError(f"kind = {show(kind)}: expected 1 to {len(counts)}{named}")
+        numbers = "1" if len(counts) == 1 else f"1 to {len(counts)}"
+        raise CaseError(f"kind = {show(kind)}: expected {numbers}{named}")
     return Group(sum(counts[:place]), 1, counts[place], None)
 
 
