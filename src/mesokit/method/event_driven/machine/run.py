@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from mesokit.method.event_driven.machine.ahead import ask_for_lists, ask_for_next
 from mesokit.method.event_driven.machine.collide import collide_pair, collide_wall
 from mesokit.method.event_driven.machine.groups import (
     COLLAPSED,
@@ -24,7 +25,7 @@ from mesokit.method.event_driven.machine.motion import (
     velocity_at,
 )
 from mesokit.method.event_driven.machine.predict import predict
-from mesokit.method.event_driven.machine.queue import insert, next_event, remove
+from mesokit.method.event_driven.machine.queue import CURRENT, SIZE, insert, next_event, remove
 from mesokit.scalar.cache import kernel
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import scalar
@@ -35,11 +36,16 @@ MANY = 100  # collisions in a row that take no time
 @kernel
 def advance(world, rules, spheres, lists, queue, tally, end):
     """Do all events before a time; how it ended: DONE, FULL lists or COLLAPSED."""
-    number = spheres.number
+    number, bin_before = spheres.number, np.int64(-1)
     while True:
         i = next_event(queue, number, end)
         if i < 0:
             return DONE
+        if queue.now[CURRENT] != bin_before:
+            bin_before = queue.now[CURRENT]
+            for place in range(queue.now[SIZE]):
+                ask_for_lists(spheres, lists, queue, queue.heap[place])
+        ask_for_next(spheres, lists, queue)
         now, partner = queue.time[i], queue.event[i, PARTNER]
         other = i  # whose next event is to be found as well
         if partner >= 0:
