@@ -52,8 +52,9 @@ def new(*words: str) -> None:
 def test_pictures_and_templates() -> None:
     assert offered("plot", "run", "--kind", "s") == ["streamlines", "speed"]
     assert offered("animate", "run", "--kind", "vo") == ["vorticity"]
-    polymers = ["polymer_channel", "polymer_diffusion", "polymers_among_posts"]
-    names = ["poiseuille", "phase_separation", *polymers, "post_array", "pulled_chains"]
+    templates = ["poiseuille", "phase_separation"]
+    examples = sorted(file.stem for file in (ROOT / "examples").glob("p*.toml"))
+    names = [*templates, *(name for name in examples if name not in templates)]
     assert offered("new", "p") == offered("new", "x", "--template", "p") == names
 
 
