@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 from benchmarks import lammps_peer
 from mesokit import Box, Case, HardSpheres, Run, Simulation
+from mesokit.running.schedule import Leg
 from mesokit.spheres.kinds import ball_volume
 
 ATOMS = 32_000  # of LAMMPS
@@ -121,6 +122,7 @@ def measure(gas: Gas, seconds: float) -> float:
 def replicas(seconds: float) -> float:
     """Collisions per second of two replicas on two threads over those of one on one, in turn."""
     gas, engines = Gas(3, 0.49, 4_000), {}
+    way = [Leg(STEPS, False, False, ())]
     for number in (1, 2):
         case = Case(
             run=Run(0, method="event-driven", replicas=number),
@@ -128,12 +130,12 @@ def replicas(seconds: float) -> float:
             spheres=HardSpheres(number=gas.number, timestep=0.02),
         )
         engines[number] = Simulation(case, threads=number).replicas
-        engines[number].advance(STEPS, False)
+        engines[number].go(way)
     took = {1: 0.0, 2: 0.0}
     while took[1] < seconds:
         for number, copies in engines.items():
             began = time.perf_counter()
-            copies.advance(STEPS, False)
+            copies.go(way)
             took[number] += time.perf_counter() - began
     return 2 * took[1] / took[2]
 

@@ -32,7 +32,7 @@ from mesokit.running.log import RunLog
 from mesokit.running.longer import longer, require_steps
 from mesokit.running.replicas import Replicas
 from mesokit.running.results import write_results
-from mesokit.running.schedule import Schedule
+from mesokit.running.schedule import Leg, Schedule
 from mesokit.running.seen import Seen
 from mesokit.running.signals import Stopped, catching
 from mesokit.running.until import Goal, limit_of, next_length
@@ -175,7 +175,6 @@ class Simulation(Seen):
         self.writer: TrajectoryWriter | None = None
         self.schedule = Schedule(self.case)
         self._looked = False  # whether the state that the run begins with has been sampled
-        self._observe_seconds = dict.fromkeys(self.accumulators, 0.0)
         self._stopped_by: signal.Signals | None = None
         self._compiling = False
 
@@ -347,18 +346,15 @@ class Simulation(Seen):
     def _loop(self, progress: Reporter, last: int) -> None:
         chunk, saved = 1, perf_counter()
         if self.step == self.case.run.warmup and not self._looked:
-            self._observe()
+            self._go([self.schedule.leg(0, self.step)])
         self.callbacks.stopped = None
         self.callbacks.call(self)
         while self.step < last and not self._stopping:
-            began = perf_counter()
-            stops = self.schedule.next_stop(self.step), *self.callbacks.next_stops(self.step)
-            target = min(self.step + chunk, last, *stops)
-            steps, due = target - self.step, self.schedule.due(target)
-            stress = any("stress" in observable.measures for observable in due)
-            self.replicas.advance(steps, stress)
-            chunk = next_chunk(steps, perf_counter() - began)
-            self._observe()
+            began, step = perf_counter(), self.step
+            stops = self.schedule.next_meeting(step), *self.callbacks.next_stops(step)
+            target = min(step + chunk, last, *stops)
+            self._go(self.schedule.legs(step, target))
+            chunk = next_chunk(target - step, perf_counter() - began)
             self.callbacks.call(self)
             if self._checkpoint_due(perf_counter() - saved):
                 self.checkpoint()
@@ -372,14 +368,9 @@ class Simulation(Seen):
         """Whether a signal or a callback has asked to end the run."""
         return self._stopped_by is not None or self.callbacks.stopped is not None
 
-    def _observe(self) -> None:
-        """Take the samples and the frame that are due at this step."""
-        if self.step == self.case.run.warmup:
-            self.replicas.each(lambda one: one.engine.end_warmup())
-        for observable in self.schedule.due(self.step):
-            began = perf_counter()
-            self.replicas.observe(observable.label)
-            self._observe_seconds[observable.label] += perf_counter() - began
+    def _go(self, legs: Sequence[Leg]) -> None:
+        """Do steps and take samples, and the frame that is due then."""
+        self.replicas.go(legs)
         if self.writer and self.schedule.frame_due(self.step):
             self.writer.record(self.engine)
         self._looked = self.step >= self.case.run.warmup
@@ -394,7 +385,7 @@ class Simulation(Seen):
     @property
     def timings(self) -> dict[str, float]:
         """Seconds spent in each stage and observable since this process began the run."""
-        observing = {f"observe {name}": s for name, s in self._observe_seconds.items()}
+        observing = {f"observe {name}": s for name, s in self.replicas.first.seconds.items()}
         return self.engine.seconds | observing
 
     # --- safety ---------------------------------------------------------------------------------

@@ -83,7 +83,7 @@ def test_a_run_made_longer_keeps_them(ended, flying, tmp_path):
 def test_a_run_that_goes_on_exports_them(flying, tmp_path):
     """From its segments, before there is a data file."""
     simulation = Simulation(case_of(flying, (9.5, 8)), output=tmp_path / "run", threads=1)
-    simulation._observe()
+    simulation.run(0)
     simulation.checkpoint()
     files = mesokit.open(tmp_path / "run")
     there = read_snapshot(str(files.export(tmp_path / "a.gsd")))

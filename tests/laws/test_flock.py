@@ -379,10 +379,7 @@ def test_a_stopped_run_goes_on_to_the_same_bits(tmp_path):
     whole = Simulation(given, output=tmp_path / "whole", threads=1)
     whole.run()
     stopped = Simulation(given, output=tmp_path / "part", threads=2)
-    stopped._observe()
-    while stopped.step < 30:
-        stopped.engine.advance(5)
-        stopped._observe()
+    stopped.run(30)
     stopped.checkpoint()
     Simulation.resume(tmp_path / "part", threads=3).run()
     one, other = (mesokit.open(tmp_path / name) for name in ("whole", "part"))

@@ -54,7 +54,7 @@ def test_lines_are_what_the_fluid_and_the_observables_say(whole):
     assert np.isfinite(log[SLIP][-1])
 
 
-@pytest.mark.parametrize("at", [8, 50, 95])
+@pytest.mark.parametrize("at", [8, 50, 85])
 def test_after_a_kill_the_file_is_that_of_an_unbroken_run(logging, whole, crash_at, at, tmp_path):
     """Lines after the checkpoint are dropped, also a half one."""
     path = tmp_path / "run"

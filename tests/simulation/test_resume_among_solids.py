@@ -46,14 +46,14 @@ def test_stopped_among_solids_and_resumed(rule, tmp_path):
     whole = simulate(1)
     whole.run()
     stopped = simulate(2, checkpoint_every=17)
-    observe = stopped._observe
+    go = stopped._go
 
-    def observe_and_stop():
-        observe()
+    def go_and_stop(legs):
+        go(legs)
         if stopped.step >= 31:
             stopped._stopped_by = signal.SIGTERM
 
-    stopped._observe = observe_and_stop
+    stopped._go = go_and_stop
     with pytest.raises(KeyboardInterrupt):
         stopped.run()
     resumed = Simulation.resume(tmp_path / "run", threads=3)

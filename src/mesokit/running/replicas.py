@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import copy
 import dataclasses
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.observe.shared.protocol import Accumulator
     from mesokit.observe.shared.result import Result
+    from mesokit.running.schedule import Leg
 
 ALIKE = (
     "run.replicas: the first two move alike: neither their start nor what moves them knows of the "
@@ -35,6 +37,19 @@ class Replica:
         self.accumulators: dict[str, Accumulator] = {
             observable.label: observable.accumulator(case) for observable in case.observe
         }
+        self.seconds = dict.fromkeys(self.accumulators, 0.0)  # that samples have taken
+
+    def go(self, legs: Iterable[Leg]) -> None:
+        """Do steps and take samples."""
+        for leg in legs:
+            if leg.steps:
+                self.engine.advance(leg.steps, measure_stress=leg.stress)
+            if leg.ends_warmup:
+                self.engine.end_warmup()
+            for name in leg.samples:
+                began = perf_counter()
+                self.accumulators[name].observe(self.engine)
+                self.seconds[name] += perf_counter() - began
 
     def state(self) -> dict[str, Any]:
         """Arrays for a checkpoint."""
@@ -79,9 +94,9 @@ class Replicas:
             method = method_of(one.case)
             method.start(one.engine, method.first_state(one.case, arrays))
 
-    def advance(self, steps: int, stress: bool) -> None:
-        """So many steps of all."""
-        self.each(lambda one: one.engine.advance(steps, measure_stress=stress))
+    def go(self, legs: Iterable[Leg]) -> None:
+        """Steps and samples of all: they wait for one another at the end alone."""
+        self.each(lambda one: one.go(legs))
 
     def check(self) -> None:
         """Raise RunError for numbers that are none, and for copies that are the same run twice."""
@@ -90,10 +105,6 @@ class Replicas:
             one, two = (copy.engine.state() for copy in self.all[:2])
             if all(np.array_equal(array, two[name]) for name, array in one.items()):
                 raise RunError(ALIKE)
-
-    def observe(self, name: str) -> None:
-        """Take a sample of each."""
-        self.each(lambda one: one.accumulators[name].observe(one.engine))
 
     def result(self, name: str) -> Result:
         """What all of them say of an observable."""

@@ -2,11 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.observe.shared.protocol import Observable
+
+
+class Leg(NamedTuple):
+    """So many steps, whether the last of them measures stress, and what is done after it: what was
+    counted is forgotten where the warm-up ends, and samples are taken by observables of these
+    names."""
+
+    steps: int
+    stress: bool
+    ends_warmup: bool
+    samples: tuple[str, ...]
 
 
 class Schedule:
@@ -29,18 +40,41 @@ class Schedule:
 
     def next_stop(self, step: int) -> int:
         """The next step at which something is due, or the last one."""
-        run = self.case.run
         if step < self.warmup:
-            stops = [self.warmup]
-        else:
-            passed = step - self.warmup
-            intervals = [observable.every for observable in self.case.observe]
-            if self.case.trajectory is not None:
-                intervals.append(self.case.trajectory.every)
-            stops = [step + every - passed % every for every in intervals]
+            return self.next_meeting(step)
+        intervals = [observable.every for observable in self.case.observe]
+        return min([self.next_meeting(step), *self._after(step, intervals)])
+
+    def next_meeting(self, step: int) -> int:
+        """The next step at which something is due that replicas do together: a frame, a checkpoint,
+        the end of the warm-up or of the run."""
+        run, trajectory = self.case.run, self.case.trajectory
+        stops = [self.warmup if step < self.warmup else self.last_step]
+        if trajectory is not None and step >= self.warmup:
+            stops += self._after(step, [trajectory.every])
         if run.checkpoint_every is not None:
             stops.append(step + run.checkpoint_every - step % run.checkpoint_every)
-        return min([self.last_step, *stops])
+        return min(stops)
+
+    def _after(self, step: int, intervals: list[int]) -> list[int]:
+        passed = step - self.warmup
+        return [step + every - passed % every for every in intervals]
+
+    def legs(self, step: int, target: int) -> list[Leg]:
+        """The way from a step to another one that is no farther than the next meeting, from one
+        sample to the next."""
+        found = []
+        while step < target:
+            end = min(self.next_stop(step), target)
+            found.append(self.leg(end - step, end))
+            step = end
+        return found
+
+    def leg(self, steps: int, end: int) -> Leg:
+        """So many steps that end at this one."""
+        due = self.due(end)
+        stress = any("stress" in observable.measures for observable in due)
+        return Leg(steps, stress, end == self.warmup, tuple(one.label for one in due))
 
     def due(self, step: int) -> list[Observable]:
         """The observables that take a sample at this step."""
