@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 from benchmarks import lammps_peer
 from mesokit import Box, Case, HardSpheres, Run, Simulation
+from mesokit.method.event_driven.machine import system
 from mesokit.running.schedule import Leg
 from mesokit.spheres.kinds import ball_volume
 
@@ -83,16 +84,20 @@ def table(rounds: int, seconds: float) -> Iterator[str]:
         "times the collisions of one on one thread (4,000 spheres, packing fraction 0.49)."
     )
     yield ""
-    yield "Nanoseconds per collision by number of spheres, 3D, packing fraction 0.3:"
+    yield (
+        "Nanoseconds per collision by number of spheres, 3D, packing fraction 0.3: with the "
+        "calendar, and with bins so wide that all events are in one heap."
+    )
     yield ""
-    yield "| spheres | ns |\n|---|---|"
+    yield "| spheres | calendar | one heap |\n|---|---|---|"
     for number in SIZES:
-        yield f"| {number} | {1e9 / once(Gas(3, 0.30, number), seconds):.0f} |"
+        both = (once(Gas(3, 0.30, number), seconds, *how) for how in ((), ("--heap",)))
+        yield f"| {number} | {' | '.join(f'{1e9 / rate:.0f}' for rate in both)} |"
 
 
-def once(gas: Gas, seconds: float) -> float:
+def once(gas: Gas, seconds: float, *how: str) -> float:
     """Collisions per second of one run, in a process of its own."""
-    command = [sys.executable, "-m", "benchmarks.event_driven", *map(str, gas)]
+    command = [sys.executable, "-m", "benchmarks.event_driven", *map(str, gas), *how]
     command += ["--seconds", str(seconds)]
     return float(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
@@ -166,5 +171,8 @@ if __name__ == "__main__":
     parser.add_argument("fraction", type=float)
     parser.add_argument("number", type=int)
     parser.add_argument("--seconds", type=float, default=3.0)
+    parser.add_argument("--heap", action="store_true", help="all events in one heap")
     given = parser.parse_args()
+    if given.heap:
+        system.PER_BIN = 1e12
     print(measure(Gas(given.dimension, given.fraction, given.number), given.seconds))
