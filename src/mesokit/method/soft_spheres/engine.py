@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
-from mesokit.method.soft_spheres.laws import given_of
+from mesokit.method.soft_spheres.laws import given_of, surfaces_of
 from mesokit.method.soft_spheres.machine import groups
 from mesokit.method.soft_spheres.machine.system import System
 from mesokit.method.soft_spheres.scales import timestep_of
@@ -31,6 +31,7 @@ class SoftEngine:
         self.box, self.timestep = np.array(box.size, float), timestep_of(section, box)
         self.system = System(given_of(case, self.made), threads)
         self.threads, self.step = threads, 0
+        self.surfaces = surfaces_of(case)
         self.seconds = {"steps": 0.0}
 
     def start(self, placed: Started) -> None:
@@ -73,7 +74,8 @@ class SoftEngine:
             raise RunError("velocities are no numbers any more; expected a shorter timestep")
 
     def end_warmup(self) -> None:
-        """Nothing is summed up."""
+        """Forget what walls have taken."""
+        self.system.forget_taken()
 
     @property
     def time(self) -> float:
@@ -155,6 +157,14 @@ class SoftEngine:
     def coordination(self) -> NDArray[np.int64]:
         """How many spheres and walls touch each one, (n,); 0 of a potential."""
         return self.system.told(self.time)[:, groups.TOUCHING]
+
+    @property
+    def wall_impulse(self) -> Array:
+        """Momentum that each surface has taken since the warm-up, (surfaces, d)."""
+        taken = np.zeros((self.surfaces.number, self.dimension))
+        rows = self.system.taken()[:, : self.dimension]
+        np.add.at(taken, self.surfaces.place, rows * self.timestep)
+        return taken
 
     @property
     def stress(self) -> dict[str, Array]:
