@@ -14,6 +14,7 @@ from mesokit.method.soft_spheres.machine import groups
 from mesokit.method.soft_spheres.machine.system import System
 from mesokit.method.soft_spheres.scales import timestep_of
 from mesokit.spheres.made import made
+from mesokit.spheres.moments import moments
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -143,6 +144,12 @@ class SoftEngine:
         found = told * self.system.given.law.quantum
         found[:, groups.TOUCHING] = told[:, groups.TOUCHING]
         return found
+
+    def moments(
+        self, axes: tuple[int, ...], bins: tuple[int, ...], ids: Integers | None = None
+    ) -> tuple[Array, Array, Array, Array]:
+        """Number, mass, momentum and sum of m v^2 in equal bins of the box along `axes`."""
+        return moments(self, axes, bins, ids)
 
     def totals(self) -> tuple[int, Array, float]:
         """Number, momentum (d,) and kinetic energy of translation."""

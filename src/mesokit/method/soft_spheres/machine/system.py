@@ -175,7 +175,7 @@ class System:
         self.rooms.taken[:] = 0
 
     def taken(self) -> Array:
-        """Sum over steps of the force on each surface, (surfaces, 3): rows, then bodies of others."""
+        """Forces on surfaces, (surfaces, 3), summed over steps: rows, then bodies of others."""
         found: Array = in_numbers(all_taken(self.rooms.taken)) * self.given.law.quantum
         return found
 
