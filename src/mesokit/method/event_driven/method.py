@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from mesokit.method.event_driven.checks import check
+from mesokit.method.event_driven.cooling import HardCooling
 from mesokit.method.event_driven.displacement import Displacement
 from mesokit.method.event_driven.engine import EventDriven
 from mesokit.method.event_driven.equilibrium import equilibrium
@@ -58,7 +59,7 @@ METHOD = Method(
     closed_axes=closed_axes,
     solids=solids,
     observables=(MeanSquareDisplacement,),
-    expected={theory.answers: theory for theory in (Displacement, EnskogMemory, Neighbours)}
+    expected={theory.answers: theory for theory in (HardCooling, Displacement, EnskogMemory, Neighbours)}
     | answers(equilibrium),
     check=check,
     groups=groups,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from mesokit.method.protocol import Columns, Method
 from mesokit.method.soft_spheres.checks import check
+from mesokit.method.soft_spheres.cooling import SoftCooling
 from mesokit.method.soft_spheres.displacement import Displacement
 from mesokit.method.soft_spheres.engine import SoftEngine
 from mesokit.method.soft_spheres.equilibrium import equilibrium
@@ -54,7 +55,7 @@ METHOD = Method(
     spheres=True,
     picture="disks",
     observables=(MeanSquareDisplacement,),
-    expected={theory.answers: theory for theory in (Displacement, VelocityMemory)}
+    expected={theory.answers: theory for theory in (SoftCooling, Displacement, VelocityMemory)}
     | answers(equilibrium),
     check=check,
     groups=groups,
