@@ -106,14 +106,18 @@ class RunningFluid(Particles, Protocol):
 class RunningSpheres(Particles, Protocol):
     """What observables may ask of an engine of disks or spheres.
 
-    `totals` and `moments` are as of a fluid. `spins` (n,) in 2D or (n, 3) in 3D are angular
-    velocities; `energies` tells "translation", "rotation" and "potential". Of event-driven
-    dynamics `wall_impulse` (surfaces, d) is the momentum that each surface has taken since the
-    warm-up, `collisions` counts since the warm-up those of pairs, those with walls, and how many
-    of them were elastic for following too soon; `virial` is the sum of r.dp over those of pairs.
+    `totals` and `moments` are as of a fluid, the latter of all or some. `spins` (n,) in 2D or (n,
+    3) in 3D are angular velocities; `energies` tells "translation", "rotation" and "potential".
+    `wall_impulse` (surfaces, d) is the momentum that each surface has taken since the warm-up. Of
+    event-driven dynamics `collisions` counts since the warm-up those of pairs, those with walls,
+    and how many of them were elastic for following too soon; `virial` is the sum of r.dp over those
+    of pairs.
     """
 
     def totals(self) -> tuple[int, Array, float]: ...
+    def moments(
+        self, axes: tuple[int, ...], bins: tuple[int, ...], ids: Integers | None = None
+    ) -> tuple[Array, Array, Array, Array]: ...
     def velocities(self, ids: Integers | None = None) -> Array: ...
     def masses(self, ids: Integers | None = None) -> Array: ...
     def diameters(self, ids: Integers | None = None) -> Array: ...

@@ -47,6 +47,7 @@ ROWS = {
     "spheres/": ("case", "errors", "geometry", "scalar", "spheres"),
     "spheres/cost.py": ("case", "spheres", "theory"),
     "spheres/velocity_memory.py": ("case", "engine", "errors", "spheres"),
+    "spheres/expected/": ("case", "errors", "geometry", "spheres", "theory"),
     "spheres/start/random.py": ("case", "method.event_driven.grow", "spheres"),
     "spheres/start/poured.py": ("case", "errors", "method.soft_spheres.settle", "spheres"),
     "spheres/start/from_file.py": ("case", "errors", "io.snapshot_file", "spheres"),

@@ -9,6 +9,7 @@ import numpy as np
 from mesokit import Box, Case, HardSpheres, Plates, Run, SphereKind
 from mesokit.errors import CaseError
 from mesokit.spheres.made import made
+from mesokit.spheres.moments import moments
 
 
 def hard(observe, size=(9, 9), walls=(), **spheres):
@@ -69,6 +70,9 @@ class FakeSpheres:
 
     def diameters(self, ids=None):
         return self.made.diameters
+
+    def moments(self, axes, bins, ids=None):
+        return moments(self, axes, bins, ids)
 
     def energies(self):
         return {"translation": self.totals()[2], "rotation": 1.0, "potential": 0.0}

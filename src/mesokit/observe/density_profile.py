@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.component import component, param, tag
@@ -13,9 +14,17 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import Group, group_of, kind_of, springs_of
 from mesokit.method.mpcd.expected.traps import held, trapped
+from mesokit.method.protocol import method_of
 from mesokit.observe.shared.estimate import Estimate, of_mean
-from mesokit.observe.shared.profile import Array, Profile, ProfileAccumulator
+from mesokit.observe.shared.profile import (
+    Array,
+    Profile,
+    ProfileAccumulator,
+    expected_in_slices,
+    part_of,
+)
 from mesokit.observe.shared.result import Comparison, Result
+from mesokit.observe.shared.whose import groups_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -34,7 +43,9 @@ class DensityProfile(Profile):
 
     Uniform but for a force towards a plate, for plates that keep the beads of molecules off, and
     for traps, in which solutes are spread by Boltzmann's distribution. Rules that make species
-    demix leave fewer particles where they meet, of which there is no theory.
+    demix leave fewer particles where they meet, of which there is no theory. Of spheres it is the
+    density of centres, in gravity between plates beside that of an ideal gas at the temperature as
+    measured.
     """
 
     quantity: Literal["density-profile"] = tag("density-profile")
@@ -44,22 +55,90 @@ class DensityProfile(Profile):
     )
     kind: int | str | None = param(
         None,
-        doc="which kind: name or number of solutes.polymers, or number of fluid.species, from 1; "
-        "'fluid': its molecules (the first kind of solutes, particles of all species unless said)",
+        doc="which kind: name or number of solutes.polymers or spheres.kinds, or number of "
+        "fluid.species, from 1; 'fluid': its molecules (the first kind of solutes, particles of "
+        "all species and all spheres unless said)",
     )
 
     def check(self, case: Case) -> None:
         """Raise CaseError for an axis that the box has not, and for what molecules have not."""
         super().check(case)
+        if method_of(case).spheres:
+            groups_of(case, self.of, self.kind)
+            return
         molecule = group_of(case, self.of, self.kind).molecule
         if self.of == "ends" and molecule and molecule.topology == "ring":
             raise CaseError("of = 'ends': rings have none")
         if self.of == "centres" and self.axis == "x" and case.box.sheared:
             raise CaseError("of = 'centres': not along 'x' under shear, whose images slide")
 
-    def accumulator(self, case: Case) -> DensityProfileAccumulator:
+    def accumulator(self, case: Case) -> DensityOfSpheres | DensityProfileAccumulator:
         """An empty memory for it."""
+        if (known := expected_in_slices(case, self)) is not None:
+            return DensityOfSpheres(self, case, known)
         return DensityProfileAccumulator(self, case)
+
+
+class DensityInSlices(Protocol):
+    """What a method of spheres says of their density: a number per volume in slices (slices,)
+    between edges, at a mean m v^2 along an axis, None without a theory; what it is called; what to
+    say of it; and which slices lie where all centres may be."""
+
+    def expected(self, edges: Array, kT: float) -> Array | None: ...
+    def legend(self) -> str: ...
+    def note(self, density: Array) -> str: ...
+    def inside(self, edges: Array) -> NDArray[np.bool_]: ...
+
+
+class DensityOfSpheres(ProfileAccumulator):
+    """Number and sum of m v^2 of each slice, per volume."""
+
+    def __init__(self, observable: DensityProfile, case: Case, known: DensityInSlices) -> None:
+        super().__init__(observable, case, width=2)
+        self.known, self.unit, self.dimension = known, case.box.density_unit, case.box.dimension
+        self.slice_volume = case.box.volume / self.bins
+        if observable.kind is not None:
+            (group,) = groups_of(case, observable.of, observable.kind)
+            self.ids = group.beads().ravel()
+
+    def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
+        """Both sums."""
+        return np.stack([number, energy]) / self.slice_volume
+
+    def result(self) -> Result:
+        """The profile, compared as a whole, and beside gravity the mean place."""
+        every = of_mean(self.blocks)
+        density = Estimate(every.value[0], every.residuals[:, 0], every.weights)
+        number, energy = every.value.sum(axis=1)
+        kT = float(energy / number) / self.dimension if number > 0 else np.nan
+        expected, found = self.known.expected(self.edges, kT), list[Comparison]()
+        if expected is not None and self.blocks.count:
+            note = self.known.note(expected)
+            if np.ptp(expected) > 0:
+                share = self.centres / number
+                place, error = density.scalar(share @ density.value, share)
+                wanted = float(self.centres @ expected / expected.sum())
+                what = f"mean {self.observable.axis}, by slices"
+                found.append(Comparison(what, place, error, wanted, "a", note))
+            if not note:
+                inside = self.known.inside(self.edges)
+                some = part_of(density, inside)
+                found += self.chi_square(some, expected[inside], "against theory")
+        return Result(
+            quantity="density-profile",
+            drawing="profile",
+            name=self.name,
+            x={self.observable.axis: self.centres},
+            value=density.value,
+            error=density.error,
+            label="number density",
+            units={"value": self.unit, self.observable.axis: "a"},
+            expected=expected,
+            theory="" if expected is None else self.known.legend(),
+            comparisons=tuple(found),
+            samples=self.blocks.count,
+            extra={"bins_per_cell": self.observable.bins_per_cell, "edges": self.edges.copy()},
+        )
 
 
 class DensityProfileAccumulator(ProfileAccumulator):

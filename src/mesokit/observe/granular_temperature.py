@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.component import component, tag
+from mesokit.method.protocol import method_of
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.statistics import TimeSeries
@@ -22,16 +23,34 @@ if TYPE_CHECKING:
 PARTS, UNIT = ("translation", "rotation"), "m a^2/tau^2"
 
 
+class Cooling(Protocol):
+    """What is known: see `spheres.expected.cooling`."""
+
+    turns: bool
+    restitution: float
+    held: float
+    fluctuates: bool
+    contact_time: float
+
+
+class CoolingInTime(Protocol):
+    """What a method says of it: what is known, and the time of Haff's law from a temperature."""
+
+    known: Cooling
+
+    def haff_time(self, kT: float) -> float: ...
+
+
 @component
 class GranularTemperature(Observable):
     """Twice the kinetic energy per degree of freedom, of translation and of rotation.
 
     Translation is about the mean velocity. A gas of smooth inelastic spheres cools by Haff's law as
-    long as it is uniform; collisions so far are in the table as well.
+    long as it is uniform; collisions of hard spheres so far are in the table as well.
     """
 
     quantity: Literal["granular-temperature"] = tag("granular-temperature")
-    methods: ClassVar[tuple[str, ...]] = ("event-driven",)
+    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
     needs_fluid: ClassVar[bool] = False
 
     def accumulator(self, case: Case) -> GranularTemperatureAccumulator:
@@ -44,8 +63,11 @@ class GranularTemperatureAccumulator:
 
     def __init__(self, observable: GranularTemperature, case: Case) -> None:
         self.name, self.case = observable.label, case
+        self.theory: CoolingInTime = method_of(case).expected["granular-temperature"](
+            case, observable
+        )
         self.series = TimeSeries(3)  # both temperatures, collisions of a sphere
-        self.samples = 0
+        self.samples, self.runs = 0, 1
 
     def observe(self, spheres: RunningSpheres) -> None:
         """Take one sample."""
@@ -55,7 +77,8 @@ class GranularTemperatureAccumulator:
         about_mean = 2 * energies["translation"] - momentum @ momentum / masses.sum()
         motion = about_mean / (d * max(n - 1, 1))
         turning = 2 * energies["rotation"] / ((1 if d == 2 else 3) * n)
-        self.series.add(spheres.time, [motion, turning, 2 * spheres.collisions[0] / n])
+        pairs = getattr(spheres, "collisions", (math.nan,))[0]  # soft ones do not count them
+        self.series.add(spheres.time, [motion, turning, 2 * pairs / n])
         self.samples += 1
 
     def state(self) -> State:
@@ -70,12 +93,12 @@ class GranularTemperatureAccumulator:
     def pool(self, other: GranularTemperatureAccumulator) -> None:
         """Take in an independent run of the same case, only to read: the series becomes a mean."""
         self.series.pool(other.series)
-        self.samples += other.samples
+        self.samples, self.runs = self.samples + other.samples, self.runs + other.runs
 
     def result(self) -> Result:
         """The series; a sample has no error bar: nan."""
         time, rows = self.series.time(), self.series.values()
-        shown = PARTS if self.case.spheres.collision.rough else PARTS[:1]
+        shown = PARTS if self.theory.known.turns else PARTS[:1]
         value = rows[:, : len(shown)]
         return Result(
             quantity="granular-temperature",
@@ -90,44 +113,28 @@ class GranularTemperatureAccumulator:
             theory=self.law(),
             comparisons=tuple(self.comparisons(time, rows)),
             samples=self.samples,
-            extra={"collisions": rows[:, 2].copy()},
+            extra={} if np.isnan(rows[:, 2]).any() else {"collisions": rows[:, 2].copy()},
         )
-
-    def uniform(self) -> bool:
-        """Whether theory knows how it goes: smooth equal spheres, nothing beside them."""
-        section = self.case.spheres
-        one = len(section.kinds) == 1 and section.kinds[0].spread == 0
-        smooth = not section.collision.rough and hasattr(section.collision, "restitution")
-        return one and smooth and not self.case.walls and not section.gravity
 
     def law(self) -> str:
         """Whose law is beside it."""
-        if not self.uniform():
+        known = self.theory.known
+        if not math.isnan(known.held):
+            return "bath"
+        if math.isnan(known.restitution):
             return ""
-        return "conserved" if self.case.spheres.collision.elastic else "Haff"
-
-    def haff(self, kT: float) -> float:
-        """The time of Haff's law, from a temperature; infinite of elastic spheres."""
-        section, box = self.case.spheres, self.case.box
-        kind, d = section.kinds[0], box.dimension
-        if section.collision.elastic:
-            return math.inf
-        rate = theory.enskog_rate(
-            self.case.particles / box.volume,
-            kind.diameter * section.scale(box),
-            kT / kind.mean_mass(d),
-            section.fraction(box),
-            d,
-        )
-        return theory.haff_time(section.collision.restitution, rate, d)
+        return "conserved" if known.restitution == 1 else "Haff"
 
     def expected(self, time: Array, rows: Array, width: int) -> Array | None:
-        """Haff's law from the first sample on."""
-        if not self.uniform() or not len(time):
+        """Of translation: what a bath holds, or Haff's law from the first sample on."""
+        if not self.law() or not len(time):
             return None
-        found = np.full((len(time), width), np.nan)
-        first = rows[0, 0]
-        found[:, 0] = first * theory.haff_temperature(time - time[0], self.haff(first))
+        found, first = np.full((len(time), width), np.nan), rows[0, 0]
+        if self.law() == "bath":
+            found[:, 0] = self.theory.known.held
+        else:
+            haff = self.theory.haff_time(first)
+            found[:, 0] = first * theory.haff_temperature(time - time[0], haff)
         return found
 
     def comparisons(self, time: Array, rows: Array) -> list[Comparison]:
@@ -135,19 +142,37 @@ class GranularTemperatureAccumulator:
         uniform; there also beside the collisions that there were."""
         if len(time) < 2:
             return []
-        law, nan = self.expected(time, rows, 1), math.nan
-        cooling = self.law() == "Haff"
-        note = "approximate: the law is that of a uniform gas" if cooling else ""
+        law, nan, name = self.expected(time, rows, 1), math.nan, self.law()
         known = nan if law is None else float(law[-1, 0])
-        listed = [Comparison("temperature at the end", float(rows[-1, 0]), nan, known, UNIT, note)]
+        error, note = self.spread(), self.note()
+        listed = [Comparison("temperature at the end", float(rows[-1, 0]), error, known, UNIT, note)]
         quarter = np.flatnonzero(rows[:, 0] <= 0.25 * rows[0, 0])
-        if law is not None and cooling and len(quarter):
-            k, e = quarter[0], self.case.spheres.collision.restitution
+        if law is not None and name == "Haff" and len(quarter):
+            k, e = quarter[0], self.theory.known.restitution
             found, at = float(rows[k, 0]), f"at t = {time[k]:.4g}"
             listed.append(Comparison(f"temperature {at}", found, nan, float(law[k, 0]), UNIT, note))
             # a sphere loses (1 - e^2)/d of its mean energy in each collision, in molecular chaos
             collisions = rows[k, 2] - rows[0, 2]
+            if math.isnan(collisions):
+                return listed
             lost = math.exp(-(1 - e**2) * collisions / self.case.box.dimension)
             what = f"temperature after {collisions:.3g} collisions of each"
             listed.append(Comparison(what, found, nan, float(rows[0, 0]) * lost, UNIT, note))
         return listed
+
+    def spread(self) -> float:
+        """By how much a sample differs from what a bath holds: it has that of Maxwell's velocities;
+        nan without a bath."""
+        known = self.theory.known
+        if math.isnan(known.held) or not known.fluctuates or self.series.stride > 1:
+            return math.nan
+        degrees = self.case.box.dimension * max(self.case.particles - 1, 1)
+        return float(known.held * math.sqrt(2 / (degrees * self.runs)))
+
+    def note(self) -> str:
+        """What the law leaves out."""
+        if self.law() == "Haff":
+            return "approximate: the law is that of a uniform gas"
+        if self.law() == "conserved" and self.theory.known.contact_time > 0:
+            return "approximate: contacts hold a part of the energy"
+        return ""

@@ -7,18 +7,26 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.component import component, tag
+from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.heating import settled, temperature_rise
 from mesokit.observe.shared.estimate import Estimate, of_ratio
-from mesokit.observe.shared.profile import Array, Profile, ProfileAccumulator
+from mesokit.observe.shared.profile import (
+    Array,
+    Profile,
+    ProfileAccumulator,
+    expected_in_slices,
+    part_of,
+)
 from mesokit.observe.shared.result import Comparison, Result
+from mesokit.observe.shared.whose import KIND, ids_of_kind
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 CORRELATIONS = 0.02  # largest measured rise for (shear rate)^2 that molecular chaos leaves out
+KEPT = 1e-9  # relative error below which there is none but rounding
 ACCURACY = 6  # per cent of the rise by friction, measured up to Mach number 0.6
 
 
@@ -28,10 +36,17 @@ class TemperatureProfile(Profile):
 
     The flow is the mean over the whole run, not that of the few particles in a slice at one
     moment, so that the slices may be as fine as one likes; it must be steady. A flow that varies
-    across another axis is resolved in slices across that axis, too.
+    across another axis is resolved in slices across that axis, too. Spheres in equilibrium are as
+    warm everywhere.
     """
 
     quantity: Literal["temperature-profile"] = tag("temperature-profile")
+    kind: int | str | None = param(None, doc=KIND)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for an axis that the box has not, and a kind that there is not."""
+        super(TemperatureProfile, self).check(case)  # noqa: UP008  # the decorator makes a new class
+        ids_of_kind(case, self.kind)
 
     def accumulator(self, case: Case) -> TemperatureProfileAccumulator:
         """An empty memory for it."""
@@ -47,7 +62,12 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
     def __init__(self, observable: TemperatureProfile, case: Case) -> None:
         width, self.dimension = 3 + case.box.dimension, case.box.dimension
         super().__init__(observable, case, width)
-        flows = [setting.flow(case, i) for i in range(self.dimension)]
+        self.ids, self.known = (
+            ids_of_kind(case, observable.kind),
+            expected_in_slices(case, observable),
+        )
+        of_fluid = self.known is None
+        flows = [setting.flow(case, i) for i in range(self.dimension) if of_fluid]
         self.flows = [flow for flow in flows if flow.kind != "rest"]
         others = {flow.across for flow in self.flows} - {self.axis}
         self.across = min(others) if others else None
@@ -70,6 +90,8 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
         with np.errstate(divide="ignore", invalid="ignore"):
             u = np.stack([momentum[:, i].sum(alike) for i in range(self.dimension)])
             u = np.nan_to_num(u / mass.sum(alike)).reshape(self.dimension, 1, -1, number.shape[2])
+        if self.known is not None and self.known.rests:
+            u = np.zeros_like(u)
         moving = energy.copy()
         for i in range(self.dimension):
             moving += u[i] * (u[i] * mass - 2 * momentum[:, i])
@@ -79,11 +101,16 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
         """T = <m (v - u)^2>/(d <N>), first order exact in u = <P>/<M>."""
         peculiar, number, samples = self.about_flow()
         temperature = of_ratio(peculiar, self.dimension * number)
-        expected, note = self.expected(), self.note()
+        everywhere = of_ratio(peculiar.sum(axis=1), self.dimension * number.sum(axis=1))
         found: list[Comparison] = []
-        if expected is not None and self.blocks.count:
+        if self.known is not None:
+            expected, found = self.of_spheres(temperature, everywhere, samples)
+            law, note = "the same everywhere", ""
+        else:
+            expected, note = self.expected(), self.note()
+            law = "heat of friction" if self.heated else "kT of the case"
+        if self.known is None and expected is not None and self.blocks.count:
             weight = number.sum(axis=0) / number.sum()
-            everywhere = of_ratio(peculiar.sum(axis=1), self.dimension * number.sum(axis=1))
             mean = float(weight @ expected)
             found.append(
                 Comparison(
@@ -113,12 +140,29 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
             label="temperature k_B T",
             units={"value": "m a^2/tau^2", self.observable.axis: "a"},
             expected=expected,
-            theory=("heat of friction" if self.heated else "kT of the case")
-            + (", approximate" if note else ""),
+            theory=law + (", approximate" if note else ""),
             comparisons=tuple(found),
             samples=self.blocks.count,
             extra={"bins_per_cell": self.observable.bins_per_cell},
         )
+
+    def of_spheres(
+        self, temperature: Estimate, everywhere: Estimate, samples: NDArray[np.int64]
+    ) -> tuple[Array | None, list[Comparison]]:
+        """What theory expects of spheres, the mean temperature, and the profile as a whole."""
+        mean, unit = float(everywhere.value), "m a^2/tau^2"
+        level, known = self.known.expected(mean)
+        told = level if known else np.nan
+        error = float(everywhere.error)
+        error = 0.0 if error < KEPT * mean else error  # collisions keep it
+        found = [Comparison("mean temperature", mean, error, told, unit)]
+        if np.isnan(level):
+            return None, found if self.blocks.count else []
+        inside = self.known.inside(self.edges)
+        every = Estimate(temperature.value, temperature.residuals, samples.astype(float))
+        expected = np.full(self.bins, level)
+        found += self.chi_square(part_of(every, inside), expected[inside], "against theory")
+        return expected, found if self.blocks.count else []
 
     def expected(self) -> Array | None:
         """kT where something holds it, or where nothing heats or cools the fluid.

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
-from mesokit import theory
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
+from mesokit.method.protocol import method_of
 from mesokit.observe.shared.protocol import BlockAccumulator, Observable
 from mesokit.observe.shared.result import Comparison, Result
 from mesokit.statistics import Blocks
@@ -49,7 +48,8 @@ class VelocityCumulantAccumulator(BlockAccumulator):
 
     def __init__(self, observable: VelocityCumulant, case: Case) -> None:
         observable.check(case)
-        self.name, self.case, self.blocks = observable.label, case, Blocks((1,))
+        self.name, self.blocks = observable.label, Blocks((1,))
+        self.theory = method_of(case).expected["velocity-cumulant"](case, observable)
 
     def observe(self, spheres: RunningSpheres) -> None:
         """Take one sample; none of spheres that stand still."""
@@ -67,10 +67,10 @@ class VelocityCumulantAccumulator(BlockAccumulator):
     def result(self) -> Result:
         """One number."""
         value, error = self.blocks.mean(), self.blocks.error()
-        known, law = self.expected()
-        inexact = law == "van Noije and Ernst"
-        note = "approximate: first order, dilute uniform gas" if inexact else ""
-        listed = (Comparison("a_2", float(value[0]), float(error[0]), known, "", note),)
+        theory = self.theory
+        note = "" if theory.exact else "approximate: first order, dilute uniform gas"
+        note = note if theory.law else ""
+        listed = (Comparison("a_2", float(value[0]), float(error[0]), theory.value, "", note),)
         return Result(
             quantity="velocity-cumulant",
             drawing="curve",
@@ -80,27 +80,8 @@ class VelocityCumulantAccumulator(BlockAccumulator):
             error=error,
             label="fourth cumulant $a_2$",
             units={"value": "", "of": ""},
-            expected=np.array([known]),
-            theory=law,
+            expected=np.array([theory.value]),
+            theory=theory.law,
             comparisons=listed if self.blocks.count else (),
             samples=self.blocks.count,
         )
-
-    def expected(self) -> tuple[float, str]:
-        """What theory knows: of elastic spheres, and of smooth ones of constant restitution."""
-        section = self.case.spheres
-        if self.case.walls:
-            return math.nan, ""
-        if (collision := getattr(section, "collision", None)) is None:
-            keeps_energy = getattr(section.pair, "elastic", True)  # a potential does
-            return (0.0, "Maxwell") if keeps_energy else (math.nan, "")
-        if collision.elastic:
-            return 0.0, "Maxwell"
-        heating = self.case.spheres.heating
-        kicked = hasattr(heating, "power")  # a white noise, unlike a bath
-        constant = hasattr(collision, "restitution") and collision.reach == 1
-        if not constant or collision.rough or collision.contact_time or (heating and not kicked):
-            return math.nan, ""
-        d = self.case.box.dimension
-        known = theory.fourth_cumulant(collision.restitution, d, heated=kicked)
-        return known, "van Noije and Ernst"

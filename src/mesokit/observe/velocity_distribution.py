@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
-from mesokit.engine import RunningFluid
-from mesokit.method.mpcd.expected import setting
+from mesokit.method.protocol import method_of
 from mesokit.observe.shared import chi_square
 from mesokit.observe.shared.protocol import BlockAccumulator, Observable
 from mesokit.observe.shared.result import Array, Comparison, Result
-from mesokit.statistics import Blocks, spread_ids
+from mesokit.observe.shared.whose import KIND, ids_of_kind
+from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -24,26 +24,73 @@ if TYPE_CHECKING:
 FARTHEST = 5.0  # thermal velocities: what is beyond counts in the last bins
 
 
+class Velocities(Protocol):
+    """What a method says of them.
+
+    It is made of a case and the observable, and raises CaseError where there is nothing to look at.
+    `axis` is that of the component, `ids` the particles that count; `known` says whether there is a
+    theory of the component and of the speed, `cumulant` is a_2, of which it is the first order.
+    `taken_by_mean` and `taken_by_energy`, from 0 to 1, are what the sums of the numbers and of
+    their squares, which are the same at all times, take from chi-square; `kept_energy` is such a
+    part as well, of a sum that is not the same from run to run.
+    """
+
+    axis: int
+    ids: NDArray[np.int64]
+    known: tuple[bool, bool]
+    cumulant: float
+    taken_by_mean: float
+    taken_by_energy: float
+    kept_energy: float
+
+    def numbers(self, engine: Any) -> Array:
+        """Velocities (n, d) over sqrt(kT/m)."""
+
+    def warm(self, runs: int) -> float:
+        """By how much kT may be off for good, relative, over so many runs."""
+
+    def legend(self) -> str:
+        """What the theory is called in a figure."""
+
+    def note(self, classes: int) -> str:
+        """What to say of a chi-square over so many classes."""
+
+
 @component
 class VelocityDistribution(Observable):
     """Histograms of a component of the velocity and of the speed, in thermal velocities sqrt(kT/m).
 
-    Kinds of particles of different mass share one histogram. The chi-square of single samples has
-    a known mean, which no memory from one sample to the next changes.
+    Kinds of particles of different mass share one histogram. Velocities of spheres are about their
+    mean and scaled by the temperature of the moment, so that those of a gas that cools have a
+    histogram, too. The chi-square of single samples has a known mean, which no memory from one
+    sample to the next changes.
     """
 
     quantity: Literal["velocity-distribution"] = tag("velocity-distribution")
+    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
     in_open_box: ClassVar[bool] = True
     component: Axis | None = param(
         None, doc="of the velocity (the first along which nothing flows)"
     )
     bins: int = param(50, doc="of each histogram", ge=10, le=1000)
     particles: int = param(20_000, doc="particles looked at", ge=100)
+    kind: int | str | None = param(None, doc=KIND)
 
     def check(self, case: Case) -> None:
-        """Raise CaseError for z in 2D."""
+        """Raise CaseError for z in 2D, and where there is nothing to look at."""
         if self.component is not None:
             case.box.index(self.component, "component")
+        self.velocities(case)
+
+    def group(self, case: Case) -> NDArray[np.int64]:
+        """Numbers of the spheres of its kind, or of all."""
+        chosen = ids_of_kind(case, self.kind)
+        return np.arange(case.particles) if chosen is None else chosen
+
+    def velocities(self, case: Case) -> Velocities:
+        """What the method of a case says of them."""
+        found: Velocities = method_of(case).expected["velocity-distribution"](case, self)
+        return found
 
     def accumulator(self, case: Case) -> VelocityDistributionAccumulator:
         """An empty memory for it."""
@@ -56,24 +103,22 @@ class VelocityDistributionAccumulator(BlockAccumulator):
     def __init__(self, observable: VelocityDistribution, case: Case) -> None:
         observable.check(case)
         self.name, self.case, d = observable.label, case, case.box.dimension
-        still = [k for k in range(d) if setting.flow(case, k).kind == "rest"]
-        given = observable.component
-        self.axis = AXES.index(given) if given else still[0] if still else 0
-        self.calm = {"component": self.axis in still, "speed": len(still) == d}
-        self.ids = spread_ids(observable.particles, case.particles)
+        self.theory = observable.velocities(case)
+        self.axis = self.theory.axis
         self.edges = np.stack(
             [np.linspace(low, FARTHEST, observable.bins + 1) for low in (-FARTHEST, 0.0)]
         )
-        self.cdf = [_ends(theory.maxwell_component_cdf(self.edges[0]), True)]
-        self.cdf.append(_ends(theory.maxwell_speed_cdf(self.edges[1], d), False))
+        cumulant = float(np.nan_to_num(self.theory.cumulant))
+        self.cdf = [_ends(theory.sonine_component_cdf(self.edges[0], cumulant), True)]
+        self.cdf.append(_ends(theory.sonine_speed_cdf(self.edges[1], d, cumulant), False))
         self.probability = np.diff(self.cdf, axis=1)
-        self.of = [chi_square.classes(p, len(self.ids)) for p in self.probability]
+        number = len(self.theory.ids)
+        self.of = [chi_square.classes(p, number) for p in self.probability]
         self.blocks = Blocks((2 * observable.bins + 2,))
 
-    def observe(self, fluid: RunningFluid) -> None:
+    def observe(self, engine: Any) -> None:
         """Take one sample."""
-        scale = np.sqrt(fluid.masses(self.ids) / self.case.fluid.kT)
-        u = fluid.velocities(self.ids) * scale[:, None]
+        u = self.theory.numbers(engine)
         shares, squares = [], []
         for k, values in enumerate((u[:, self.axis], np.linalg.norm(u, axis=1))):
             place = np.searchsorted(self.edges[k], values, "right") - 1
@@ -102,7 +147,7 @@ class VelocityDistributionAccumulator(BlockAccumulator):
             expected=self._expected() / width,
             label="probability density",
             units={"value": "", "of": ""},
-            theory="Maxwell",
+            theory=self.theory.legend(),
             comparisons=tuple(self._comparisons(mean[-2:], error[-2:])),
             samples=self.blocks.count,
             extra={"edges": self.edges.copy()},
@@ -110,67 +155,40 @@ class VelocityDistributionAccumulator(BlockAccumulator):
 
     def _start(self) -> Array:
         """How far each bin may be off for good in a fluid that keeps the energy it started with."""
-        case, d = self.case, self.case.box.dimension
-        if setting.isothermal(case) or case.walls or setting.driven(case):
-            return np.zeros(self.probability.shape)
-        warm = math.sqrt(2.0 / (d * case.particles * self.blocks.series))  # of kT, relative
+        warm = self.theory.warm(self.blocks.series)
         return np.stack([0.5 * warm * abs(self._flux(k)) for k in range(2)])
 
     def _expected(self) -> Array:
-        known = [self.calm["component"], self.calm["speed"]]
-        known = [k and self._thermal() for k in known]
-        return np.where(np.array(known)[:, None], self.probability, np.nan)
-
-    def _thermal(self) -> bool:
-        """Whether the temperature is kT: held, or that of the start, which nothing changes."""
-        return setting.isothermal(self.case) or not setting.driven(self.case)
+        return np.where(np.array(self.theory.known)[:, None], self.probability, np.nan)
 
     def _comparisons(self, mean: Array, error: Array) -> list[Comparison]:
         """Mean chi-square of a sample of each."""
         found = []
-        for k, kind in enumerate(("component", "speed")):
+        for k, name in enumerate((f"v_{AXES[self.axis]}", "speed")):
             probability = chi_square.joined(self.probability[k], self.of[k])
             expected, spread = self._degrees(k, probability)
-            if not (self.calm[kind] and self._thermal()):
-                expected = math.nan
-            name = f"v_{AXES[self.axis]}" if k == 0 else "speed"
             found.append(
                 Comparison(
                     f"mean chi-square of {name}",
                     float(mean[k]),
                     float(np.hypot(error[k], spread)),
-                    expected,
+                    expected if self.theory.known[k] else math.nan,
                     "",
-                    self._note(len(probability)),
+                    self.theory.note(len(probability)),
                 )
             )
         return found
 
-    def _note(self, number: int) -> str:
-        if setting.driven(self.case):
-            return "approximate: Maxwell about a mean flow"
-        return setting.temperature_note(self.case) or f"{number} classes"
-
     def _degrees(self, k: int, probability: Array) -> tuple[float, float]:
-        """Expected mean of chi-square, and by how much it differs from run to run for good.
-
-        Where the total momentum is zero, a component loses what the mean of its numbers would take.
-        A fluid that keeps its energy does so for each run alone: over many starts nothing is lost.
-        """
-        case, d = self.case, self.case.box.dimension
-        degrees, part = len(probability) - 1.0, len(self.ids) / case.particles
-        closed = not (case.walls or setting.driven(case))
-        if k == 0 and closed:
-            masses = np.array([kind.mass for kind in case.fluid.kinds])
-            weights = np.array([kind.density for kind in case.fluid.kinds])
-            alike = (weights @ np.sqrt(masses)) ** 2 / (weights.sum() * (weights @ masses))
-            alike *= case.fluid.density * case.fluid.mass / setting.mass_density(case)
-            degrees -= part * alike * chi_square.taken(self._with_mean(), probability)
-        if setting.isothermal(case) or not closed:
-            return degrees, 0.0
+        """Expected mean of chi-square, and by how much it differs from run to run for good."""
+        degrees, known = len(probability) - 1.0, self.theory
+        if k == 0:
+            degrees -= known.taken_by_mean * chi_square.taken(self._with_mean(), probability)
         # energy of all components together, of which a single one sees a share 1/d
-        lost = part * chi_square.taken(self._with_energy(k), probability) / (1 if k else d)
-        return degrees, math.sqrt(2.0 / self.blocks.series) * lost
+        energy = chi_square.taken(self._with_energy(k), probability)
+        energy /= 1 if k else self.case.box.dimension
+        spread = math.sqrt(2.0 / max(self.blocks.series, 1)) * known.kept_energy * energy
+        return degrees - known.taken_by_energy * energy, spread
 
     def _with_mean(self) -> Array:
         """Covariance of each class of the component with the component."""

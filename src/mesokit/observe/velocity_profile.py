@@ -10,9 +10,17 @@ from mesokit.case.box import Axis
 from mesokit.case.component import component, param, tag
 from mesokit.geometry.solids.solids import slit_of
 from mesokit.method.mpcd.expected import setting
+from mesokit.method.protocol import method_of
 from mesokit.observe.shared.estimate import Estimate, fit, of_ratio
-from mesokit.observe.shared.profile import Array, Profile, ProfileAccumulator
+from mesokit.observe.shared.profile import (
+    Array,
+    Profile,
+    ProfileAccumulator,
+    expected_in_slices,
+    part_of,
+)
 from mesokit.observe.shared.result import Comparison, Result
+from mesokit.observe.shared.whose import KIND, ids_of_kind
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -27,23 +35,26 @@ class VelocityProfile(Profile):
 
     Without `component` it is the velocity along the axis of the flow; where nothing or more than
     one thing flows, along x, or along y in slices across x. Fits leave out the cell next to each
-    plate, where the no-slip rule is only approximate.
+    plate, where the no-slip rule is only approximate. Spheres are at rest where nothing drives
+    them.
     """
 
     quantity: Literal["velocity-profile"] = tag("velocity-profile")
     asks_transport: ClassVar[bool] = True
     component: Axis | None = param(None, doc="axis of the velocity (that of the flow unless said)")
+    kind: int | str | None = param(None, doc=KIND)
 
     def check(self, case: Case) -> None:
         """Raise CaseError for an axis that the box has not."""
         super(VelocityProfile, self).check(case)  # noqa: UP008  # the decorator makes a new class
         case.box.index(self.seen(case), "component")
+        ids_of_kind(case, self.kind)
 
     def seen(self, case: Case) -> Axis:
         """The axis of the velocity in this case."""
         if self.component is not None:
             return self.component
-        flowing = setting.flowing_axes(case)
+        flowing = [] if method_of(case).spheres else setting.flowing_axes(case)
         return flowing[0] if len(flowing) == 1 else "y" if self.axis == "x" else "x"
 
     def accumulator(self, case: Case) -> VelocityProfileAccumulator:
@@ -58,6 +69,10 @@ class VelocityProfileAccumulator(ProfileAccumulator):
         super().__init__(observable, case, width=2)
         self.letter = observable.seen(case)
         self.component = case.box.index(self.letter, "component")
+        self.ids, self.known = (
+            ids_of_kind(case, observable.kind),
+            expected_in_slices(case, observable),
+        )
 
     def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
         """Momentum along the component, and mass."""
@@ -67,16 +82,19 @@ class VelocityProfileAccumulator(ProfileAccumulator):
         """The profile, the steady flow expected, and the fit that suits it."""
         sums, _ = self.blocks.sums()
         velocity = of_ratio(sums[:, 0], sums[:, 1])
-        flow = setting.flow(self.case, self.component)
+        flow = self.flow()
         expected = flow.bins(self.axis, self.edges)
         comparisons: list[Comparison] = []
         curve = None
-        if flow.across == self.axis and np.isfinite(velocity.value).all() and self.blocks.count:
+        inside = np.full(self.bins, True) if self.known is None else self.known.inside(self.edges)
+        filled = np.isfinite(velocity.value[inside]).all()
+        if flow.across == self.axis and filled and self.blocks.count:
             mass = sums[:, 1].sum(axis=0)
             if flow.kind in FITS:
                 curve, comparisons = FITS[flow.kind](self, velocity, mass)
             if flow.kind in ("lees-edwards", "rest") and expected is not None:
-                comparisons += self.chi_square(velocity, expected, "against the line")
+                some = part_of(velocity, inside)
+                comparisons += self.chi_square(some, expected[inside], "against the line")
         return Result(
             quantity="velocity-profile",
             drawing="profile",
@@ -95,11 +113,20 @@ class VelocityProfileAccumulator(ProfileAccumulator):
             | self.raised(flow, expected),
         )
 
+    def flow(self) -> setting.Flow:
+        """The steady flow; of spheres it is known where they are at rest."""
+        if self.known is None:
+            return setting.flow(self.case, self.component)
+        rests = self.known.rests(self.component)
+        return setting.Flow("rest" if rests else "", self.axis, np.zeros_like if rests else None)
+
     def raised(self, flow: setting.Flow, expected: Array | None) -> dict[str, Array]:
         """The profile with the viscosity that fluctuations raise in 2D, of plates at rest."""
-        part = setting.loop(self.case)
         viscous = flow.kind in ("poiseuille", "half poiseuille", "kolmogorov")
-        if expected is None or not viscous or part < 0.002 or np.any(self.moving()):
+        if expected is None or not viscous:
+            return {}
+        part = setting.loop(self.case)
+        if part < 0.002 or np.any(self.moving()):
             return {}
         return {"raised": expected / (1 + part), "raised_by": np.array(100 * part)}
 

@@ -1,4 +1,4 @@
-"""Force of hard spheres on the walls."""
+"""Force of spheres on the walls."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ def surface_names(case: Case) -> tuple[str, ...]:
 class WallForce(Observable):
     """Mean force on each surface, and of all of them beside the weight of the spheres.
 
-    It is the momentum that collisions give to a surface per time.
+    It is the momentum that spheres give to a surface per time.
     """
 
     quantity: Literal["wall-force"] = tag("wall-force")
-    methods: ClassVar[tuple[str, ...]] = ("event-driven",)
+    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
     needs_fluid: ClassVar[bool] = False
 
     def check(self, case: Case) -> None:

@@ -106,6 +106,7 @@ from mesokit.theory.second_virial import second_virial
 from mesokit.theory.self_diffusion import self_diffusion
 from mesokit.theory.slip_sphere import enskog_friction, slip_sphere_diffusion
 from mesokit.theory.slope import EndOfSliding, Rolling, down_slope, end_of_sliding
+from mesokit.theory.sonine import sonine_component_cdf, sonine_speed_cdf
 from mesokit.theory.spring_dashpot import spring_dashpot
 from mesokit.theory.square_array import (
     square_array_drag,
@@ -276,6 +277,8 @@ __all__ = [
     "size_in_shear",
     "slip_sphere_diffusion",
     "slit_temperature_rise",
+    "sonine_component_cdf",
+    "sonine_speed_cdf",
     "spring",
     "spring_dashpot",
     "spring_of_bond",

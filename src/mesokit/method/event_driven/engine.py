@@ -17,6 +17,7 @@ from mesokit.method.event_driven.machine.system import Given, System
 from mesokit.method.event_driven.walls import wall_rows
 from mesokit.method.event_driven.window import instant, window
 from mesokit.spheres.made import made
+from mesokit.spheres.moments import moments
 from mesokit.spheres.wall.surfaces import room_of
 
 Array = NDArray[np.float64]
@@ -168,6 +169,12 @@ class EventDriven:
             "rotation": 0.5 * float(self.system.given.inertia @ (spins * spins).sum(axis=1)),
             "potential": -float(self.made.masses @ (places @ gravity)),
         }
+
+    def moments(
+        self, axes: tuple[int, ...], bins: tuple[int, ...], ids: Integers | None = None
+    ) -> tuple[Array, Array, Array, Array]:
+        """Number, mass, momentum and sum of m v^2 in equal bins of the box along `axes`."""
+        return moments(self, axes, bins, ids)
 
     def totals(self) -> tuple[int, Array, float]:
         """Number, momentum (d,) and kinetic energy of translation."""

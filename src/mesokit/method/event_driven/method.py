@@ -6,14 +6,17 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from mesokit.method.event_driven.checks import check
+from mesokit.method.event_driven.cooling import HardCooling
 from mesokit.method.event_driven.displacement import Displacement
 from mesokit.method.event_driven.engine import EventDriven
+from mesokit.method.event_driven.equilibrium import equilibrium
 from mesokit.method.event_driven.neighbours import Neighbours
 from mesokit.method.event_driven.section import KEYS, Sections
 from mesokit.method.event_driven.summary import summary
 from mesokit.method.event_driven.velocity_memory import EnskogMemory
 from mesokit.method.protocol import Columns, Method
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
+from mesokit.spheres.expected.answers import answers
 from mesokit.spheres.groups import FIELDS, groups
 from mesokit.spheres.made import made
 from mesokit.spheres.start.first_state import ARRAYS, first_state, missing_files, starts
@@ -56,7 +59,8 @@ METHOD = Method(
     closed_axes=closed_axes,
     solids=solids,
     observables=(MeanSquareDisplacement,),
-    expected={theory.answers: theory for theory in (Displacement, EnskogMemory, Neighbours)},
+    expected={theory.answers: theory for theory in (HardCooling, Displacement, EnskogMemory, Neighbours)}
+    | answers(equilibrium),
     check=check,
     groups=groups,
     timestep=lambda case: float(case.spheres.timestep),

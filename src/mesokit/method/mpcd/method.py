@@ -17,6 +17,7 @@ from mesokit.method.mpcd.checks import combinations
 from mesokit.method.mpcd.columns import columns
 from mesokit.method.mpcd.expected.displacement import Displacement
 from mesokit.method.mpcd.expected.setting import aperiodic_axes
+from mesokit.method.mpcd.expected.velocities import Velocities
 from mesokit.method.mpcd.expected.velocity_memory import VelocityMemory
 from mesokit.method.mpcd.groups import bonds, groups
 from mesokit.method.mpcd.sections import KEYS, Sections
@@ -130,7 +131,7 @@ METHOD = Method(
     engine=_engine,
     start=_start,
     keep_files=_keep_files,
-    expected={theory.answers: theory for theory in (Displacement, VelocityMemory)},
+    expected={theory.answers: theory for theory in (Displacement, Velocities, VelocityMemory)},
     log=columns,
     si=_si,
 )

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
-from mesokit.method.soft_spheres.laws import given_of
+from mesokit.method.soft_spheres.laws import given_of, surfaces_of
 from mesokit.method.soft_spheres.machine import groups
 from mesokit.method.soft_spheres.machine.system import System
 from mesokit.method.soft_spheres.scales import timestep_of
 from mesokit.spheres.made import made
+from mesokit.spheres.moments import moments
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -31,6 +32,7 @@ class SoftEngine:
         self.box, self.timestep = np.array(box.size, float), timestep_of(section, box)
         self.system = System(given_of(case, self.made), threads)
         self.threads, self.step = threads, 0
+        self.surfaces = surfaces_of(case)
         self.seconds = {"steps": 0.0}
 
     def start(self, placed: Started) -> None:
@@ -73,7 +75,8 @@ class SoftEngine:
             raise RunError("velocities are no numbers any more; expected a shorter timestep")
 
     def end_warmup(self) -> None:
-        """Nothing is summed up."""
+        """Forget what walls have taken."""
+        self.system.forget_taken()
 
     @property
     def time(self) -> float:
@@ -142,6 +145,12 @@ class SoftEngine:
         found[:, groups.TOUCHING] = told[:, groups.TOUCHING]
         return found
 
+    def moments(
+        self, axes: tuple[int, ...], bins: tuple[int, ...], ids: Integers | None = None
+    ) -> tuple[Array, Array, Array, Array]:
+        """Number, mass, momentum and sum of m v^2 in equal bins of the box along `axes`."""
+        return moments(self, axes, bins, ids)
+
     def totals(self) -> tuple[int, Array, float]:
         """Number, momentum (d,) and kinetic energy of translation."""
         v = self.velocities()
@@ -155,6 +164,14 @@ class SoftEngine:
     def coordination(self) -> NDArray[np.int64]:
         """How many spheres and walls touch each one, (n,); 0 of a potential."""
         return self.system.told(self.time)[:, groups.TOUCHING]
+
+    @property
+    def wall_impulse(self) -> Array:
+        """Momentum that each surface has taken since the warm-up, (surfaces, d)."""
+        taken = np.zeros((self.surfaces.number, self.dimension))
+        rows = self.system.taken()[:, : self.dimension]
+        np.add.at(taken, self.surfaces.place, rows * self.timestep)
+        return taken
 
     @property
     def stress(self) -> dict[str, Array]:

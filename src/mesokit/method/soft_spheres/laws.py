@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -131,6 +131,28 @@ def others_of(case: Case, made: Made) -> Others | None:
     away = float(made.diameters.max()) / 2 + _ahead(case)
     own = np.array([_own(case, body.surface) for body in solids.bodies])
     return Others(solids.reaching(away), solids.like, own, solids)
+
+
+class SurfacesTaken(NamedTuple):
+    """How many surfaces there are, wall by wall, and which of them each row of walls, and then each
+    body of the other walls, is (rows + bodies,)."""
+
+    number: int
+    place: NDArray[np.int64]
+
+
+def surfaces_of(case: Case) -> SurfacesTaken:
+    """The surfaces of a case."""
+    which = other_walls(case)
+    rows = surface_rows(case, which)
+    wall_of_row = np.array([i for i, _ in rows.surfaces], np.int64)
+    walls = np.zeros(len(rows.names), np.int64)
+    walls[rows.surface] = wall_of_row
+    others = Solids(case.walls, case.box, only=which).walls if which else []
+    bodies = np.concatenate([walls, np.array(others, np.int64)])
+    rank = np.empty(len(bodies), np.int64)
+    rank[np.argsort(bodies, kind="stable")] = np.arange(len(bodies))
+    return SurfacesTaken(len(bodies), np.concatenate([rank[rows.surface], rank[len(walls) :]]))
 
 
 def _own(case: Case, surface: Surface) -> tuple[float, float]:

@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 from mesokit.method.protocol import Columns, Method
 from mesokit.method.soft_spheres.checks import check
+from mesokit.method.soft_spheres.cooling import SoftCooling
 from mesokit.method.soft_spheres.displacement import Displacement
 from mesokit.method.soft_spheres.engine import SoftEngine
+from mesokit.method.soft_spheres.equilibrium import equilibrium
 from mesokit.method.soft_spheres.scales import timestep_of
 from mesokit.method.soft_spheres.section import KEYS, Sections
 from mesokit.method.soft_spheres.summary import summary
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
+from mesokit.spheres.expected.answers import answers
 from mesokit.spheres.groups import FIELDS, groups
 from mesokit.spheres.made import made
 from mesokit.spheres.start.first_state import ARRAYS, first_state, missing_files, starts
@@ -52,7 +55,8 @@ METHOD = Method(
     spheres=True,
     picture="disks",
     observables=(MeanSquareDisplacement,),
-    expected={theory.answers: theory for theory in (Displacement, VelocityMemory)},
+    expected={theory.answers: theory for theory in (SoftCooling, Displacement, VelocityMemory)}
+    | answers(equilibrium),
     check=check,
     groups=groups,
     timestep=lambda case: float(timestep_of(case.spheres, case.box)),

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import Axis
-from mesokit.case.component import component, param
-from mesokit.engine import RunningFluid
+from mesokit.case.component import component, name_of, param
 from mesokit.method.mpcd.expected import setting
+from mesokit.method.protocol import method_of
 from mesokit.observe.shared.estimate import Estimate
 from mesokit.observe.shared.mode_chi_square import mode_chi_square
 from mesokit.observe.shared.protocol import BlockAccumulator, Observable
@@ -28,12 +28,19 @@ Array = NDArray[np.floating[Any]]
 class Profile(Observable):
     """A quantity in slices across an axis."""
 
+    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
     axis: Axis = param("y", doc="axis across which the slices lie")
-    bins_per_cell: int = param(4, doc="slices per cell", ge=1)
+    bins_per_cell: int = param(4, doc="slices per cell, or per length of 1", ge=1)
 
     def check(self, case: Case) -> None:
         """Raise CaseError for an axis that the box has not."""
         case.box.index(self.axis)
+
+
+def expected_in_slices(case: Case, observable: Profile) -> Any:
+    """What a method of spheres says of a profile; None of a fluid, which says it elsewhere."""
+    found = method_of(case).expected.get(name_of(observable))
+    return None if found is None else found(case, observable)
 
 
 class ProfileAccumulator(BlockAccumulator):
@@ -43,17 +50,19 @@ class ProfileAccumulator(BlockAccumulator):
         observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         self.axis = case.box.index(observable.axis)
-        self.bins = int(case.box.size[self.axis]) * observable.bins_per_cell
+        self.bins = max(1, round(case.box.size[self.axis] * observable.bins_per_cell))
         self.axes: tuple[int, ...] = (self.axis,)  # along which sums are in bins
         self.counts: tuple[int, ...] = (self.bins,)
         self.edges = np.linspace(0.0, case.box.size[self.axis], self.bins + 1)
         self.centres = (self.edges[1:] + self.edges[:-1]) / 2
         self.periodic = self.axis not in setting.closed_axes(case)
         self.blocks = Blocks((width, self.bins))
+        self.ids: NDArray[np.int64] | None = None  # of spheres that count, where not all do
 
-    def observe(self, fluid: RunningFluid) -> None:
+    def observe(self, fluid: Any) -> None:
         """Take one sample."""
-        self.blocks.add(self.sample(*fluid.moments(self.axes, self.counts)))
+        chosen = () if self.ids is None else (self.ids,)
+        self.blocks.add(self.sample(*fluid.moments(self.axes, self.counts, *chosen)))
 
     @abstractmethod
     def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
@@ -62,3 +71,9 @@ class ProfileAccumulator(BlockAccumulator):
     def chi_square(self, estimate: Estimate, expected: Array, note: str) -> list[Comparison]:
         """Chi-square of the whole profile per degree of freedom, as a comparison with 1."""
         return mode_chi_square(estimate, expected, self.periodic, note)
+
+
+def part_of(estimate: Estimate, chosen: NDArray[np.bool_]) -> Estimate:
+    """Some slices of a profile."""
+    weights = estimate.weights if estimate.weights.ndim == 1 else estimate.weights[:, chosen]
+    return Estimate(estimate.value[chosen], estimate.residuals[:, chosen], weights)

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
@@ -14,6 +17,7 @@ from mesokit.method.protocol import method_of
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
+KIND = "which of spheres.kinds: name, or number from 1 (all spheres unless said)"
 OF = "what is looked at (beads where there are any, those of solutes before those of molecules)"
 
 
@@ -54,6 +58,15 @@ def _spheres(case: Case, of: str, kind: int | str | None) -> Group:
         numbers = "1" if len(counts) == 1 else f"1 to {len(counts)}"
         raise CaseError(f"kind = {show(kind)}: expected {numbers}{named}")
     return Group(sum(counts[:place]), 1, counts[place], None)
+
+
+def ids_of_kind(case: Case, kind: int | str | None) -> NDArray[np.int64] | None:
+    """Numbers (n,) of the spheres of a kind, None of all. Raises CaseError if there are none."""
+    if kind is None:
+        return None
+    if not method_of(case).spheres:
+        raise CaseError(f"kind = {show(kind)}: of spheres alone")
+    return _spheres(case, "particles", kind).beads().ravel()
 
 
 def at_rest(case: Case) -> bool:

@@ -25,7 +25,7 @@ def ahead(law):
 
 
 @generic
-def beside(solid, law, i, step, world):
+def beside(solid, law, i, step, world, room):
     """Add what a solid does to a sphere; a bound of it."""
 
 

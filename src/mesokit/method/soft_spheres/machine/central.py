@@ -11,6 +11,7 @@ import numpy as np
 from mesokit.method.soft_spheres.machine.acting import act, ahead, quantum, tell, turns
 from mesokit.method.soft_spheres.machine.geometry import from_to, from_wall, reach, row
 from mesokit.method.soft_spheres.machine.groups import ENERGY, NEAREST, VIRIAL
+from mesokit.method.soft_spheres.machine.taken import take
 from mesokit.potential.protocol import central
 from mesokit.scalar.fixed_point import ROUNDER_BITS, bits, fixed, quanta
 from mesokit.scalar.jit import scalar
@@ -46,7 +47,7 @@ def _(law):
 def _(law, mine, time, step, world, noted, room):
     low = FAR
     for i in range(mine[0], mine[1]):
-        low = min(low, push_from_list(law, i, world), push_from_walls(law, i, time, world))
+        low = min(low, push_from_list(law, i, world), push_from_walls(law, i, time, world, room))
     noted[NEAREST] = min(noted[NEAREST], low)
 
 
@@ -74,7 +75,7 @@ def push_from_list(law, i, world):
 
 
 @scalar
-def push_from_walls(law, i, time, world):
+def push_from_walls(law, i, time, world, room):
     """Add the force of walls on sphere i; bits of the square of the least distance."""
     bodies, box, _, walls = world
     low, r = FAR, row(bodies.place, i)
@@ -83,8 +84,15 @@ def push_from_walls(law, i, time, world):
         if distance < 2.0 * reach(bodies, i):
             _, push = central(law.potential, distance * distance)
             low = min(low, bits(distance * distance) if distance > 0.0 else np.int64(0))
+            pull = scaled(push * distance, out)
+            counts = (
+                quanta(pull[0], law.scale),
+                quanta(pull[1], law.scale),
+                quanta(pull[2], law.scale),
+            )
             for k in range(3):
-                bodies.force[i, k] += quanta(push * distance * out[k], law.scale)
+                bodies.force[i, k] += counts[k]
+            take(room.taken, w, counts)
     return low
 
 

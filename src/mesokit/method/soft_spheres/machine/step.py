@@ -34,7 +34,7 @@ def advance(team, counter, steps, law, motion, world, noted, rooms):
     first, last = share(len(world.bodies.number), team.thread, team.threads)
     mine = noted[team.thread]
     thread = team.thread
-    room = Room(rooms.numbers[thread], rooms.counts[thread], rooms.who[thread])
+    room = Room(rooms.numbers[thread], rooms.counts[thread], rooms.who[thread], rooms.taken[thread])
     done, pending = 0, mine[PENDING] != 0.0
     while done < steps:
         now = Counter(counter.seed, counter.step + np.uint64(done))
@@ -72,7 +72,7 @@ def find_forces(team, time, law, world, noted, rooms):
         for k in range(3):
             world.bodies.seen[i, k] = world.bodies.velocity[i, k]
     thread = team.thread
-    room = Room(rooms.numbers[thread], rooms.counts[thread], rooms.who[thread])
+    room = Room(rooms.numbers[thread], rooms.counts[thread], rooms.who[thread], rooms.taken[thread])
     act(law, (first, last), time, 0.0, world, noted[team.thread], room)
 
 

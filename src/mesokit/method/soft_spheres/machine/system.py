@@ -28,6 +28,7 @@ from mesokit.method.soft_spheres.machine.lists import GROUP, make_lists, sort
 from mesokit.method.soft_spheres.machine.reading import tell_all
 from mesokit.method.soft_spheres.machine.solid import MOST
 from mesokit.method.soft_spheres.machine.step import advance, find_forces
+from mesokit.method.soft_spheres.machine.taken import all_taken, in_numbers
 from mesokit.scalar.random import Counter
 
 Array = NDArray[np.float64]
@@ -98,7 +99,8 @@ class System:
         self.begins = np.zeros(int(np.prod(self.grid.cells)) + 1, np.int64)
         self.scratch = np.zeros((threads, n + GROUP), np.int64)
         self.noted = np.zeros((threads, groups.GAP))
-        self.rooms = rooms(threads)
+        surfaces = len(given.rows) + (0 if given.others is None else len(given.others.own))
+        self.rooms = rooms(threads, surfaces)
         self.noted_forces()
 
     def noted_forces(self) -> None:
@@ -165,7 +167,17 @@ class System:
     def find_forces(self, time: float) -> None:
         """The forces at the start."""
         self.team.run(find_forces, time, self.given.law, self.world, self.noted, self.rooms)
+        self.forget_taken()
         self._look()
+
+    def forget_taken(self) -> None:
+        """Surfaces have taken nothing yet."""
+        self.rooms.taken[:] = 0
+
+    def taken(self) -> Array:
+        """Forces on surfaces, (surfaces, 3), summed over steps: rows, then bodies of others."""
+        found: Array = in_numbers(all_taken(self.rooms.taken)) * self.given.law.quantum
+        return found
 
     def run(self, step: int, steps: int) -> None:
         """So many steps from a step on. Raises RunError where forces are beyond all bounds."""
@@ -278,6 +290,8 @@ class System:
         if self.given.others is not None:
             found["solid_terms"] = self.by_number(self.walls.solid.terms)
             found["solid_springs"] = self.by_number(self._of_each(self.walls.solid.springs))
+        if self.rooms.taken.size:
+            found["taken"] = all_taken(self.rooms.taken)
         return found
 
     def restore(self, state: dict[str, NDArray[Any]]) -> None:
@@ -296,6 +310,9 @@ class System:
         if given.others is not None:
             self.walls.solid.terms[:] = state["solid_terms"]
             self._of_each(self.walls.solid.springs)[:] = state["solid_springs"]
+        self.forget_taken()
+        if self.rooms.taken.size:
+            self.rooms.taken[0] = state["taken"]
         self.renew()
         if given.width:
             remember(self.lists, self.bodies.number, state["pairs"], state["springs"])

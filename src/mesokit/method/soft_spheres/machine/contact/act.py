@@ -11,7 +11,7 @@ from mesokit.method.soft_spheres.machine.groups import LARGEST
 def _(law, mine, time, step, world, noted, room):
     largest = push_pairs(law, mine, step, world, room)
     for i in range(mine[0], mine[1]):
-        largest = max(largest, push_from_walls(law, i, time, step, world))
+        largest = max(largest, push_from_walls(law, i, time, step, world, room))
     noted[LARGEST] = max(noted[LARGEST], largest * law.scale)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from mesokit.execute.cpu.strips.layout import zeros
 from mesokit.method.soft_spheres.machine.contact.force import Meeting
 from mesokit.method.soft_spheres.machine.contact.spring import Springs
+from mesokit.method.soft_spheres.machine.taken import nothing_taken
 from mesokit.scalar.jit import elementwise, for_each, scalar
 
 BATCH = 64  # contacts; what they need fits in the first-level cache
@@ -24,20 +25,23 @@ FIRST, SECOND, PLACE = np.uint64(0), ROW, np.uint64(2) * ROW  # who, with whom, 
 
 
 class Room(NamedTuple):
-    """numbers (25 rows), counts (9 rows), in quanta, and who (3 rows) of a batch of contacts."""
+    """numbers (25 rows), counts (9 rows), in quanta, and who (3 rows) of a batch of contacts; taken
+    (surfaces, 8): what surfaces have taken, see `machine.taken`."""
 
     numbers: Any
     counts: Any
     who: Any
+    taken: Any
 
 
-def rooms(threads: int) -> Room:
+def rooms(threads: int, surfaces: int) -> Room:
     """One for each thread."""
     row = int(ROW)
     return Room(
         zeros((threads, NUMBERS * row)),
         zeros((threads, COUNTS * row), np.int64),
         zeros((threads, 3 * row), np.uint64),
+        nothing_taken(threads, surfaces),
     )
 
 

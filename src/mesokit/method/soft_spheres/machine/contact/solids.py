@@ -16,13 +16,14 @@ from mesokit.method.soft_spheres.machine.solid import (
     place_at_solid,
     solid_moves,
 )
+from mesokit.method.soft_spheres.machine.taken import take
 from mesokit.scalar.jit import scalar
 
 FACELESS = (0.0, 0.0, 0.0)
 
 
 @beside.register(Nothing)
-def _(solid, law, i, step, world):
+def _(solid, law, i, step, world, room):
     return 0.0
 
 
@@ -54,14 +55,16 @@ def surface_at(solid, bodies, i, place):
 
 
 @beside.register(Solid)
-def _(solid, law, i, step, world):
+def _(solid, law, i, step, world, room):
     bodies, largest = world.bodies, 0.0
     places = touched(law, solid, bodies, i)
     forget_others(solid, i, places[0].term, places[1].term, places[2].term)
     for place in places:
         if place.term != NOBODY:
             there, c = surface_at(solid, bodies, i, place), contact_of(solid, i, place.term)
-            largest = max(largest, push(law, i, there, solid.springs, c, step, bodies))
+            bound, counts = push(law, i, there, solid.springs, c, step, bodies)
+            take(room.taken, len(world.walls.rows) + body_of(solid, place.term), counts)
+            largest = max(largest, bound)
     return largest
 
 

@@ -13,12 +13,13 @@ from mesokit.method.soft_spheres.machine.contact.remembered import NO_SPRINGS, k
 from mesokit.method.soft_spheres.machine.contact.sums import abs_sum, add, counted
 from mesokit.method.soft_spheres.machine.geometry import from_wall, reach, row
 from mesokit.method.soft_spheres.machine.groups import ENERGY, TOUCHING
+from mesokit.method.soft_spheres.machine.taken import take
 from mesokit.scalar.fixed_point import quanta
 from mesokit.scalar.jit import scalar
 
 
 @scalar
-def push_from_walls(law, i, time, step, world):
+def push_from_walls(law, i, time, step, world, room):
     """Add what walls do to sphere i; a bound of it."""
     bodies, box, _, walls = world
     r, largest = row(bodies.place, i), 0.0
@@ -27,24 +28,27 @@ def push_from_walls(law, i, time, step, world):
         if distance < reach(bodies, i) + law.ahead:
             there = surface(distance, out, moves, walls.own, w)
             c = i * len(walls.rows) + w
-            largest = max(largest, push(law, i, there, walls.springs, c, step, bodies))
+            bound, counts = push(law, i, there, walls.springs, c, step, bodies)
+            take(room.taken, w, counts)
+            largest = max(largest, bound)
         else:
             keep(walls.springs, i * len(walls.rows) + w, NO_SPRINGS)
-    return max(largest, beside(walls.solid, law, i, step, world))
+    return max(largest, beside(walls.solid, law, i, step, world, room))
 
 
 @scalar
 def push(law, i, there, springs, c, step, bodies):
     """Add the force and the torque of a contact with a wall to those of sphere i, and bring its
-    springs, row c, up to date; a bound of both."""
+    springs, row c, up to date; a bound of both, and the force in quanta."""
     rolls = law.rolling > 0.0
     touch = at_wall(0.5 * step, body(bodies, bodies.seen, i), there)
     found = answer(law, touch, kept(springs, c), step, rolls)
     torque = torque_of(touch, found, touch.arm, rolls)
     keep(springs, c, found.springs)
-    add(bodies.force, i, counted(found.force, law.scale))
+    counts = counted(found.force, law.scale)
+    add(bodies.force, i, counts)
     add(bodies.torque, i, counted(torque, law.scale))
-    return max(abs_sum(found.force), abs_sum(torque))
+    return max(abs_sum(found.force), abs_sum(torque)), counts
 
 
 @scalar

@@ -1,0 +1,1 @@
+"""What theory expects of spheres, whatever method moves them."""

@@ -1,0 +1,62 @@
+"""Velocities near those of Maxwell: the first correction, by a Sonine polynomial."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mesokit.theory.maxwell import (
+    maxwell_component_cdf,
+    maxwell_component_pdf,
+    maxwell_speed_cdf,
+    maxwell_speed_pdf,
+)
+
+Array = NDArray[np.float64]
+
+
+def sonine_component_cdf(velocity: ArrayLike, cumulant: float) -> Array:
+    """Probability that a component lies below the given value, in thermal velocities sqrt(kT/m).
+
+    Its density is Maxwell's times 1 + a_2 (u^4 - 6 u^2 + 3)/8 (van Noije and Ernst 1998).
+
+    Parameters
+    ----------
+    velocity : array_like
+        Component u over sqrt(kT/m).
+    cumulant : float
+        Fourth cumulant a_2, small against 1.
+
+    Examples
+    --------
+    >>> [round(float(sonine_component_cdf(1.0, cumulant)), 6) for cumulant in (0.0, 0.1)]
+    [0.841345, 0.847394]
+    """
+    u = np.asarray(velocity, dtype=float)
+    changed = maxwell_component_pdf(u) * (u**3 - 3 * u)
+    return np.asarray(maxwell_component_cdf(u) - cumulant / 8 * changed)
+
+
+def sonine_speed_cdf(speed: ArrayLike, dimension: int, cumulant: float) -> Array:
+    """Probability that a speed lies below the given value, in thermal velocities sqrt(kT/m).
+
+    The density of velocities is Maxwell's times 1 + a_2 S(u^2/2), with the Sonine polynomial
+    S(x) = x^2/2 - (d + 2) x/2 + d (d + 2)/8 (van Noije and Ernst 1998).
+
+    Parameters
+    ----------
+    speed : array_like
+        Speed u over sqrt(kT/m).
+    dimension : int
+        d, 2 or 3.
+    cumulant : float
+        Fourth cumulant a_2, small against 1.
+
+    Examples
+    --------
+    >>> [round(float(sonine_speed_cdf(1.0, 3, cumulant)), 6) for cumulant in (0.0, 0.1)]
+    [0.198748, 0.222945]
+    """
+    u = np.asarray(speed, dtype=float)
+    changed = u * maxwell_speed_pdf(u, dimension) * (dimension / 2 + 1 - u * u / 2)
+    return np.asarray(maxwell_speed_cdf(u, dimension) + cumulant / 4 * changed)
