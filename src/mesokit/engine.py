@@ -111,7 +111,8 @@ class RunningSpheres(Particles, Protocol):
     `wall_impulse` (surfaces, d) is the momentum that each surface has taken since the warm-up. Of
     event-driven dynamics `collisions` counts since the warm-up those of pairs, those with walls,
     and how many of them were elastic for following too soon; `virial` is the sum of r.dp over those
-    of pairs.
+    of pairs; and for `measures = ("free times",)` there are `free_times` between collisions: edges
+    of bins, counts (the last of longer ones), and sums of times and of squares.
     """
 
     def totals(self) -> tuple[int, Array, float]: ...
@@ -129,3 +130,5 @@ class RunningSpheres(Particles, Protocol):
     def collisions(self) -> tuple[int, int, int]: ...
     @property
     def virial(self) -> float: ...
+    @property
+    def free_times(self) -> tuple[Array, Integers, Array]: ...

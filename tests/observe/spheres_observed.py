@@ -43,6 +43,7 @@ class FakeSpheres:
         self.box, self.dimension = np.array(case.box.size, float), case.box.dimension
         self.step, self.collisions, self.virial = 0, (0, 0, 0), 0.0
         self.wall_impulse = np.zeros((2, self.dimension))  # of the two plates
+        self.free_times = np.arange(257) / 64, np.zeros(257, int), np.zeros(2)
         self.advance(0)
 
     def advance(self, steps):
@@ -53,6 +54,11 @@ class FakeSpheres:
         events = self.rng.poisson(np.array(self.rates) * steps * self.n)
         self.collisions = tuple(int(x) for x in np.array(self.collisions) + events)
         self.wall_impulse = self.wall_impulse + self.rng.normal(size=(2, self.dimension))
+        ended = self.rng.exponential(0.5, size=self.n * (steps + 1))
+        edges, counts, sums = self.free_times
+        place = np.minimum(ended * 64, 256).astype(int)
+        counts = counts + np.bincount(place, minlength=257)
+        self.free_times = edges, counts, sums + [ended.sum(), (ended**2).sum()]
         self.virial += self.rng.exponential(self.n * (steps + 1))
 
     @property

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.component import component, tag
+from mesokit.observe.shared.enskog import pair_rate, root_of_temperature
 from mesokit.observe.shared.estimate import of_mean
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Comparison, Result
@@ -52,9 +53,7 @@ class CollisionRateAccumulator:
 
     def observe(self, spheres: RunningSpheres) -> None:
         """Take one sample: of what has happened since the last."""
-        still = 0 if self.case.walls else 1  # without walls the momentum is zero
-        degrees = spheres.dimension * max(spheres.n - still, 1)
-        root = math.sqrt(2 * spheres.totals()[2] / degrees)
+        root = root_of_temperature(self.case, spheres.totals()[2])
         speed = float(np.linalg.norm(spheres.velocities(), axis=1).mean())
         now = np.array([spheres.time, *spheres.collisions, root, speed])
         elapsed = now[0] - self.before[0]
@@ -130,13 +129,4 @@ class CollisionRateAccumulator:
 
     def expected(self, root: float) -> float:
         """The rate of a uniform fluid of equal hard spheres, nan of all others."""
-        case, d = self.case, self.case.box.dimension
-        section = case.spheres
-        alike = len(section.kinds) == 1 and section.kinds[0].spread == 0
-        hard = section.collision.reach <= 1
-        if not (alike and hard) or case.walls or section.gravity:
-            return math.nan
-        kind, phi = section.kinds[0], section.fraction(case.box)
-        diameter = kind.diameter * section.scale(case.box)
-        excess = theory.compressibility(phi, d) - 1
-        return 2 * d * excess * root / (diameter * math.sqrt(math.pi * kind.mean_mass(d)))
+        return pair_rate(self.case, root)

@@ -145,7 +145,9 @@ class GranularTemperatureAccumulator:
         law, nan, name = self.expected(time, rows, 1), math.nan, self.law()
         known = nan if law is None else float(law[-1, 0])
         error, note = self.spread(), self.note()
-        listed = [Comparison("temperature at the end", float(rows[-1, 0]), error, known, UNIT, note)]
+        listed = [
+            Comparison("temperature at the end", float(rows[-1, 0]), error, known, UNIT, note)
+        ]
         quarter = np.flatnonzero(rows[:, 0] <= 0.25 * rows[0, 0])
         if law is not None and name == "Haff" and len(quarter):
             k, e = quarter[0], self.theory.known.restitution

@@ -37,6 +37,7 @@ from mesokit.theory.enskog_diffusion import enskog_diffusion
 from mesokit.theory.enskog_rate import contact_value, enskog_rate
 from mesokit.theory.finite_size import viscosity_renormalised
 from mesokit.theory.fourth_cumulant import fourth_cumulant
+from mesokit.theory.free_time import collision_speeds, free_time_cdf, free_time_spread
 from mesokit.theory.gamma import cell_energy_cdf, cell_energy_pdf, cell_energy_variance
 from mesokit.theory.gaussian_structure_factor import gaussian_structure_factor
 from mesokit.theory.haff import haff_temperature, haff_time
@@ -192,6 +193,7 @@ __all__ = [
     "chain_exponents",
     "channel_cylinder",
     "collapse_restitution",
+    "collision_speeds",
     "complex_viscosity",
     "compressibility",
     "contact_value",
@@ -220,6 +222,8 @@ __all__ = [
     "fene_p_thinning",
     "first_passage_cdf",
     "fourth_cumulant",
+    "free_time_cdf",
+    "free_time_spread",
     "gaussian_stress_kernel",
     "gaussian_structure_factor",
     "gyration_cdf",

@@ -15,14 +15,18 @@ from mesokit.method.event_driven.machine import groups
 from mesokit.method.event_driven.machine.collide import Rules
 from mesokit.method.event_driven.machine.system import Given, System
 from mesokit.method.event_driven.walls import wall_rows
-from mesokit.method.event_driven.window import instant, window
+from mesokit.method.event_driven.window import flight_bins, instant, window
 from mesokit.spheres.made import made
 from mesokit.spheres.moments import moments
 from mesokit.spheres.wall.surfaces import room_of
 
 Array = NDArray[np.float64]
 
+FREE_TIMES = "free times"  # what an observable says that it needs
+
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from mesokit.case.case import Case
     from mesokit.engine import Integers, State
     from mesokit.spheres.start.protocol import Started
@@ -35,8 +39,9 @@ class EventDriven:
     nothing is brought there.
     """
 
-    def __init__(self, case: Case, threads: int = 1) -> None:
+    def __init__(self, case: Case, threads: int = 1, measures: Sequence[str] = ()) -> None:
         section, box = case.spheres, case.box
+        self.measures = frozenset(measures)
         self.case, self.made = case, made(case)
         self.n, self.dimension = len(self.made.diameters), box.dimension
         self.box, self.timestep = np.array(box.size, float), section.timestep
@@ -71,6 +76,7 @@ class EventDriven:
                 instant=instant(self.case),
                 reach=pair.reach,
                 turn=self._heat if section.heating is not None else None,
+                flights=flight_bins(self.case) if FREE_TIMES in self.measures else None,
             )
         )
 
@@ -110,6 +116,9 @@ class EventDriven:
         tally.counts[: groups.IN_A_ROW] = 0
         tally.sums[:] = 0
         tally.impulse[:] = 0
+        if FREE_TIMES in self.measures:
+            tally.flights.counts[:] = 0
+            tally.flights.sums[:] = 0
 
     @property
     def time(self) -> float:
@@ -199,6 +208,15 @@ class EventDriven:
     def virial(self) -> float:
         """Sum of r.dp over collisions of pairs since the warm-up."""
         return float(self.system.tally.sums[groups.VIRIAL])
+
+    @property
+    def free_times(self) -> tuple[Array, NDArray[np.int64], Array]:
+        """Of the times between successive collisions of a sphere since the warm-up: edges of bins
+        (bins + 1,); how many there are in each, and last longer ones (bins + 1,); and the sums of
+        times and squares (2,)."""
+        found = self.system.tally.flights
+        edges = np.arange(len(found.counts)) / found.per_time
+        return edges, found.counts.copy(), found.sums.copy()
 
     # --- checkpoints ----------------------------------------------------------------------------
 

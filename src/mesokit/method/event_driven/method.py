@@ -33,7 +33,7 @@ def _first_state(case: Case, arrays: Mapping[str, Any]) -> Started:
 
 
 def _engine(case: Case, threads: int, measures: Sequence[str]) -> EventDriven:
-    return EventDriven(case, threads)
+    return EventDriven(case, threads, measures)
 
 
 def columns(case: Case) -> Columns:
@@ -48,6 +48,7 @@ def columns(case: Case) -> Columns:
     return Columns(names, ("translation", "collisions"), read)
 
 
+EXPECTED = (HardCooling, Displacement, EnskogMemory, Neighbours)
 METHOD = Method(
     name="event-driven",
     sections=Sections,
@@ -59,8 +60,7 @@ METHOD = Method(
     closed_axes=closed_axes,
     solids=solids,
     observables=(MeanSquareDisplacement,),
-    expected={theory.answers: theory for theory in (HardCooling, Displacement, EnskogMemory, Neighbours)}
-    | answers(equilibrium),
+    expected={theory.answers: theory for theory in EXPECTED} | answers(equilibrium),
     check=check,
     groups=groups,
     timestep=lambda case: float(case.spheres.timestep),

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 COLLISIONS = 500.0  # of each sphere in a window, about
 INSTANT = 1e-12  # of the mean time between two collisions
 BETWEEN_TURNS = 0.25  # collisions of a sphere
+FLIGHT_BINS, LONGEST_FLIGHT = 256, 8.0  # number; mean times between collisions
 LONGEST, SHORTEST = 2.0**60, 2.0**-60
 
 
@@ -54,3 +55,10 @@ def instant(case: Case) -> float:
     still."""
     rate = collision_rate(case)
     return INSTANT / rate if rate > 0 else 0.0
+
+
+def flight_bins(case: Case) -> tuple[float, int]:
+    """Width and number of the bins of times between collisions: eight times the mean, about."""
+    rate = collision_rate(case)
+    mean = 1 / rate if rate > 0 else 1.0
+    return LONGEST_FLIGHT * mean / FLIGHT_BINS, FLIGHT_BINS

@@ -40,6 +40,9 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     if result.expected is not None and np.isfinite(result.expected).any():
         theory = mathematics(f"theory: {result.theory}")
         ax.plot(middle, result.expected, color="black", lw=1.3, label=theory)
+    if "beside" in result.extra:
+        name = str(result.extra["beside_label"])
+        ax.plot(middle, result.extra["beside"], ":", color=COLOURS[2], lw=1.8, label=name)
     mean = result.extra.get("mean", np.nan)
     if np.isfinite(mean):
         ax.axvline(mean, color=COLOURS[1], ls="--", lw=1.2, label="mean")

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mesokit.method.event_driven.collision.protocol import restitution, step_of_energy
+from mesokit.method.event_driven.machine.flights import note_flight
 from mesokit.method.event_driven.machine.groups import (
     ELASTIC,
     IN_A_ROW,
@@ -143,6 +144,8 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
     # only what is along the surface turns: rounding must not
     push(spheres, i, v_i, total, outer(lever_i, along))
     push(spheres, j, v_j, scaled(-1.0, total), outer(lever_j, scaled(-1.0, along)))
+    note_flight(tally.flights, time - body[i, LAST])
+    note_flight(tally.flights, time - body[j, LAST])
     body[i, LAST] = body[j, LAST] = time
     tally.counts[PAIRS] += 1
     tally.sums[VIRIAL] += dot(apart, total)
@@ -201,6 +204,7 @@ def collide_wall(world, rules, spheres, tally, i, w, time):
         total = added_scaled(along, normal, n)
         total = added_scaled(total, body[i, MASS] * state[i, RADIUS] * world.growth, n)
         push(spheres, i, v, total, outer(lever, along))
+    note_flight(tally.flights, time - body[i, LAST])
     body[i, LAST] = time
     for k in range(len(n)):
         tally.impulse[w, k] -= total[k]

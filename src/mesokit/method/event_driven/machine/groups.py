@@ -88,11 +88,13 @@ class Queue(NamedTuple):
 
 
 class Tally(NamedTuple):
-    """What has happened: counts (4,), sums (1,), momentum that each wall has taken (walls, d)."""
+    """What has happened: counts (4,), sums (1,), momentum that each wall has taken (walls, d), and
+    flights, see `flights`; () where nobody asks for them."""
 
     counts: Any
     sums: Any
     impulse: Any
+    flights: Any
 
 
 # places in `Tally.counts`, and in `Tally.sums`

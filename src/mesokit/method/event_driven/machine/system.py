@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from mesokit.errors import RunError
 from mesokit.method.event_driven.machine import groups
 from mesokit.method.event_driven.machine.collide import Rules
+from mesokit.method.event_driven.machine.flights import no_flights
 from mesokit.method.event_driven.machine.groups import Lists, Queue, Spheres, Tally, World
 from mesokit.method.event_driven.machine.run import advance, read, rebuild, synchronise
 from mesokit.spheres.wall.rows import FREQUENCY, PHASE
@@ -34,7 +35,8 @@ class Given(NamedTuple):
     masses, inertia (n,); walls (walls, 14); rules; lasting: a collision sooner than this after
     another loses nothing; window: the length of one; instant: a time that is none; growth of
     diameters, relative per time; reach: how far spheres feel one another, in diameters; turn: what
-    changes velocities (n, d) by particle number at the end of a window.
+    changes velocities (n, d) by particle number at the end of a window; flights: width and number
+    of the bins in which times between collisions are counted, None: not at all.
     """
 
     size: Sequence[float]
@@ -51,6 +53,7 @@ class Given(NamedTuple):
     growth: float = 0.0
     reach: float = 1.0
     turn: Callable[[Array, int], None] | None = None
+    flights: tuple[float, int] | None = None
 
 
 class System:
@@ -71,7 +74,10 @@ class System:
         )
         walls = len(given.walls)
         self.tally = Tally(
-            np.zeros(groups.COUNTS, np.int64), np.zeros(groups.SUMS), np.zeros((walls, d))
+            np.zeros(groups.COUNTS, np.int64),
+            np.zeros(groups.SUMS),
+            np.zeros((walls, d)),
+            () if given.flights is None else no_flights(*given.flights),
         )
         self.room, self.per_time = ROOM, 1.0
         self.walls = given.walls.copy()
@@ -257,10 +263,18 @@ class System:
 
     # --- checkpoints ----------------------------------------------------------------------------
 
+    def _tallied(self) -> Iterator[tuple[str, NDArray[Any]]]:
+        """All counts and sums, by name."""
+        tally = self.tally
+        yield from (("counts", tally.counts), ("sums", tally.sums), ("impulse", tally.impulse))
+        if self.given.flights is not None:
+            yield "flights", tally.flights.counts
+            yield "flights/sums", tally.flights.sums
+
     def state(self) -> State:
         """All that the next event depends on, by particle number."""
         kept = {name: self.by_number(getattr(self.spheres, name)) for name in KEPT}
-        tally = {f"tally/{name}": array.copy() for name, array in self.tally._asdict().items()}
+        tally = {f"tally/{name}": array.copy() for name, array in self._tallied()}
         clock = {"windows": np.array(self.windows), "now": np.array(self.now)}
         return {**kept, **tally, **clock}
 
@@ -269,7 +283,7 @@ class System:
         for name in KEPT:
             getattr(self.spheres, name)[:] = state[name]
         self.spheres.number[:] = np.arange(self.n)
-        for name, array in self.tally._asdict().items():
+        for name, array in self._tallied():
             array[:] = state[f"tally/{name}"]
         self.now = float(state["now"])
         self.begin_window(int(state["windows"]))

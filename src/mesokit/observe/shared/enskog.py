@@ -1,0 +1,31 @@
+"""How often hard spheres collide, by the pressure that they have."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from mesokit import theory
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+
+def pair_rate(case: Case, root: float) -> float:
+    """Collisions of a sphere per time in a uniform fluid of equal hard spheres, at a root of the
+    temperature; nan of all others."""
+    section, d = case.spheres, case.box.dimension
+    alike = len(section.kinds) == 1 and section.kinds[0].spread == 0
+    hard = section.collision.reach <= 1
+    if not (alike and hard) or case.walls or section.gravity:
+        return math.nan
+    kind, phi = section.kinds[0], section.fraction(case.box)
+    diameter = kind.diameter * section.scale(case.box)
+    excess = theory.compressibility(phi, d) - 1
+    return 2 * d * excess * root / (diameter * math.sqrt(math.pi * kind.mean_mass(d)))
+
+
+def root_of_temperature(case: Case, kinetic: float) -> float:
+    """Root of the temperature of a kinetic energy; without walls momentum is zero."""
+    degrees = case.box.dimension * max(case.particles - (0 if case.walls else 1), 1)
+    return math.sqrt(2 * kinetic / degrees)
