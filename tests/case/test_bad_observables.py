@@ -124,3 +124,20 @@ def test_twice_the_same_name(good: str, tmp_path: Path) -> None:
     file.write_text(good + one + one)
     with pytest.raises(CaseError, match=r"observe\[#2\]\.name: .* observe\[#1\]"):
         Case.from_toml(file)
+
+
+@pytest.mark.parametrize("good", [HARD, SOFT, BIRDS])
+@pytest.mark.parametrize("given", ["5", "2.5", "true", "[1]", "{}", '"sumething"'])
+def test_what_is_no_name_is_told_where_names_are(good: str, given: str, tmp_path: Path) -> None:
+    """File, key, value and what was expected in a short line, and not all names of all methods."""
+    file = tmp_path / "bad.toml"
+    file.write_text(f"{good}[[observe]]\nquantity = {given}\n")
+    with pytest.raises(CaseError) as refused:
+        Case.from_toml(file)
+    message = str(refused.value)
+    assert message.startswith(f"{file}: observe[#1].quantity")
+    assert "\n" not in message and len(message) < len(str(file)) + 150
+    assert "names, which `mesokit explain observe` lists" in message
+    shown = given.replace('"', "'")
+    assert f"= {shown}: expected" in message
+    assert ("a text in quotes" in message) == (given != '"sumething"')

@@ -253,7 +253,7 @@ def first_line(
             close = difflib.get_close_matches(tag, map(str, first["input"]), 1, 0.7)
             hint = f"; is {close[0]!r} meant to be it?" if close else ""
             return f"{path}: missing{hint}; expected {one_of(known)}"
-        return f"{path} = {show(context['tag'])}: {_choice(context['tag'], known)}"
+        return f"{path} = {show(context['tag'])}: {_tag(context['tag'], known, path)}"
     words = _expected(first)
     if kind == "value_error" and _names_key_of(here if first["loc"] else cls, words):
         return f"{path}.{words}" if path else words
@@ -321,6 +321,22 @@ def _choice(given: Any, known: Sequence[str]) -> str:
     if near and len(known) > MANY:
         return near.removeprefix("; ")
     return f"expected {one_of(known)}{near}"
+
+
+def _tag(given: Any, known: Sequence[str], path: str) -> str:
+    """What a tag should have been: of many names, where one can read them."""
+    if not isinstance(given, str):
+        return f"expected a text in quotes, {_names(known, path)}"
+    if len(known) <= MANY or nearest(given, known):
+        return _choice(given, known)
+    return f"expected {_names(known, path)}"
+
+
+def _names(known: Sequence[str], path: str) -> str:
+    if len(known) <= MANY:
+        return one_of(known)
+    section = next((key for key in re.split(r"[.\[]", path) if key[:1].islower()), "")
+    return f"one of {len(known)} names, which `mesokit explain {section}` lists"
 
 
 def _names_key_of(here: Any, words: str) -> bool:
