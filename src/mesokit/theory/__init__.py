@@ -93,7 +93,13 @@ from mesokit.theory.passage_times import first_passage_cdf, mean_exit_time
 from mesokit.theory.persistent_walk import msd_persistent_walk, persistent_diffusion
 from mesokit.theory.ping_pong import bounce_height, bounce_time, dissipative_bounces
 from mesokit.theory.poiseuille import PoiseuilleFit, poiseuille_fit, poiseuille_velocity
-from mesokit.theory.polar_order import disordered_binder, disordered_order, mean_square_order
+from mesokit.theory.polar_order import (
+    CrowdOrder,
+    disordered_binder,
+    disordered_order,
+    mean_square_order,
+    vectorial_order,
+)
 from mesokit.theory.pulled_shape import pulled_shape
 from mesokit.theory.relaxation_modulus import (
     apparent_viscosity,
@@ -159,6 +165,7 @@ __all__ = [
     "BondLength",
     "ChainExponents",
     "ChainInShear",
+    "CrowdOrder",
     "EndOfSliding",
     "GaussianMolecule",
     "HeatAtWalls",
@@ -311,6 +318,7 @@ __all__ = [
     "vacf_molecular_chaos",
     "vacf_tail",
     "vectorial_memory",
+    "vectorial_order",
     "verlet_swing",
     "virtual_gas_slip",
     "viscosity_renormalised",

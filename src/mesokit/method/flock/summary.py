@@ -38,7 +38,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     seconds = case.particles * steps * bird / threads
     memory_of = given.noise.memory(d)
     way = given.speed * given.timestep
-    crowd = given.noise.crowd_order(d)
+    crowd = given.noise.crowd(d, case.particles)
     rows: list[Row] = [
         ("birds", f"{case.particles:,}".replace(",", " "), ""),
         ("density", number(density, case.box.density_unit), ""),
@@ -47,7 +47,12 @@ def summary(case: Case, threads: int | None = None) -> Summary:
         ("order without order", number(theory.disordered_order(case.particles, d)), "chance alone"),
     ]
     if crowd is not None:
-        rows.append(("order if all see all", number(crowd), "of infinitely many birds"))
+        both = math.isnan(crowd.many)
+        rows.append(
+            ("order if all see all", "none", "order and disorder are both stable")
+            if both
+            else ("order if all see all", number(crowd.many), "of infinitely many birds")
+        )
     rows += [
         ("memory of a lone bird", number(memory_of), "mean cosine of its turn in a step"),
         ("run time", duration_text(seconds), f"estimate: {threads} thread{'s' * (threads > 1)}"),
