@@ -12,6 +12,7 @@ from mesokit.case.component import show
 from mesokit.case.trajectory import stored_bytes
 from mesokit.case.warnings import run_warnings
 from mesokit.geometry.solids.solids import free_volume
+from mesokit.method.flock.section import BYTES
 from mesokit.method.protocol import Row, Summary
 from mesokit.running.cores import usable_cores
 
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
 # Seconds of a thread for a bird and for each bird that it looks at, where the project measures
 SECONDS, EACH = {2: 40e-9, 3: 60e-9}, {2: 0.7e-9, 3: 1.0e-9}
-BYTES = {2: 160, 3: 230}  # for each bird
 FEW = 1.0  # birds in reach, below which hardly any two ever meet
 
 
