@@ -43,7 +43,7 @@ WRONG = {
     ),
     "density of many digits": (
         {"density = 2": "density = 1e14"},
-        ("flock.density = 100000000000000: 1.44e+16 birds in this box",),
+        ("flock.density = 1e+14: 1.44e+16 birds in this box",),
     ),
     "too many": ({"density = 2": "density = 1e9"}, ("flock.density = 1000000000", "expected 1 to")),
     "no reach": ({"density = 2": "radius = 0"}, ("flock.radius = 0", "above 0")),

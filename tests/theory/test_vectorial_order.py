@@ -70,5 +70,5 @@ def test_fifty_birds(strength, dimension):
 
 @pytest.mark.parametrize("wrong", [(1.5, 10, 2), (-0.1, 10, 2), (0.5, 0, 2), (0.5, 10, 4)])
 def test_what_is_refused(wrong):
-    with pytest.raises(ValueError, match="must be|expected"):
+    with pytest.raises(ValueError, match=r"must be|expected"):
         vectorial_order(*wrong)
