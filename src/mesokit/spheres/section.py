@@ -12,7 +12,7 @@ from mesokit.case.box import Box
 from mesokit.case.component import component, param, show
 from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
-from mesokit.spheres.kinds import SphereKind, ball_volume
+from mesokit.spheres.kinds import SphereKind, ball_volume, closest_packing
 from mesokit.spheres.start import SphereStart
 from mesokit.spheres.start.lattice import LatticeStart
 
@@ -76,6 +76,19 @@ class Spheres:
             raise CaseError(
                 f"spheres: {self.count(box)} of these diameters would fill "
                 f"{self.fraction(box):.3g} of the box; expected less than 1"
+            )
+        if self.hard:
+            self.require_room(box)
+
+    def require_room(self, box: Box) -> None:
+        """Raise CaseError where equal spheres that do not overlap can never be so many."""
+        spread = any(kind.spread for kind in self.kinds)
+        equal = not spread and len({kind.diameter for kind in self.kinds}) == 1
+        found, most = self.fraction(box), closest_packing(box.dimension)
+        if equal and found > most:
+            raise CaseError(
+                f"spheres: a packing fraction of {found:.4g}; expected at most {most:.4f}, that of "
+                "the closest packing"
             )
 
     def count(self, box: Box) -> int:
