@@ -8,6 +8,7 @@ from hard_spheres import gas, same, smallest_gap
 
 from mesokit import (
     Andersen,
+    CaseError,
     EquationOfState,
     HardCollision,
     Kicks,
@@ -128,6 +129,24 @@ def test_steps_lists_bins_and_resumes_change_no_bit(collision, monkeypatch):
     resumed.restore(wide.state())
     resumed.advance(7)
     assert same(one, resumed)
+
+
+def test_a_step_of_more_events_than_are_done_at_once():
+    """Between which signals are heard; the clock of the loop is that of the gas."""
+    given = {"packing_fraction": 0.65, "kT": 1e6, "start": RandomStart()}
+    one = gas([20, 20], timestep=0.4, **given).engine
+    one.advance(1)
+    assert one.collisions[0] > 1_000_000
+    slices = gas([20, 20], timestep=0.04, **given).engine
+    slices.advance(10)
+    assert np.array_equal(one.positions(), slices.positions())
+    assert np.array_equal(one.velocities(), slices.velocities())
+
+
+@pytest.mark.parametrize(("size", "fraction"), [([9, 10], 0.9), ([5, 5, 5], 0.72)])
+def test_growing_spheres_that_jam_are_no_start(size, fraction):
+    with pytest.raises(CaseError, match="jam before they fill 0\\.[789]"):
+        gas(size, packing_fraction=fraction, start=RandomStart())
 
 
 @pytest.mark.parametrize(

@@ -57,6 +57,15 @@ class SphereKind:
         return mean * self.diameter**power
 
 
+def closest_packing(dimension: int) -> float:
+    """The largest part of space that equal disks, or spheres, can fill (Hales 2005 in 3D).
+
+    >>> round(closest_packing(2), 4), round(closest_packing(3), 4)
+    (0.9069, 0.7405)
+    """
+    return math.pi / math.sqrt(12 if dimension == 2 else 18)
+
+
 def ball_volume(dimension: int, diameter: float) -> float:
     """Area of a disk, or volume of a sphere.
 

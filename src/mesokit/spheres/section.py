@@ -14,7 +14,7 @@ from mesokit.case.component import component, param, show
 from mesokit.case.describe.hints import Many
 from mesokit.case.warnings import require_memory
 from mesokit.errors import CaseError
-from mesokit.spheres.kinds import SphereKind, ball_volume
+from mesokit.spheres.kinds import SphereKind, ball_volume, closest_packing
 from mesokit.spheres.start import SphereStart
 from mesokit.spheres.start.lattice import LatticeStart
 
@@ -90,6 +90,19 @@ class Spheres:
                 f"{self.fraction(box):.3g} of the box; expected less than 1"
             )
         require_memory(where, count if given is None else given, count * self.bytes_each)
+        if self.hard:
+            self.require_room(box)
+
+    def require_room(self, box: Box) -> None:
+        """Raise CaseError where equal spheres that do not overlap can never be so many."""
+        spread = any(kind.spread for kind in self.kinds)
+        equal = not spread and len({kind.diameter for kind in self.kinds}) == 1
+        found, most = self.fraction(box), closest_packing(box.dimension)
+        if equal and found > most:
+            raise CaseError(
+                f"spheres: a packing fraction of {found:.4g}; expected at most {most:.4f}, that of "
+                "the closest packing"
+            )
 
     def count(self, box: Box) -> int:
         """How many there are.

@@ -8,7 +8,8 @@ from mesokit.case.checks import no_shear
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.event_driven.walls import wall_rows
-from mesokit.spheres.wall import solids
+from mesokit.spheres import falls
+from mesokit.spheres.wall import plates, solids
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -33,6 +34,8 @@ def check(case: Case) -> None:
                 f"{key}.contact.temperature = {show(warmth)}: only with {key}.rule = 'diffuse'"
             )
     wall_rows(case)
+    plates.check(case)
+    _friction(case)
     largest = section.largest(box)
     shut = {axis for wall in case.walls for axis in wall.closed_axes}
     for axis, length in zip(box.axes, box.size, strict=True):
@@ -41,17 +44,15 @@ def check(case: Case) -> None:
                 f"box.size = {show(list(box.size))}: expected at least two diameters "
                 f"({2 * largest:g}) along {axis}"
             )
-    _gravity(case, shut)
+    falls.check(case)
     section.start.check(case)
 
 
-def _gravity(case: Case, shut: set[str]) -> None:
-    """Without walls below spheres would fall for ever, faster and faster."""
-    gravity = case.spheres.gravity
-    falls = [axis for axis, g in zip(case.box.axes, gravity, strict=False) if g]
-    round_walls = [wall for wall in case.walls if not wall.closed_axes]
-    if falls and not round_walls and not set(falls) & shut:
+def _friction(case: Case) -> None:
+    """Friction acts on what is not smooth."""
+    pair = case.spheres.collision
+    if pair.friction and pair.tangential == -1.0:
         raise CaseError(
-            f"spheres.gravity = {show(list(gravity))}: nothing ends the fall along {falls[0]}; "
-            "expected a wall"
+            f"spheres.collision.friction = {show(pair.friction)}: with tangential = -1 spheres are "
+            "smooth; expected tangential above -1 (1: as rough as friction lets them be)"
         )

@@ -23,6 +23,7 @@ DILUTE = {2: 0.20, 3: 0.10}  # packing fraction of the spheres that begin to gro
 SPEED = 0.05  # of growth of a mean diameter, in thermal velocities
 IN_WINDOW = 0.05  # relative growth
 INSTANT = 1e-12  # of a window
+JAMMED = 1e5  # events of each in the time in which it flies a diameter
 
 
 def grown(
@@ -61,6 +62,7 @@ def grown(
         window=window,
         instant=INSTANT * window,
         growth=growth,
+        most=JAMMED / float(diameters.mean()),
     )
     system = System(given)
     v = np.random.default_rng(seed).normal(size=(n, d))

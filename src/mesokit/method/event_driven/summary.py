@@ -9,13 +9,15 @@ from mesokit import theory
 from mesokit.case.amounts import duration_text, number, size_text
 from mesokit.case.trajectory import stored_bytes
 from mesokit.case.warnings import run_warnings
+from mesokit.method.event_driven.walls import wall_rows
 from mesokit.method.event_driven.window import collision_rate
 from mesokit.method.protocol import Row, Summary
-from mesokit.spheres import cost
+from mesokit.spheres import cost, falls
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
+MADE_ELASTIC = 0.1  # share of the collisions beyond which a contact time changes the physics
 FREEZES = {2: 0.70, 3: 0.494}  # packing fraction above which they order in equilibrium
 
 
@@ -50,7 +52,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     ]
     if stored:
         rows.append(("trajectory", size_text(stored), "estimate"))
-    warnings = (*run_warnings(case, memory, stored), *_warnings(case))
+    warnings = (*run_warnings(case, memory, stored), *_warnings(case, rate))
     return Summary(tuple(rows), warnings, seconds, numbers)
 
 
@@ -84,9 +86,11 @@ def _beside(
         yield cost.cheaper("event-driven", soft / numbers["seconds"])
 
 
-def _warnings(case: Case) -> Iterator[str]:
+def _warnings(case: Case, rate: float) -> Iterator[str]:
     section, box = case.spheres, case.box
     phi = section.fraction(box)
+    contacts = wall_rows(case).contacts
+    yield from falls.warnings(case, bool(((contacts[:, 1] > -1) | (contacts[:, 3] > 0)).any()))
     if phi > FREEZES[box.dimension]:
         yield f"spheres: a packing fraction of {phi:.3g} freezes; a lattice stays ordered for long"
     loses = not section.collision.elastic
@@ -94,4 +98,11 @@ def _warnings(case: Case) -> Iterator[str]:
         yield (
             "spheres.collision.contact_time: 0; where many inelastic collisions follow on one "
             "another the run ends in inelastic collapse"
+        )
+    share = theory.elastic_share(rate, section.collision.contact_time)
+    if loses and share > MADE_ELASTIC:
+        yield (
+            f"spheres.collision.contact_time: {section.collision.contact_time:.3g} makes "
+            f"{100 * share:.3g} % of the collisions elastic; expected less than a hundredth of the "
+            f"mean free time, {1 / rate:.3g}"
         )

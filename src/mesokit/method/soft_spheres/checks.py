@@ -11,7 +11,8 @@ from mesokit.geometry.solids.solids import Solids
 from mesokit.geometry.surface import Surface
 from mesokit.method.soft_spheres import scales
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw
-from mesokit.spheres.wall import solids
+from mesokit.spheres import falls
+from mesokit.spheres.wall import plates, solids
 from mesokit.spheres.wall.surfaces import other_walls, surface_rows
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ def check(case: Case) -> None:
     if box.open:
         raise CaseError(f"box.open = {show(list(box.open))}: not with method 'soft-spheres'")
     _walls(case)
+    plates.check(case)
     _potential(case)
     reach = section.reach(box)
     shut = {axis for wall in case.walls for axis in wall.closed_axes}
@@ -44,7 +46,7 @@ def check(case: Case) -> None:
                 f"spheres.skin: expected less than {0.5 * length - reach:.3g}, half of the box "
                 f"along {axis} less the reach"
             )
-    _gravity(case, shut)
+    falls.check(case)
     _timestep(case)
 
 
@@ -99,18 +101,6 @@ def _potential(case: Case) -> None:
         raise CaseError(
             f"spheres.kinds: diameter {given:g}; expected that of the potential, {own:g} "
             "(with number or density, and no packing fraction beside)"
-        )
-
-
-def _gravity(case: Case, shut: set[str]) -> None:
-    """Without walls below spheres would fall for ever, faster and faster."""
-    gravity = case.spheres.gravity
-    falls = [axis for axis, g in zip(case.box.axes, gravity, strict=False) if g]
-    round_walls = [wall for wall in case.walls if not wall.closed_axes]
-    if falls and not round_walls and not set(falls) & shut:
-        raise CaseError(
-            f"spheres.gravity = {show(list(gravity))}: nothing ends the fall along {falls[0]}; "
-            "expected a wall"
         )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
@@ -13,7 +14,7 @@ from mesokit.method.protocol import Row, Summary
 from mesokit.method.soft_spheres import scales
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw
 from mesokit.running.cores import usable_cores
-from mesokit.spheres import cost
+from mesokit.spheres import cost, falls
 from mesokit.spheres.kinds import ball_volume
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 RATE_OF_POTENTIALS = 2.5e6  # sphere-steps per second and core (docs/benchmark)
 USUAL_NEIGHBOURS = 66.0  # within the reach, where this was measured
 DEEP = 0.05  # overlap, in diameters, beyond which spheres are not hard
+LONG = 4.0  # steps of the usual length beyond which a fluid of a potential loses its energy
 
 
 def summary(case: Case, threads: int | None = None) -> Summary:
@@ -108,6 +110,16 @@ def _loses(case: Case) -> bool:
 
 
 def _warnings(case: Case, numbers: dict[str, float]) -> Iterator[str]:
+    section, touching = case.spheres, isinstance(case.spheres.pair, ContactLaw)
+    own = [surface.contact for wall in case.walls for surface in wall.surfaces().values()]
+    rubs = any(contact is not None and contact.friction for contact in own)
+    yield from falls.warnings(case, touching and (section.pair.friction > 0 or rubs))
+    usual = scales.timestep_of(dataclasses.replace(section, timestep=None), case.box)
+    if not touching and numbers["timestep"] > LONG * usual:
+        yield (
+            f"spheres.timestep = {numbers['timestep']:.3g}: energy drifts, or the run breaks down; "
+            f"expected some {usual:.3g}"
+        )
     per_contact = numbers.get("steps_per_contact", math.inf)
     if per_contact < scales.WARNED:
         yield (

@@ -29,6 +29,7 @@ class RandomStart(SphereStart):
         """Places for all. Raises CaseError where there is no room."""
         from mesokit.method.event_driven.grow import grown
 
+        case.spheres.require_room(case.box)
         if not case.spheres.hard and other_walls(case):
             return Placed(among_solids(case, made.diameters, room_of(case).closed))
         walls = surface_rows(case).rows

@@ -19,7 +19,7 @@ PARTNER, PARTNER_HITS, AFTER, PREVIOUS, BIN, PLACE, EVENT_WIDTH = 0, 1, 2, 3, 4,
 LEAVES, NOTHING = -1, -2  # the surroundings of its list; never
 FIRST_WALL = -3  # and below: walls, -3 - number
 # how `advance` ends
-DONE, FULL, COLLAPSED, LOST = 0, 1, 2, 3
+DONE, FULL, COLLAPSED, PAUSED = 0, 1, 2, 3
 
 
 class World(NamedTuple):

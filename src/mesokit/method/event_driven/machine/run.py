@@ -14,6 +14,7 @@ from mesokit.method.event_driven.machine.groups import (
     LEAVES,
     PARTNER,
     PARTNER_HITS,
+    PAUSED,
     RADIUS,
     TIME,
 )
@@ -31,13 +32,14 @@ from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import scalar
 
 MANY = 100  # collisions in a row that take no time
+AT_ONCE = 1_000_000  # events, so that signals are heard
 
 
 @kernel
 def advance(world, rules, spheres, lists, queue, tally, end):
-    """Do all events before a time; how it ended: DONE, FULL lists or COLLAPSED."""
+    """Do all events before a time; how it ended: DONE, FULL lists, COLLAPSED, or PAUSED."""
     number, bin_before = spheres.number, np.int64(-1)
-    while True:
+    for _ in range(AT_ONCE):
         i = next_event(queue, number, end)
         if i < 0:
             return DONE
@@ -67,6 +69,7 @@ def advance(world, rules, spheres, lists, queue, tally, end):
             insert(queue, number, k)
             if other == i:
                 break
+    return PAUSED
 
 
 @scalar

@@ -14,7 +14,7 @@ from mesokit.method.event_driven.machine import groups
 from mesokit.method.event_driven.machine.collide import Rules
 from mesokit.method.event_driven.machine.flights import no_flights
 from mesokit.method.event_driven.machine.groups import Lists, Queue, Spheres, Tally, World
-from mesokit.method.event_driven.machine.run import advance, read, rebuild, synchronise
+from mesokit.method.event_driven.machine.run import AT_ONCE, advance, read, rebuild, synchronise
 from mesokit.spheres.wall.rows import FREQUENCY, PHASE
 
 if TYPE_CHECKING:
@@ -36,7 +36,8 @@ class Given(NamedTuple):
     another loses nothing; window: the length of one; instant: a time that is none; growth of
     diameters, relative per time; reach: how far spheres feel one another, in diameters; turn: what
     changes velocities (n, d) by particle number at the end of a window; flights: width and number
-    of the bins in which times between collisions are counted, None: not at all.
+    of the bins in which times between collisions are counted, None: not at all; most: events
+    of a sphere that there may be in a unit of time.
     """
 
     size: Sequence[float]
@@ -54,6 +55,7 @@ class Given(NamedTuple):
     reach: float = 1.0
     turn: Callable[[Array, int], None] | None = None
     flights: tuple[float, int] | None = None
+    most: float = math.inf
 
 
 class System:
@@ -224,6 +226,7 @@ class System:
         self.spheres.state[:, columns] = velocities[self.spheres.number]
 
     def _run(self, end: float) -> None:
+        began = self.now
         while True:
             ended = advance(
                 self.world, self.given.rules, self.spheres, self.lists, self.queue, self.tally, end
@@ -232,9 +235,19 @@ class System:
                 return
             if ended == groups.COLLAPSED:
                 raise RunError(self._collapse())
+            if ended == groups.PAUSED:
+                began = self._paused(began)
+                continue
             self.room *= 2
             self.now = float(self.queue.time[self.queue.heap[0]])
             self.prepare()
+
+    def _paused(self, began: float) -> float:
+        """The time now. Raises RunError where too many events have come since it began."""
+        now = float(self.spheres.state[:, groups.TIME].max())
+        if self.given.most * self.n * (now - began) < AT_ONCE:
+            raise RunError(f"more than {self.given.most:.3g} events of a sphere in a unit of time")
+        return now
 
     def _collapse(self) -> str:
         """Who collides without end, and when."""
