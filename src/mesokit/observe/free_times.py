@@ -75,7 +75,7 @@ class FreeTimesAccumulator:
         # flights in bins and longer ones; sums of times and squares; root of the temperature
         self.blocks = Blocks((self.bins + 4,))
         self.before = np.zeros(self.bins + 3)
-        self.edges: Array = np.zeros(self.bins + 1)
+        self.edges: NDArray[np.float64] = np.zeros(self.bins + 1)
 
     def observe(self, spheres: RunningSpheres) -> None:
         """Take one sample: of what has ended since the last."""
