@@ -32,6 +32,7 @@ from mesokit.report.particles import (
     cooling,
     flocks,
     histograms,
+    number_fluctuations,
     snapshots,
     structure_factor,
 )
@@ -59,6 +60,7 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "histograms": histograms.draw,
     "snapshots": snapshots.draw,
     "structure factor": structure_factor.draw,
+    "number fluctuations": number_fluctuations.draw,
     "cooling": cooling.draw,
     "centreline": wake.draw,
     "signal": probe.draw,
