@@ -75,12 +75,12 @@ class FreeTimesAccumulator:
         # flights in bins and longer ones; sums of times and squares; root of the temperature
         self.blocks = Blocks((self.bins + 4,))
         self.before = np.zeros(self.bins + 3)
-        self.edges: Array = np.zeros(self.bins + 1)
+        self.edges: NDArray[np.float64] = np.zeros(self.bins + 1)
 
     def observe(self, spheres: RunningSpheres) -> None:
         """Take one sample: of what has ended since the last."""
         edges, counts, sums = spheres.free_times
-        self.edges = edges[:: FINE // self.bins].copy()
+        self.edges = np.array(edges[:: FINE // self.bins])
         inside = counts[:-1].reshape(self.bins, -1).sum(axis=1)
         now = np.array([*inside, counts[-1], *sums])
         root = root_of_temperature(self.case, spheres.totals()[2])
