@@ -17,13 +17,13 @@ from mesokit import (
     Langevin,
     Plates,
     RandomStart,
+    Rectangle,
     Run,
     Simulation,
     SoftSpheres,
     SphereKind,
     SpringDashpot,
     TemperatureProfile,
-    Union,
     VelocityDistribution,
     VelocityProfile,
     WallForce,
@@ -52,7 +52,7 @@ def soft_run(size, steps, warmup, observe, walls=(), threads=1, **spheres):
 class TestWallsOfSoftSpheres:
     WALLS = (
         [Plates("y")],
-        [Plates("y"), Disk([10, 20], 3.0), Union([Disk([4, 10], 2.0), Disk([6, 10], 2.0)])],
+        [Plates("y"), Disk([10, 20], 3.0), Rectangle([5, 10], [6, 4], angle=20.0)],
     )
     GRAINS = SpringDashpot(restitution=0.8, contact_time=0.02, friction=0.3)
 
@@ -95,12 +95,12 @@ class TestWallsOfSoftSpheres:
 
     def test_a_disk_gives_each_wall_twice_its_momentum(self):
         """Between a plate and a solid of another shape, which are told apart."""
-        walls = [Plates("y"), Union([Disk([5, 20], 4.0), Disk([4, 20], 2.0)])]
+        walls = [Rectangle([5, 20], [9, 8]), Plates("y")]
         law = SpringDashpot(restitution=1.0, contact_time=0.01)
         start = {"positions": [[5.0, 3.0]], "velocities": [[0.0, 1.0]], "spins": [0.0]}
         engine = soft([10, 40], walls, start, number=1, pair=law, start=RandomStart())
         engine.advance(round(150.0 / engine.timestep))  # of a way of 15
-        lower, upper, solid = engine.wall_impulse
+        solid, lower, upper = engine.wall_impulse
         twice = 2 * engine.masses()[0]
         assert lower[1] == pytest.approx(-5 * twice, rel=1e-3)
         assert solid[1] == pytest.approx(5 * twice, rel=1e-3) and not upper.any()
@@ -113,8 +113,7 @@ def lattice(n, width, height, walls):
     x, y = np.meshgrid(np.arange(0.6, width, 1.2), np.arange(0.8, height - 0.7, 1.2))
     places = np.stack([x.ravel(), y.ravel()], axis=1)
     off = np.hypot(*(places - [10, 20]).T) > 3.6 if len(walls) > 1 else np.full(len(places), True)
-    for centre in ([4, 10], [6, 10]):
-        off &= (np.hypot(*(places - centre).T) > 2.6) | (len(walls) == 1)
+    off &= (np.hypot(*(places - [5, 10]).T) > 4.3) | (len(walls) == 1)
     return places[off][:n]
 
 
@@ -154,6 +153,10 @@ class TestProfiles:
         assert abs(mean.deviation) < 3.5 and mean.error < 0.004 * mean.expected
         for result in (density, velocity, temperature):
             assert abs(result["chi-square"].deviation) < 3.5
+        # smooth plates leave all spheres the momentum along them that they began with
+        assert velocity.theory == "drift"
+        drift = run.engine.totals()[1][0] / run.engine.masses().sum()
+        assert velocity.expected == pytest.approx(drift, rel=1e-9)
         assert density.value[0] == pytest.approx(density.expected[0], abs=4 * density.error[0])
 
     def test_heavy_spheres_lie_lower(self):
@@ -223,16 +226,16 @@ class TestVelocities:
 
 
 class TestFreeTimes:
-    @pytest.mark.parametrize(("size", "tau"), [([250, 250], 25.0), ([34, 34, 34], 9.0)])
+    @pytest.mark.parametrize(("size", "tau"), [([500, 500], 110.0), ([54, 54, 54], 37.0)])
     def test_dilute_spheres_fly_as_molecular_chaos_says(self, size, tau):
-        run = gas(size, 250, (), [FreeTimes()], packing_fraction=0.008, timestep=tau / 3)
+        run = gas(size, 250, (), [FreeTimes()], packing_fraction=0.002, timestep=tau / 3)
         run.engine.advance(30)
         run.engine.end_warmup()
         (result,) = observed(run)
         mean, spread, flights = result.comparisons
         assert mean.expected == pytest.approx(tau, rel=0.1)
         assert abs(mean.deviation) < 3.5 and mean.error < 0.01 * tau
-        assert abs(spread.deviation) < 3.5 and spread.error < 0.015
+        assert abs(spread.deviation) < 3.5 and spread.error < 0.02
         # of an exponential it is 2
         assert flights.measured > 4e4 and spread.measured - 2 > 4 * spread.error
         use = result.error > 0

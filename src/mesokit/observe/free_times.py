@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from mesokit.engine import RunningSpheres
 
 FINE = 256  # bins in which an engine counts
-DILUTE = 0.01  # packing fraction above which what spheres remember matters
+DILUTE = 0.0025  # packing fraction above which the last partner is in the way of others for long
 LONG = 8.0  # mean free times: hardly a flight is longer
 TIME = "tau"
 
@@ -174,6 +174,6 @@ class FreeTimesAccumulator:
             *every.scalar(spread, gradient),
             theory.free_time_spread(d) if math.isfinite(known) else math.nan,
             "",
-            "2 of an exponential" if elastic and dilute else chaos,
+            "" if math.isnan(known) else "2 of an exponential" if elastic and dilute else chaos,
         )
         return [first, second, Comparison("flights", number * self.blocks.count, math.nan)]
