@@ -40,6 +40,7 @@ class FreeTimes(Observable):
 
     quantity: Literal["free-times"] = tag("free-times")
     methods: ClassVar[tuple[str, ...]] = ("event-driven",)
+    of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
     measures: ClassVar[tuple[str, ...]] = ("free times",)
     bins: int = param(
