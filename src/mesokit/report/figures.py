@@ -32,6 +32,7 @@ from mesokit.report.particles import (
     cooling,
     flocks,
     histograms,
+    path,
     snapshots,
     structure_factor,
 )
@@ -60,6 +61,7 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "snapshots": snapshots.draw,
     "structure factor": structure_factor.draw,
     "cooling": cooling.draw,
+    "path": path.draw,
     "centreline": wake.draw,
     "signal": probe.draw,
     "tracks": tracks.draw,
