@@ -33,6 +33,18 @@ WRONG = {
         ("flock.number = 5", "leave one"),
     ),
     "half a bird": ({"density = 2": "number = 2.5"}, ("flock.number = 2.5", "whole number")),
+    "more than the memory": (
+        {"density = 2": "number = 2_000_000_000"},
+        ("flock.number = 2000000000: needs 320 GB of memory, this machine has",),
+    ),
+    "density beyond all numbers": (
+        {"density = 2": "density = 1e300"},
+        ("flock.density = 1e+300", "at most 1e+15"),
+    ),
+    "density of many digits": (
+        {"density = 2": "density = 1e14"},
+        ("flock.density = 1e+14: 1.44e+16 birds in this box",),
+    ),
     "too many": ({"density = 2": "density = 1e9"}, ("flock.density = 1000000000", "expected 1 to")),
     "no reach": ({"density = 2": "radius = 0"}, ("flock.radius = 0", "above 0")),
     "reach beyond the box": (
@@ -88,7 +100,10 @@ WRONG = {
         {"density = 2": "cohesion = { strength = 0 }"},
         ("flock.cohesion.strength = 0", "above 0"),
     ),
-    "shear": ({"size = [12, 12]": "size = [12, 12]\nshear_rate = 0.1"}, ("box: not with shear",)),
+    "shear": (
+        {"size = [12, 12]": "size = [12, 12]\nshear_rate = 0.1"},
+        ("box.shear_rate = 0.1: not with method 'flock'",),
+    ),
     "open box": ({"size = [12, 12]": 'size = [12, 12]\nopen = ["x"]'}, ("box.open", "'flock'")),
     "walls in a box of halves": (
         {"[12, 12]": "[12.5, 12]", "": WALL},
@@ -105,6 +120,10 @@ WRONG = {
     "moving plate": (
         {"": PLATES + "lower = { velocity = [1, 0] }"},
         ("wall[#1].lower.velocity", "at rest"),
+    ),
+    "plate that moves in 3D": (
+        {"": PLATES + "lower = { velocity = [1, 0, 0] }"},
+        ("wall[#1].lower.velocity = [1, 0, 0]: expected 2 numbers",),
     ),
     "contact of a wall": (
         {"": WALL + "surface = { contact = { friction = 1 } }"},

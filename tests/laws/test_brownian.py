@@ -146,7 +146,7 @@ def test_other_programs_read_the_trajectory(tmp_path):
     [
         ({"fluid": mesokit.Fluid()}, "fluid: unknown key of method 'brownian'"),
         ({"brownain": Brownian()}, "did you mean 'brownian'"),
-        ({"box": Box((9, 7), shear_rate=0.1)}, "box: not with shear"),
+        ({"box": Box((9, 7), shear_rate=0.1)}, "box.shear_rate = 0.1: not with method"),
         ({"brownian": Brownian(density=1e-3)}, "brownian.density = 0.001: 0 particles"),
         ({"brownian": Brownian(diffusion=1e30)}, "brownian.diffusion = 1e+30: in 1 steps"),
         ({"trajectory": mesokit.Trajectory(every=1, fields=["velocity"])}, "no 'velocity'"),

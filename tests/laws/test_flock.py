@@ -188,6 +188,26 @@ def test_birds_that_all_see_one_another(size, strength):
     assert abs(found.deviation) < 4
 
 
+@pytest.mark.parametrize("strength", [0.45, 0.8])
+@pytest.mark.parametrize("size", [(2, 2), (2, 2, 2)], ids=["2D", "3D"])
+def test_birds_with_vectorial_noise_that_all_see_one_another(size, strength):
+    """Mean field, with the first order in 1/N: far beyond the errors from infinitely many."""
+    given = case(
+        size, steps=4000, number=400, radius=2.0, noise=VectorialNoise(strength),
+        start={"headings": "aligned"}, observe=[PolarOrder(every=1)],
+    )  # fmt: skip
+    simulation = Simulation(given)
+    simulation.engine.advance(50)
+    simulation.run()
+    known = theory.vectorial_order(strength, 400, len(size))
+    mean, square = (simulation["polar-order"][name] for name in ("mean polar", "mean square"))
+    assert (mean.expected, square.expected) == (known.mean, known.mean_square)
+    for found in (mean, square):
+        assert abs(found.deviation) < 4
+        assert 0 < found.error < (1e-3 if strength < 0.5 else 0.08) * found.expected
+    assert abs(mean.measured - known.many) > 3 * mean.error
+
+
 @pytest.mark.parametrize("size", [(12, 12), (6, 6, 6)], ids=["2D", "3D"])
 def test_birds_that_do_not_heed_others_are_at_random(size):
     observe = [PolarOrder(every=1), NumberFluctuations(every=10, sides=[1, 1.5, 2, 3])]

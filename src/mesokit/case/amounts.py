@@ -14,6 +14,15 @@ def size_text(count: float) -> str:
     return f"{count:.3g} TB"
 
 
+def count_text(count: int) -> str:
+    """How many, without more digits than one reads.
+
+    >>> count_text(2147483648), count_text(10**300)
+    ('2147483648', '1e+300')
+    """
+    return str(count) if count < 10**15 else f"{count:.3g}"
+
+
 def duration_text(seconds: float) -> str:
     """Time for people, to two units.
 

@@ -135,6 +135,14 @@ def fields(case: Any, method: Any) -> Iterator[str]:
             )
 
 
+def no_shear(box: Any, why: str) -> None:
+    """Raise CaseError, which says why, for a box that says something of shear."""
+    if box.shear_rate or box.shear is not None:
+        raise CaseError(f"{box.shear_key}: {why}")
+    if box.shear_frequency:
+        raise CaseError(f"box.shear_frequency = {show(box.shear_frequency)}: {why}")
+
+
 def whole_cells(box: Any) -> None:
     """Raise CaseError for a length that is no whole number, where the method has cells."""
     for i, length in enumerate(box.size):

@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mesokit.case.amounts import size_text
+from mesokit.case.component import show
+from mesokit.errors import CaseError
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -50,6 +52,16 @@ def run_warnings(case: Case, memory: int, trajectory: int) -> Iterator[str]:
     if available and memory > 0.9 * available:
         yield (
             f"the run needs {size_text(memory)} of memory, this machine has {size_text(available)}"
+        )
+
+
+def require_memory(key: str, given: Any, needed: float) -> None:
+    """Raise CaseError, which names the key and what it says, for more bytes than there are here."""
+    available = _machine_memory()
+    if available and needed > available:
+        raise CaseError(
+            f"{key} = {show(given)}: needs {size_text(needed)} of memory, this machine has "
+            f"{size_text(available)}; expected less"
         )
 
 

@@ -8,9 +8,11 @@ from typing import ClassVar
 
 from pydantic import field_validator, model_validator
 
+from mesokit.case.amounts import count_text
 from mesokit.case.box import Box
 from mesokit.case.component import component, param, show
 from mesokit.case.describe.hints import Many
+from mesokit.case.warnings import require_memory
 from mesokit.errors import CaseError
 from mesokit.spheres.kinds import SphereKind, ball_volume, closest_packing
 from mesokit.spheres.start import SphereStart
@@ -18,6 +20,7 @@ from mesokit.spheres.start.lattice import LatticeStart
 
 USUAL_FRACTION = 0.3  # of the box that spheres fill, unless anything is said
 MOST_PARTICLES = 2**31 - 1  # numbers of random words are 32-bit
+AMOUNTS = ("number", "density", "packing_fraction")
 STRONGEST = 1e9  # gravity beyond which it is a slip of the pen
 
 
@@ -30,9 +33,12 @@ class Spheres:
     """
 
     hard: ClassVar[bool] = True  # none may lie on another
+    bytes_each: ClassVar[int] = 350  # of memory: states, lists, queue
 
     number: int | None = param(None, doc="how many", ge=1, le=MOST_PARTICLES)
-    density: float | None = param(None, doc="number per area or volume", unit="1/a^d", gt=0)
+    density: float | None = param(
+        None, doc="number per area or volume", unit="1/a^d", gt=0, le=1e15
+    )
     packing_fraction: float | None = param(
         None,
         doc="part of the box that they fill (0.3 unless a number or density is given)",
@@ -70,13 +76,20 @@ class Spheres:
             raise CaseError(
                 f"spheres.gravity = {show(self.gravity)}: expected {d} numbers, one for each axis"
             )
-        if not 1 <= self.count(box) <= MOST_PARTICLES:
-            raise CaseError(f"spheres: {self.count(box)} in this box; expected at least 1")
+        count = self.count(box)
+        key = next((key for key in AMOUNTS if getattr(self, key) is not None), AMOUNTS[-1])
+        where, given = f"spheres.{key}", getattr(self, key)
+        if not 1 <= count <= MOST_PARTICLES:
+            said = where if given is None else f"{where} = {show(given)}"
+            raise CaseError(
+                f"{said}: {count_text(count)} spheres in this box; expected 1 to {MOST_PARTICLES}"
+            )
         if self.fraction(box) >= 1:
             raise CaseError(
-                f"spheres: {self.count(box)} of these diameters would fill "
+                f"spheres: {count_text(count)} of these diameters would fill "
                 f"{self.fraction(box):.3g} of the box; expected less than 1"
             )
+        require_memory(where, count if given is None else given, count * self.bytes_each)
         if self.hard:
             self.require_room(box)
 

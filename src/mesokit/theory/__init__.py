@@ -99,7 +99,13 @@ from mesokit.theory.ping_pong import (
     lossy_bounces,
 )
 from mesokit.theory.poiseuille import PoiseuilleFit, poiseuille_fit, poiseuille_velocity
-from mesokit.theory.polar_order import disordered_binder, disordered_order, mean_square_order
+from mesokit.theory.polar_order import (
+    CrowdOrder,
+    disordered_binder,
+    disordered_order,
+    mean_square_order,
+    vectorial_order,
+)
 from mesokit.theory.pulled_shape import pulled_shape
 from mesokit.theory.relaxation_modulus import (
     apparent_viscosity,
@@ -165,6 +171,7 @@ __all__ = [
     "BondLength",
     "ChainExponents",
     "ChainInShear",
+    "CrowdOrder",
     "EndOfSliding",
     "GaussianMolecule",
     "HeatAtWalls",
@@ -319,6 +326,7 @@ __all__ = [
     "vacf_molecular_chaos",
     "vacf_tail",
     "vectorial_memory",
+    "vectorial_order",
     "verlet_swing",
     "virtual_gas_slip",
     "viscosity_renormalised",

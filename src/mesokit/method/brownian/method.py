@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesokit.case.amounts import duration_text, number, size_text
+from mesokit.case.amounts import count_text, duration_text, number, size_text
+from mesokit.case.checks import no_shear
 from mesokit.case.component import show
 from mesokit.case.trajectory import Group, Kind, stored_bytes
 from mesokit.case.warnings import run_warnings
@@ -71,8 +72,8 @@ def check(case: Case) -> None:
     """Raise CaseError for a box or a trajectory that has no meaning here."""
     if not 1 <= case.particles <= MOST_PARTICLES:
         raise CaseError(
-            f"brownian.density = {show(case.brownian.density)}: {case.particles} particles in this "
-            f"box; expected 1 to {MOST_PARTICLES}"
+            f"brownian.density = {show(case.brownian.density)}: {count_text(case.particles)} "
+            f"particles in this box; expected 1 to {MOST_PARTICLES}"
         )
     steps, given = case.run.warmup + case.run.steps, case.brownian
     far = math.sqrt(2.0 * given.diffusion * given.timestep * steps)
@@ -81,8 +82,7 @@ def check(case: Case) -> None:
             f"brownian.diffusion = {show(given.diffusion)}: in {steps} steps particles go so far "
             "that boxes cannot be counted; expected less"
         )
-    if case.box.shear_rate or case.box.shear_frequency or case.box.shear:
-        raise CaseError("box: not with shear; the particles of method 'brownian' drift with no one")
+    no_shear(case.box, "not with method 'brownian', whose particles drift with no one")
     if case.box.open:
         raise CaseError(f"box.open = {show(list(case.box.open))}: not with method 'brownian'")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mesokit.case.checks import no_shear
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.event_driven.walls import wall_rows
@@ -18,11 +19,20 @@ def check(case: Case) -> None:
     """Raise CaseError for a case without a meaning."""
     section, box = case.spheres, case.box
     section.check(box)
-    if box.sheared or box.shear is not None or box.shear_frequency:
-        raise CaseError("box: not with shear in method 'event-driven'")
+    no_shear(box, "not with method 'event-driven'")
     if box.open:
         raise CaseError(f"box.open = {show(list(box.open))}: not with method 'event-driven'")
     solids.check(case)
+    for key, surface in solids.surfaces(case):
+        if surface.rotation is not None:
+            raise CaseError(
+                f"{key}.rotation = {show(surface.rotation)}: not with method 'event-driven'"
+            )
+        warmth = None if surface.contact is None else surface.contact.temperature
+        if warmth is not None and surface.rule != "diffuse":
+            raise CaseError(
+                f"{key}.contact.temperature = {show(warmth)}: only with {key}.rule = 'diffuse'"
+            )
     wall_rows(case)
     plates.check(case)
     _friction(case)

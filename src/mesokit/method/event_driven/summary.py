@@ -17,7 +17,6 @@ from mesokit.spheres import cost, falls
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
-BYTES = 350  # for each sphere: states, lists, queue
 MADE_ELASTIC = 0.1  # share of the collisions beyond which a contact time changes the physics
 FREEZES = {2: 0.70, 3: 0.494}  # packing fraction above which they order in equilibrium
 
@@ -32,7 +31,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     seconds = events * cost.COLLISION[box.dimension]
     if flight is not None:
         seconds = max(seconds, time * cost.hard_seconds(flight))
-    memory = case.particles * BYTES + 200_000_000
+    memory = case.particles * section.bytes_each + 200_000_000
     stored = stored_bytes(case.trajectory, case.groups, box.dimension, case.run.steps)
     rows: list[Row] = [
         ("spheres", f"{case.particles:,}".replace(",", " "), ""),

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.errors import CaseError
 from mesokit.geometry.surface import Surface
 from mesokit.spheres.wall.surfaces import surface_rows
 
@@ -31,18 +30,10 @@ class WallRows(NamedTuple):
 def wall_rows(case: Case) -> WallRows:
     """All walls of a case."""
     found = surface_rows(case)
-    for wall, surface in found.surfaces:
-        _check(surface, wall)
     contacts = [_contact(case, surface) for _, surface in found.surfaces]
     return WallRows(
         found.rows, np.array(contacts, float).reshape(-1, 4), found.surface, found.names
     )
-
-
-def _check(surface: Surface, i: int) -> None:
-    key, contact = f"wall[#{i + 1}]", surface.contact
-    if contact is not None and contact.temperature is not None and surface.rule != "diffuse":
-        raise CaseError(f"{key}: contact.temperature: only with rule = 'diffuse'")
 
 
 def _contact(case: Case, surface: Surface) -> tuple[float, float, float, float]:

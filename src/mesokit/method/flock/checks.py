@@ -6,10 +6,14 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from mesokit.case.amounts import count_text
+from mesokit.case.checks import no_shear
 from mesokit.case.component import name_of, show
+from mesokit.case.warnings import require_memory
 from mesokit.errors import CaseError
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import labels, solids_of
+from mesokit.method.flock.section import BYTES, DENSITY
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -35,9 +39,15 @@ def _birds(case: Case) -> Iterator[str]:
     if not 1 <= birds <= MOST_BIRDS:
         key = "density" if given.number is None else "number"
         yield (
-            f"flock.{key} = {show(getattr(given, key))}: {birds} birds in this box; expected 1 to "
-            f"{MOST_BIRDS}"
+            f"flock.{key} = {show(getattr(given, key))}: {count_text(birds)} birds in this box; "
+            f"expected 1 to {MOST_BIRDS}"
         )
+    key = "density" if given.number is None else "number"
+    require_memory(
+        f"flock.{key}",
+        getattr(given, key) or DENSITY,
+        birds * BYTES[case.box.dimension],
+    )
     way = given.speed * given.timestep
     if way > LONGEST_WAY * least:
         yield (
@@ -65,8 +75,7 @@ def _birds(case: Case) -> Iterator[str]:
 
 def _box(case: Case) -> Iterator[str]:
     box = case.box
-    if box.shear_rate or box.shear_frequency or box.shear:
-        yield "box: not with shear; birds of method 'flock' drift with no one"
+    no_shear(box, "not with method 'flock', whose birds drift with no one")
     if box.open:
         yield f"box.open = {show(list(box.open))}: not with method 'flock', whose birds need a box"
 
@@ -92,7 +101,12 @@ def _walls(case: Case) -> Iterator[str]:
         if names[i] in names[:i]:
             yield f"{key}.name: {show(names[i])} is also the name of another wall; rename one"
         for name, surface in wall.surfaces().items():
-            where = f"{key}.{name}"
+            where, velocity = f"{key}.{name}", surface.velocity
+            if velocity is not None and len(velocity) != case.box.dimension:
+                yield (
+                    f"{where}.velocity = {show(list(velocity))}: expected {case.box.dimension} "
+                    "numbers"
+                )
             if surface.rule == "diffuse":
                 yield (
                     f"{where}.rule = 'diffuse': birds have no temperature; expected 'slip' or "

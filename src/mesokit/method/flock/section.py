@@ -16,6 +16,7 @@ from mesokit.method.flock.noise.angular import AngularNoise
 
 KEYS = {"walls": "wall"}  # field -> key in the file, where they differ
 DENSITY = 2.0  # unless said
+BYTES = {2: 160, 3: 230}  # of memory for each bird
 
 
 @component
@@ -38,7 +39,7 @@ class Flock:
     """Birds that fly at one speed, as the mean of those in reach, and err (Vicsek et al. 1995)."""
 
     density: float | None = param(
-        None, doc="birds per cell (2 unless a number is given)", unit="1/a^d", gt=0
+        None, doc="birds per cell (2 unless a number is given)", unit="1/a^d", gt=0, le=1e15
     )
     number: int | None = param(None, doc="birds in all, in place of the density", ge=1)
     radius: float = param(1.0, doc="reach of a bird's sight", unit="a", gt=0)

@@ -12,6 +12,7 @@ from mesokit.case.component import show
 from mesokit.case.trajectory import stored_bytes
 from mesokit.case.warnings import run_warnings
 from mesokit.geometry.solids.solids import free_volume
+from mesokit.method.flock.section import BYTES
 from mesokit.method.protocol import Row, Summary
 from mesokit.running.cores import usable_cores
 
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
 # Seconds of a thread for a bird and for each bird that it looks at, where the project measures
 SECONDS, EACH = {2: 40e-9, 3: 60e-9}, {2: 0.7e-9, 3: 1.0e-9}
-BYTES = {2: 160, 3: 230}  # for each bird
 FEW = 1.0  # birds in reach, below which hardly any two ever meet
 
 
@@ -38,7 +38,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     seconds = case.particles * steps * bird / threads
     memory_of = given.noise.memory(d)
     way = given.speed * given.timestep
-    crowd = given.noise.crowd_order(d)
+    crowd = given.noise.crowd(d, case.particles)
     rows: list[Row] = [
         ("birds", f"{case.particles:,}".replace(",", " "), ""),
         ("density", number(density, case.box.density_unit), ""),
@@ -47,7 +47,12 @@ def summary(case: Case, threads: int | None = None) -> Summary:
         ("order without order", number(theory.disordered_order(case.particles, d)), "chance alone"),
     ]
     if crowd is not None:
-        rows.append(("order if all see all", number(crowd), "of infinitely many birds"))
+        both = math.isnan(crowd.many)
+        rows.append(
+            ("order if all see all", "none", "order and disorder are both stable")
+            if both
+            else ("order if all see all", number(crowd.many), "of infinitely many birds")
+        )
     rows += [
         ("memory of a lone bird", number(memory_of), "mean cosine of its turn in a step"),
         ("run time", duration_text(seconds), f"estimate: {threads} thread{'s' * (threads > 1)}"),

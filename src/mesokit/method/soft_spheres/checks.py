@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mesokit.case.checks import no_shear
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import Solids
@@ -12,10 +13,12 @@ from mesokit.method.soft_spheres import scales
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw
 from mesokit.spheres import falls
 from mesokit.spheres.wall import plates, solids
-from mesokit.spheres.wall.surfaces import other_walls, room_of, surface_rows
+from mesokit.spheres.wall.surfaces import other_walls, surface_rows
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+
+CONTACT = ("temperature", "tangential", "restitution", "friction")  # of a surface
 
 
 def check(case: Case) -> None:
@@ -24,8 +27,7 @@ def check(case: Case) -> None:
     solids.check(case)
     section.check(box)
     section.start.check(case)
-    if box.sheared or box.shear is not None or box.shear_frequency:
-        raise CaseError("box: not with shear in method 'soft-spheres'")
+    no_shear(box, "not with method 'soft-spheres'")
     if box.open:
         raise CaseError(f"box.open = {show(list(box.open))}: not with method 'soft-spheres'")
     _walls(case)
@@ -62,8 +64,8 @@ def _walls(case: Case) -> None:
     for i, wall in enumerate(case.walls):
         if wall.virtual != "extrapolate":
             raise CaseError(f"wall[#{i + 1}].virtual = {show(wall.virtual)}: spheres need none")
-        for body in wall.bodies(room_of(case), ""):
-            _surface(f"wall[#{i + 1}]", body.surface, touching, i in others)
+        for name, surface in wall.surfaces().items():
+            _surface(f"wall[#{i + 1}].{name}", surface, touching, i in others)
 
 
 def _surface(key: str, surface: Surface, touching: bool, other: bool) -> None:
@@ -73,15 +75,17 @@ def _surface(key: str, surface: Surface, touching: bool, other: bool) -> None:
     if contact is None:
         return
     if other and contact.amplitude > 0:
-        raise CaseError(f"{key}: contact.amplitude: only plates vibrate")
+        raise CaseError(f"{key}.contact.amplitude = {show(contact.amplitude)}: only plates vibrate")
+    given = {name: getattr(contact, name) for name in CONTACT}
+    said = {name: f"{key}.contact.{name} = {show(value)}" for name, value in given.items()}
     for name in ("temperature", "tangential"):
-        if getattr(contact, name) is not None:
-            raise CaseError(f"{key}: contact.{name}: not with method 'soft-spheres'")
+        if given[name] is not None:
+            raise CaseError(f"{said[name]}: not with method 'soft-spheres'")
     if contact.restitution == 0:
-        raise CaseError(f"{key}: contact.restitution = 0: expected more than 0")
+        raise CaseError(f"{said['restitution']}: expected more than 0")
     for name in ("restitution", "friction"):
-        if not touching and getattr(contact, name) is not None:
-            raise CaseError(f"{key}: contact.{name}: a potential has none")
+        if not touching and given[name] is not None:
+            raise CaseError(f"{said[name]}: a potential has none")
 
 
 def _potential(case: Case) -> None:

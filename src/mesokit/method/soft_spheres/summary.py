@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 RATE_OF_POTENTIALS = 2.5e6  # sphere-steps per second and core (docs/benchmark)
 USUAL_NEIGHBOURS = 66.0  # within the reach, where this was measured
-BYTES = 600  # for each sphere: states twice, lists
 DEEP = 0.05  # overlap, in diameters, beyond which spheres are not hard
 LONG = 4.0  # steps of the usual length beyond which a fluid of a potential loses its energy
 
@@ -33,7 +32,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     cores = usable_cores() if threads is None else threads
     steps, step = case.run.warmup + case.run.steps, scales.timestep_of(section, box)
     phi = section.fraction(box)
-    memory = case.particles * BYTES + 200_000_000
+    memory = case.particles * section.bytes_each + 200_000_000
     stored = stored_bytes(case.trajectory, case.groups, box.dimension, case.run.steps)
     rows: list[Row] = [
         ("spheres", f"{case.particles:,}".replace(",", " "), ""),

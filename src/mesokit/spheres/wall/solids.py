@@ -10,8 +10,11 @@ from mesokit.geometry import shape_protocol
 from mesokit.geometry.solids.solids import solids_of
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from mesokit.case.case import Case
     from mesokit.geometry.solids.solids import Solids
+    from mesokit.geometry.surface import Surface
 
 
 def check(case: Case) -> None:
@@ -27,6 +30,30 @@ def check(case: Case) -> None:
             if axis in seen:
                 raise CaseError(f"{key}.axis = {show(axis)}: wall[#{seen[axis]}] closes it already")
             seen[axis] = i + 1
+    for key, surface in surfaces(case):
+        _motion(key, surface, box.dimension)
+
+
+def surfaces(case: Case) -> Iterator[tuple[str, Surface]]:
+    """All surfaces of the walls, each with its key."""
+    for i, wall in enumerate(case.walls):
+        for name, surface in wall.surfaces().items():
+            yield f"wall[#{i + 1}].{name}", surface
+
+
+def _motion(key: str, surface: Surface, dimension: int) -> None:
+    velocity, contact = surface.velocity, surface.contact
+    if velocity is not None and len(velocity) != dimension:
+        raise CaseError(f"{key}.velocity = {show(list(velocity))}: expected {dimension} numbers")
+    if contact is None:
+        return
+    for here, other in (("amplitude", "frequency"), ("frequency", "amplitude")):
+        given = getattr(contact, here)
+        if given > 0 and getattr(contact, other) == 0:
+            raise CaseError(
+                f"{key}.contact.{here} = {show(given)}: a vibration has an amplitude and a "
+                f"frequency; expected {key}.contact.{other} beside"
+            )
 
 
 def closed_axes(case: Case) -> set[int]:

@@ -97,15 +97,15 @@ def room_of(case: Case) -> Room:
 def _parts(body: Any, room: Room, i: int, method: str) -> Iterator[Part]:
     """The planes and round surfaces of a body, each once."""
     contact = body.surface.contact
-    vibrates = contact is not None and contact.amplitude > 0
-    if contact is not None and vibrates != (contact.frequency > 0):
-        raise CaseError(f"wall[#{i + 1}]: contact: a vibration has an amplitude and a frequency")
     for piece in body.pieces:
         part = _alone(piece.term, room)
         if part is None:
             raise NotARow(f"wall[#{i + 1}]: not with method {method!r}; {ALLOWED}")
-        if vibrates and part.kind != "half_space":
-            raise CaseError(f"wall[#{i + 1}]: contact.amplitude: only plates vibrate")
+        if contact is not None and contact.amplitude > 0 and part.kind != "half_space":
+            raise CaseError(
+                f"wall[#{i + 1}].surface.contact.amplitude = {show(contact.amplitude)}: only "
+                "plates vibrate"
+            )
         if part.kind == "brick" and part.sign < 0:
             yield from _sides(part, room.dimension)
         elif part.kind == "half_space" and part.sign > 0:

@@ -11,6 +11,7 @@ from mesokit.scalar.elementary import sincos_turn
 from mesokit.scalar.jit import by_type
 from mesokit.scalar.random import unit, words
 from mesokit.theory.heading_memory import angular_memory
+from mesokit.theory.polar_order import CrowdOrder, mean_square_order
 
 
 @component
@@ -35,9 +36,10 @@ class AngularNoise(Noise):
         """sin(strength/2)/(strength/2) in 2D, 1 - strength/(2 pi) in 3D."""
         return angular_memory(self.strength, dimension)
 
-    def crowd_order(self, dimension: int) -> float | None:
-        """The same: all turn from one direction."""
-        return self.memory(dimension)
+    def crowd(self, dimension: int, number: int) -> CrowdOrder:
+        """All turn from one direction: of many birds the order is the memory."""
+        memory = max(self.memory(dimension), 0.0)
+        return CrowdOrder(memory, math.nan, mean_square_order(memory, number))
 
 
 class Angular(NamedTuple):

@@ -17,6 +17,7 @@ from mesokit.scalar.elementary import sincos_turn
 from mesokit.scalar.jit import by_type, generic, scalar
 from mesokit.scalar.random import METHOD
 from mesokit.scalar.vector import dot, scaled
+from mesokit.theory.polar_order import CrowdOrder
 
 TURN, FIRST_HEADING = METHOD, METHOD + np.uint64(1)  # purposes of random numbers
 
@@ -35,8 +36,8 @@ class Noise(ABC):
         """Mean cosine of the angle by which a lone bird turns in a step."""
 
     @abstractmethod
-    def crowd_order(self, dimension: int) -> float | None:
-        """Order of infinitely many birds that all see one another, None where nobody knows."""
+    def crowd(self, dimension: int, number: int) -> CrowdOrder | None:
+        """Order of birds that all see one another, None where nobody knows."""
 
 
 @generic

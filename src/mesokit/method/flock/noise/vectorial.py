@@ -16,6 +16,7 @@ from mesokit.method.flock.noise.protocol import (
 from mesokit.scalar.random import unit, words
 from mesokit.scalar.vector import added_scaled
 from mesokit.theory.heading_memory import vectorial_memory
+from mesokit.theory.polar_order import CrowdOrder, vectorial_order
 
 
 @component
@@ -35,9 +36,9 @@ class VectorialNoise(Noise):
         """Of a heading with a random vector of this length added."""
         return vectorial_memory(self.strength, dimension)
 
-    def crowd_order(self, dimension: int) -> float | None:
-        """Not in closed form: it is what solves an equation, and there may be several."""
-        return None
+    def crowd(self, dimension: int, number: int) -> CrowdOrder:
+        """All fly along the mean heading with a random vector of this length added."""
+        return vectorial_order(self.strength, number, dimension)
 
 
 class Vectorial(NamedTuple):

@@ -149,7 +149,11 @@ class PolarOrderAccumulator:
                 return Known(square=square, why=why)
             order, cumulant = theory.disordered_order(number, d), theory.disordered_binder(d)
             return Known(order, square, cumulant, why)
-        crowd = noise.crowd_order(d)
-        if crowd is not None and all_see_all(case):
-            return Known(square=theory.mean_square_order(crowd, number), why="all see all")
-        return Known(why="no theory but simulation")
+        crowd = noise.crowd(d, number) if all_see_all(case) else None
+        if crowd is None:
+            return Known(why="no theory but simulation")
+        if math.isnan(crowd.many):
+            return Known(why="all see all: order and disorder are both stable")
+        if math.isnan(crowd.mean_square):
+            return Known(why=f"all see all: {crowd.many:.4g} of many birds, these are too few")
+        return Known(crowd.mean, crowd.mean_square, why="all see all")

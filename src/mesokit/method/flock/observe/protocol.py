@@ -34,7 +34,10 @@ class FlockObservable(Observable, ABC):
 
 def blind(noise: Noise, dimension: int) -> bool:
     """Whether birds fly at random, whatever the others do."""
-    return noise.crowd_order(dimension) is not None and noise.memory(dimension) < 1e-12
+    if noise.memory(dimension) >= 1e-12:
+        return False
+    crowd = noise.crowd(dimension, 1)
+    return crowd is not None and crowd.many < 1e-12
 
 
 def all_see_all(case: Case) -> bool:

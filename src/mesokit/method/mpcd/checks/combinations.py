@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
+from mesokit.case.amounts import count_text
 from mesokit.case.component import name_of, show
 from mesokit.case.units import MATCHES
 from mesokit.errors import CaseError
@@ -50,8 +51,8 @@ def size(case: Case) -> Iterator[str]:
         yield f"fluid.density = {show(case.fluid.density)}: fewer than 2 particles in this box"
     if case.particles > MOST_PARTICLES:
         yield (
-            f"fluid.density = {show(case.fluid.density)}: {case.particles} particles in this box; "
-            f"expected at most {MOST_PARTICLES}"
+            f"fluid.density = {show(case.fluid.density)}: {count_text(case.particles)} particles "
+            f"in this box; expected at most {MOST_PARTICLES}"
         )
 
 
