@@ -130,7 +130,8 @@ class Ball:
     @classmethod
     def of(cls, case: Case, rows: Array, gravity: float, stride: int) -> Ball | None:
         """The ball of a case, None where theory knows nothing of what it does."""
-        section, given = case.spheres, getattr(case.spheres, "collision", None)
+        section = case.spheres
+        given: Any = getattr(section, "collision", None)
         constant = given is not None and hasattr(given, "restitution") and given.reach <= 1
         if case.particles != 1 or not constant or section.heating or len(case.walls) != 1:
             return None
