@@ -127,6 +127,7 @@ from mesokit.observe.flow_rate import FlowRate as FlowRate
 from mesokit.observe.forces import Forces as Forces
 from mesokit.observe.free_times import FreeTimes as FreeTimes
 from mesokit.observe.granular_temperature import GranularTemperature as GranularTemperature
+from mesokit.observe.height_in_time import HeightInTime as HeightInTime
 from mesokit.observe.height_profile import HeightProfile as HeightProfile
 from mesokit.observe.hexatic_order import HexaticOrder as HexaticOrder
 from mesokit.observe.kind_temperature import KindTemperature as KindTemperature

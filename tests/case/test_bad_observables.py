@@ -13,6 +13,7 @@ BOX = "[box]\nsize = [20, 20]\n"
 HARD = '[run]\nsteps = 10\nmethod = "event-driven"\n' + BOX + "[spheres]\nnumber = 30\n"
 SOFT = HARD.replace("event-driven", "soft-spheres")
 BIRDS = '[run]\nsteps = 10\nmethod = "flock"\n' + BOX + "[flock]\ndensity = 2\n"
+FLUID = "[run]\nsteps = 10\n" + BOX
 THREE = {"[20, 20]": "[20, 20, 20]"}
 ONE, TWO, THREE_SPHERES = ({"number = 30": f"number = {n}"} for n in (1, 2, 3))
 SPREAD = {"number = 30": "number = 30\nkinds = [{ spread = 0.1 }]"}
@@ -72,6 +73,27 @@ BAD: list[tuple[str, dict[str, str], str, str, str, tuple[str, ...]]] = [
     (HARD, KINDS, "", "radial-distribution", 'of = "big"', ("of = 'big'", "chosen by `kinds`")),
     (SOFT, {}, PLATES.format("x") + PLATES.format("y"), "mean-square-displacement", "",
      ("observe[#1]", "every axis is closed")),
+    (HARD, {}, "", "free-times", "bins = 48", ("bins = 48", "power of two")),
+    (HARD, {}, "", "free-times", "bins = 4", ("bins = 4", "at least 8")),
+    (SOFT, {}, "", "free-times", "", ("observe[#1].quantity", "does not offer")),
+    (SOFT, {}, "", "wall-force", "", ("observe[#1]", "[[wall]]")),
+    (HARD, {}, "", "density-profile", 'axis = "z"', ("axis = 'z'",)),
+    (HARD, KINDS, "", "density-profile", "kind = 3", ("kind = 3", "1 to 2")),
+    (SOFT, {}, "", "density-profile", 'of = "beads"', ("of = 'beads'", "'particles'")),
+    (SOFT, {}, "", "density-profile", "bins_per_cell = 0", ("bins_per_cell = 0", "at least 1")),
+    (BIRDS, {}, "", "density-profile", "", ("observe[#1].quantity", "does not offer")),
+    (HARD, {}, "", "velocity-profile", 'component = "z"', ("component = 'z'",)),
+    (SOFT, KINDS, "", "velocity-profile", 'kind = "blue"', ("kind = 'blue'", "1 to 2")),
+    (SOFT, {}, "", "temperature-profile", "kind = 0", ("kind = 0", "expected 1")),
+    (HARD, TWO, "", "velocity-distribution", "", ("observe[#1]", "2 spheres", "3 at least")),
+    (SOFT, {}, "", "velocity-distribution", "kind = 2", ("kind = 2", "expected 1")),
+    (SOFT, {}, "", "velocity-distribution", "bins = 5", ("bins = 5", "at least 10")),
+    (BIRDS, {}, "", "velocity-distribution", "", ("observe[#1].quantity", "does not offer")),
+    (FLUID, {}, "", "velocity-profile", "kind = 1", ("kind = 1", "of spheres alone")),
+    (FLUID, {}, "", "temperature-profile", "kind = 1", ("kind = 1", "of spheres alone")),
+    (FLUID, {}, "", "velocity-distribution", "kind = 1", ("kind = 1", "of spheres alone")),
+    (FLUID, {}, "", "free-times", "", ("observe[#1].quantity", "does not offer")),
+    (FLUID, {}, "", "granular-temperature", "", ("observe[#1].quantity", "does not offer")),
     (BIRDS, {}, "", "mean-square-displacement", 'of = "centres"', ("of", "'particles'")),
     (BIRDS, {}, "", "mean-square-displacement", "particles = 0", ("particles = 0", "at least 1")),
     (BIRDS, {}, "", "number-fluctuations", "sides = []", ("sides",)),

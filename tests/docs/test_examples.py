@@ -1,5 +1,6 @@
 """Every example is a valid case, ends in a comparison, and is shown in the gallery."""
 
+import re
 import shutil
 import subprocess
 import sys
@@ -13,6 +14,12 @@ pytestmark = pytest.mark.long
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.toml"))
+SCRIPTS = {  # of some seconds, and what they draw and say
+    "draw_collapse": ("collapse_1d", r"(\d) on a wall: .*\(law"),
+    "draw_column": ("column", r"largest difference from \(N - i\) m g: \d\.\de-05"),
+    "draw_ping_pong": ("ping_pong", ""),
+    "draw_two_grains": ("two_grains", r"Hertz: restitution 1\.00000 \(theory 1\.00000\)"),
+}
 SHORT = ["--set", "run.steps=100", "--set", "run.warmup=20"]
 
 
@@ -59,3 +66,17 @@ def test_the_picture_of_the_junction_is_what_the_script_draws(tmp_path: Path) ->
     drawn, kept = (Image.open(f / "junction.png") for f in (tmp_path, folder))
     assert drawn.size == kept.size
     assert drawn.tobytes() == kept.tobytes()
+
+
+@pytest.mark.parametrize("script", SCRIPTS)
+def test_a_script_draws_what_it_says(script: str, tmp_path: Path) -> None:
+    picture, words = SCRIPTS[script]
+    file = ROOT / "examples" / f"{script}.py"
+    done = subprocess.run(
+        [sys.executable, file], cwd=tmp_path, check=True, capture_output=True, text=True
+    )
+    assert re.search(words, done.stdout), done.stdout
+    assert (tmp_path / f"{picture}.png").stat().st_size > 20_000
+    for page in ("examples/README.md", "docs/gallery.md"):
+        text = (ROOT / page).read_text()
+        assert f"{script}.py" in text and f"images/{picture}.png" in text

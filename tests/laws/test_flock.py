@@ -146,6 +146,19 @@ def test_lone_birds_walk_with_memory(size, noise):
         assert abs(square.mean() - expected) < max(4 * square.std() / math.sqrt(engine.n), 1e-12)
 
 
+@pytest.mark.parametrize("noise", [AngularNoise(2.0), AngularNoise(6.0), VectorialNoise(0.7)])
+def test_lone_birds_turn_to_neither_side(noise):
+    """A million turns: sines have no mean."""
+    engine = begun(20, 20, number=20_000, radius=1e-6, noise=noise)
+    sines, before = [], engine.headings()
+    for _ in range(50):
+        engine.advance(1)
+        after = engine.headings()
+        sines.append(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
+        before = after
+    assert abs(np.mean(sines)) < 4 * np.std(sines) / 1000
+
+
 def test_the_observable_of_a_lone_bird_knows_the_walk():
     observe = [MeanSquareDisplacement(every=1, max_lag=30)]
     given = case((9, 9), steps=20_000, number=1, noise=AngularNoise(3.0), observe=observe)

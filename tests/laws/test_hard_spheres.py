@@ -145,7 +145,7 @@ def test_a_step_of_more_events_than_are_done_at_once():
 
 @pytest.mark.parametrize(("size", "fraction"), [([9, 10], 0.9), ([5, 5, 5], 0.72)])
 def test_growing_spheres_that_jam_are_no_start(size, fraction):
-    with pytest.raises(CaseError, match="jam before they fill 0\\.[789]"):
+    with pytest.raises(CaseError, match=r"jam before they fill 0\.[789]"):
         gas(size, packing_fraction=fraction, start=RandomStart())
 
 

@@ -13,7 +13,9 @@ from mesokit import (
     PouredStart,
     RandomStart,
     Rectangle,
+    SphereKind,
     SpringDashpot,
+    Surface,
     Union,
 )
 
@@ -157,3 +159,20 @@ def test_grains_are_poured_on_a_solid():
     engine.advance(5000)
     assert np.abs(engine.positions(unwrapped=True) - before).max() < 0.1
     assert engine.system.given.others.kept.distance(before % engine.box).min() > 0.49
+
+
+def test_a_block_that_moves_along_itself_drags_what_lies_on_it():
+    # from rest friction pulls with mu m g, until the disk rolls: a third of the block's speed
+    speed, friction, g = 0.6, 0.3, 10.0
+    law = SpringDashpot(0.3, contact_time=0.01, friction=friction)
+    k, _ = law.constants(1.0)
+    block = Rectangle(centre=[6, 1], size=[12, 2], surface=Surface(velocity=[speed, 0.0]))
+    engine = soft(
+        [12, 10], walls=[block], given=at_rest([[3.0, 2.5 - g / k]]), number=1,
+        start=RandomStart(), pair=law, kinds=[SphereKind(1.0, mass=1.0)], gravity=[0.0, -g],
+    )  # fmt: skip
+    slides = speed / (3 * friction * g)
+    engine.advance(round(0.6 * slides / engine.timestep))
+    assert engine.velocities()[0, 0] == pytest.approx(friction * g * engine.time, abs=2e-3)
+    engine.advance(round(3 * slides / engine.timestep))
+    assert engine.velocities()[0, 0] == pytest.approx(speed / 3, abs=2e-3)

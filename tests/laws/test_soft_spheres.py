@@ -99,6 +99,12 @@ def test_a_configuration_has_the_energy_and_virial_of_nist():
     engine = soft([8.0, 8.0, 8.0], given=at_rest(places), number=30, pair=law)
     assert abs(engine.energies()["contact"] + 16.790) < 0.0005
     assert abs(abs(np.trace(engine.stress["pair"]) * 512) - 46.249) < 0.0005
+    i, j = np.triu_indices(30, 1)  # all six components, pair by pair: F = 24 (2/r^12 - 1/r^6) r/r^2
+    way = (places[i] - places[j] + 4.0) % 8.0 - 4.0
+    square = (way**2).sum(axis=1)
+    pull = np.where(square < 9, 24 * (2 / square**6 - 1 / square**3) / square, 0.0)
+    stress = -np.einsum("p,pa,pb->ab", pull, way, way) / 512
+    np.testing.assert_allclose(engine.stress["pair"], stress, atol=1e-7)
 
 
 @pytest.mark.parametrize("law", [LennardJones(), WCA()])

@@ -36,14 +36,20 @@ def check(case: Any, method: Any) -> None:
             raise CaseError(f"observe[#{i + 1}]{joint}{reason}") from None
 
 
+def is_offered(part: Any, method: str, observables: tuple[type, ...]) -> bool:
+    """Whether a method offers an observable, or that says that it is for it."""
+    usual = issubclass(part, observables) and not getattr(part, "of_methods_alone", False)
+    return usual or method in part.methods
+
+
 def offered(case: Any, method: str, observables: tuple[type, ...]) -> Iterator[str]:
     """Observables of the method, or of somebody who says that they are for it."""
     for i, observable in enumerate(case.observe):
-        if not isinstance(observable, observables) and method not in observable.methods:
+        if not is_offered(type(observable), method, observables):
             known = sorted(
                 name
                 for name, part in family_of(observable).parts.items()
-                if issubclass(part, observables) or method in part.methods
+                if is_offered(part, method, observables)
             )
             yield (
                 f"observe[#{i + 1}].quantity = {show(name_of(observable))}: method {show(method)} "

@@ -28,6 +28,7 @@ class ClusterSize(Observable):
 
     quantity: Literal["contact-clusters"] = tag("contact-clusters")
     methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
     gap: float = param(0.1, doc="between the surfaces of neighbours, at most", unit="a", gt=0)
 

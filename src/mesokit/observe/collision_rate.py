@@ -38,6 +38,7 @@ class CollisionRate(Observable):
 
     quantity: Literal["collision-rate"] = tag("collision-rate")
     methods: ClassVar[tuple[str, ...]] = ("event-driven",)
+    of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
 
     def accumulator(self, case: Case) -> CollisionRateAccumulator:

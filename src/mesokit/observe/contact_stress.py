@@ -34,6 +34,7 @@ class ContactStress(Observable):
 
     quantity: Literal["contact-stress"] = tag("contact-stress")
     methods: ClassVar[tuple[str, ...]] = ("soft-spheres",)
+    of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
 
     def check(self, case: Case) -> None:

@@ -35,6 +35,7 @@ class EquationOfState(Observable):
 
     quantity: Literal["equation-of-state"] = tag("equation-of-state")
     methods: ClassVar[tuple[str, ...]] = ("event-driven",)
+    of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
 
     def check(self, case: Case) -> None:

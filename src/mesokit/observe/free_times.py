@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from mesokit.engine import RunningSpheres
 
 FINE = 256  # bins in which an engine counts
-DILUTE = 0.01  # packing fraction above which what spheres remember matters
+DILUTE = 0.0025  # packing fraction above which the last partner is in the way of others for long
 LONG = 8.0  # mean free times: hardly a flight is longer
 TIME = "tau"
 
@@ -40,6 +40,7 @@ class FreeTimes(Observable):
 
     quantity: Literal["free-times"] = tag("free-times")
     methods: ClassVar[tuple[str, ...]] = ("event-driven",)
+    of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
     measures: ClassVar[tuple[str, ...]] = ("free times",)
     bins: int = param(
@@ -80,7 +81,7 @@ class FreeTimesAccumulator:
     def observe(self, spheres: RunningSpheres) -> None:
         """Take one sample: of what has ended since the last."""
         edges, counts, sums = spheres.free_times
-        self.edges = edges[:: FINE // self.bins].copy()
+        self.edges = np.array(edges[:: FINE // self.bins])
         inside = counts[:-1].reshape(self.bins, -1).sum(axis=1)
         now = np.array([*inside, counts[-1], *sums])
         root = root_of_temperature(self.case, spheres.totals()[2])
@@ -174,6 +175,6 @@ class FreeTimesAccumulator:
             *every.scalar(spread, gradient),
             theory.free_time_spread(d) if math.isfinite(known) else math.nan,
             "",
-            "2 of an exponential" if elastic and dilute else chaos,
+            "" if math.isnan(known) else "2 of an exponential" if elastic and dilute else chaos,
         )
         return [first, second, Comparison("flights", number * self.blocks.count, math.nan)]

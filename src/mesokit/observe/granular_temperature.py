@@ -51,6 +51,7 @@ class GranularTemperature(Observable):
 
     quantity: Literal["granular-temperature"] = tag("granular-temperature")
     methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
 
     def accumulator(self, case: Case) -> GranularTemperatureAccumulator:

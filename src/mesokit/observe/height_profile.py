@@ -33,6 +33,7 @@ class HeightProfile(Observable):
 
     quantity: Literal["height-profile"] = tag("height-profile")
     methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
     bins: int = param(40, doc="layers from one plate to the other", ge=2, le=10_000)
 

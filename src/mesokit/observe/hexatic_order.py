@@ -28,6 +28,7 @@ class HexaticOrder(Observable):
 
     quantity: Literal["hexatic-order"] = tag("hexatic-order")
     methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
 
     def check(self, case: Case) -> None:

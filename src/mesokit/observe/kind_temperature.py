@@ -27,6 +27,7 @@ class KindTemperature(Observable):
 
     quantity: Literal["kind-temperature"] = tag("kind-temperature")
     methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
 
     def check(self, case: Case) -> None:

@@ -92,7 +92,7 @@ class VelocityProfileAccumulator(ProfileAccumulator):
             mass = sums[:, 1].sum(axis=0)
             if flow.kind in FITS:
                 curve, comparisons = FITS[flow.kind](self, velocity, mass)
-            if flow.kind in ("lees-edwards", "rest") and expected is not None:
+            if flow.kind in ("lees-edwards", "rest", "drift") and expected is not None:
                 some = part_of(velocity, inside)
                 comparisons += self.chi_square(some, expected[inside], "against the line")
         return Result(
@@ -114,11 +114,15 @@ class VelocityProfileAccumulator(ProfileAccumulator):
         )
 
     def flow(self) -> setting.Flow:
-        """The steady flow; of spheres it is known where they are at rest."""
+        """The steady flow; of spheres it is known where they are at rest, or go on as one."""
         if self.known is None:
             return setting.flow(self.case, self.component)
-        rests = self.known.rests(self.component)
-        return setting.Flow("rest" if rests else "", self.axis, np.zeros_like if rests else None)
+        momentum, mass = self.blocks.sums()[0].sum(axis=(0, 2))
+        mean = float(momentum / mass) if mass > 0 else 0.0
+        level = self.known.expected(self.component, mean)
+        if np.isnan(level):
+            return setting.Flow("", self.axis, None)
+        return setting.Flow("rest" if level == 0 else "drift", self.axis, lambda y: level + 0 * y)
 
     def raised(self, flow: setting.Flow, expected: Array | None) -> dict[str, Array]:
         """The profile with the viscosity that fluctuations raise in 2D, of plates at rest."""

@@ -38,6 +38,7 @@ class WallForce(Observable):
 
     quantity: Literal["wall-force"] = tag("wall-force")
     methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
 
     def check(self, case: Case) -> None:

@@ -33,6 +33,7 @@ from mesokit.report.particles import (
     flocks,
     histograms,
     number_fluctuations,
+    path,
     snapshots,
     structure_factor,
 )
@@ -62,6 +63,7 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "structure factor": structure_factor.draw,
     "number fluctuations": number_fluctuations.draw,
     "cooling": cooling.draw,
+    "path": path.draw,
     "centreline": wake.draw,
     "signal": probe.draw,
     "tracks": tracks.draw,

@@ -91,7 +91,13 @@ from mesokit.theory.origin import Origin, origins
 from mesokit.theory.oscillating_slit import oscillating_slit_response, oscillating_slit_velocity
 from mesokit.theory.passage_times import first_passage_cdf, mean_exit_time
 from mesokit.theory.persistent_walk import msd_persistent_walk, persistent_diffusion
-from mesokit.theory.ping_pong import bounce_height, bounce_time, dissipative_bounces
+from mesokit.theory.ping_pong import (
+    bounce_height,
+    bounce_path,
+    bounce_time,
+    dissipative_bounces,
+    lossy_bounces,
+)
 from mesokit.theory.poiseuille import PoiseuilleFit, poiseuille_fit, poiseuille_velocity
 from mesokit.theory.polar_order import (
     CrowdOrder,
@@ -192,6 +198,7 @@ __all__ = [
     "beads_in_slit",
     "bond_correlation",
     "bounce_height",
+    "bounce_path",
     "bounce_time",
     "cell_energy_cdf",
     "cell_energy_pdf",
@@ -252,6 +259,7 @@ __all__ = [
     "lennard_jones_tail",
     "linear_modes",
     "loss_modulus",
+    "lossy_bounces",
     "maxwell_component_cdf",
     "maxwell_component_pdf",
     "maxwell_shear",

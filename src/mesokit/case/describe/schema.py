@@ -7,6 +7,7 @@ from typing import Any
 
 from mesokit import method as methods
 from mesokit.case.case import FIELDS, SECTIONS, Case, case_class
+from mesokit.case.checks import is_offered
 from mesokit.case.component import tag_of
 from mesokit.case.describe.plain import PLACE, plain_schemas
 from mesokit.case.registry import FAMILIES
@@ -146,5 +147,5 @@ def _offered(name: str, case: Any) -> list[str]:
     return [
         found[1]
         for part in family.parts.values()
-        if (issubclass(part, offered) or name in part.methods) and (found := tag_of(part))
+        if is_offered(part, name, offered) and (found := tag_of(part))
     ]

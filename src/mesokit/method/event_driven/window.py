@@ -17,24 +17,31 @@ FLIGHT_BINS, LONGEST_FLIGHT = 256, 8.0  # number; mean times between collisions
 LONGEST, SHORTEST = 2.0**60, 2.0**-60
 
 
-def collision_rate(case: Case) -> float:
-    """Collisions of a sphere per time at the start, estimated (Enskog; kinds as one); or, at rest,
-    the inverse time to fall by a diameter."""
+def thermal_rate(case: Case) -> float:
+    """Collisions of a sphere per time by its thermal motion, estimated (Enskog; kinds as one; or
+    across the box); 0 at rest."""
     section, box = case.spheres, case.box
-    kinds = section.kinds
-    diameter = max(kind.diameter for kind in kinds) * section.scale(box)
-    mass = min(kind.mean_mass(box.dimension) for kind in kinds)
+    if section.kT == 0:
+        return 0.0
+    mass = min(kind.mean_mass(box.dimension) for kind in section.kinds)
     phi, number = min(section.fraction(box), 0.7), section.count(box)
-    rates = [0.0]
-    if section.kT > 0:
-        rate = theory.enskog_rate(
-            number / box.volume, diameter, section.kT / mass, phi, box.dimension
-        )
-        rates.append(rate)
-        rates.append(math.sqrt(section.kT / mass) / max(box.size))
-    if section.gravity:
-        rates.append(math.sqrt(math.hypot(*section.gravity) / diameter))
-    return max(rates)
+    rate = theory.enskog_rate(
+        number / box.volume, _diameter(case), section.kT / mass, phi, box.dimension
+    )
+    return max(rate, math.sqrt(section.kT / mass) / max(box.size))
+
+
+def collision_rate(case: Case) -> float:
+    """Collisions of a sphere per time at the start, estimated; or, where that is more, the inverse
+    time to fall by a diameter."""
+    gravity = case.spheres.gravity
+    fall = math.sqrt(math.hypot(*gravity) / _diameter(case)) if gravity else 0.0
+    return max(thermal_rate(case), fall)
+
+
+def _diameter(case: Case) -> float:
+    """The largest."""
+    return max(kind.diameter for kind in case.spheres.kinds) * case.spheres.scale(case.box)
 
 
 def window(case: Case) -> float:
@@ -59,6 +66,5 @@ def instant(case: Case) -> float:
 
 def flight_bins(case: Case) -> tuple[float, int]:
     """Width and number of the bins of times between collisions: eight times the mean, about."""
-    rate = collision_rate(case)
-    mean = 1 / rate if rate > 0 else 1.0
+    mean = 1 / (thermal_rate(case) or collision_rate(case) or 1.0)
     return LONGEST_FLIGHT * mean / FLIGHT_BINS, FLIGHT_BINS

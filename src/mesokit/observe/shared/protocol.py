@@ -51,6 +51,7 @@ class Observable(ABC):
     """Something measured while the fluid runs."""
 
     methods: ClassVar[tuple[str, ...]] = ()  # it is for, beside those that offer it
+    of_methods_alone: ClassVar[bool] = False  # whether it is for no others
     needs_fluid: ClassVar[bool] = True  # whether solutes alone cannot answer it
     in_open_box: ClassVar[bool] = False  # whether it can be told of particles far outside the box
     # whether its theory needs the transport coefficients of the fluid as it is, molecules and all

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
-from mesokit.spheres.expected.equilibrium import Equilibrium, still_walls
+from mesokit.spheres.expected.equilibrium import Equilibrium, still_walls, surfaces
 from mesokit.spheres.wall.solids import closed_axes
 
 if TYPE_CHECKING:
@@ -112,14 +112,29 @@ class DensityInSlices(Slices):
 
 
 class FlowInSlices(Slices):
-    """At rest, where nothing drives the spheres."""
+    """At rest, where nothing drives the spheres; along smooth walls they go on as they began."""
 
     answers = "velocity-profile"
 
-    def rests(self, component: int) -> bool:
-        """Whether nothing flows along an axis."""
-        held = not self.pull[component] or component in self.closed
-        return self.steady and held and still_walls(self.case)
+    def expected(self, component: int, found: float) -> float:
+        """The velocity along an axis: 0, the mean `found` where nothing changes it, or nan."""
+        if not (self.steady and still_walls(self.case)):
+            return math.nan
+        if component in self.closed:
+            return 0.0
+        if self.pull[component]:
+            return math.nan
+        holds = getattr(self.case.spheres, "thermostat", None) or self.holding
+        return 0.0 if holds or not (self.case.walls or any(self.pull)) else found
+
+    @property
+    def holding(self) -> bool:
+        """Whether walls, or what heats, take momentum along walls."""
+        rough = any(wall.closed_axes == () for wall in self.case.walls)
+        warm = any(surface.rule == "diffuse" for surface in surfaces(self.case))
+        turning = getattr(getattr(self.case.spheres, "collision", None), "rough", False)
+        bath = hasattr(getattr(self.case.spheres, "heating", None), "kT")
+        return rough or warm or turning or bath
 
 
 class TemperatureInSlices(Slices):
