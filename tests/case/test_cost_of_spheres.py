@@ -73,7 +73,9 @@ def test_grains_at_rest_have_more_others_on_their_lists():
     flying, _ = told(SoftSpheres(**GRAINS, pair=law))
     assert rows["run time"][1] == "estimate: 1 thread"
     # 25 ns and 20 for each of the 1.43 or, at 0.8 of the area, 3.88 others
-    assert fallen["seconds"] / flying["seconds"] == pytest.approx((25 + 77.6) / (25 + 28.5), rel=0.05)
+    assert fallen["seconds"] / flying["seconds"] == pytest.approx(
+        (25 + 77.6) / (25 + 28.5), rel=0.05
+    )
 
 
 def test_nothing_is_said_of_what_has_no_other_method():
