@@ -99,7 +99,7 @@ def test_ordered_flocks_have_a_guide_to_giant_fluctuations(noise):
     """A slope of 0.8 through the middle of the last points, dashed; not beside birds at random."""
     simulation = flock(noise=AngularNoise(noise), observe=OBSERVED)
     result = simulation["number-fluctuations"]
-    (ax,) = mesokit.plot(result).axes
+    (ax,) = result.plot().axes
     guides = [line for line in ax.lines if "slope 0.8" in str(line.get_label())]
     if noise > 6:
         assert not guides

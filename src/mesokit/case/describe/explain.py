@@ -108,7 +108,7 @@ def _everywhere(place: Place, definitions: Any, deep: int = 4) -> Iterator[Place
 
 def _deeper(place: Place, word: str, definitions: Any) -> list[str]:
     """Paths of keys of that name within the keys of a place, each once."""
-    found = {}
+    found: dict[str, None] = {}
     for table in place.tables.values():
         for key in table["properties"]:
             for inner in _inside(Place(place.path, place.node, {"": table}), key, definitions):
