@@ -62,22 +62,29 @@ def slope(places, diameters):
 
 
 def main():
-    """Draw three heaps, and the angle of repose against friction."""
-    figure, axes = plt.subplots(2, 2, figsize=(10, 5), layout="constrained")
+    """Draw four heaps, and the angle of repose against friction."""
+    rows = [[f"heap {k}", "angles"] for k in range(len(FRICTIONS))]
+    figure, axes = plt.subplot_mosaic(
+        rows, figsize=(10, 5), width_ratios=(1.8, 1), layout="constrained"
+    )
     measured = []
     for k, friction in enumerate(FRICTIONS):
         angles = []
         for seed in SEEDS:
             places, diameters = heap(friction, seed)
             angles.append(slope(places, diameters))
-            if seed == SEEDS[0] and k != 1:
-                panel(axes.flat[k - (k > 1)], places, diameters, friction)
+            if seed == SEEDS[0]:
+                panel(axes[f"heap {k}"], places, diameters, friction)
         measured.append((np.mean(angles), np.std(angles, ddof=1) / np.sqrt(len(angles))))
         print(f"friction {friction}: {measured[-1][0]:.1f} +- {measured[-1][1]:.1f} degrees")
-    ax = axes[1, 1]
+    for k in range(len(FRICTIONS) - 1):
+        axes[f"heap {k}"].tick_params(labelbottom=False)
+    axes[f"heap {len(FRICTIONS) - 1}"].set_xlabel("$x$ / diameter")
+    ax = axes["angles"]
     ax.errorbar(
-        FRICTIONS, *np.transpose(measured), fmt="o", color="black", mfc="white", label="measured"
-    )
+        FRICTIONS, *np.transpose(measured), fmt="o", color="black", mfc="white",
+        capsize=3, label=f"heaps, mean of {len(SEEDS)} $\\pm$ s.e.",
+    )  # fmt: skip
     line = np.linspace(0, 0.9, 100)
     ax.plot(
         line, np.degrees(np.arctan(line)), color="0.5", label=r"block on a slope: $\arctan\,\mu$"
@@ -101,8 +108,7 @@ def panel(ax, places, diameters, friction):
         PatchCollection(circles, facecolors=[str(s) for s in shades], edgecolors="none")
     )
     ax.set(xlim=(0, LENGTH), ylim=(0, 18), aspect="equal", ylabel="$y$ / diameter")
-    ax.set_title(rf"$\mu = {friction:g}$", fontsize=10, loc="left")
-    ax.set_xlabel("$x$ / diameter")
+    ax.set_title(rf"$\mu = {friction:g}$, {len(places)} disks", fontsize=10, loc="left")
 
 
 if __name__ == "__main__":

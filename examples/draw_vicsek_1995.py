@@ -47,9 +47,26 @@ def draw(ax, side, noise, steps):
     ax.set_yticks([0, side])
 
 
+def key(figure):
+    """A wheel: the colour of each heading."""
+    figure.get_layout_engine().set(rect=(0, 0, 0.87, 1))
+    ax = figure.add_axes((0.892, 0.44, 0.08, 0.1), projection="polar")
+    ax.set_in_layout(False)
+    edges = np.linspace(-np.pi, np.pi, 257)
+    ax.pcolormesh(edges, (0.55, 1), np.arange(256)[None], cmap=colours(), rasterized=True)
+    ax.set_title("heading", fontsize=9, pad=16)
+    ax.set_xticks(np.arange(4) * np.pi / 2, ["$+x$", "$+y$", "$-x$", "$-y$"], fontsize=7)
+    ax.tick_params(pad=-3)
+    ax.set_yticks([])
+    ax.set_ylim(0, 1)
+    ax.spines["polar"].set_visible(False)
+    ax.grid(False)
+
+
 def main():
     """Draw all four."""
-    figure, axes = plt.subplots(2, 2, figsize=(7, 7.2), layout="constrained")
+    figure, axes = plt.subplots(2, 2, figsize=(8, 7.2), layout="constrained")
+    key(figure)
     for ax, (name, panel) in zip(axes.flat, PANELS.items(), strict=True):
         draw(ax, *panel)
         side, noise, steps = panel

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,10 @@ from mesokit import (
 )
 
 BLOCKS = 20
+CAPTION = (
+    "Disks: pressure beside the virial series, and what it is over theory, with standard errors "
+    "(above they are smaller than the points). Grey: the series ends too soon there."
+)
 UNITS = "diameter of the largest kind, kT at the start and mass of a sphere are 1"
 # 870 disks in a square box, beta P d^2: Li, Nishikawa, Hoellmer, Carillo, Maggs and Krauth (2022)
 DISKS = {0.67: 7.986779, 0.68: 8.513249, 0.69: 8.969898, 0.70: 9.12966, 0.71: 9.06469}
@@ -107,16 +112,27 @@ def two_dimensions(page: Page) -> None:
             worst = max(worst, abs(z / known - 1))
     page.table(rows)
     page.check(f"Z within {100 * worst:.2f} % up to 0.5 (0.3 %)", worst < 0.003)
-    fig, ax = plt.subplots(figsize=(5, 3.6))
+    page.figure(pressures(densities, measured), CAPTION)
+
+
+def pressures(densities: Sequence[float], measured: Sequence[tuple[float, float]]) -> Any:
+    """A figure of Z, with its error, at some densities; below what it is over theory."""
+    fig, (ax, rest) = plt.subplots(
+        2, 1, figsize=(5, 5), sharex=True, gridspec_kw={"height_ratios": (3, 2)}
+    )
     line = np.linspace(0.05, 0.65, 60)
     ax.plot(line, [theory.compressibility(x, 2) for x in line], color=RED, label="virial series")
     values, errors = np.array(measured).T
-    ax.errorbar(densities, values, errors, fmt="o", color=BLUE, mfc="white", label="measured")
-    ax.set_xlabel("packing fraction")
+    look = {"fmt": "o", "color": BLUE, "mfc": "white"}
+    ax.errorbar(densities, values, errors, label="measured", **look)
     ax.set_ylabel(r"$P/(n k_B T)$")
     ax.legend()
-    caption = "Disks: pressure beside the virial series; error bars are smaller than the points."
-    page.figure(fig, caption)
+    known = np.array([theory.compressibility(x, 2) for x in densities])
+    rest.axhline(0, color=RED)
+    rest.errorbar(densities, 100 * (values / known - 1), 100 * errors / known, capsize=3, **look)
+    rest.axvspan(0.53, line[-1], color="0.9", zorder=0)
+    rest.set(xlabel="packing fraction", ylabel="over theory\n- 1  [%]", xlim=(line[0], line[-1]))
+    return fig
 
 
 def many_disks(page: Page) -> None:

@@ -53,7 +53,7 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "no mass": ({"diameter = 1": "mass = 0"}, ("kinds[#1].mass = 0", "above 0")),
     "large diameter": ({"diameter = 1": "diameter = 11", "[20, 10.5]": "[40, 10.5]",
                         "number = 30": "number = 1"}, ("spheres", "a diameter of 11", "walls")),
-    "no time": ({"timestep = 0.1": "timestep = 0"}, ("spheres.timestep = 0", "at least")),
+    "no time": ({"timestep = 0.1": "timestep = 0"}, ("spheres.timestep = 0", "above 0")),
     "negative kT": ({"timestep = 0.1": "kT = -1"}, ("spheres.kT = -1", "at least 0")),
     "rule": ({'"hard"': '"soft"'}, ("spheres.collision.rule = 'soft'", "'hard'")),
     "bouncing up": ({"restitution = 0.9": "restitution = 1.1"}, ("at most 1",)),

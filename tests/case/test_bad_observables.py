@@ -70,6 +70,7 @@ BAD: list[tuple[str, dict[str, str], str, str, str, tuple[str, ...]]] = [
     (HARD, {}, "", "mean-square-displacement", "max_lag = 0", ("max_lag = 0", "at least 1")),
     (HARD, {}, "", "mean-square-displacement", 'components = ["z"]', ("components", "'z'")),
     (SOFT, {}, "", "mean-square-displacement", 'of = "beads"', ("of", "'particles'")),
+    (HARD, KINDS, "", "radial-distribution", 'of = "big"', ("of = 'big'", "chosen by `kinds`")),
     (SOFT, {}, PLATES.format("x") + PLATES.format("y"), "mean-square-displacement", "",
      ("observe[#1]", "every axis is closed")),
     (HARD, {}, "", "free-times", "bins = 48", ("bins = 48", "power of two")),

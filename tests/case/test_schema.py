@@ -9,6 +9,7 @@ import pytest
 
 import mesokit
 from mesokit import CaseError, component, param
+from mesokit.case.describe import keys
 from mesokit.case.registry import FAMILIES
 from mesokit.cli import main
 from mesokit.method import templates
@@ -132,11 +133,23 @@ def test_every_key_of_a_case_has_a_meaning() -> None:
         ("run.sed", "did you mean 'seed'?"),
         ("wakes", "did you mean 'wake'?"),
         ("run.seed.x", "run.seed has no keys inside"),
+        ("wall.contact", "'wall.surface.contact', 'wall.lower.contact' or 'wall.upper.contact'?"),
     ],
 )
 def test_unknown_keys_are_refused(path: str, words: str) -> None:
     with pytest.raises(CaseError, match=words.replace("?", r"\?")):
         mesokit.explain(path)
+
+
+def test_what_two_methods_take_is_told_once_where_it_is_the_same() -> None:
+    (spheres,) = mesokit.explain("spheres")
+    takes = {key.name: key.takes for key in spheres.keys}
+    assert takes["timestep"] == "number above 0, at most 1000000000"
+    assert takes["spin_kT"] == "number at least 0, at most 1000000000"
+    options = [{"type": "number", "minimum": m, "title": f"method '{m}'"} for m in (0, 1)]
+    assert keys.takes({"anyOf": options}, {}) == (
+        "method '0': number at least 0; method '1': number at least 1"
+    )
 
 
 def test_help_shows_the_keys() -> None:

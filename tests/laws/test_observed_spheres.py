@@ -77,6 +77,29 @@ def test_contact_time_makes_a_known_share_elastic(product):
     assert share == pytest.approx(theory.elastic_share(rate, product / rate), rel=0.02)
 
 
+def test_few_elastic_collisions_have_the_error_of_poisson():
+    """None seen is no measurement of a share of 1e-7, and of some ten it is 10 +- sqrt(10)."""
+    for contact_time, expected in ((1e-8, False), (1e-3, True)):
+        _, elastic, _ = observed(
+            gas(
+                [20, 20],
+                50,
+                observe=[CollisionRate(every=1)],
+                packing_fraction=0.25,
+                timestep=0.5,
+                collision=HardCollision(contact_time=contact_time),
+            )
+        )
+        assert np.isfinite(elastic.expected) == expected
+        assert "seen" in elastic.note and "expected" in elastic.note
+        if expected:
+            assert abs(elastic.deviation) < 4
+            assert "Poisson" in elastic.note
+            assert elastic.error > 0.15 * elastic.expected
+        else:
+            assert elastic.measured == 0 < elastic.error < 1e-3
+
+
 def test_kicked_inelastic_spheres_have_the_fourth_cumulant_of_theory():
     simulation = gas(
         [40, 40, 40],

@@ -375,6 +375,20 @@ def test_a_legend_above_is_no_wider_than_its_axes():
     assert ax.bbox.width > 0.8 * figure.bbox.width
 
 
+def test_theory_of_what_has_names_is_a_mark_for_each():
+    """No line joins names, and no name stands beyond the frame."""
+    names = np.array(["virial", "collision rate"])
+    result = Result(
+        quantity="equation-of-state", name="z", x={"by": names}, value=np.array([4.1, 4.2]),
+        error=np.full(2, 0.1), label="Z", units={"value": "", "by": ""}, expected=np.full(2, 4.15),
+        theory="virial series", comparisons=(), samples=9,
+    )  # fmt: skip
+    (ax,) = plot(result).axes
+    (theory,) = (line for line in ax.lines if "virial series" in str(line.get_label()))
+    assert theory.get_linestyle() == "None" and theory.get_marker() == "_"
+    assert ax.get_xlim() == (-0.5, 1.5)
+
+
 def test_theory_of_several_curves_says_which_it_is_of():
     time = np.arange(3.0)
     value = np.stack([1 - 0.2 * time, 0.5 - 0.1 * time], axis=1)

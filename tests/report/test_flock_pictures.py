@@ -8,6 +8,7 @@ from matplotlib.quiver import Quiver
 import mesokit
 from mesokit import Box, CaseError, Disk, Run, RunError, Simulation, Trajectory
 from mesokit.method.flock import (
+    AngularNoise,
     ClusterSizes,
     DensityBands,
     Flock,
@@ -20,9 +21,12 @@ OBSERVED = [PolarOrder(every=1), NumberFluctuations(every=1), DensityBands(every
 OBSERVED += [ClusterSizes(every=1)]
 
 
-def flock(size=(16, 16), output=None, fields=("position", "velocity"), steps=20, **parts):
+def flock(
+    size=(16, 16), output=None, fields=("position", "velocity"), steps=20, noise=None, **parts
+):
     simulation = Simulation(
-        run=Run(steps=steps, method="flock"), box=Box(size), flock=Flock(density=1), output=output,
+        run=Run(steps=steps, method="flock"), box=Box(size), output=output,
+        flock=Flock(density=1) if noise is None else Flock(density=1, noise=noise),
         trajectory=Trajectory(every=10, fields=fields), threads=1, **parts,
     )  # fmt: skip
     simulation.run()
@@ -88,3 +92,20 @@ def test_every_result_has_a_figure(tmp_path):
         assert figure.axes
         figure.savefig(tmp_path / f"{result.name}.png")
         assert result.plot(mpl.figure.Figure().subplots()) is not None
+
+
+@pytest.mark.parametrize("noise", [1.0, 2 * np.pi])
+def test_ordered_flocks_have_a_guide_to_giant_fluctuations(noise):
+    """A slope of 0.8 through the middle of the last points, dashed; not beside birds at random."""
+    simulation = flock(noise=AngularNoise(noise), observe=OBSERVED)
+    result = simulation["number-fluctuations"]
+    (ax,) = mesokit.plot(result).axes
+    guides = [line for line in ax.lines if "slope 0.8" in str(line.get_label())]
+    if noise > 6:
+        assert not guides
+        return
+    (guide,) = guides
+    x, y = np.log(guide.get_xydata()).T
+    np.testing.assert_allclose(np.diff(y) / np.diff(x), 0.8)
+    assert y.mean() == pytest.approx(np.log(result.value[-4:]).mean())
+    assert guide.get_linestyle() == "--"

@@ -242,6 +242,8 @@ class TestColours:
             frames = frames_of(places, velocity=np.array([hot, factor * hot]))
             figure = picture(case_of((9, 5), number=2), {}, frames)
             assert figure.axes[1].get_ylabel().startswith(label)
+            words = " ".join(text.get_text() for text in figure.texts)
+            assert ("root mean square speed $0.88$" in words) == (label == "speed over")
         _, fills, (low, high) = self.numbers(case_of((9, 5), number=2), frames, "relative-speed")
         usual = np.sqrt(12.5)
         np.testing.assert_allclose(

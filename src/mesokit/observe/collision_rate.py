@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.engine import RunningSpheres
 
+MANY = 25  # collisions, of which blocks know the error
+ENOUGH = 5  # to be expected, where none has been seen, for something to be compared
 KINDS = ("pairs", "walls", "elastic by contact time")
 
 
@@ -44,11 +46,19 @@ class CollisionRate(Observable):
         return CollisionRateAccumulator(self, case)
 
 
+class Few(NamedTuple):
+    """What is known of the rate of rare collisions: the least error, theory, and why."""
+
+    error: float = 0.0
+    expected: float = math.nan
+    note: str = ""
+
+
 class CollisionRateAccumulator:
     """Block averages of what has happened between two samples."""
 
     def __init__(self, observable: CollisionRate, case: Case) -> None:
-        self.name, self.case = observable.label, case
+        self.name, self.case, self.every = observable.label, case, observable.every
         self.blocks = Blocks((5,))  # three rates, the root of the temperature, the mean speed
         self.before = np.full(6, np.nan)  # time, three counts, root of temperature, mean speed
 
@@ -81,13 +91,16 @@ class CollisionRateAccumulator:
         """The three rates."""
         value, error = self.blocks.mean(), self.blocks.error()
         known = np.array([self.expected(float(value[3])), math.nan, math.nan])
-        contact_time = self.case.spheres.collision.contact_time
+        contact_time, few = self.case.spheres.collision.contact_time, Few()
         if contact_time and not self.case.walls:
             known[2] = known[0] * theory.elastic_share(float(value[0]), contact_time)
+            few = self.few(float(value[2]), float(known[2]))
+            error[2], known[2] = max(error[2], few.error), few.expected
         # that of a contact time counts walls as well, which are not told apart
         shown = [0, 1] if self.case.walls else [0, 2] if contact_time else [0]
         drawn = 2 if self.case.walls else 1
         note = "approximate: molecular chaos" if not self.case.spheres.collision.elastic else ""
+        notes = [note, note, "; ".join(filter(None, (note, few.note)))]
         listed = [
             Comparison(
                 f"collisions per time, {KINDS[k]}",
@@ -95,7 +108,7 @@ class CollisionRateAccumulator:
                 float(error[k]),
                 float(known[k]),
                 "1/tau",
-                note,
+                notes[k],
             )
             for k in shown
         ]
@@ -115,6 +128,20 @@ class CollisionRateAccumulator:
             comparisons=tuple(listed) if self.blocks.count else (),
             samples=self.blocks.count,
         )
+
+    def few(self, rate: float, known: float) -> Few:
+        """Of few collisions blocks do not know the error: it is Poisson's then, of as many as there
+        are or are to be expected. Where none has been seen and few are, nothing can be compared."""
+        spacing = self.every * float(self.case.spheres.timestep)
+        each = 2 / (self.case.particles * max(1, self.blocks.count) * spacing)  # rate of one
+        seen, awaited = rate / each, known / each
+        if max(seen, 0.0 if math.isnan(awaited) else awaited) >= MANY:
+            return Few(expected=known)
+        text = f"{round(seen)} seen, {awaited:.2g} expected" if known >= 0 else f"{seen:.0f} seen"
+        if seen < 0.5 and not awaited >= ENOUGH:
+            return Few(each, note=f"{text}: the error is that of one")
+        most = max(seen, awaited) if known >= 0 else seen
+        return Few(math.sqrt(most) * each, known, f"{text}: Poisson's error")
 
     def free_path(self, note: str) -> Comparison:
         """Mean speed over the rate, which Maxwell's velocities relate to one another."""

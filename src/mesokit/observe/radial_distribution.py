@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import field_validator
 
 from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Many
@@ -66,6 +67,13 @@ class RadialDistribution(Observable):
     )
     bins: int = param(50, doc="bins of the distance", ge=1, le=10_000)
     particles: int = param(400, doc="of the fluid, those looked at, others at each sample", ge=2)
+
+    @field_validator("of", mode="before")
+    @classmethod
+    def _no_kind(cls, of: Any) -> Any:
+        if isinstance(of, str) and of not in ("beads", "particles"):
+            raise ValueError("expected 'beads' or 'particles'; kinds are chosen by `kinds`")
+        return of
 
     def check(self, case: Case) -> None:
         """Raise CaseError in a box that is not periodic, and without a pair to look at."""

@@ -26,6 +26,7 @@ STEPS = 50  # of soft spheres in a contact
 OVERLAP = 0.01  # in diameters: of soft spheres that are as good as hard
 FLIGHTS = 10  # contact times in a free flight, at least, of these
 AT_REST = ("cheaper", "soft spheres", "once grains rest: hard ones collide ever more often")
+AT_REST_FILLED = {2: 0.8, 3: 0.6}  # of the volume of a bed
 DENSEST = 0.7  # packing fraction up to which rates are estimated
 
 

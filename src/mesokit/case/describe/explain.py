@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from mesokit.case.component import nearest
+from mesokit.case.component import nearest, one_of
 from mesokit.case.describe.keys import Key, keys_of, parts_of
 from mesokit.case.describe.schema import schema
 from mesokit.errors import CaseError
@@ -106,6 +106,17 @@ def _everywhere(place: Place, definitions: Any, deep: int = 4) -> Iterator[Place
                     yield from _everywhere(found, definitions, deep - 1)
 
 
+def _deeper(place: Place, word: str, definitions: Any) -> list[str]:
+    """Paths of keys of that name within the keys of a place, each once."""
+    found = {}
+    for table in place.tables.values():
+        for key in table["properties"]:
+            for inner in _inside(Place(place.path, place.node, {"": table}), key, definitions):
+                if any(word in part["properties"] for part in inner.tables.values()):
+                    found[f"{place.path}.{key}.{word}"] = None
+    return list(found)
+
+
 def _explained(place: Place, definitions: Any) -> Explanation:
     if place.key is None:  # a part
         meaning, keys = place.node.get("description", ""), keys_of(place.node, definitions)
@@ -136,5 +147,8 @@ def _unknown(path: str, word: str, place: Place, definitions: Any) -> CaseError:
     known = list(dict.fromkeys(known))
     if not known:
         return CaseError(f"{path}: {place.path} has no keys inside")
+    deeper = [] if not place.path else _deeper(place, word, definitions)
+    if deeper:
+        return CaseError(f"{path}: unknown key; did you mean {one_of(deeper)}?")
     hint = nearest(word, known) or f"; valid here: {', '.join(known)}"
     return CaseError(f"{path}: unknown key{hint}")

@@ -75,7 +75,11 @@ def takes(node: Schema, definitions: Mapping[str, Schema]) -> str:
             found = f"table with {tag} = {_listed(words)}"
         return f"list of {plural(found)}" if "items" in node else found
     if "anyOf" in node:
-        return _listed([takes(each, definitions) for each in node["anyOf"]])
+        words = [takes(each, definitions) for each in node["anyOf"]]
+        if len(set(words)) > 1 and all("title" in each for each in node["anyOf"]):
+            pairs = zip(node["anyOf"], words, strict=True)
+            return "; ".join(f"{each['title']}: {told}" for each, told in pairs)
+        return _listed(list(dict.fromkeys(words)))
     if "items" in node:
         number = f"{node['minItems']} " if node.get("minItems", 0) == node.get("maxItems") else ""
         return f"list of {number}{plural(takes(node['items'], definitions))}"

@@ -76,7 +76,11 @@ def _any_of_both(
                     told = {
                         name: _told(each["properties"][inside]) for name, each in tables.items()
                     }
-                    joint[inside] = {"anyOf": [known, inner], "description": _told_by(told)}
+                    options = [
+                        {**each["properties"][inside], "title": f"method '{name}'"}
+                        for name, each in tables.items()
+                    ]
+                    joint[inside] = {"anyOf": options, "description": _told_by(told)}
             else:
                 joint[inside] = {**inner, "description": f"method '{name}': {_told(inner)}"}
     title, names = key.capitalize(), " and ".join(f"'{name}'" for name in both)

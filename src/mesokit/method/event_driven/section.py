@@ -26,7 +26,7 @@ class HardSpheres(Spheres):
     1019
     """
 
-    timestep: float = param(0.1, doc="time of a step", unit="time", ge=1e-9, le=1e9)
+    timestep: float = param(0.1, doc="time of a step", unit="time", gt=0, le=1e9)
     collision: SphereCollision = param(
         HardCollision(), doc="what two spheres do to one another when they touch"
     )

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 RATE_OF_POTENTIALS = 2.5e6  # sphere-steps per second and core (docs/benchmark)
 USUAL_NEIGHBOURS = 66.0  # within the reach, where this was measured
+FEWEST = 500  # spheres for each thread that gain by it
 DEEP = 0.05  # overlap, in diameters, beyond which spheres are not hard
 LONG = 4.0  # steps of the usual length beyond which a fluid of a potential loses its energy
 
@@ -56,15 +57,21 @@ def summary(case: Case, threads: int | None = None) -> Summary:
             ),
             ("overlap", number(overlap, "diameters"), "expected at that speed"),
         ]
-        listed = density * ball_volume(box.dimension, 2 * cost.LIST_REACH * reach)
+        # grains at rest lie closer than where they fall from, and have more others on their lists
+        rests = cost.comes_to_rest(case, _loses(case), section.thermostat is not None)
+        closer = max(phi, cost.AT_REST_FILLED[box.dimension]) / phi if rests else 1.0
+        listed = closer * density * ball_volume(box.dimension, 2 * cost.LIST_REACH * reach)
         of_core = steps * cost.soft_seconds(case.particles, listed, section.turns)
     else:
         within = density * ball_volume(box.dimension, 2 * reach)
         rate = RATE_OF_POTENTIALS * USUAL_NEIGHBOURS / max(within, 10.0)
         of_core = steps * case.particles / rate
-    seconds = of_core / min(cores, max(case.particles // 500, 1))
+    used = min(cores, max(case.particles // FEWEST, 1))
+    seconds = of_core / used
     numbers["seconds"] = seconds
-    rows.append(("run time", duration_text(max(seconds, 0.1)), f"estimate: {cores} threads"))
+    few = f", as fast as {used}: few spheres" if used < cores else ""
+    told = f"estimate: {cores} thread{'s' * (cores > 1)}{few}"
+    rows.append(("run time", duration_text(max(seconds, 0.1)), told))
     rows += _beside(case, steps, of_core, numbers)
     rows += [
         ("memory", size_text(memory), "estimate"),

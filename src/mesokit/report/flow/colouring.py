@@ -13,6 +13,7 @@ from mesokit.errors import CaseError, RunError
 from mesokit.method.protocol import method_of
 from mesokit.observe.hexatic_order import psi_6
 from mesokit.report import style
+from mesokit.report.caption import rounded, symbols
 from mesokit.report.flow.data import Array
 from mesokit.report.flow.scale import Scale
 from mesokit.report.style import labelled
@@ -40,6 +41,7 @@ class Colouring(NamedTuple):
     """What each sphere's number is, the scale of numbers up to a largest, and the fields it needs.
 
     `all`: whether all spheres must be in the trajectory. `counted`: whether numbers are whole.
+    `tells`: what of a frame its numbers do not show.
     """
 
     numbers: Callable[[Frame], Array]
@@ -47,6 +49,7 @@ class Colouring(NamedTuple):
     needs: tuple[str, ...] = ()
     all: bool = False
     counted: bool = False
+    tells: Callable[[Frame], str] = lambda now: ""
 
 
 def speed(now: Frame) -> Array:
@@ -56,9 +59,17 @@ def speed(now: Frame) -> Array:
 
 def relative(now: Frame) -> Array:
     """Over the root mean square of all."""
-    found = speed(now)
-    usual = float(np.sqrt((found**2).mean()))
+    found, usual = speed(now), _usual(now)
     return found / usual if usual > 0 else found
+
+
+def _usual(now: Frame) -> float:
+    return float(np.sqrt((speed(now) ** 2).mean()))
+
+
+def _told(now: Frame) -> str:
+    """The speed that relative ones are of."""
+    return f"root mean square speed ${rounded(_usual(now), 2)}$ {symbols('a/tau')}"
 
 
 def spin(now: Frame) -> Array:
@@ -149,7 +160,7 @@ def _steps(colours: Any, names: list[str], label: str) -> Scale:
 
 COLOURS: dict[str, Colouring] = {
     "speed": Colouring(speed, _speeds, ("velocity",)),
-    "relative-speed": Colouring(relative, _relative, ("velocity",)),
+    "relative-speed": Colouring(relative, _relative, ("velocity",), tells=_told),
     "spin": Colouring(spin, _spins, ("spin",)),
     "neighbours": Colouring(neighbours, _counts, all=True, counted=True),
     "psi6": Colouring(hexatic, _order, all=True),

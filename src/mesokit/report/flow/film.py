@@ -151,6 +151,8 @@ def _pictures(
         beads = solutes.at(source.time[frame]) if solutes else None
         flow = replace(source.flow(np.array([frame])), smoothing=width, beads=beads)
         stamp = f"$t = {rounded(source.time[frame])}$ {symbols('tau')}"
+        if flow.spheres is not None and flow.spheres.tells:
+            stamp += f", {flow.spheres.tells}"
         drawn.show([flow] * len(drawn.panels), stamp)
         canvas.draw()
         yield np.asarray(canvas.buffer_rgba())[..., :3]

@@ -28,6 +28,7 @@ class Spheres:
     repeats: vectors (2,) by which all of it repeats, the first of them 0.
     time: of the frame.
     note: what of the box is shown.
+    tells: what colours do not show of this time.
     plates: that are not where they are at rest, see `moving_plates`.
     """
 
@@ -42,6 +43,7 @@ class Spheres:
     time: float
     note: str = ""
     plates: tuple[Any, ...] = ()
+    tells: str = ""
 
     def seen(
         self, low: tuple[float, float], high: tuple[float, float]

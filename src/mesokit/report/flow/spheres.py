@@ -58,6 +58,7 @@ class SphereSource:
             repeats=self._repeats(float(self.time[frame])),
             time=float(self.time[frame]),
             plates=plates_at(self.case, float(self.time[frame])),
+            tells=colouring.tells(now) if colouring else "",
         )
         if box.dimension == 3:
             spheres = self._deep(spheres, self.towards * position[:, self.third])

@@ -101,7 +101,7 @@ def _spheres(flow: Flow) -> list[str]:
     """When spheres are where they are, and which of them are shown."""
     if flow.spheres is None:
         return []
-    return [rf"at $t = {rounded(flow.spheres.time)}\,\tau$", flow.spheres.note]
+    return [rf"at $t = {rounded(flow.spheres.time)}\,\tau$", flow.spheres.tells, flow.spheres.note]
 
 
 def _few(case: Case, panels: Sequence[Panel], flows: Sequence[Flow]) -> str:

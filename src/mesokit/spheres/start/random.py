@@ -19,8 +19,8 @@ class RandomStart(SphereStart):
     """Anywhere, none on another, off the walls.
 
     Where they are too many to be put in one by one, they begin small and grow while they fly and
-    collide (Lubachevsky and Stillinger 1990): a disordered start at any packing fraction of a
-    fluid.
+    collide (Lubachevsky and Stillinger 1990): from a packing fraction of 0.2 (2D) or 0.1 (3D), by
+    0.05 of a thermal velocity, to that of the case.
     """
 
     rule: Literal["random"] = tag("random")

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 LARGEST = 0.25  # side of the largest squares unless said, in the shortest length of the box
 FITTED = 4  # of the largest, whose exponent is fitted
 FEWEST = 3  # sides for an exponent
+ORDERED = 0.8  # exponent of large ordered flocks in 2D
 MOST = 2**24  # squares
 
 
@@ -100,7 +101,7 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
         found = self.comparisons() if self.blocks.count and len(self.sides) >= FEWEST else []
         return Result(
             quantity="number-fluctuations",
-            drawing="structure factor",
+            drawing="number fluctuations",
             name=self.name,
             x={"mean number": self.mean},
             value=value,
@@ -111,8 +112,19 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
             theory="birds at random",
             comparisons=tuple(found),
             samples=self.blocks.count,
-            extra={"sides": np.array(self.sides)},
+            extra={"sides": np.array(self.sides), "guide": math.nan if self.random else self.slope},
         )
+
+    @property
+    def random(self) -> bool:
+        """Whether birds fly at random."""
+        flock = self.case.flock
+        return blind(flock.noise, self.case.box.dimension) and flock.cohesion is None
+
+    @property
+    def slope(self) -> float:
+        """The exponent of large ordered flocks, nan in 3D."""
+        return ORDERED if self.case.box.dimension == 2 else math.nan
 
     def comparisons(self) -> list[Comparison]:
         """The exponent: slope of the logarithms, by least squares."""
@@ -125,15 +137,13 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
             return []
         at = np.where(use, variance.value, 1.0)
         slope = 0.5 * float(weight @ np.log(at))
-        d = case.box.dimension
-        random = blind(case.flock.noise, d) and case.flock.cohesion is None
         expected, note = math.nan, "1/2 without order"
-        if random:
+        if self.random:
             share = self.mean / case.particles
             expected = 0.5 * float(weight @ np.log(self.mean * (1 - share)))
             note = "birds at random"
-        elif d == 2:
-            expected, note = 0.8, "approximate: large ordered flocks (Toner and Tu 1995)"
+        elif case.box.dimension == 2:
+            expected, note = self.slope, "approximate: large ordered flocks (Toner and Tu 1995)"
         measured = variance.scalar(slope, 0.5 * weight / at)
         return [Comparison("exponent of number fluctuations", *measured, expected, "", note)]
 
