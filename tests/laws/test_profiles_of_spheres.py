@@ -29,6 +29,8 @@ from mesokit import (
     WallForce,
     theory,
 )
+from mesokit.method.event_driven import window
+from mesokit.method.event_driven.machine.groups import LAST
 
 
 def observed(simulation, steps=None):
@@ -251,6 +253,22 @@ class TestFreeTimes:
         assert abs(mean.deviation) < 3.5 and mean.error < 4e-3 * mean.expected
         assert spread.note.startswith("approximate")
         assert spread.measured == pytest.approx(spread.expected, rel=0.05)
+
+    def test_flights_and_what_has_passed_of_those_that_go_on_fill_the_time(self, monkeypatch):
+        """Exactly, and over many windows of the clock."""
+        monkeypatch.setattr(window, "COLLISIONS", 3.0)
+        engine = gas([12, 12], 0, (), [FreeTimes()], packing_fraction=0.3, timestep=0.1).engine
+
+        def under_way():
+            return engine.n * engine.system.now - engine.system.spheres.body[:, LAST].sum()
+
+        engine.advance(50)
+        engine.end_warmup()
+        before = under_way()
+        engine.advance(100)
+        assert engine.system.windows > 10
+        flown = engine.free_times[2][0]
+        assert flown + under_way() - before == pytest.approx(engine.n * 10.0, rel=1e-12)
 
     def test_who_asks_changes_no_bit(self):
         asked, plain = (

@@ -130,10 +130,10 @@ class Ball:
     @classmethod
     def of(cls, case: Case, rows: Array, gravity: float, stride: int) -> Ball | None:
         """The ball of a case, None where theory knows nothing of what it does."""
-        section = case.spheres
-        given: Any = getattr(section, "collision", None)
-        constant = given is not None and hasattr(given, "restitution") and given.reach <= 1
-        if case.particles != 1 or not constant or section.heating or len(case.walls) != 1:
+        section, given = case.spheres, getattr(case.spheres, "collision", None)
+        if given is None or not hasattr(given, "restitution") or given.reach > 1:
+            return None
+        if case.particles != 1 or section.heating or len(case.walls) != 1:
             return None
         plates = case.walls[0]
         floor = plates.lower if gravity < 0 else plates.upper
