@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from refusal import refused
 
+from mesokit import Box, Case, CaseError, HardSpheres, Run, Simulation, SoftSpheres
 from mesokit.cli import main
 
 GOOD = """
@@ -102,8 +103,6 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
           "surface = { contact = { amplitude = 0.1, frequency = 1 } }\n", "10.5": "10",
           '"lattice"': '"random"', "[0, -1]": "[0, 0]"},
          ("wall[#1].surface.contact.amplitude = 0.1: only plates",)),
-    "more than the memory": ({"number = 30": "number = 2_000_000_000\npacking_fraction = 0.3"},
-                             ("spheres.number = 2000000000: needs 700 GB of memory",)),
     "density beyond all numbers": ({"number = 30": "density = 1e300"},
                                    ("spheres.density = 1e+300", "at most 1e+15")),
     "misspelt contact": ({"restitution = 0.8": "restitusion = 0.8"}, ("restitusion: unknown key",)),
@@ -139,3 +138,14 @@ def test_bad_case_is_refused(
     for words in expected:
         assert words in message
     assert sorted(p.name for p in tmp_path.iterdir()) == ["bad.toml"]
+
+
+@pytest.mark.parametrize(
+    ("method", "section"), [("event-driven", HardSpheres), ("soft-spheres", SoftSpheres)]
+)
+def test_more_than_the_memory_is_refused_where_a_run_begins(method, section):
+    """And not where a case is read: it may be one for a larger machine."""
+    spheres = section(number=2_000_000_000)
+    case = Case(run=Run(1, method=method), box=Box([60000, 60000]), spheres=spheres)
+    with pytest.raises(CaseError, match=r"spheres\.number = 2000000000: needs .* of memory, this"):
+        Simulation(case)

@@ -76,9 +76,7 @@ class Spheres:
             raise CaseError(
                 f"spheres.gravity = {show(self.gravity)}: expected {d} numbers, one for each axis"
             )
-        count = self.count(box)
-        key = next((key for key in AMOUNTS if getattr(self, key) is not None), AMOUNTS[-1])
-        where, given = f"spheres.{key}", getattr(self, key)
+        count, (where, given) = self.count(box), self._amount()
         if not 1 <= count <= MOST_PARTICLES:
             said = where if given is None else f"{where} = {show(given)}"
             raise CaseError(
@@ -89,9 +87,18 @@ class Spheres:
                 f"spheres: {count_text(count)} of these diameters would fill "
                 f"{self.fraction(box):.3g} of the box; expected less than 1"
             )
-        require_memory(where, count if given is None else given, count * self.bytes_each)
         if self.hard:
             self.require_room(box)
+
+    def _amount(self) -> tuple[str, float | None]:
+        """The key that says how many there are, and what it says."""
+        key = next((key for key in AMOUNTS if getattr(self, key) is not None), AMOUNTS[-1])
+        return f"spheres.{key}", getattr(self, key)
+
+    def require_memory(self, box: Box) -> None:
+        """Raise CaseError where this machine cannot hold them: when a run begins, not before."""
+        count, (where, given) = self.count(box), self._amount()
+        require_memory(where, count if given is None else given, count * self.bytes_each)
 
     def require_room(self, box: Box) -> None:
         """Raise CaseError where equal spheres that do not overlap can never be so many."""

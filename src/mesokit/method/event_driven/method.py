@@ -33,6 +33,7 @@ def _first_state(case: Case, arrays: Mapping[str, Any]) -> Started:
 
 
 def _engine(case: Case, threads: int, measures: Sequence[str]) -> EventDriven:
+    case.spheres.require_memory(case.box)
     return EventDriven(case, threads, measures)
 
 

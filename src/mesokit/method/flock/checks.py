@@ -33,6 +33,14 @@ def check(case: Case) -> None:
             raise CaseError(message)
 
 
+def room_in_memory(case: Case) -> None:
+    """Raise CaseError where this machine cannot hold them: when a run begins, not before."""
+    given = case.flock
+    key = "density" if given.number is None else "number"
+    needed = given.birds(case.box) * BYTES[case.box.dimension]
+    require_memory(f"flock.{key}", getattr(given, key) or DENSITY, needed)
+
+
 def _birds(case: Case) -> Iterator[str]:
     given, least = case.flock, min(case.box.size)
     birds = given.birds(case.box)
@@ -42,12 +50,6 @@ def _birds(case: Case) -> Iterator[str]:
             f"flock.{key} = {show(getattr(given, key))}: {count_text(birds)} birds in this box; "
             f"expected 1 to {MOST_BIRDS}"
         )
-    key = "density" if given.number is None else "number"
-    require_memory(
-        f"flock.{key}",
-        getattr(given, key) or DENSITY,
-        birds * BYTES[case.box.dimension],
-    )
     way = given.speed * given.timestep
     if way > LONGEST_WAY * least:
         yield (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,9 +12,9 @@ from mesokit.case.component import show
 from mesokit.case.trajectory import Group, Kind
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import Solids, solids_of
-from mesokit.method.flock.checks import check
+from mesokit.method.flock.checks import check, room_in_memory
 from mesokit.method.flock.displacement import Displacement
-from mesokit.method.flock.engine.flocks import Flocks, engine
+from mesokit.method.flock.engine.flocks import Flocks
 from mesokit.method.flock.observe import OBSERVABLES
 from mesokit.method.flock.section import KEYS, Sections
 from mesokit.method.flock.start import FirstState, first_state
@@ -43,6 +43,11 @@ def columns(case: Case) -> Columns:
         return {name: told[name] for name in wanted}
 
     return Columns(names, names[:1], read)
+
+
+def _engine(case: Case, threads: int, measures: Sequence[str]) -> Flocks:
+    room_in_memory(case)
+    return Flocks(case, threads)
 
 
 def _start(engine: Flocks, state: FirstState) -> None:
@@ -90,7 +95,7 @@ METHOD = Method(
     missing_files=_missing_files,
     arrays=("positions", "velocities"),
     first_state=first_state,
-    engine=engine,
+    engine=_engine,
     start=_start,
     log=columns,
 )

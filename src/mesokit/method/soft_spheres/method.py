@@ -32,6 +32,7 @@ def _first_state(case: Case, arrays: Mapping[str, Any]) -> Started:
 
 
 def _engine(case: Case, threads: int, measures: Sequence[str]) -> SoftEngine:
+    case.spheres.require_memory(case.box)
     return SoftEngine(case, threads)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
@@ -57,7 +58,10 @@ class LatticeStart(SphereStart):
         free = self.free(case, largest)
         if free.min() <= 0:
             raise CaseError(f"spheres: no room for a diameter of {largest:.4g} between the walls")
-        sites = self.sites(section.count(box), free, shut(case))
+        number = section.count(box)
+        if self.spacing(number, free) >= largest:
+            return
+        sites = self.sites(number, free, shut(case))  # of which some may be left empty
         gap = nearest(sites, free, shut(case)) - largest if len(sites) > 1 else 0.0
         if gap < 0:
             raise CaseError(
@@ -74,6 +78,14 @@ class LatticeStart(SphereStart):
         largest, n = case.spheres.largest(case.box), len(made.diameters)
         sites = self.sites(n, self.free(case, largest), shut(case)) + 0.5 * largest * shut(case)
         return Placed(sites[mixed(case.run.seed, n, len(case.spheres.kinds))])
+
+    def spacing(self, n: int, size: Array) -> float:
+        """The shortest distance of two sites of the lattice on which so many find room."""
+        within = np.array(CELLS[self.lattice, len(size)][0])
+        cells = np.array(list(itertools.product((-1, 0, 1), repeat=len(size))))
+        ways = (within[:, None, None] - within[None, :, None] + cells).reshape(-1, len(size))
+        found = np.linalg.norm(ways * (size / unit_cells(self.lattice, size, n)), axis=1)
+        return float(found[found > 0].min())
 
     def sites(self, n: int, size: Array, shut: NDArray[np.bool_]) -> Array:
         """So many places (n, d) in a room."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -133,8 +132,3 @@ class Flocks:
         found = np.empty(arrays.shape[:0:-1], arrays.dtype)
         found[self.groups[0].numbers[self.side]] = arrays[self.side].T
         return found
-
-
-def engine(case: Case, threads: int, measures: Sequence[str]) -> Flocks:
-    """The engine of a case; no observable needs anything measured on the way."""
-    return Flocks(case, threads)
