@@ -16,6 +16,8 @@ from mesokit import (
     Kicks,
     Langevin,
     Plates,
+    PouredStart,
+    RadialDistribution,
     RandomStart,
     Rectangle,
     Run,
@@ -94,6 +96,27 @@ class TestWallsOfSoftSpheres:
         (total,) = force.comparisons
         assert total.expected == -40 and total.measured == pytest.approx(-40, rel=1e-4)
         assert force.select(surface="plates-1-upper", component="y")[0] == 0
+
+    @pytest.mark.parametrize("spread", [0.0, 0.3])
+    def test_a_heap_weighs_what_its_spheres_do(self, spread):
+        """And what they gain of momentum is missing on the floor."""
+        run = soft_run(
+            [12, 20], 400, 1000, [WallForce()], [Plates("y")], number=40, gravity=[0, -1],
+            kinds=[SphereKind(spread=spread)], start=PouredStart(), kT=0,
+        )  # fmt: skip
+        (result,) = observed(run)
+        (force,), mass = result.comparisons, run.engine.masses().sum()
+        assert force.expected == pytest.approx(-mass, rel=1e-12)
+        means = run.accumulators["wall-force"].blocks.mean()
+        # but for half a step of forces at each end
+        assert force.measured + means[-1] == pytest.approx(-mass, rel=1e-3)
+
+    def test_spheres_that_fall_are_not_weighed(self):
+        run = soft_run(
+            [12, 20], 40, 0, [WallForce()], [Plates("y")], number=40, gravity=[0, -1], kT=0
+        )
+        (result,) = observed(run)
+        assert result.comparisons[0].note.startswith("approximate: they gain")
 
     def test_a_disk_gives_each_wall_twice_its_momentum(self):
         """Between a plate and a solid of another shape, which are told apart."""
@@ -269,6 +292,14 @@ class TestFreeTimes:
         assert engine.system.windows > 10
         flown = engine.free_times[2][0]
         assert flown + under_way() - before == pytest.approx(engine.n * 10.0, rel=1e-12)
+
+    def test_a_solid_is_not_judged_by_the_law_of_the_fluid(self):
+        run = gas([12, 12], 20, (), [FreeTimes(), RadialDistribution(every=5)],
+                  packing_fraction=0.75)  # fmt: skip
+        times, around = observed(run)
+        (contact,) = [c for c in around.comparisons if c.what == "g at contact"]
+        for found in (times.comparisons[0], contact):
+            assert "far from freezing" in found.note and not np.isfinite(found.deviation)
 
     def test_who_asks_changes_no_bit(self):
         asked, plain = (

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
+from mesokit.observe.shared.enskog import fluid_note
 from mesokit.observe.shared.estimate import Estimate, of_mean
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Comparison, Result
@@ -20,8 +21,6 @@ from mesokit.statistics import Blocks
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.engine import RunningSpheres
-
-TRUSTED = {2: 0.6, 3: 0.494}  # packing fraction above which theory is not that of the fluid
 
 
 @component
@@ -87,7 +86,7 @@ class EquationOfStateAccumulator:
         names = ["virial", "collision rate"][: len(pressures)]
         values = np.array([value for value, _ in pressures])
         errors = np.array([error for _, error in pressures])
-        note = self.note()
+        note = fluid_note(self.case)
         listed = [
             Comparison(f"Z by the {name}", *found, expected, "", note)
             for name, found in zip(names, pressures, strict=True)
@@ -167,9 +166,3 @@ class EquationOfStateAccumulator:
         kT = self.blocks.mean()[2] / (d * (case.particles - 1))
         excess = self.expected()[0] - 1
         return float(2 * d * excess / (diameter * math.sqrt(math.pi * kind.mean_mass(d) / kT)))
-
-    def note(self) -> str:
-        """Where theory is not to be trusted."""
-        phi = self.case.spheres.fraction(self.case.box)
-        most = TRUSTED[self.case.box.dimension]
-        return "approximate: the law is that of the fluid, far from freezing" if phi > most else ""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
-from mesokit.observe.shared.enskog import pair_rate, root_of_temperature
+from mesokit.observe.shared.enskog import fluid_note, pair_rate, root_of_temperature
 from mesokit.observe.shared.estimate import of_mean, of_ratio
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Comparison, Result
@@ -165,7 +165,7 @@ class FreeTimesAccumulator:
             *every.scalar(mean, gradient),
             known,
             TIME,
-            "" if elastic else chaos,
+            "" if math.isnan(known) else fluid_note(self.case) or ("" if elastic else chaos),
         )
         spread = squares * number / times**2
         gradient = spread * (of_squares / squares + ones / number - 2 * of_times / times)

@@ -149,6 +149,9 @@ class GranularTemperatureAccumulator:
         listed = [
             Comparison("temperature at the end", float(rows[-1, 0]), error, known, UNIT, note)
         ]
+        if self.theory.known.turns:
+            turning = float(rows[-1, 1])
+            listed.append(Comparison("of rotation at the end", turning, nan, unit=UNIT))
         quarter = np.flatnonzero(rows[:, 0] <= 0.25 * rows[0, 0])
         if law is not None and name == "Haff" and len(quarter):
             k, e = quarter[0], self.theory.known.restitution

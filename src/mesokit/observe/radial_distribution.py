@@ -33,10 +33,12 @@ BEYOND, SHELLS = 1.1, 5  # contact diameters to which shells reach, and their nu
 
 
 class Neighbours(Protocol):
-    """What a method knows of equal spheres: their diameter and g at contact, nan if not known."""
+    """What a method knows of equal spheres: their diameter and g at contact, nan if not known, and
+    a note on it."""
 
     diameter: float
     value: float
+    note: str
 
 
 @component
@@ -238,7 +240,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
         weights = np.zeros(len(found.value))
         weights[len(self.shells) :] = np.linalg.pinv(powers)[0]
         value, error = found.scalar(weights @ found.value, weights)
-        return Comparison("g at contact", value, error, theory.value)
+        return Comparison("g at contact", value, error, theory.value, "", theory.note)
 
     def times(self) -> float:
         """How often in a run two of them diffuse over the reach, after which their distance is

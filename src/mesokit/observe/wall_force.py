@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from mesokit.engine import RunningSpheres
 
 
+STILL = 1e-3  # of the weight that their momentum may grow by in a unit of time
+
+
 def surface_names(case: Case) -> tuple[str, ...]:
     """What surfaces are called, wall by wall."""
     names = []
@@ -52,22 +55,23 @@ class WallForce(Observable):
 
 
 class WallForceAccumulator:
-    """Block averages of what surfaces take between two samples."""
+    """Block averages of what surfaces take between two samples, of the mass of all spheres, and of
+    the momentum that they gain meanwhile."""
 
     def __init__(self, observable: WallForce, case: Case) -> None:
         observable.check(case)
         self.name, self.case = observable.label, case
         self.names = surface_names(case)
-        d = case.box.dimension
-        self.blocks = Blocks((len(self.names), d))
-        self.before = np.full(1 + len(self.names) * d, np.nan)  # time, momentum taken so far
+        self.taken, d = len(self.names) * case.box.dimension, case.box.dimension
+        self.blocks = Blocks((self.taken + 1 + d,))
+        self.before = np.full(1 + self.taken + d, np.nan)  # time, momentum taken and there so far
 
     def observe(self, spheres: RunningSpheres) -> None:
         """Take one sample: of what has been taken since the last."""
-        now = np.array([spheres.time, *spheres.wall_impulse.ravel()])
+        now = np.array([spheres.time, *spheres.wall_impulse.ravel(), *spheres.totals()[1]])
         if now[0] > self.before[0]:
-            taken = (now - self.before)[1:] / (now[0] - self.before[0])
-            self.blocks.add(taken.reshape(len(self.names), -1))
+            rates = (now - self.before)[1:] / (now[0] - self.before[0])
+            self.blocks.add(np.insert(rates, self.taken, spheres.masses().sum()))
         self.before = now
 
     def state(self) -> State:
@@ -91,8 +95,8 @@ class WallForceAccumulator:
             drawing="curve",
             name=self.name,
             x={"surface": np.array(self.names), "component": axes},
-            value=self.blocks.mean(),
-            error=self.blocks.error(),
+            value=self.blocks.mean()[: self.taken].reshape(len(self.names), -1),
+            error=self.blocks.error()[: self.taken].reshape(len(self.names), -1),
             label="force on a surface",
             units={"value": "m a/tau^2", "surface": "", "component": ""},
             comparisons=tuple(self.comparisons()) if self.blocks.count else (),
@@ -100,24 +104,19 @@ class WallForceAccumulator:
         )
 
     def comparisons(self) -> list[Comparison]:
-        """The force on all walls along each axis of gravity: the weight, if the spheres are at rest
-        on average."""
-        section, box = self.case.spheres, self.case.box
-        pairs = zip(section.kinds, section.counts(box), strict=True)
-        d = box.dimension
-        mass = sum(
-            number * kind.mean_mass(d) * kind.mean_power(d) / kind.diameter**d
-            for kind, number in pairs
-        )
-        found = of_mean(self.blocks)
+        """The force on all walls along each axis of gravity: the weight, if the spheres gain no
+        momentum on average."""
+        section, box, found = self.case.spheres, self.case.box, of_mean(self.blocks)
+        mass, gained = float(found.value[self.taken]), found.value[self.taken + 1 :]
         listed = []
         for axis, g in zip(box.axes, section.gravity, strict=False):
             if g:
-                chosen = np.zeros((len(self.names), d))
-                chosen[:, box.index(axis)] = 1.0
-                total, weights = found.value[:, box.index(axis)].sum(), chosen.ravel()
-                flat = found._replace(residuals=found.residuals.reshape(len(found.residuals), -1))
-                value = flat.scalar(total, weights)
+                k = box.index(axis)
+                chosen = np.zeros(len(found.value))
+                chosen[k : self.taken : box.dimension] = 1.0
+                value, error = found.scalar(float(chosen @ found.value), chosen)
+                still = abs(gained[k]) <= max(error, STILL * mass * abs(g))
+                note = "the weight" if still else "approximate: they gain momentum meanwhile"
                 what = f"force on all walls along {axis}"
-                listed.append(Comparison(what, *value, mass * g, "m a/tau^2", "the weight"))
+                listed.append(Comparison(what, value, error, mass * g, "m a/tau^2", note))
         return listed

@@ -20,7 +20,7 @@ NAMES = {
     "hagen-poiseuille": "Hagen-Poiseuille, no slip",
     "taylor-couette": "Taylor-Couette, no slip",
     "drum": "turning as one",
-    "drift": "as all of them",
+    "drift": "the drift of all",
 }
 
 

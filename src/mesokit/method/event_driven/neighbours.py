@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from mesokit import theory
+from mesokit.observe.shared.enskog import fluid_note
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -23,8 +24,9 @@ class Neighbours:
         kind, d = section.kinds[0], box.dimension
         alike = len(section.kinds) == 1 and kind.spread == 0
         self.diameter = kind.diameter * section.scale(box) if alike else math.nan
-        self.value = math.nan
+        self.value, self.note = math.nan, ""
         phi = section.fraction(box)
         plain = section.collision.elastic and section.collision.reach == 1.0
         if alike and plain and not section.heating:
+            self.note = fluid_note(case)
             self.value = (theory.compressibility(phi, d) - 1) / (2 ** (d - 1) * phi)

@@ -13,6 +13,7 @@ from mesokit.method.event_driven.walls import wall_rows
 from mesokit.method.event_driven.window import collision_rate
 from mesokit.method.protocol import Row, Summary
 from mesokit.spheres import cost, falls
+from mesokit.spheres.start.lattice import LatticeStart
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -92,7 +93,9 @@ def _warnings(case: Case, rate: float) -> Iterator[str]:
     contacts = wall_rows(case).contacts
     yield from falls.warnings(case, bool(((contacts[:, 1] > -1) | (contacts[:, 3] > 0)).any()))
     if phi > FREEZES[box.dimension]:
-        yield f"spheres: a packing fraction of {phi:.3g} freezes; a lattice stays ordered for long"
+        ordered = isinstance(section.start, LatticeStart)
+        slow = "a lattice stays ordered" if ordered else "a random start stays disordered"
+        yield f"spheres: a packing fraction of {phi:.3g} freezes; {slow} for long"
     loses = not section.collision.elastic
     if loses and section.collision.contact_time == 0 and (phi > 0.1 or section.gravity):
         yield (

@@ -11,6 +11,15 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 
+TRUSTED = {2: 0.6, 3: 0.494}  # packing fraction above which theory is not that of the fluid
+
+
+def fluid_note(case: Case) -> str:
+    """Where the law of the fluid of hard spheres is not to be trusted; empty where it is."""
+    far = case.spheres.fraction(case.box) > TRUSTED[case.box.dimension]
+    return "approximate: the law is that of the fluid, far from freezing" if far else ""
+
+
 def pair_rate(case: Case, root: float) -> float:
     """Collisions of a sphere per time in a uniform fluid of equal hard spheres, at a root of the
     temperature; nan of all others."""

@@ -107,6 +107,11 @@ def with_error(value: float, error: float) -> str:
     >>> with_error(0.8705, 0.0123), with_error(1234.5, 12), with_error(2.0, 0.0)
     ('0.871(12)', '1234(12)', '2.000')
 
+    An error far below the value leaves the point where it is.
+
+    >>> with_error(0.6666536, 6.7e-7), with_error(6.7e-7, 1e-8)
+    ('0.66665360(67)', '6.70(10)e-07')
+
     A whole number of which no error is known is a count.
 
     >>> with_error(2.0, math.nan)
@@ -125,7 +130,7 @@ def with_error(value: float, error: float) -> str:
         shown = f"{round(error * 10.0**digits)}" if digits > 0 else f"{round(error, digits):.0f}"
         return f"{round(value, digits):.{max(digits, 0)}f}({shown})"
     power = math.floor(math.log10(max(abs(value), error)))
-    if power == 0:  # an error far below the value
+    if -3 < power <= 0:  # an error far below the value
         return f"{value:.{digits}f}({error * 10.0**digits:.0f})"
     scaled = with_error(value / 10.0**power, error / 10.0**power)
     return f"{scaled}e{power:+03d}"

@@ -95,7 +95,7 @@ class PolarOrderAccumulator:
             label="polar order",
             units={"value": "", "time": "tau"},
             expected=None if math.isnan(level) else np.full(len(rows), level),
-            theory="directions at random",
+            theory="" if math.isnan(level) else self.known().why,
             comparisons=tuple(found),
             samples=self.blocks.count,
             extra={
