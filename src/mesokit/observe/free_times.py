@@ -177,4 +177,8 @@ class FreeTimesAccumulator:
             "",
             "" if math.isnan(known) else "2 of an exponential" if elastic and dilute else chaos,
         )
-        return [first, second, Comparison("flights", number * self.blocks.count, math.nan)]
+        return [
+            first,
+            second,
+            Comparison("flights", float(round(number * self.blocks.count)), math.nan),
+        ]
