@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
+from typing import TYPE_CHECKING, ClassVar, Literal, Protocol, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.component import component, tag
 from mesokit.method.protocol import method_of
-from mesokit.observe.shared.protocol import Observable, State, pack, unpack
+from mesokit.observe.shared.protocol import Observable
 from mesokit.observe.shared.result import Array, Comparison, Result
-from mesokit.statistics import TimeSeries
+from mesokit.observe.shared.samples import Samples
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -59,7 +57,7 @@ class GranularTemperature(Observable):
         return GranularTemperatureAccumulator(self, case)
 
 
-class GranularTemperatureAccumulator:
+class GranularTemperatureAccumulator(Samples):
     """The series in time."""
 
     def __init__(self, observable: GranularTemperature, case: Case) -> None:
@@ -67,8 +65,8 @@ class GranularTemperatureAccumulator:
         self.theory: CoolingInTime = method_of(case).expected["granular-temperature"](
             case, observable
         )
-        self.series = TimeSeries(3)  # both temperatures, collisions of a sphere
-        self.samples, self.runs = 0, 1
+        super().__init__(3)  # both temperatures, collisions of a sphere
+        self.runs = 1
 
     def observe(self, spheres: RunningSpheres) -> None:
         """Take one sample."""
@@ -82,19 +80,10 @@ class GranularTemperatureAccumulator:
         self.series.add(spheres.time, [motion, turning, 2 * pairs / n])
         self.samples += 1
 
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(series=self.series, samples=np.array(self.samples))
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.series = TimeSeries.from_state(unpack(state, "series"))
-        self.samples = int(state["samples"])
-
-    def pool(self, other: GranularTemperatureAccumulator) -> None:
-        """Take in an independent run of the same case, only to read: the series becomes a mean."""
-        self.series.pool(other.series)
-        self.samples, self.runs = self.samples + other.samples, self.runs + other.runs
+    def pool(self, other: Self) -> None:
+        """Take in an independent run of the same case, only to read."""
+        super().pool(other)
+        self.runs += other.runs
 
     def result(self) -> Result:
         """The series; a sample has no error bar: nan."""

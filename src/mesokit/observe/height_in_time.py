@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.method.protocol import method_of
-from mesokit.observe.shared.protocol import Observable, State, pack, unpack
+from mesokit.observe.shared.protocol import Observable
 from mesokit.observe.shared.result import Array, Comparison, Result
-from mesokit.statistics import TimeSeries
+from mesokit.observe.shared.samples import Samples
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -45,7 +43,7 @@ class HeightInTime(Observable):
         return HeightInTimeAccumulator(self, case)
 
 
-class HeightInTimeAccumulator:
+class HeightInTimeAccumulator(Samples):
     """The series in time."""
 
     def __init__(self, observable: HeightInTime, case: Case) -> None:
@@ -53,7 +51,7 @@ class HeightInTimeAccumulator:
         self.name, self.case = observable.label, case
         self.axis = _axis(case)
         self.gravity = float(case.spheres.gravity[self.axis])
-        self.series, self.samples = TimeSeries(2), 0  # height, velocity upwards
+        super().__init__(2)  # height, velocity upwards
 
     def observe(self, spheres: RunningSpheres) -> None:
         """Take one sample."""
@@ -63,20 +61,6 @@ class HeightInTimeAccumulator:
         velocity = up * spheres.totals()[1][self.axis] / masses.sum()
         self.series.add(spheres.time, [masses @ height / masses.sum(), velocity])
         self.samples += 1
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(series=self.series, samples=np.array(self.samples))
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.series = TimeSeries.from_state(unpack(state, "series"))
-        self.samples = int(state["samples"])
-
-    def pool(self, other: HeightInTimeAccumulator) -> None:
-        """Take in an independent run of the same case, only to read: the series becomes a mean."""
-        self.series.pool(other.series)
-        self.samples += other.samples
 
     def result(self) -> Result:
         """The series; a sample has no error bar: nan."""
