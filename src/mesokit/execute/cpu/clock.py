@@ -5,9 +5,9 @@ from mesokit.scalar.system import read_clock
 
 # The clock is an int64 array: two places for the system's answer, the time of the last lap, then
 # ticks of the system's clock for each stage.
-STAGES = 3
-START, SWEEP, CELLS, FINISH = -1, 0, 1, 2  # stages whose time is kept
-CLOCK_SIZE = STAGES + 3
+STAGES = 6
+START, SWEEP, CELLS, FINISH, SHARE, WAIT, MOVE = -1, 0, 1, 2, 3, 4, 5  # stages whose time is kept
+CLOCK_SIZE = 3 + STAGES
 
 
 @scalar
@@ -17,5 +17,5 @@ def lap(team, stage):
         clock = team.clock
         now = read_clock(clock)
         if stage >= 0:
-            clock[STAGES + stage] += now - clock[2]
+            clock[3 + stage] += now - clock[2]
         clock[2] = now

@@ -1,5 +1,7 @@
 """One pass over all cells: from the sums over their particles to what these need to collide."""
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
 from mesokit.execute.cpu.strips.layout import LANES, QUAD, record_length, share, sums_length
@@ -7,6 +9,7 @@ from mesokit.execute.cpu.strips.records import spread, take
 from mesokit.execute.cpu.strips.rows import load_scratch, load_values, store_scratch, store_values
 from mesokit.execute.cpu.strips.terms import nothing_found, read_sums
 from mesokit.execute.neighbours.gradient import gradient_at
+from mesokit.execute.ranks.shared import key_of, shares
 from mesokit.method.mpcd.collision.protocol import Cell, freedom
 from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.method.mpcd.thermostat.protocol import draw, guess
@@ -97,32 +100,72 @@ def needs_of_cell(physics, counter, cell, found, gradient, certain):
     return as_many(answer, physics.coefficients), sure
 
 
+class InRow(NamedTuple):
+    """Cells that follow one another, from the first."""
+
+    start: int
+
+
+class Asked(NamedTuple):
+    """Cells that rows of numbers name in their first column: `count` of them, from a row on."""
+
+    rows: Any
+    start: int
+    count: int
+
+
+@by_type
+def cell_at(which, i):
+    """Number of the cell of lane i of a batch."""
+    if which.instance_class is InRow:
+        return lambda which, i: which.start + i
+    return lambda which, i: which.rows[which.start + min(i, which.count - 1), 0]
+
+
+@scalar
+def settle_batch(team, now, physics, fluid, which, count):
+    """What the cells of a batch need to collide, from rows of their sums to rows of coefficients."""
+    cells, scratch = fluid.cells, fluid.scratch
+    rows, totals = scratch.coefficients[team.thread], scratch.terms[team.thread]
+    doubtful, none = scratch.marks[team.thread], nothing_found(physics.terms)
+    in_doubt = np.int64(0)
+    for i in range(LANES):
+        found, cell = load_scratch(totals, i, none), cell_at(which, i)
+        gradient, key = gradient_at(cells.field, cell), key_of(cells.shared, cell)
+        answer, sure = needs_of_cell(physics, now.counter, key, found, gradient, False)
+        doubtful[i] = 1 - np.int64(sure)
+        in_doubt |= doubtful[i]
+        store_scratch(rows, i, answer)
+    for i in range(count if in_doubt != 0 else 0):
+        if doubtful[i] != 0:
+            found, cell = load_scratch(totals, i, none), cell_at(which, i)
+            gradient, key = gradient_at(cells.field, cell), key_of(cells.shared, cell)
+            answer, _ = needs_of_cell(physics, now.counter, key, found, gradient, True)
+            store_scratch(rows, i, answer)
+
+
+@by_type
+def nobody(fluid):
+    """Whether there is no fluid at all; a rank that has no particles may have cells of others."""
+    return (lambda fluid: False) if shares(fluid) else _nobody
+
+
+def _nobody(fluid):
+    return fluid.particles.filling.molecules == 0
+
+
 @inner
 def collide(team, now, physics, fluid):
     """Coefficients of every cell from its sums, which are cleared for the next step."""
     cells, scratch = fluid.cells, fluid.scratch
     rows, totals = scratch.coefficients[team.thread], scratch.terms[team.thread]
-    doubtful, none = scratch.marks[team.thread], nothing_found(physics.terms)
     batches = (cells.number + LANES - 1) // LANES
-    if fluid.particles.filling.molecules == 0:  # a random solvent is only where beads are
+    if nobody(fluid):  # a random solvent is only where beads are
         batches = 0
     first, last = share(batches, team.thread, team.threads)
     for b in range(first, last):
         start = b * LANES
         count = min(LANES, cells.number - start)
         total_block(cells.sums, start, count, totals, physics.terms)
-        in_doubt = np.int64(0)
-        for i in range(LANES):
-            found = load_scratch(totals, i, none)
-            gradient = gradient_at(cells.field, start + i)
-            answer, sure = needs_of_cell(physics, now.counter, start + i, found, gradient, False)
-            doubtful[i] = 1 - np.int64(sure)
-            in_doubt |= doubtful[i]
-            store_scratch(rows, i, answer)
-        for i in range(count if in_doubt != 0 else 0):
-            if doubtful[i] != 0:
-                found = load_scratch(totals, i, none)
-                gradient = gradient_at(cells.field, start + i)
-                answer, _ = needs_of_cell(physics, now.counter, start + i, found, gradient, True)
-                store_scratch(rows, i, answer)
+        settle_batch(team, now, physics, fluid, InRow(start), count)
         put_block(cells.coefficients, start, count, rows, physics.coefficients)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from mesokit.errors import RunError
 from mesokit.execute.beads.torn import refuse_torn
-from mesokit.execute.cpu.clock import CELLS, FINISH, STAGES, SWEEP
+from mesokit.execute.cpu.clock import CELLS, FINISH, SWEEP
 from mesokit.execute.cpu.groups import MEASURE_STRESS, MEASURE_WALLS, Course
 from mesokit.execute.cpu.memory import Memory
 from mesokit.execute.cpu.numbers import Floats, Numbers
@@ -89,13 +89,24 @@ class CPU:
                 self.sort()
 
     def _advance(self, steps: int, measure_stress: bool) -> None:
-        memory, case = self.memory, self.case
+        memory = self.memory
         self.readings.forget()
         what = MEASURE_WALLS * ("walls" in memory.measures) + MEASURE_STRESS * measure_stress
         if measure_stress:
             memory.fluid.taken.tensor[:] = 0.0
             if self.solutes is not None:
                 self.solutes.state_of.tensor[:] = 0.0
+        self._steps(steps, what)
+        self.readings.wall_steps += steps
+        self._check_bonds()
+        if self.solutes is not None:
+            self.solutes.check()
+        if measure_stress:
+            self.readings.find_stress()
+
+    def _steps(self, steps: int, what: int) -> None:
+        """Let the threads do so many steps."""
+        memory, case = self.memory, self.case
         course = Course(
             steps=steps,
             done=self.step,
@@ -109,12 +120,6 @@ class CPU:
         parts = memory.physics, memory.fluid, memory.solutes, memory.walls
         self.threads.run(advance, course, *parts)
         memory.step += steps
-        self.readings.wall_steps += steps
-        self._check_bonds()
-        if self.solutes is not None:
-            self.solutes.check()
-        if measure_stress:
-            self.readings.find_stress()
 
     def _check_bonds(self) -> None:
         """That no bond was torn in the last steps."""
@@ -139,7 +144,7 @@ class CPU:
     def _largest_crowd(self) -> int:
         """Particles in the fullest cell, just after the sort."""
         if self.numbers.beads == 1:
-            return int(np.diff(self.memory.order.ends[-1], prepend=0).max())
+            return int(np.diff(self.memory.order.ends[-1, :-1], prepend=0).max())
         cells = self.memory.fluid.particles.cell[self.memory.places]
         return int(np.bincount(cells).max())
 
@@ -191,7 +196,7 @@ class CPU:
             "velocities": velocities,
             "images": images,
             "step": np.int64(self.step),
-            "impulse": memory.fluid.taken.impulse.sum(axis=0),
+            "impulse": self.readings.impulse,
             "wall_steps": np.int64(self.readings.wall_steps),
             "wall_rates": memory.wall_rates.copy(),
         }
@@ -218,7 +223,7 @@ class CPU:
     def seconds(self) -> dict[str, float]:
         """Time spent so far in each stage."""
         names = {"sweep": SWEEP, "cells": CELLS, "finish": FINISH}
-        seconds = {name: TICK * float(self.threads.clock[STAGES + k]) for name, k in names.items()}
+        seconds = {name: TICK * float(self.threads.clock[3 + k]) for name, k in names.items()}
         return seconds | {"sort": self.sort_seconds}
 
     # --- what observables ask -------------------------------------------------------------------

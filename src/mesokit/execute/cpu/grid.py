@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mesokit.scalar.intrinsics import floor, mul_add, with_item
-from mesokit.scalar.jit import scalar
+from mesokit.scalar.jit import by_type, scalar
 
 
 class Grid(NamedTuple):
@@ -17,6 +17,18 @@ class Grid(NamedTuple):
     inverse: tuple
 
 
+class Part(NamedTuple):
+    """The cells of one step that a rank knows, a block of those of the box: its own and some around
+    them."""
+
+    shift: tuple
+    origin: tuple
+    cells: tuple  # number along each axis in the whole box
+    inverse: tuple
+    first: tuple  # the first that it knows, along each axis; below 0 across an end of the box
+    known: tuple  # how many it knows
+
+
 @scalar
 def moved_grid(grid, shift, closed):
     """The cells for this shift; a wall's first cell lies below 0 where the shift is negative."""
@@ -24,7 +36,17 @@ def moved_grid(grid, shift, closed):
     for k in range(len(shift)):
         below = closed[k] > 0.5 and shift[k] < 0.0
         origin = with_item(origin, k, shift[k] + (1.0 if below else 0.0))
-    return Grid(shift, origin, grid.cells, grid.inverse)
+    return placed(grid, shift, origin)
+
+
+@by_type
+def placed(grid, shift, origin):
+    """The same cells elsewhere."""
+    if grid.instance_class is Grid:
+        return lambda grid, shift, origin: Grid(shift, origin, grid.cells, grid.inverse)
+    return lambda grid, shift, origin: Part(
+        shift, origin, grid.cells, grid.inverse, grid.first, grid.known
+    )
 
 
 @scalar
@@ -37,8 +59,23 @@ def in_cell(r, grid):
 
 
 @scalar
+def cell_in_box(r, grid):
+    """Place along each axis, in the whole box, of the cell at r."""
+    for k in range(len(r)):
+        i = floor(r[k] + grid.origin[k])
+        images = floor((i + 0.5) * grid.inverse[k])
+        r = with_item(r, k, i - images * grid.cells[k])
+    return r
+
+
+@by_type
 def cell_index(r, grid):
-    """Number of the cell at r; x varies fastest. A place that is no number gets the spare cell."""
+    """Number of the cell at r; x varies fastest. A place that is no number gets the spare cell, and
+    so does one that a rank does not know."""
+    return _in_box if grid.instance_class is Grid else _in_part
+
+
+def _in_box(r, grid):
     index, cells = 0.0, 1.0
     for j in range(len(r)):
         k = len(r) - 1 - j
@@ -48,3 +85,16 @@ def cell_index(r, grid):
         index = mul_add(index, grid.cells[k], mul_add(-grid.cells[k], images, i))
         cells *= grid.cells[k]
     return np.int32(index if (index >= 0.0) & (index < cells) else cells)
+
+
+def _in_part(r, grid):
+    index, cells, known = 0.0, 1.0, True
+    for j in range(len(r)):
+        k = len(r) - 1 - j
+        i = floor(r[k] + grid.origin[k]) - grid.first[k]
+        images = floor(mul_add(i, grid.inverse[k], 0.5 * grid.inverse[k]))
+        i = mul_add(-grid.cells[k], images, i)
+        index = mul_add(index, grid.known[k], i)
+        known &= (i >= 0.0) & (i < grid.known[k])
+        cells *= grid.known[k]
+    return np.int32(index if known else cells)

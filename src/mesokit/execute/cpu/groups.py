@@ -44,12 +44,14 @@ class Particles(NamedTuple):
 
 
 class Cells(NamedTuple):
-    """The collision cells; one more than there are takes what must not act."""
+    """The collision cells; one more than there are takes what must not act. Slots of guests follow
+    where ranks share cells."""
 
     number: int
     coefficients: Any  # a record for each cell: what its particles need to collide
     sums: Any  # (threads, ...) fixed-point sums over the particles of each cell
     field: tuple  # one of these sums in all cells, where the rule asks for its gradient, or ()
+    shared: Any  # with other ranks (`ranks.shared.Shared`), or ()
 
 
 class Scratch(NamedTuple):

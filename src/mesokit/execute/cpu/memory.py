@@ -44,19 +44,32 @@ class Memory:
     `step` steps have been done. Arrays of all threads are made here, so that memory is known.
     """
 
-    def __init__(self, numbers: Numbers, threads: int, measures: Sequence[str]) -> None:
+    def __init__(
+        self,
+        numbers: Numbers,
+        threads: int,
+        measures: Sequence[str],
+        domain: Any = None,
+        earlier: Memory | None = None,
+    ) -> None:
         case, d = numbers.case, numbers.dimension
         self.numbers, self.threads, self.step = numbers, threads, 0
-        self.measures = frozenset(measures)
+        self.measures, self.domain = frozenset(measures), domain
         self._tables: list[Any] = []  # which compiled code knows by address
-        self.physics = self._physics()
+        self._places, self._placed = np.zeros(0, np.int64), (0, numbers.beads)
+        if earlier is None:
+            self.physics = self._physics()
+        else:  # tables of solids take long
+            self.physics, self._tables = earlier.physics, earlier._tables
         self._allocate()
         self.solutes: Any = ()
         if case.solutes is not None:
             embedded = embedded_of(case.solutes, numbers, threads)
             self.solutes = beads_of(case.solutes, self)._replace(embedded=embedded)
         zero, cells = (0.0,) * d, tuple(float(n) for n in numbers.cells)
-        self.grid = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
+        self.grid: Any = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
+        if domain is not None:
+            self.grid = domain.grid(self.grid)
 
     @property
     def box(self) -> tuple:
@@ -112,42 +125,54 @@ class Memory:
 
     def _allocate(self) -> None:
         numbers, d = self.numbers, self.numbers.dimension
-        beads, molecules = numbers.beads, numbers.filling.molecules
+        filling, beads, room = numbers.filling, numbers.beads, numbers.filling.molecules
+        self.cells, self.number_of_cells = numbers.cells, numbers.number_of_cells
+        if self.domain is not None:
+            filling, room = filling._replace(molecules=0), self.domain.room
+            self.cells, self.number_of_cells = self.domain.region.known, self.domain.region.number
         self.rows = 2 * d + (not numbers.uniform)
-        self.strips = strips_for(molecules, beads)
-        # where particles lie; among molecules some places are empty
-        self.places = np.arange(numbers.n)
-        if beads > 1:
-            self.places = places_of_beads(molecules, beads).ravel()
+        self.strips = strips_for(room, beads)
         lanes = blocks_for(self.strips * LANES) * BLOCK
-        ident = np.arange(lanes)
-        ident[self.places] = np.arange(numbers.n)
         data, image = zeros(lanes // BLOCK * self.rows * ROW), zeros((d, lanes), np.int32)
         cell = zeros(lanes, np.int32)
         self.fluid = Fluid(
-            Particles(data, cell, ident, image, numbers.filling, self.rows),
+            Particles(data, cell, np.arange(lanes), image, filling, self.rows),
             self._cells(),
             zeros((2, self.strips * (LANES // FEW))),
             self._scratch(),
             self._taken(),
         )
-        spare = zeros(numbers.n)
-        ends = zeros((self.threads, numbers.number_of_cells + 1), np.int32)
+        self.fluid.particles.ident[self.places] = np.arange(filling.molecules * beads)
+        spare = zeros(room * beads)
+        ends = zeros((self.threads, self.number_of_cells + 1), np.int32)
         self.order = Order(
-            zeros(numbers.n, np.int32), ends, spare, spare.view(np.int32), spare.view(np.int64)
+            zeros(room * beads, np.int32), ends, spare, spare.view(np.int32), spare.view(np.int64)
         )
         self.walls = self._walls()
 
+    @property
+    def places(self) -> NDArray[np.int64]:
+        """Where particles lie; among molecules some places are empty."""
+        molecules, beads = self.fluid.particles.filling.molecules, self.numbers.beads
+        if (molecules, beads) != self._placed:
+            self._places = np.arange(molecules)
+            if beads > 1:
+                self._places = places_of_beads(molecules, beads).ravel()
+            self._placed = molecules, beads
+        return self._places
+
     def _cells(self) -> Cells:
-        every = (
-            self.numbers.number_of_cells + 1
-        )  # in the last, lanes that must not act leave their terms
+        # in the last, lanes that must not act leave their terms
+        every = self.number_of_cells + 1
         width = sums_length(len(self.physics.terms))
+        shared = () if self.domain is None else self.domain.shared(self)
+        slots = 0 if self.domain is None else self.domain.slots
         return Cells(
-            self.numbers.number_of_cells,
-            zeros(every * record_length(self.numbers.coefficient_count)),
+            self.number_of_cells,
+            zeros((every + slots) * record_length(self.numbers.coefficient_count)),
             zeros((self.threads, every * width), np.int64),
             self._field(),
+            shared,
         )
 
     def _field(self) -> tuple:
@@ -158,8 +183,8 @@ class Memory:
             return ()
         own = len(numbers.case.fluid.collision.own_sums(numbers.dimension))
         closed = tuple(int(shut) for shut in numbers.closed)
-        term, values = len(numbers.scales) - own + wanted, zeros(numbers.number_of_cells)
-        return Field(term, values, tuple(numbers.cells), closed)
+        term, values = len(numbers.scales) - own + wanted, zeros(self.number_of_cells)
+        return Field(term, values, tuple(self.cells), closed)
 
     def _scratch(self) -> Scratch:
         d, threads, beads = self.numbers.dimension, self.threads, self.numbers.beads
@@ -190,7 +215,7 @@ class Memory:
         return Walls(
             top_up=(1.0,) if virtual == "top-up" else (),
             gradient=(1.0,) if virtual == "extrapolate" else (),
-            virtual=virtual_particles(numbers, self.threads, self.rows),
+            virtual=virtual_particles(numbers, self.threads, self.rows, self.domain),
         )
 
     @property
@@ -201,26 +226,38 @@ class Memory:
 
     def fill(self, positions: Floats, velocities: Floats, images: Any = 0) -> None:
         """Write what is known of each particle (n, d), by particle number, in the present order."""
-        particles, d, masses = self.fluid.particles, self.numbers.dimension, self.numbers.masses()
-        who, data = particles.ident[self.places], particles.data
+        who = self.fluid.particles.ident[self.places]
+        images = np.broadcast_to(images, positions.shape)
+        self.put(positions[who], velocities[who], images[who])
+
+    def put(self, positions: Floats, velocities: Floats, images: NDArray[Any]) -> None:
+        """The same in the order of memory."""
+        particles, d = self.fluid.particles, self.numbers.dimension
+        data, who = particles.data, particles.ident[self.places]
         for k in range(d):
-            data[self.at(k)] = positions[who, k]
-            data[self.at(d + k)] = velocities[who, k]
-        particles.image[:, self.places] = np.broadcast_to(images, positions.shape)[who].T
+            data[self.at(k)] = positions[:, k]
+            data[self.at(d + k)] = velocities[:, k]
+        particles.image[:, self.places] = images.T
         if self.rows > 2 * d:
-            data[self.at(2 * d)] = masses[who]
+            data[self.at(2 * d)] = self.numbers.masses_of(who)
         self.fluid.room[:] = 0.0
 
     def read(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
         """Positions and velocities as they lie in memory, and images (n, d), by particle number."""
+        who, (positions, velocities, images) = self.fluid.particles.ident[self.places], self.rows_of()
+        out = np.empty((len(who), 2 * self.numbers.dimension))
+        out[who] = np.concatenate([positions, velocities], axis=1)
+        counts = np.empty(images.shape, np.int32)
+        counts[who] = images
+        return out[:, : positions.shape[1]], out[:, positions.shape[1] :], counts
+
+    def rows_of(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
+        """The same in the order of memory."""
         particles, d = self.fluid.particles, self.numbers.dimension
-        who = particles.ident[self.places]
-        out = np.empty((self.numbers.n, 2 * d))
+        out = np.empty((len(self.places), 2 * d))
         for k in range(2 * d):
-            out[who, k] = particles.data[self.at(k)]
-        images = np.empty((self.numbers.n, d), np.int32)
-        images[who] = particles.image[:, self.places].T
-        return out[:, :d], out[:, d:], images
+            out[:, k] = particles.data[self.at(k)]
+        return out[:, :d], out[:, d:], particles.image[:, self.places].T
 
     def at(self, row: int, places: Any = None) -> NDArray[np.int64]:
         """Where a row's values lie in memory: those of all particles, or at these places."""

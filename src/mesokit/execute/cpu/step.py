@@ -10,6 +10,14 @@ from mesokit.execute.cpu.physics import at_middle
 from mesokit.execute.cpu.threads import meet
 from mesokit.execute.embedded.stages import move_beads, stream
 from mesokit.execute.neighbours.gradient import fill_field
+from mesokit.execute.ranks.exchange import answer_others, give_sums, take_answers
+from mesokit.execute.ranks.migrate import (
+    holding,
+    migrate,
+    molecules_held,
+    note_done,
+    room_left,
+)
 from mesokit.execute.virtual.stages import fill_walls, follow_flow, recoil, top_up_walls
 from mesokit.scalar.cache import inner, kernel
 from mesokit.scalar.jit import scalar
@@ -23,13 +31,16 @@ def step(team, now, physics, fluid, beads, walls):
     move_beads(team, now, physics, fluid, beads)  # the same for solutes, in sub-steps
     fill_walls(team, now, physics, fluid, walls)  # virtual particles at t + dt
     meet(team)
+    lap(team, SWEEP)
+    give_sums(team, now, physics, fluid)  # of cells that are others', and theirs of cells here
     follow_flow(team, now, physics, fluid, walls)  # what they will need to know of the fluid
     top_up_walls(team, now, physics, fluid, walls)  # those that depend on the fluid's number
     fill_field(team, physics, fluid)  # what cells must know of those next to them
-    lap(team, SWEEP)
     join_beads(team, now, physics, fluid, beads)  # cells with solutes: sums of both
+    answer_others(team, now, physics, fluid, walls)  # first, for whoever has particles in them
     collide(team, now, physics, fluid)  # thermostat and rule at t + dt: coefficients of each cell
     answer_beads(team, now, physics, fluid, beads)
+    take_answers(team, now, physics, fluid, walls)
     meet(team)
     lap(team, CELLS)
     recoil(team, now, physics, fluid, walls)  # what the collision takes from virtual particles
@@ -40,15 +51,30 @@ def advance(team, course, physics, fluid, beads, walls):
     """Run some steps; velocities are those after the collision of the last when it returns."""
     lap(team, START)
     now = Now(Counter(course.seed, course.done), course.box, course.grid, course.grid, 0)
-    for n in range(course.steps):
-        now = next_step(course, now, physics, n)
-        step(team, now, at_middle(physics, course.done + n), fluid, beads, walls)
-    if course.steps > 0:
+    n = 0
+    while n < course.steps and room_left(fluid):
+        number, now = interval(team, course, now, physics, fluid, beads, walls, n)
+        n += number
+        fluid = holding(fluid, molecules_held(fluid))  # ranks: others may have come
+    note_done(team, fluid, n)
+    if n > 0:
         now = last_collision(course, now)
         stream(team, now, physics, fluid, beads)
         move_beads(team, now, physics, fluid, beads)
         meet(team)
         lap(team, FINISH)
+
+
+@inner
+def interval(team, course, now, physics, fluid, beads, walls, n):
+    """Steps from the nth on, all or up to the next one after which particles change ranks."""
+    first, going = n, True
+    while n < course.steps and going:
+        now = next_step(course, now, physics, n)
+        step(team, now, at_middle(physics, course.done + n), fluid, beads, walls)
+        going = migrate(team, now, physics, fluid)
+        n += 1
+    return n - first, now
 
 
 @scalar

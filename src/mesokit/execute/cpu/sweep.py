@@ -34,6 +34,7 @@ from mesokit.execute.cpu.strips.layout import (
     strips_in,
 )
 from mesokit.execute.cpu.strips.rows import load_particle, mass_of
+from mesokit.execute.ranks.guests import note_guests
 from mesokit.scalar.cache import inner
 from mesokit.scalar.fixed_point import add_fixed, added_fixed, integers
 from mesokit.scalar.jit import by_type, seldom
@@ -86,7 +87,9 @@ def _stream_singles(team, now, physics, fluid):
             if measured:
                 add_strip_flux(physics, now.box, now.grid, strip, lanes, tensor[0, s])
             bin_strip(physics, now, strip, cell, who, terms)
-            add_strip(cell, terms, sums, lanes, physics.terms, tally(physics.energy, 0.0, zero))
+            tallied = tally(physics.energy, 0.0, zero)
+            add_strip(cell, terms, sums, lanes, physics.terms, tallied)
+            note_guests(team, s, fluid, cell, terms, lanes, physics.terms, tallied)
 
 
 @inner
@@ -135,7 +138,9 @@ def _stream_molecules(team, now, physics, fluid):
             if measured:
                 add_strip_flux(physics, now.box, now.grid, strip, lanes, tensor[0, s])
             bin_strip(physics, now, strip, cell, particles.ident[places], terms)
-            add_strip(cell, terms, sums, lanes, physics.terms, tally(physics.energy, 0.0, zero))
+            tallied = tally(physics.energy, 0.0, zero)
+            add_strip(cell, terms, sums, lanes, physics.terms, tallied)
+            note_guests(team, s, fluid, cell, terms, lanes, physics.terms, tallied)
 
 
 @seldom

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,7 +73,15 @@ class Readings:
         _, masses = self._vectors
         particles = self.memory.fluid.particles
         self.threads.run(measure.totals, masses, particles, scales, sums, fastest)
-        return total(sums, np.array(scales)), float(fastest.max(initial=0.0))
+        return self.total(sums, np.array(scales)), float(fastest.max(initial=0.0))
+
+    def total(self, rows: NDArray[np.int64], scale: Any) -> Floats:
+        """Sums over the rows (n, ...) of whole numbers, over the scale."""
+        return total(rows, scale)
+
+    def added(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Whole numbers that the threads have found together."""
+        return numbers.sum(axis=0)
 
     def moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
         """Number, mass, momentum (d, ...) and sum of m v^2 in bins along one or two axes."""
@@ -94,7 +102,7 @@ class Readings:
         chosen = measure.Bins(*two, scales, place, terms)
         where = self.memory.box, self.memory.fluid.particles
         self.threads.run(measure.bin_sums, *self._vectors, *where, chosen, part)
-        total = part.sum(axis=0).reshape(size, length)[:, : d + 3]
+        total = self.added(part).reshape(size, length)[:, : d + 3]
         number, sums = total[:, 0], total[:, 1:] - total[:, :1] * ROUNDER_BITS
         values = (sums / np.array(scales)).T.reshape(-1, *bins)
         return number.astype(float).reshape(bins), values[d], values[:d], values[d + 1]
@@ -106,7 +114,7 @@ class Readings:
         part = np.zeros((self.threads.size, len(waves), 2 + 2 * d), np.int64)
         where = self.memory.box, self.memory.fluid.particles
         self.threads.run(measure.modes, *self._vectors, *where, waves, scale, part)
-        total = part.sum(axis=0) / scale
+        total = self.added(part) / scale
         return total[:, 0] + 1j * total[:, 1], total[:, 2 : 2 + d] + 1j * total[:, 2 + d :]
 
     def positions(self, ids: NDArray | None = None, unwrapped: bool = False) -> Floats:
@@ -123,22 +131,26 @@ class Readings:
 
     def masses(self, ids: NDArray | None = None) -> Floats:
         """Masses (n,) by particle id: kinds are numbered one after the other, then come solutes."""
-        mass = self.numbers.masses()
         if ids is None:
-            return mass
-        if self.solutes is not None:
-            mass = np.concatenate([mass, self.solutes.masses()])
-        return mass[ids]
+            return self.numbers.masses()
+        mass = self.numbers.masses_of(np.minimum(ids, max(self.n - 1, 0)))
+        beads = ids >= self.n
+        if beads.any() and self.solutes is not None:
+            mass[beads] = np.broadcast_to(self.solutes.masses(), self.solutes.shape[:1])[
+                ids[beads] - self.n
+            ]
+        return mass
 
     def species(self, ids: NDArray | None = None) -> NDArray[np.int64]:
         """Kind of each particle (n,), by particle id: its place in fluid.species, then those of
         solutes.polymers."""
-        kind = self.numbers.kinds()
         if ids is None:
-            return kind
-        if self.solutes is not None:
-            kind = np.concatenate([kind, len(self.numbers.counts) + self.solutes.kinds()])
-        return kind[ids]
+            return self.numbers.kinds()
+        kind = self.numbers.kinds_of(np.minimum(ids, max(self.n - 1, 0)))
+        beads = ids >= self.n
+        if beads.any() and self.solutes is not None:
+            kind[beads] = len(self.numbers.counts) + self.solutes.kinds()[ids[beads] - self.n]
+        return kind
 
     def bonds(self) -> NDArray[np.int64]:
         """Particle ids (bonds, 2) of all pairs that are linked; molecule after molecule, those of
@@ -267,7 +279,7 @@ class Readings:
         """
         d = self.dimension
         unit = self.numbers.units["stress"]
-        parts = total(self.memory.fluid.taken.tensor.swapaxes(0, 1), unit)
+        parts = self.total(self.memory.fluid.taken.tensor.swapaxes(0, 1), unit)
         if self.solutes is not None:
             theirs = total(self.solutes.state_of.tensor.swapaxes(0, 1), unit)
             bonded = theirs[2:] + parts[2:] if len(parts) > 2 else theirs[2:]
@@ -288,9 +300,14 @@ class Readings:
         A row for each: the lower and upper plate of a slit, or the bodies in order.
         """
         columns = self.dimension + (1 if self.dimension == 2 else 3)
-        taken = self.memory.fluid.taken.impulse.sum(axis=0).astype(float).reshape(-1, columns)
+        taken = self.impulse.astype(float).reshape(-1, columns)
         self.forget_walls()
         return taken / self.numbers.units["momentum"]
+
+    @property
+    def impulse(self) -> NDArray[np.int64]:
+        """The same as whole numbers, all in a row."""
+        return self.added(self.memory.fluid.taken.impulse)
 
     def forget_walls(self) -> None:
         """Count anew what surfaces take."""

@@ -28,6 +28,7 @@ from mesokit.scalar.fixed_point import (
     rounded,
 )
 from mesokit.scalar.intrinsics import floor
+from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import dot, row, scaled
 
 
@@ -126,7 +127,7 @@ def modes(team, zero, masses, box, particles, waves, scale, out):
 class Looked(NamedTuple):
     """Who is looked at, and what is found of them."""
 
-    slots: Any  # by particle number: the place among those looked at, or -1
+    slots: Any  # by particle number, or by place in memory: that among those looked at, or -1
     position: Any
     velocity: Any
     image: Any
@@ -134,25 +135,38 @@ class Looked(NamedTuple):
 
 @kernel
 def gather_by_id(team, zero, box, particles, unwrapped, looked):
-    """Positions, velocities and images of those that have a slot."""
-    data, rows = particles.data, particles.rows
-    filling, image, d = particles.filling, particles.image, len(zero)
-    first, last = share(strips_in(filling), team.thread, team.threads)
+    """Positions, velocities and images of those that have a slot, by their numbers."""
+    first, last = share(strips_in(particles.filling), team.thread, team.threads)
     for b in range(first, last):
-        strip = data[strip_at(b, rows)]
-        for i in range(lanes_in(filling, b)):
-            j = b * LANES + i
-            slot = looked.slots[particles.ident[j]]
-            if slot < 0:
-                continue
-            r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
-            crossed = scaled(0.0, zero)
-            if not unwrapped:
-                r, v, crossed = fold(box, r, v, crossed)
-            for k in range(d):
-                looked.position[slot, k] = r[k] + (image[k, j] * box.size[k] if unwrapped else 0.0)
-                looked.velocity[slot, k] = v[k]
-                looked.image[slot, k] = image[k, j] + np.int32(crossed[k])
+        for i in range(lanes_in(particles.filling, b)):
+            slot = looked.slots[particles.ident[b * LANES + i]]
+            if slot >= 0:
+                look_at(b, i, zero, box, particles, unwrapped, looked, slot)
+
+
+@kernel
+def gather_by_place(team, zero, box, particles, unwrapped, looked):
+    """The same by their places in memory."""
+    first, last = share(strips_in(particles.filling), team.thread, team.threads)
+    for b in range(first, last):
+        for i in range(lanes_in(particles.filling, b)):
+            slot = looked.slots[b * LANES + i]
+            if slot >= 0:
+                look_at(b, i, zero, box, particles, unwrapped, looked, slot)
+
+
+@scalar
+def look_at(b, i, zero, box, particles, unwrapped, looked, slot):
+    """Write down what lane i of strip b is and does."""
+    d, strip, j = len(zero), particles.data[strip_at(b, particles.rows)], b * LANES + i
+    r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
+    crossed, image = scaled(0.0, zero), particles.image
+    if not unwrapped:
+        r, v, crossed = fold(box, r, v, crossed)
+    for k in range(d):
+        looked.position[slot, k] = r[k] + (image[k, j] * box.size[k] if unwrapped else 0.0)
+        looked.velocity[slot, k] = v[k]
+        looked.image[slot, k] = image[k, j] + np.int32(crossed[k])
 
 
 @kernel

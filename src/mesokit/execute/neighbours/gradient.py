@@ -11,6 +11,7 @@ from mesokit.execute.cpu.physics import field_of
 from mesokit.execute.cpu.strips.cell_energy import untangled
 from mesokit.execute.cpu.strips.layout import LANES, share, sums_length
 from mesokit.execute.cpu.threads import meet
+from mesokit.execute.ranks.field import share_field
 from mesokit.scalar.fixed_point import from_fixed
 from mesokit.scalar.jit import by_type, scalar
 
@@ -46,6 +47,7 @@ def _fill_field(team, physics, fluid):
             number += untangled(physics.energy, cells.sums[t, cell * width])[0]
             total += cells.sums[t, cell * width + 1 + term]
         cells.field.values[cell] = from_fixed(total, number, physics.scales[term])
+    share_field(team, fluid)
     meet(team)
 
 

@@ -55,8 +55,10 @@ def with_clearance(case: Case, solids: Solids) -> tuple[Bodies, Any]:
     return kernel, (clear, plane_of, planes)
 
 
-def virtual_particles(numbers: Numbers, threads: int, rows: int) -> VirtualParticles:
-    """Virtual particles of the walls of a case."""
+def virtual_particles(
+    numbers: Numbers, threads: int, rows: int, domain: Any = None
+) -> VirtualParticles:
+    """Virtual particles of the walls of a case; those of one rank's cells, if they are shared."""
     case, solids, d = numbers.case, numbers.solids, numbers.dimension
     assert solids is not None
     slit, size, masses = numbers.slit, case.box.size, numbers.masses()
@@ -67,6 +69,12 @@ def virtual_particles(numbers: Numbers, threads: int, rows: int) -> VirtualParti
     else:
         starts, cells, corners = cut_cells(solids, numbers.cells)
         pieces, outward, probes, terms = surface_pieces(solids)
+    mine, keys, kept = cells, cells, slice(None)
+    if domain is not None:
+        kept = domain.owned(cells)
+        upto = np.concatenate([[0], np.cumsum(kept)])
+        starts, keys, corners = upto[starts], cells[kept], corners[kept]
+        mine = domain.known(keys)
     entries = int(np.diff(starts).max(initial=0)) // threads + 1  # at most, of a thread
     per_cell: CellParticles | tuple[()] = ()
     room = 0
@@ -77,13 +85,14 @@ def virtual_particles(numbers: Numbers, threads: int, rows: int) -> VirtualParti
         if slit is not None:
             planes = plates.cut_planes(slit, size, corners)
         else:
-            planes = cut_planes(solids, numbers.cells)
+            planes = tuple(column[kept] for column in cut_planes(solids, numbers.cells))
         per_cell = _per_cell(planes, pieces, threads, entries, d)
     blocks = blocks_for(room)
     return VirtualParticles(
         density=density,
         starts=starts,
-        cells=np.pad(cells, (0, LANES)),
+        cells=np.pad(mine, (0, LANES)),
+        keys=np.pad(keys, (0, LANES)),
         corners=corners,
         pieces=pieces,
         outward=outward,
@@ -97,6 +106,7 @@ def virtual_particles(numbers: Numbers, threads: int, rows: int) -> VirtualParti
         term=zeros((threads, blocks * BLOCK), np.int32),
         filled=np.zeros(threads, np.int64),
         per_cell=per_cell,
+        seen=() if domain is None else domain.seen(probes),
     )
 
 

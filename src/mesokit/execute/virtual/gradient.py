@@ -11,13 +11,14 @@ free, q is taken for 0.
 
 import numpy as np
 
-from mesokit.execute.cpu.grid import cell_index
+from mesokit.execute.cpu.grid import cell_in_box, cell_index
+from mesokit.execute.cpu.physics import field_of
 from mesokit.execute.cpu.strips.layout import share
 from mesokit.execute.cpu.strips.terms import read_sums, sums_of_cell
 from mesokit.execute.cpu.threads import meet
 from mesokit.geometry.cut import height, roomy, surface_flow
 from mesokit.scalar.intrinsics import floor, with_item
-from mesokit.scalar.jit import scalar, seldom
+from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.vector import added_scaled, dot, scaled
 
 EVERY = 4  # steps from one look at a piece to the next: sooner, the same particles are there
@@ -50,42 +51,88 @@ def follow_pieces(team, now, physics, fluid, walls):
     meet(team)
 
 
-@seldom
+@by_type
 def _follow(team, now, physics, sums, virtual):
+    """All pieces; a rank of several only notes what it sees, which `ranks.flow` takes up."""
+    return _follow_all if len(field_of(virtual, "seen")) == 0 else _see
+
+
+@seldom
+def _follow_all(team, now, physics, sums, virtual):
     turn = np.int64(now.counter.step) % EVERY
     begin, end = share((len(virtual.terms) + EVERY - 1 - turn) // EVERY, team.thread, team.threads)
     for e in range(turn + EVERY * begin, turn + EVERY * end, EVERY):
         for p in range(PROBES):
-            look(virtual, e, p, physics, now.grid, sums)
+            good, seen = look(virtual, e, p, physics, now.grid, sums)
+            if good:
+                remember(virtual.rates, e, p, seen, physics.zero)
         straighten(virtual.rates, e, physics.zero)
+
+
+@seldom
+def _see(team, now, physics, sums, virtual):
+    turn, pieces = np.int64(now.counter.step) % EVERY, virtual.seen.here
+    begin, end = share(len(pieces), team.thread, team.threads)
+    for j in range(begin, end):
+        e = pieces[j]
+        for p in range(PROBES if e % EVERY == turn else 0):
+            if is_own(virtual.seen, probe_at(virtual, e, p, physics.zero), now.grid):
+                good, seen = look(virtual, e, p, physics, now.grid, sums)
+                if good:
+                    virtual.seen.step[e, p] = np.int64(now.counter.step)
+                    for k in range(len(seen)):
+                        virtual.seen.values[e, p, k] = seen[k]
+
+
+@scalar
+def is_own(seen, r, grid):
+    """Whether the cell at r is one of this rank's own."""
+    place = cell_in_box(r, grid)
+    inside = True
+    for k in range(len(place)):
+        inside &= (seen.own[0, k] <= place[k]) & (place[k] < seen.own[1, k])
+    return inside
+
+
+@scalar
+def probe_at(virtual, e, p, zero):
+    """Where fluid is looked for."""
+    for k in range(len(zero)):
+        place = virtual.probes[e, k] + p * APART * virtual.outward[e, k]
+        zero = with_item(zero, k, place)
+    return zero
 
 
 @scalar
 def look(virtual, e, p, physics, grid, sums):
-    """Update the means of one probe, unless its cell is empty or holds some solid."""
+    """What is seen at a probe: u / h (d) and h; not good if its cell is empty or holds some solid.
+    """
     solid, zero = physics.solid, physics.zero
-    d, probe, n = len(zero), zero, zero
-    for k in range(d):
-        n = with_item(n, k, virtual.outward[e, k])
-        probe = with_item(probe, k, virtual.probes[e, k] + p * APART * virtual.outward[e, k])
+    probe, n = probe_at(virtual, e, p, zero), zero
     middle = probe
-    for k in range(d):
+    for k in range(len(zero)):
+        n = with_item(n, k, virtual.outward[e, k])
         corner = floor(probe[k] + grid.origin[k]) - grid.origin[k]
         middle = with_item(middle, k, corner + 0.5)
     if not roomy(solid, middle):
-        return
+        return False, zero + (0.0,)
     found = sums_of_cell(sums, cell_index(probe, grid), physics.terms)
     number, mass, momentum, _, _ = read_sums(physics, found)
     if number < 1.0:
-        return
+        return False, zero + (0.0,)
     above = height(solid, virtual.terms[e], middle)
     u = surface_flow(solid, virtual.terms[e], middle)
     rise = scaled(1.0 / above, added_scaled(scaled(1.0 / mass, momentum), -1.0, u))
-    rise = added_scaled(rise, -dot(rise, n), n)
+    return True, added_scaled(rise, -dot(rise, n), n) + (above,)
+
+
+@scalar
+def remember(rates, e, p, seen, zero):
+    """Take what was seen at a probe into its means."""
+    d = len(zero)
     place = 2 * d + p * (d + 1)
-    for k in range(d):
-        virtual.rates[e, place + k] += MEMORY * (rise[k] - virtual.rates[e, place + k])
-    virtual.rates[e, place + d] += MEMORY * (above - virtual.rates[e, place + d])
+    for k in range(d + 1):
+        rates[e, place + k] += MEMORY * (seen[k] - rates[e, place + k])
 
 
 @scalar

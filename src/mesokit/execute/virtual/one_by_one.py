@@ -48,10 +48,10 @@ def fill_one_by_one(team, now, physics, fluid, walls):
     begin, end = share(virtual.starts[offset + 1] - start, team.thread, team.threads)
     count = 0
     for entry in range(start + begin, start + end):
-        cell = virtual.cells[entry]
-        for j in range(poisson_number(virtual.density, counter, VIRTUAL_NUMBER, cell)):
-            drawn = words(counter, VIRTUAL_POSITION, cell, j)
-            at = Candidate(team.thread, count, entry, FIRST_VIRTUAL + cell * MOST + j)
+        key = virtual.keys[entry]
+        for j in range(poisson_number(virtual.density, counter, VIRTUAL_NUMBER, key)):
+            drawn = words(counter, VIRTUAL_POSITION, key, j)
+            at = Candidate(team.thread, count, entry, FIRST_VIRTUAL + key * MOST + j)
             count += place_one(virtual, at, physics, now.grid, drawn, fluid.particles.rows)
     draw_velocities(virtual, count, team, now, physics, fluid)
 
@@ -157,13 +157,13 @@ def top_up(team, now, physics, fluid, walls):
     begin, end = share(virtual.starts[offset + 1] - start, team.thread, team.threads)
     count = 0
     for entry in range(start + begin, start + end):
-        cell = virtual.cells[entry]
-        present = number_in_cell(physics, fluid.cells.sums, cell)
-        a, _, _, _ = words(counter, VIRTUAL_NUMBER, cell, 0)
+        key = virtual.keys[entry]
+        present = number_in_cell(physics, fluid.cells.sums, virtual.cells[entry])
+        a, _, _, _ = words(counter, VIRTUAL_NUMBER, key, 0)
         for j in range(int(virtual.density + unit_open(a)) - present):
-            at = Candidate(team.thread, count, entry, FIRST_VIRTUAL + cell * MOST + j)
+            at = Candidate(team.thread, count, entry, FIRST_VIRTUAL + key * MOST + j)
             for attempt in range(TRIES):
-                drawn = words(counter, VIRTUAL_POSITION, cell, j * TRIES + attempt)
+                drawn = words(counter, VIRTUAL_POSITION, key, j * TRIES + attempt)
                 if place_one(virtual, at, physics, now.grid, drawn, fluid.particles.rows) == 1:
                     count += 1
                     break

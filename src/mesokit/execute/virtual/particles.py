@@ -13,18 +13,21 @@ class VirtualParticles(NamedTuple):
 
     density: particles per cell.
     starts (offsets + 1,), cells, corners (entries, d): cut cells for each offset of the grid, and
-    their lower corners in the grid; `cells` goes on for a batch, so that batches may end anywhere.
+    their lower corners in the grid; keys: their numbers in the whole box, for random numbers.
+    `cells` and `keys` go on for a batch, so that batches may end anywhere.
     pieces: number of the piece of surface in each cell of the box, or -1.
     outward, probes (pieces, d): its normal, and where first to look for fluid; terms (pieces,).
     rates (pieces, columns): what is known of the flow there.
     masses: those of mixtures.
     data, cell, number, term (threads, ...), filled (threads,): the virtual particles of this step.
     per_cell: CellParticles, or () where they come one by one.
+    seen: Seen, or () where all cells are those of one rank.
     """
 
     density: float
     starts: Any
     cells: Any
+    keys: Any
     corners: Any
     pieces: Any
     outward: Any
@@ -38,6 +41,23 @@ class VirtualParticles(NamedTuple):
     term: Any
     filled: Any
     per_cell: Any
+    seen: Any
+
+
+class Seen(NamedTuple):
+    """What a rank of several sees of the flow at pieces of surface, and whom it tells.
+
+    own (2, d): its block of cells. here (pieces here,): pieces near it. step (pieces, PROBES), values
+    (pieces, PROBES, d + 1): when something was last seen at a probe, and what.
+    given_starts (partners + 1,), given: the pieces that each of the others keeps.
+    """
+
+    own: Any
+    here: Any
+    step: Any
+    values: Any
+    given_starts: Any
+    given: Any
 
 
 class CellParticles(NamedTuple):

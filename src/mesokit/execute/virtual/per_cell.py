@@ -148,7 +148,7 @@ def _fill(team, now, physics, sums, virtual):
         cut_batch(virtual, first + start, count, physics.solid, now.grid, work, zero)
         for i in range(count, LANES):
             work[MEAN * SCRATCH_ROW + i] = 0.0
-        numbers = virtual.cells[first + start : first + start + LANES]
+        numbers = virtual.keys[first + start : first + start + LANES]
         count_batch(numbers, now.counter, work)
         draw_batch(physics, numbers, now.counter, work)
         for i in range(count):
@@ -160,12 +160,13 @@ def _fill(team, now, physics, sums, virtual):
 
 
 class Place(NamedTuple):
-    """Of one cell: whose it is, its number with this thread, its entry, number and lane."""
+    """Of one cell: whose it is, its number with this thread, its entry, its number in the whole
+    box, and its lane."""
 
     thread: int
     number: int
     entry: int
-    cell: int
+    key: int
     lane: int
 
 
@@ -187,9 +188,9 @@ def place_particles(virtual, at, physics, now, sums):
     if asks(physics.energy):
         inner = work[INNER * SCRATCH_ROW + i]
         if inner < 0.0:
-            inner = gamma_number(float(d * (number - 1)), now.counter, VIRTUAL_NUMBER, at.cell)
+            inner = gamma_number(float(d * (number - 1)), now.counter, VIRTUAL_NUMBER, at.key)
         inner *= 2.0 * physics.kT
-    who = (FIRST_VIRTUAL + at.cell * MOST, 0)
+    who = (FIRST_VIRTUAL + at.key * MOST, 0)
     kept, own = contribute(physics.rule, now.counter, who, mass, v, in_cell(r, now.grid))
     width = sums_length(len(physics.terms))
     m_v_squared = inner
@@ -197,7 +198,7 @@ def place_particles(virtual, at, physics, now, sums):
         m_v_squared += mass * v[k] * v[k]
     terms = scaled(mass, v) + many_energy_term(physics.energy, m_v_squared) + own
     tallied = many_tally(physics.energy, number, m_v_squared)
-    start = np.uint64(at.cell * width)
+    start = np.uint64(virtual.cells[entry] * width)
     add_many(sums, start, number, tallied, rounded(terms, physics.scales))
     for k in range(d):
         cells.state[at.thread, at.number, k] = v[k]

@@ -1,0 +1,175 @@
+"""Execution on the ranks of MPI: each has the particles of a block of cells, on its threads."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import RunError
+from mesokit.execute.cpu.clock import MOVE, SHARE, WAIT
+from mesokit.execute.cpu.engine import CPU
+from mesokit.execute.cpu.memory import Memory
+from mesokit.execute.cpu.numbers import Floats, Numbers
+from mesokit.execute.cpu.threads import Threads
+from mesokit.execute.ranks.domain import Domain, axes_to_cut
+from mesokit.execute.ranks.readings import SharedReadings
+from mesokit.execute.ranks.shared import DONE, FAR, FAULTS, FULL, MOLECULES
+from mesokit.execute.ranks.tree import Tree, divided
+from mesokit.scalar.system import TICK
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+
+GROWTH = 1.3  # times as many molecules as there are, when arrays become too small
+
+
+class Ranks(CPU):
+    """The part of a fluid that is one rank's, and the verbs that all ranks do together.
+
+    Parameters
+    ----------
+    case : Case
+        What to simulate; the same on all ranks.
+    threads : int
+        Of this rank.
+    measures : sequence of str
+        As of `CPU`.
+    comm : communicator of mpi4py
+        Of all ranks.
+    """
+
+    def __init__(self, case: Case, threads: int, measures: Sequence[str], comm: Any) -> None:
+        self.case, self.numbers, self.comm = case, Numbers(case), comm
+        self.threads, self.measures = Threads(threads), measures
+        self.n, self.dimension, self.box = self.numbers.n, self.numbers.dimension, self.numbers.box
+        self.sort_seconds = 0.0
+        tree = divided(self.numbers.cells, comm.size, axes_to_cut(self.numbers))
+        self._live_in(tree, self.numbers.filling.molecules // comm.size)
+
+    def _live_in(self, tree: Tree, molecules: int) -> None:
+        """New memory, for this rank's block in a tree."""
+        size = self.threads.size
+        earlier = self.memory if hasattr(self, "memory") else None
+        self.domain = Domain(self.numbers, self.comm, tree, size, molecules)
+        self.memory = Memory(self.numbers, size, self.measures, self.domain, earlier)
+        steps = self.readings.wall_steps if earlier is not None else 0
+        self.readings = SharedReadings(self.memory, self.threads, self.comm)
+        self.readings.wall_steps = steps
+        self.solutes = self.readings.solutes
+
+    # --- running --------------------------------------------------------------------------------
+
+    def begin(self, positions: Floats, velocities: Floats) -> None:
+        images = np.zeros(positions.shape, np.int32)
+        self._take(np.arange(self.n), positions, velocities, images)
+        self.sort()
+
+    def _take(
+        self, who: NDArray[np.int64], positions: Floats, velocities: Floats, images: NDArray
+    ) -> None:
+        """Of these molecules, whole, those that are in this rank's block."""
+        beads = self.numbers.beads
+        owner = self.domain.owners(positions[::beads])
+        mine = np.repeat(owner == self.comm.rank, beads)
+        self._hold(who[mine], positions[mine], velocities[mine], images[mine])
+
+    def _hold(
+        self, who: NDArray[np.int64], positions: Floats, velocities: Floats, images: NDArray
+    ) -> None:
+        """Have these particles, and no others."""
+        molecules = len(who) // self.numbers.beads
+        if molecules > self.domain.room:
+            self._live_in(self.domain.tree, molecules)
+        self._count(molecules)
+        memory = self.memory
+        memory.fluid.particles.ident[memory.places] = who
+        memory.put(positions, velocities, images)
+
+    def _count(self, molecules: int) -> None:
+        """Have so many molecules in memory."""
+        fluid = self.memory.fluid
+        filling = fluid.particles.filling._replace(molecules=molecules)
+        self.memory.fluid = fluid._replace(particles=fluid.particles._replace(filling=filling))
+        fluid.cells.shared.noted[MOLECULES] = molecules
+
+    def _make_room(self) -> None:
+        """Larger arrays for what this rank has."""
+        memory, rows = self.memory, self.memory.rows_of()
+        who = memory.fluid.particles.ident[memory.places]
+        self._live_in(self.domain.tree, int(GROWTH * len(who) / self.numbers.beads) + 1)
+        self._go_on_from(memory)
+        self._hold(who, *rows)
+
+    def _go_on_from(self, memory: Memory) -> None:
+        """Take over what is not of particles."""
+        new = self.memory
+        new.step = memory.step
+        new.fluid.taken.impulse[:] = memory.fluid.taken.impulse
+        new.wall_rates[:] = memory.wall_rates
+        new.fluid.cells.shared.meter[:] = memory.fluid.cells.shared.meter
+
+    def _steps(self, steps: int, what: int) -> None:
+        left = steps
+        while True:
+            before = self.memory.step
+            super()._steps(left, what)
+            noted = self.memory.fluid.cells.shared.noted
+            self.memory.step = before + int(noted[DONE])
+            left -= int(noted[DONE])
+            self._check_messages(noted)
+            if steps:
+                self._count(int(noted[MOLECULES]))
+            if left <= 0:
+                return
+            self._make_room()
+
+    def _check_messages(self, noted: NDArray[np.int64]) -> None:
+        faults, post = int(noted[FAULTS]), self.memory.fluid.cells.shared.post
+        if post.flag[1]:
+            raise RunError(f"step {self.step}: a message to another rank failed")
+        if faults & FULL:
+            raise RunError(
+                f"step {self.step}: more particles beyond the cells around a rank's block than it "
+                "has room for; expected fewer ranks"
+            )
+        if faults & FAR:
+            raise RunError(
+                f"step {self.step}: a particle came to a cell of a rank that is no neighbour; "
+                "expected fewer ranks"
+            )
+
+    @property
+    def seconds(self) -> dict[str, float]:
+        """Time spent so far in each stage, on this rank."""
+        names = {"share": SHARE, "wait": WAIT, "move": MOVE}
+        clock = self.threads.clock
+        return super().seconds | {name: TICK * float(clock[3 + k]) for name, k in names.items()}
+
+    def _check_sums(self, crowd: int) -> None:
+        if self.memory.fluid.particles.filling.molecules:
+            super()._check_sums(crowd)
+
+    # --- its state ------------------------------------------------------------------------------
+
+    def state(self) -> dict[str, NDArray]:
+        self.check()
+        everybody = np.arange(self.n)
+        seen = self.readings.as_they_are(everybody)
+        return {
+            **(self.solutes.state() if self.solutes else {}),
+            "positions": seen.positions,
+            "velocities": seen.velocities,
+            "images": seen.images,
+            "step": np.int64(self.step),
+            "impulse": self.readings.impulse,
+            "wall_steps": np.int64(self.readings.wall_steps),
+            "wall_rates": self._wall_rates(),
+        }
+
+    def _wall_rates(self) -> Floats:
+        """Those of all pieces of surface, each as the rank has it that they are nearest to."""
+        return self.memory.wall_rates.copy()
