@@ -43,28 +43,42 @@ class SharedReadings(Readings):
         return out
 
     def own_rows(self, ids: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Which of the particles asked for are here: their places in `ids`, and in memory."""
+        """Which of the particles asked for are here: their places in `ids`, and among all here."""
         if self._sorted is None:
             who = self.memory.fluid.particles.ident[self.memory.places]
             order = np.argsort(who)
-            self._sorted = who[order], self.memory.places[order]
-        who, places = self._sorted
+            self._sorted = who[order], order
+        who, order = self._sorted
         at = np.minimum(np.searchsorted(who, ids), max(len(who) - 1, 0))
         here = np.flatnonzero(who[at] == ids) if len(who) else np.zeros(0, np.int64)
-        return here, places[at[here]]
+        return here, order[at[here]]
+
+    def together(self, here: NDArray[np.int64], rows: Floats, number: int) -> Floats:
+        """Rows (number, columns) of which each rank has those with these numbers."""
+        words = 1 + rows.shape[1]
+        sent = np.concatenate([here[:, None], np.ascontiguousarray(rows).view(np.int64)], axis=1)
+        counts = np.array(self.comm.allgather(len(here)))
+        whole = np.empty((counts.sum(), words), np.int64)
+        self.comm.Allgatherv(np.ascontiguousarray(sent), [whole, counts * words])
+        out = np.empty((number, rows.shape[1]))
+        out[whole[:, 0]] = np.ascontiguousarray(whole[:, 1:]).view(float)
+        return out
+
+    def as_they_are(self, ids: NDArray[np.int64]) -> Seen:
+        """Positions, velocities and images of particles as they lie in memory."""
+        here, which = self.own_rows(ids)
+        rows = np.concatenate([part[which] for part in self.memory.rows_of()], axis=1)
+        return self._seen_of(self.together(here, rows, len(ids)))
+
+    def _seen_of(self, rows: Floats) -> Seen:
+        d = self.dimension
+        return Seen(rows[:, :d], rows[:, d : 2 * d], rows[:, 2 * d :].astype(np.int32))
 
     def _gather_fluid(self, ids: NDArray | None, unwrapped: bool) -> Seen:
         asked = np.arange(self.n) if ids is None else np.asarray(ids, np.int64)
-        here, places = self.own_rows(asked)
-        rows = self.rows_at(places, unwrapped)
-        d = self.dimension
-        sent = np.ascontiguousarray(np.concatenate([here[:, None], rows.view(np.int64)], axis=1))
-        counts = np.array(self.comm.allgather(len(here)))
-        whole = np.empty((counts.sum(), 1 + 3 * d), np.int64)
-        self.comm.Allgatherv(sent, [whole, counts * (1 + 3 * d)])
-        out = np.empty((len(asked), 3 * d))
-        out[whole[:, 0]] = whole[:, 1:].view(float)
-        return Seen(out[:, :d], out[:, d : 2 * d], out[:, 2 * d :].astype(np.int32))
+        here, which = self.own_rows(asked)
+        rows = self.rows_at(self.memory.places[which], unwrapped)
+        return self._seen_of(self.together(here, rows, len(asked)))
 
     def rows_at(self, places: NDArray[np.int64], unwrapped: bool) -> Floats:
         """Position, velocity and images (n, 3 d) of the particles at these places in memory."""

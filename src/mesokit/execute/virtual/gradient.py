@@ -54,7 +54,11 @@ def follow_pieces(team, now, physics, fluid, walls):
 @by_type
 def _follow(team, now, physics, sums, virtual):
     """All pieces; a rank of several only notes what it sees, which `ranks.flow` takes up."""
-    return _follow_all if len(field_of(virtual, "seen")) == 0 else _see
+    if len(field_of(virtual, "seen")) == 0:
+        return lambda team, now, physics, sums, virtual: _follow_all(
+            team, now, physics, sums, virtual
+        )
+    return lambda team, now, physics, sums, virtual: _see(team, now, physics, sums, virtual)
 
 
 @seldom
