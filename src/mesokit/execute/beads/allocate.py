@@ -44,7 +44,7 @@ def beads_of(given: Solutes, memory: Any) -> Beads:
         near_wall=_near_wall(given, memory),
         faults=np.zeros((threads, 8), np.int64),
         cell=np.zeros(beads, np.int32),
-        head=np.full(numbers.number_of_cells, -1, np.int32),
+        head=np.full(memory.number_of_cells, -1, np.int32),
         following=np.zeros(beads, np.int32),
         given=np.zeros(beads * len(terms)),
         terms=terms,
@@ -54,6 +54,7 @@ def beads_of(given: Solutes, memory: Any) -> Beads:
         tensor=np.zeros((3, -(-beads // GROUP), 2 * d * d), np.int64),
         embedded=(),
         external=external_of(given, d),
+        roster=() if memory.domain is None else memory.domain.roster(given, len(terms)),
     )
 
 

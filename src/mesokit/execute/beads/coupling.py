@@ -9,13 +9,14 @@ import math
 
 import numpy as np
 
-from mesokit.execute.beads.state import mass_of
+from mesokit.execute.beads.state import PRESENT, bead_of, mass_of, number_of
 from mesokit.execute.cpu.collide import as_many, draw_with_care
 from mesokit.execute.cpu.strips.cell_energy import asks
 from mesokit.execute.cpu.strips.layout import LANES, record_length, share
 from mesokit.execute.cpu.strips.rows import load_values, store_values
 from mesokit.execute.cpu.strips.terms import read_sums, sums_of_cell
 from mesokit.execute.embedded.state import collides
+from mesokit.execute.ranks.shared import key_of
 from mesokit.method.mpcd.collision.protocol import Cell, contribute, freedom
 from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.method.mpcd.thermostat.protocol import guess
@@ -47,32 +48,32 @@ def cells_of_thread(team, number):
 @inner
 def _join(team, now, physics, cells, beads):
     first, last = cells_of_thread(team, cells.number)
-    for i in range(len(beads.cell)):
+    present = number_of(beads.roster, len(beads.cell), PRESENT)
+    for n in range(present):
+        i = bead_of(beads.roster, PRESENT, n)
         cell = beads.cell[i]
         if first <= cell < last:
             beads.following[i] = beads.head[cell]
             beads.head[cell] = i
-    for i in range(len(beads.cell)):
+    for n in range(present):
+        i = bead_of(beads.roster, PRESENT, n)
         cell = beads.cell[i]
         if first <= cell < last:
             beads.leads[i] = beads.head[cell] == i
             if beads.leads[i]:
-                answer = answer_for(beads, i, physics, now.counter, cells.sums, cell)
+                answer = answer_for(beads, i, physics, now.counter, cells, cell)
                 store_values(beads.answers, np.uint64(i * len(physics.coefficients)), answer)
-    for i in range(len(beads.cell)):
-        cell = beads.cell[i]
-        if first <= cell < last:
-            beads.head[cell] = NOBODY
 
 
 @scalar
-def answer_for(beads, leader, physics, counter, sums, cell):
+def answer_for(beads, leader, physics, counter, cells, cell):
     """What all in the cell of that bead, the first of its list, need to collide."""
-    n, mass, momentum, energy, own = read_sums(physics, sums_of_cell(sums, cell, physics.terms))
+    found, key = sums_of_cell(cells.sums, cell, physics.terms), key_of(cells.shared, cell)
+    n, mass, momentum, energy, own = read_sums(physics, found)
     mass = mass if n > 0.5 else 0.0
     total = n, mass, momentum, energy, own
     n, mass, momentum, energy, own = with_random_solvent(
-        beads.solvent, beads, physics, counter, cell, total
+        beads.solvent, beads, physics, counter, key, total
     )
     i = leader
     while i != NOBODY:
@@ -81,10 +82,10 @@ def answer_for(beads, leader, physics, counter, sums, cell):
         n, mass, momentum = n + 1.0, mass + mass_of(beads, i), added(momentum, more)
         energy, own = energy + its_energy, added(own, its_own)
         i = beads.following[i]
-    chance = words(counter, CELL, cell, 0)
+    chance = words(counter, CELL, key, 0)
     x, sure = guess(physics.thermostat, chance[2:], freedom(physics.rule, n))
     if not sure:
-        x = draw_with_care(physics, counter, cell, freedom(physics.rule, n))
+        x = draw_with_care(physics, counter, key, freedom(physics.rule, n))
     found = Cell(n, mass, momentum, energy, own)
     answer = coefficients_of(physics.rule, physics.thermostat, x, chance[:2], found)
     return as_many(answer, physics.coefficients)
@@ -139,9 +140,11 @@ def _put_answers(team, now, physics, fluid, beads):
     cells = fluid.cells
     first, last = cells_of_thread(team, cells.number)
     needed = physics.coefficients
-    for i in range(len(beads.cell)):
+    for n in range(number_of(beads.roster, len(beads.cell), PRESENT)):
+        i = bead_of(beads.roster, PRESENT, n)
         cell = beads.cell[i]
         if first <= cell < last and beads.leads[i]:
+            beads.head[cell] = NOBODY
             start = np.uint64(cell) * np.uint64(record_length(len(needed)))
             store_values(
                 cells.coefficients,

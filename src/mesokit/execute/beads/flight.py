@@ -11,8 +11,11 @@ from mesokit.case.box import at_time, fold, peculiar, unfold
 from mesokit.execute.beads.moving import Moving
 from mesokit.execute.beads.state import (
     GROUP,
+    OWN,
+    bead_of,
     load_folded,
     mass_of,
+    number_of,
     store_velocity,
 )
 from mesokit.execute.beads.verlet import verlet
@@ -22,6 +25,7 @@ from mesokit.execute.cpu.stress import flux
 from mesokit.execute.cpu.strips.layout import record_length, share
 from mesokit.execute.cpu.strips.rows import load_values, store_values
 from mesokit.execute.cpu.threads import Team
+from mesokit.execute.ranks.roster import call_roll
 from mesokit.method.mpcd.collision.protocol import collide, contribute
 from mesokit.scalar.cache import inner
 from mesokit.scalar.fixed_point import add_quanta
@@ -42,30 +46,49 @@ def move_beads(team, now, physics, fluid, beads):
 
 @inner
 def _move(team, now, physics, fluid, beads):
-    groups = (len(beads.cell) + GROUP - 1) // GROUP
-    together = team.threads if groups >= LEAST * team.threads else 1
-    if team.thread >= together:
-        return
-    some = Team(team.thread, together, team.gate, team.clock)
-    first, last = share(groups, team.thread, together)
-    first, last = first * GROUP, min(last * GROUP, len(beads.cell))
-    measured = now.flags & MEASURE_STRESS
+    together = threads_for(team, beads)
+    first, last = beads_of_thread(team, together, beads)
+    measured, roster = now.flags & MEASURE_STRESS, beads.roster
+    before = now.counter.step - (1 if now.flags & STREAM else 0)
+    box = at_time(now.box, before * physics.timestep)
     if now.flags & COLLIDE:  # v: the collision at t
-        before = now.counter.step - (1 if now.flags & STREAM else 0)
-        box = at_time(now.box, before * physics.timestep)
-        for i in range(first, last):
+        for n in range(first, last):
+            i = bead_of(roster, OWN, n)
             collide_bead(beads, i, physics, box, now.old, fluid.cells.coefficients)
         if measured and not now.flags & STREAM:
-            for i in range(first, last):
-                add_bead_flux(beads, i, physics, now.box, now.old.shift, 1)
+            for n in range(first, last):
+                add_bead_flux(beads, n, physics, now.box, now.old.shift, 1)
     if now.flags & STREAM:  # r, v: t -> t + dt; cells at t + dt
+        call_roll(team, now, physics, box, fluid, beads)  # ranks: whose they are, and who is near
+        together = threads_for(team, beads)
+        first, last = beads_of_thread(team, together, beads)
+        if team.thread >= together:
+            return
+        some = Team(team.thread, together, team.gate, team.clock)
         moving = Moving(some, beads, first, last, fluid.taken.impulse[team.thread], measured)
         verlet(moving, now, physics, beads.potentials.substeps)
         if measured:
-            for i in range(first, last):
-                add_bead_flux(beads, i, physics, now.box, now.grid.shift, 0)
-        for i in range(first, last):
-            bin_bead(beads, i, physics, now)
+            for n in range(first, last):
+                add_bead_flux(beads, n, physics, now.box, now.grid.shift, 0)
+        for n in range(first, last):
+            bin_bead(beads, bead_of(roster, OWN, n), physics, now)
+
+
+@scalar
+def threads_for(team, beads):
+    """How many threads move the beads together: all, or one where they are few."""
+    number = number_of(beads.roster, len(beads.cell), OWN)
+    groups = (number + GROUP - 1) // GROUP
+    return team.threads if groups >= LEAST * team.threads else 1
+
+
+@scalar
+def beads_of_thread(team, together, beads):
+    """First and last + 1 of the beads that a thread moves."""
+    number = number_of(beads.roster, len(beads.cell), OWN)
+    groups = (number + GROUP - 1) // GROUP
+    first, last = share(groups, min(team.thread, together), together)
+    return first * GROUP, (min(last * GROUP, number) if team.thread < together else first * GROUP)
 
 
 @scalar
@@ -93,12 +116,12 @@ def bin_bead(beads, i, physics, now):
 
 
 @scalar
-def add_bead_flux(beads, i, physics, box, shift, when):
-    """What a bead carries of the stress; its velocity in its cell is that of the image there.
+def add_bead_flux(beads, n, physics, box, shift, when):
+    """What the nth bead carries of the stress; its velocity in its cell is that of the image there.
 
     `when` is 0 before a collision, 1 after it.
     """
-    tensor = beads.tensor[when, i // GROUP]
+    tensor, i = beads.tensor[when, n // GROUP], bead_of(beads.roster, OWN, n)
     r, v, _ = load_folded(beads, i, box, scaled(0.0, shift))
     place, u, _ = fold(box, r, v, shift)
     carried = flux(mass_of(beads, i), peculiar(box, r, v), u, added(place, shift))

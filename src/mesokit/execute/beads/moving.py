@@ -7,7 +7,9 @@ from mesokit.execute.beads.interactions import Force, Virial
 from mesokit.execute.beads.neighbours import refresh
 from mesokit.execute.beads.state import (
     GROUP,
+    OWN,
     Beads,
+    bead_of,
     inverse_mass_of,
     load_place,
     load_velocity,
@@ -19,6 +21,7 @@ from mesokit.execute.beads.traverse import each_on_bead
 from mesokit.execute.beads.verlet import drift, flown, kick
 from mesokit.execute.cpu.physics import kind_of_solid, momentum_scale
 from mesokit.execute.cpu.threads import Team, meet
+from mesokit.execute.ranks.roster import tell_places
 from mesokit.geometry.solids.none import Nothing
 from mesokit.method.mpcd.field.none import Zero
 from mesokit.method.mpcd.field.protocol import acceleration
@@ -41,7 +44,8 @@ class Moving(NamedTuple):
 @drift.register(Moving)
 def _(moving, counter, physics):
     meet(moving.team)  # nobody looks at the places before any more
-    for i in range(moving.first, moving.last):
+    for n in range(moving.first, moving.last):
+        i = bead_of(moving.beads.roster, OWN, n)
         drift_bead(moving.beads, i, counter, physics, moving.impulse)
 
 
@@ -67,15 +71,17 @@ def _drift_among_solids(beads, i, counter, physics, impulse):
 def _(moving, step, box, physics):
     beads, team, zero = moving.beads, moving.team, physics.zero
     meet(team)
-    refresh(team, beads.neighbours, box, beads.r, (moving.first, moving.last), zero)
+    tell_places(team, beads)  # ranks: where they are now
+    refresh(team, beads.neighbours, beads.roster, box, beads.r, zero)
     if moving.measured:
-        for i in range(moving.first, moving.last):
-            virial = Virial(physics.timestep, beads.tensor[2, i // GROUP], physics.stress_scale)
+        for n in range(moving.first, moving.last):
+            i = bead_of(beads.roster, OWN, n)
+            virial = Virial(physics.timestep, beads.tensor[2, n // GROUP], physics.stress_scale)
             each_on_bead(virial, (), beads, i, load_place(beads, i, zero), box)
     scale, faults = momentum_scale(physics), beads.faults[team.thread]
     force = Force(physics.timestep, moving.impulse, scale, step, faults)
-    for i in range(moving.first, moving.last):
-        kick_bead(force, beads, i, box, physics)
+    for n in range(moving.first, moving.last):
+        kick_bead(force, beads, bead_of(beads.roster, OWN, n), box, physics)
 
 
 @by_type

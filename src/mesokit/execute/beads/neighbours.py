@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mesokit.case.box import SLIDING, fold
+from mesokit.execute.beads.state import AROUND, OWN, bead_of, number_of
 from mesokit.execute.cells import cell_of, next_along, worn
 from mesokit.execute.cpu.strips.layout import share
 from mesokit.execute.cpu.strips.rows import load_values, store_values
@@ -91,10 +92,11 @@ def slipped(lists, box, thread):
 
 
 @scalar
-def note_moves(lists, box, thread, places, share_of, zero):
+def note_moves(lists, roster, box, thread, places, share_of, zero):
     """Find how far the beads of this thread have gone against what is next to them."""
     (first, last), slip, farthest = share_of, slipped(lists, box, thread), 0.0
-    for i in range(first, last):
+    for n in range(first, last):
+        i = bead_of(roster, AROUND, n)
         at = np.uint64(i * len(zero))
         moved = added_scaled(
             load_values(places, at, zero), -1.0, load_values(lists.made_at, at, zero)
@@ -116,31 +118,36 @@ def stale(lists, box, team):
 
 
 @by_type
-def refresh(team, lists, box, places, share_of, zero):
+def refresh(team, lists, roster, box, places, zero):
     """Make the lists anew if they may miss somebody; nothing without a pair potential."""
-    return _refresh if len(lists) else lambda team, lists, box, places, share_of, zero: None
+    return _refresh if len(lists) else lambda team, lists, roster, box, places, zero: None
 
 
-def _refresh(team, lists, box, places, share_of, zero):
-    (lists,), (first, last) = lists, share_of
-    note_moves(lists, box, team.thread, places, share_of, zero)
+def _refresh(team, lists, roster, box, places, zero):
+    (lists,) = lists
+    everybody = len(lists.cell)
+    around = share(number_of(roster, everybody, AROUND), team.thread, team.threads)
+    note_moves(lists, roster, box, team.thread, places, around, zero)
     meet(team)
     if stale(lists, box, team):
-        find_cells(lists, box, places, share_of, zero)
+        find_cells(lists, roster, box, places, around, zero)
         lists.noted[team.thread, OFFSET] = offset_of_images(box)
         lists.noted[team.thread, MADE] = 1.0
         meet(team)
-        link(lists, share(len(lists.head), team.thread, team.threads))
+        link(lists, roster, share(len(lists.head), team.thread, team.threads))
         meet(team)
-        for i in range(first, last):
-            make_list(lists, box, places, i, zero)
+        first, last = share(number_of(roster, everybody, OWN), team.thread, team.threads)
+        for n in range(first, last):
+            make_list(lists, box, places, bead_of(roster, OWN, n), zero)
+        meet(team)
 
 
 @seldom
-def find_cells(lists, box, places, share_of, zero):
+def find_cells(lists, roster, box, places, share_of, zero):
     """Where these beads are, and in which cells."""
     still = scaled(0.0, zero)
-    for i in range(share_of[0], share_of[1]):
+    for n in range(share_of[0], share_of[1]):
+        i = bead_of(roster, AROUND, n)
         at = np.uint64(i * len(zero))
         r = load_values(places, at, zero)
         store_values(lists.made_at, at, r)
@@ -150,11 +157,12 @@ def find_cells(lists, box, places, share_of, zero):
 
 
 @seldom
-def link(lists, cells):
+def link(lists, roster, cells):
     """The beads of these cells, each thread's own, the last first."""
     first, last = cells
     lists.head[first:last] = -1
-    for i in range(len(lists.following)):
+    for n in range(number_of(roster, len(lists.following), AROUND)):
+        i = bead_of(roster, AROUND, n)
         cell = lists.cell[i]
         if first <= cell < last:
             lists.following[i] = lists.head[cell]

@@ -94,10 +94,7 @@ class SoluteReadings:
 
     def potential_energy(self) -> float:
         """Of bonds, angles, pairs and walls, and of beads that act on the fluid."""
-        box, zero = self.memory.box, self.memory.physics.zero
-        energy = float(energy_of(ALONE, self.state_of, box, zero))
-        energy += external_energy(self.state_of.external, self.places)
-        return energy + (energy_in_fluid(self.memory) if self.state_of.embedded else 0.0)
+        return energy_in(self.memory, self.state_of, self.places)
 
     def begin(self, places: Floats, velocities: Floats) -> None:
         """Give the beads their first places and velocities (beads, d)."""
@@ -141,6 +138,13 @@ class SoluteReadings:
             )
 
 
+def energy_in(memory: Memory, beads: Any, places: Floats) -> float:
+    """Potential energy of beads, of what they do from outside, and of those that act on the fluid."""
+    energy = float(energy_of(ALONE, beads, memory.box, memory.physics.zero))
+    energy += external_energy(beads.external, places)
+    return energy + (energy_in_fluid(memory) if beads.embedded else 0.0)
+
+
 @kernel
 def fold_beads(box, r, v, boxes, zero):
     """Bring beads into the box."""
@@ -159,7 +163,7 @@ def fold_beads(box, r, v, boxes, zero):
 def energy_of(team, beads, box, zero):
     """Potential energy of all beads."""
     number, total = len(beads.cell), (0.0,)
-    refresh(team, beads.neighbours, box, beads.r, (0, number), zero)
+    refresh(team, beads.neighbours, (), box, beads.r, zero)
     for i in range(number):
         total = each_on_bead(Energy(), total, beads, i, load_place(beads, i, zero), box)
     (energy,) = total

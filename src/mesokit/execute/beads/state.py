@@ -31,6 +31,7 @@ class Beads(NamedTuple):
     and after the collision, and by forces; whole numbers.
     embedded: (Embedded,) for beads that do not collide but act by a potential, or ().
     external: (External,) for beads that are pulled, trapped or in a magnetic field, or ().
+    roster: which beads are whose where ranks share them (`ranks.roster.Roster`), or ().
     """
 
     mass: Any
@@ -56,6 +57,7 @@ class Beads(NamedTuple):
     tensor: Any
     embedded: tuple
     external: tuple
+    roster: Any
 
 
 class KindsOfLinks(NamedTuple):
@@ -69,6 +71,26 @@ class KindsOfLinks(NamedTuple):
     angles: Any
     beads: Any
     number: int
+
+
+# Places in `Roster.count`: beads of this rank, these and those that it hears of, those in its cells.
+OWN, AROUND, PRESENT = 0, 1, 2
+
+
+@by_type
+def number_of(roster, everybody, which):
+    """How many beads a rank has, knows of, or finds in its cells (`which`): all, without ranks."""
+    if len(roster) == 0:
+        return lambda roster, everybody, which: everybody
+    return lambda roster, everybody, which: roster.count[which]
+
+
+@by_type
+def bead_of(roster, which, n):
+    """Number of the nth of these."""
+    if len(roster) == 0:
+        return lambda roster, which, n: n
+    return lambda roster, which, n: roster.who[which, n]
 
 
 @by_type

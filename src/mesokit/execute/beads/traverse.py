@@ -13,7 +13,7 @@ from mesokit.execute.beads.choice import (
 )
 from mesokit.execute.beads.interactions import of_wall
 from mesokit.execute.beads.neighbours import CROWDED, apart
-from mesokit.execute.beads.state import load_place
+from mesokit.execute.beads.state import AROUND, bead_of, load_place, number_of
 from mesokit.scalar.jit import by_type, elementwise, scalar
 from mesokit.scalar.vector import added, added_scaled
 
@@ -76,9 +76,9 @@ def each_pair(pair, asked, total, beads, i, r, box):
 
 def _each_pair(pair, asked, total, beads, i, r, box):
     (potential,), (lists,), part = pair, beads.neighbours, nothing(total)
-    count = lists.count[i]
-    for n in range(count if count != CROWDED else len(lists.count)):
-        j = lists.near[i, n] if count != CROWDED else n
+    count, around = lists.count[i], number_of(beads.roster, len(lists.count), AROUND)
+    for n in range(count if count != CROWDED else around):
+        j = lists.near[i, n] if count != CROWDED else bead_of(beads.roster, AROUND, n)
         separation = apart(box, load_place(beads, j, r), r)
         kind = kind_of_pair(beads.kinds, i, j)
         part = of_chosen(potential, kind, asked, part, separation, i, j)

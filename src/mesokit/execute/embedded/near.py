@@ -39,11 +39,11 @@ def find_beads(team, stamp, box, beads, zero):
     """Put beads into their cells, and mark the cells of the fluid around them with a stamp."""
     (embedded,), number = beads.embedded, len(beads.cell)
     first, last = share(number, team.thread, team.threads)
-    find_cells(embedded.lists, box, beads.r, (first, last), zero)
+    find_cells(embedded.lists, beads.roster, box, beads.r, (first, last), zero)
     for i in range(first, last):
         mark_around(embedded, load_place(beads, i, zero), stamp)
     meet(team)
-    link(embedded.lists, share(len(embedded.lists.head), team.thread, team.threads))
+    link(embedded.lists, beads.roster, share(len(embedded.lists.head), team.thread, team.threads))
     meet(team)
 
 

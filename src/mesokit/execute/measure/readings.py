@@ -281,7 +281,7 @@ class Readings:
         unit = self.numbers.units["stress"]
         parts = self.total(self.memory.fluid.taken.tensor.swapaxes(0, 1), unit)
         if self.solutes is not None:
-            theirs = total(self.solutes.state_of.tensor.swapaxes(0, 1), unit)
+            theirs = self.total(self.solutes.state_of.tensor.swapaxes(0, 1), unit)
             bonded = theirs[2:] + parts[2:] if len(parts) > 2 else theirs[2:]
             parts = np.concatenate([parts[:2] + theirs[:2], bonded])
         (flux, moment), (flux_after, moment_after), *rest = parts.reshape(-1, 2, d, d)

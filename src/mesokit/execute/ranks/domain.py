@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mesokit.execute.cpu.grid import Part
 from mesokit.execute.cpu.strips.layout import LANES, record_length, sums_length, zeros
 from mesokit.execute.ranks.mpi import post
+from mesokit.execute.ranks.muster import reach_of_beads, roster_of
 from mesokit.execute.ranks.region import (
     Region,
     Space,
@@ -29,6 +30,7 @@ from mesokit.potential.thermal import mean_square
 if TYPE_CHECKING:
     from mesokit.execute.cpu.memory import Memory
     from mesokit.execute.cpu.numbers import Numbers
+    from mesokit.method.mpcd.solutes import Solutes
 
 HALO = 2  # cells around a block that are known
 STRAY = 0.4  # cells that a particle of thermal speed goes from one move to the next
@@ -75,7 +77,11 @@ class Domain:
         self.region = region_of(self.block, self.space, HALO)
         self.regions = [region_of(block, self.space, HALO) for block in tree.blocks]
         self.every = every_of(numbers)
+        solutes = numbers.case.solutes
+        self.beads = 0 if solutes is None else solutes.beads
         self.reach = HALO + 1 + math.ceil(farthest(numbers))
+        if solutes is not None:
+            self.reach = max(self.reach, 1 + math.ceil(reach_of_beads(numbers, solutes)))
         self.partners = partners(self.rank, tree.blocks, self.space, self.reach)
         self.guests = [self._guests_of(p) for p in self.partners]
         self.movers = [FEW // 2 + int(0.25 * self._crowd(p)) for p in self.partners]
@@ -83,7 +89,7 @@ class Domain:
         each = 16 + -(-sum(self.guests) // threads)
         self.guests_of_thread = each
         self.guest_slots = each * threads
-        self.slots = self.guest_slots + beads * sum(1 + n for n in self.movers)
+        self.slots = self.guest_slots + beads * sum(1 + n for n in self.movers) + self.beads
         self.room = int(SPARE * molecules) + 64 + sum(1 + n for n in self.movers)
         self._known = _Lookup(self.region, self.space)
 
@@ -152,8 +158,9 @@ class Domain:
             theirs.append(there)
             given.append(shared(self.regions[p], self.region, self.space, self.block)[1])
         twice = 2 if numbers.virtual == "extrapolate" else 1  # what is seen of the flow, too
-        out_at = _starts(1 + twice * len(m) + g for m, g in zip(mine, self.guests, strict=True))
-        in_at = _starts(1 + twice * len(m) + g for m, g in zip(given, self.guests, strict=True))
+        more = [1 + guests + self.beads for guests in self.guests]
+        out_at = _starts(twice * len(m) + n for m, n in zip(mine, more, strict=True))
+        in_at = _starts(twice * len(m) + n for m, n in zip(given, more, strict=True))
         moved_at = _starts(1 + n for n in self.movers)
         answer = max(record_length(numbers.coefficient_count), 3 + d)
         record = numbers.beads * (1 + memory.rows + d + numbers.coefficient_count)
@@ -161,7 +168,7 @@ class Domain:
         regions = [self.regions[p] for p in self.partners]
         asked = numbers.case.fluid.collision.gradient_of is not None
         return Shared(
-            post=post(self.comm, 2 * q),
+            post=post(self.comm, 4 * q),
             keys=np.pad(keys(self.region, self.space), (0, LANES)),
             cells=np.array(self.space.cells, np.int64),
             own=np.array(self.block, np.int64),
@@ -203,6 +210,10 @@ class Domain:
             slots=self.guest_slots,
             room=self.room,
         )
+
+    def roster(self, given: Solutes, terms: int) -> Any:
+        """Which beads of solutes are whose."""
+        return roster_of(self, given, terms)
 
     def seen(self, probes: NDArray[np.float64]) -> Seen:
         """Which pieces of surface this rank keeps, and which the others do."""

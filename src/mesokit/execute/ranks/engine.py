@@ -16,7 +16,7 @@ from mesokit.execute.cpu.numbers import Floats, Numbers
 from mesokit.execute.cpu.threads import Threads
 from mesokit.execute.ranks.domain import Domain, axes_to_cut
 from mesokit.execute.ranks.readings import SharedReadings
-from mesokit.execute.ranks.shared import DONE, FAR, FAULTS, FULL, MOLECULES
+from mesokit.execute.ranks.shared import DONE, FAR, FAULTS, FULL, MOLECULES, STRETCHED
 from mesokit.execute.ranks.tree import Tree, divided
 from mesokit.scalar.system import TICK
 
@@ -62,6 +62,8 @@ class Ranks(CPU):
         self.solutes = self.readings.solutes
 
     # --- running --------------------------------------------------------------------------------
+
+    readings: SharedReadings
 
     def begin(self, positions: Floats, velocities: Floats) -> None:
         images = np.zeros(positions.shape, np.int32)
@@ -136,6 +138,11 @@ class Ranks(CPU):
                 f"step {self.step}: more particles beyond the cells around a rank's block than it "
                 "has room for; expected fewer ranks"
             )
+        if faults & STRETCHED:
+            raise RunError(
+                f"step {self.step}: a bead of solutes went farther in a step, or its bonds are longer, "
+                "than ranks can follow; expected fewer ranks or a shorter fluid.timestep"
+            )
         if faults & FAR:
             raise RunError(
                 f"step {self.step}: a particle came to a cell of a rank that is no neighbour; "
@@ -167,9 +174,5 @@ class Ranks(CPU):
             "step": np.int64(self.step),
             "impulse": self.readings.impulse,
             "wall_steps": np.int64(self.readings.wall_steps),
-            "wall_rates": self._wall_rates(),
+            "wall_rates": self.readings.wall_rates(),
         }
-
-    def _wall_rates(self) -> Floats:
-        """Those of all pieces of surface, each as the rank has it that they are nearest to."""
-        return self.memory.wall_rates.copy()

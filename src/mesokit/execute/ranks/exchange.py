@@ -15,6 +15,14 @@ from mesokit.execute.cpu.threads import meet
 from mesokit.execute.ranks.flow import take_seen, write_seen
 from mesokit.execute.ranks.guests import find_owners
 from mesokit.execute.ranks.mpi import finish, receive, send
+from mesokit.execute.ranks.roster import (
+    bead_row,
+    beads_that_ask,
+    find_bead_owners,
+    joint_answer,
+    send_terms,
+    take_terms,
+)
 from mesokit.execute.ranks.shared import (
     ANSWER_WORDS,
     FAULTS,
@@ -44,27 +52,30 @@ def write_row(rows, row, values):
 
 
 @by_type
-def give_sums(team, now, physics, fluid):
+def give_sums(team, now, physics, fluid, beads):
     """What this rank's particles add to cells of others goes there; what theirs add comes here."""
     if not shares(fluid):
-        return lambda team, now, physics, fluid: None
-    return lambda team, now, physics, fluid: _give(team, now, physics, fluid)
+        return lambda team, now, physics, fluid, beads: None
+    return lambda team, now, physics, fluid, beads: _give(team, now, physics, fluid, beads)
 
 
 @inner
-def _give(team, now, physics, fluid):
+def _give(team, now, physics, fluid, beads):
     shared = fluid.cells.shared
     partners = len(shared.ranks)
     find_owners(team, now, physics, fluid)
+    find_bead_owners(team, now, physics, fluid, beads)
     for p in range(partners):
-        shared.counting[team.thread, p] = count_rows(team, fluid.cells, p, physics)
+        rows = count_rows(team, fluid.cells, p, physics) + beads_that_ask(team, beads, p)
+        shared.counting[team.thread, p] = rows
     meet(team)
     for p in range(partners):
-        write_rows(team, fluid, p, physics)
+        write_rows(team, fluid, beads, p, physics)
     meet(team)
     lap(team, SHARE)
     if team.thread == 0:
-        send_sums(team, shared)
+        send_sums(team, shared, beads)
+        take_terms(beads)
     meet(team)
     lap(team, WAIT)
     for p in range(partners):
@@ -106,7 +117,7 @@ def first_row(team, shared, p):
 
 
 @scalar
-def write_rows(team, fluid, p, physics):
+def write_rows(team, fluid, beads, p, physics):
     """Rows for a partner; the sums of these cells are cleared."""
     cells, shared, t = fluid.cells, fluid.cells.shared, team.thread
     row = first_row(team, shared, p)
@@ -137,12 +148,17 @@ def write_rows(team, fluid, p, physics):
             for k in range(width):
                 shared.sums_out[row, 1 + k] = shared.guest_terms[t, n, k]
             row += 1
+    for j in range(beads_that_ask(team, beads, p)):  # they add what is said elsewhere
+        shared.asked[row], shared.sums_out[row, 0] = bead_row(beads, p, j)
+        for k in range(width):
+            shared.sums_out[row, 1 + k] = 0
+        row += 1
 
 
 @scalar
-def send_sums(team, shared):
+def send_sums(team, shared, beads):
     """Send all rows, and wait for those of the others."""
-    post, meter, n = shared.post, shared.meter, 0
+    post, meter, n = shared.post, shared.meter, send_terms(beads, shared, 0)
     words = shared.sums_out.shape[1]
     size = np.uint64(8 * words)
     base_in, base_out = shared.sums_in.ctypes.data, shared.sums_out.ctypes.data
@@ -185,23 +201,27 @@ def add_rows(team, cells, p, physics):
 
 
 @by_type
-def answer_others(team, now, physics, fluid, walls):
+def answer_others(team, now, physics, fluid, beads, walls):
     """What others asked for, first: it is on its way while this rank's own cells collide."""
     if not shares(fluid):
-        return lambda team, now, physics, fluid, walls: None
-    return lambda team, now, physics, fluid, walls: _answer(team, now, physics, fluid, walls)
+        return lambda team, now, physics, fluid, beads, walls: None
+    return lambda team, now, physics, fluid, beads, walls: _answer(
+        team, now, physics, fluid, beads, walls
+    )
 
 
 @inner
-def _answer(team, now, physics, fluid, walls):
+def _answer(team, now, physics, fluid, beads, walls):
     shared = fluid.cells.shared
+    if len(beads) > 0:
+        meet(team)  # answers for cells with beads are there
     for p in range(len(shared.ranks)):
         rows = rows_in(shared, p)
         first, last = share((rows + LANES - 1) // LANES, team.thread, team.threads)
         for b in range(first, last):
             start = shared.in_at[p] + HEADER + 1 + b * LANES
             count = min(LANES, rows - b * LANES)
-            answer_batch(team, now, physics, fluid, start, count)
+            answer_batch(team, now, physics, fluid, beads, start, count)
     meet(team)
     lap(team, SHARE)
     if team.thread == 0:
@@ -209,7 +229,7 @@ def _answer(team, now, physics, fluid, walls):
 
 
 @scalar
-def answer_batch(team, now, physics, fluid, start, count):
+def answer_batch(team, now, physics, fluid, beads, start, count):
     """Answers to some rows: of whole cells, which keep their sums."""
     cells, scratch, none = fluid.cells, fluid.scratch, nothing_found(physics.terms)
     totals, out = scratch.terms[team.thread], scratch.coefficients[team.thread]
@@ -221,7 +241,8 @@ def answer_batch(team, now, physics, fluid, start, count):
         store_scratch(totals, i, found)
     settle_batch(team, now, physics, fluid, Asked(rows, start, count), count)
     for i in range(count):
-        write_row(answers, start + i, load_scratch(out, i, physics.coefficients))
+        answer = load_scratch(out, i, physics.coefficients)
+        write_row(answers, start + i, joint_answer(beads, rows[start + i, 0], answer))
 
 
 @scalar

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.execute.beads.readings import SoluteReadings, energy_in
+from mesokit.execute.beads.state import OWN
 from mesokit.execute.cpu.memory import Floats, Memory
 from mesokit.execute.cpu.threads import Threads
 from mesokit.execute.measure import sums as measure
@@ -21,11 +23,15 @@ class SharedReadings(Readings):
     def __init__(self, memory: Memory, threads: Threads, comm: Any) -> None:
         super().__init__(memory, threads)
         self.comm = comm
+        if memory.solutes:
+            self.solutes = SharedSolutes(memory, comm)
         self._sorted: tuple[NDArray[np.int64], NDArray[np.int64]] | None = None
 
     def forget(self) -> None:
         super().forget()
         self._sorted = None
+        if isinstance(self.solutes, SharedSolutes):
+            self.solutes.known = False
 
     def total(self, rows: NDArray[np.int64], scale: Any) -> Floats:
         halves = np.stack([(rows >> HALF).sum(axis=0), (rows & (2**HALF - 1)).sum(axis=0)])
@@ -74,6 +80,15 @@ class SharedReadings(Readings):
         d = self.dimension
         return Seen(rows[:, :d], rows[:, d : 2 * d], rows[:, 2 * d :].astype(np.int32))
 
+    def wall_rates(self) -> Floats:
+        """How the flow rises from all pieces of surface, each as the rank has it that it is near."""
+        virtual = self.memory.walls.virtual
+        if not virtual or not len(virtual.rates):
+            return self.memory.wall_rates.copy()
+        mine = self.memory.domain.owners(virtual.probes) == self.comm.rank
+        bits = np.where(mine[:, None], virtual.rates.view(np.int64), 0)
+        return self.reduced(bits).view(float)
+
     def _gather_fluid(self, ids: NDArray | None, unwrapped: bool) -> Seen:
         asked = np.arange(self.n) if ids is None else np.asarray(ids, np.int64)
         here, which = self.own_rows(asked)
@@ -90,3 +105,64 @@ class SharedReadings(Readings):
         where = self.memory.box, self.memory.fluid.particles
         self.threads.run(measure.gather_by_place, zero, *where, unwrapped, looked)
         return np.concatenate([out.positions, out.velocities, out.images.astype(float)], axis=1)
+
+
+class SharedSolutes(SoluteReadings):
+    """The beads of all ranks; places and velocities are fetched when somebody asks."""
+
+    def __init__(self, memory: Memory, comm: Any) -> None:
+        super().__init__(memory)
+        self.comm, self.known = comm, True
+
+    @property
+    def places(self) -> Floats:
+        self.fetch()
+        return self.state_of.r.reshape(self.shape)
+
+    @property
+    def velocities(self) -> Floats:
+        self.fetch()
+        return self.state_of.v.reshape(self.shape)
+
+    def fetch(self) -> None:
+        """Get those of all ranks, unless nothing has moved since."""
+        if self.known:
+            return
+        beads, d = self.state_of, self.shape[1]
+        r, v = beads.r.reshape(self.shape), beads.v.reshape(self.shape)
+        own = beads.roster.who[OWN, : beads.roster.count[OWN]]
+        sent = np.concatenate([own[:, None].astype(float), r[own], v[own]], axis=1)
+        counts = np.array(self.comm.allgather(len(own))) * (1 + 2 * d)
+        whole = np.empty((counts.sum() // (1 + 2 * d), 1 + 2 * d))
+        self.comm.Allgatherv(np.ascontiguousarray(sent), [whole, counts])
+        who = whole[:, 0].astype(np.int64)
+        r[who], v[who] = whole[:, 1 : 1 + d], whole[:, 1 + d :]
+        self.known = True
+
+    def potential_energy(self) -> float:
+        self.fetch()
+        self.forget_lists()  # those of this rank know of beads around its block alone
+        energy = energy_in(self.memory, self.state_of._replace(roster=()), self.places)
+        self.forget_lists()
+        return energy
+
+    def state(self) -> dict[str, NDArray[Any]]:
+        self.fetch()
+        return super().state()
+
+    def begin(self, places: Floats, velocities: Floats) -> None:
+        self.known = True
+        super().begin(places, velocities)
+        self.share_out()
+
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
+        self.known = True
+        super().restore(state)
+        self.share_out()
+
+    def share_out(self) -> None:
+        """Each rank takes the beads in its block."""
+        owner = self.memory.domain.owners(self.folded()[0])
+        own, roster = np.flatnonzero(owner == self.comm.rank), self.state_of.roster
+        roster.who[OWN, : len(own)], roster.count[OWN] = own, len(own)
+        roster.seen[:] = -9

@@ -8,10 +8,12 @@ from mesokit.scalar.jit import by_type
 
 # Places in `Shared.noted`: molecules held, steps done by the last call, faults, newcomers in hand.
 MOLECULES, DONE, FAULTS, ARRIVED = 0, 1, 2, 3
-FULL, FAR = 1, 2  # faults: more guests than there is room for; a cell of nobody in reach
+# Faults: more guests than there is room for; a cell of nobody in reach; a bead that went too far.
+FULL, FAR, STRETCHED = 1, 2, 4
 # Places in `Shared.meter`, numbers since the run began: messages, words and rows sent for sums,
-# answers, particles and fields, most guests of a thread at once, molecules moved.
-MESSAGES, SUM_WORDS, ANSWER_WORDS, MOVED_WORDS, FIELD_WORDS, GUESTS, MOVED = range(7)
+# answers, particles and fields, most guests of a thread at once, molecules moved,
+# words for beads.
+MESSAGES, SUM_WORDS, ANSWER_WORDS, MOVED_WORDS, FIELD_WORDS, GUESTS, MOVED, BEAD_WORDS = range(8)
 METER_SIZE = 8
 HEADER = 0  # the row in front of a message: how many follow
 
