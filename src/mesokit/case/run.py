@@ -30,6 +30,13 @@ class Run:
         None, doc="write a checkpoint every so many steps as well", ge=1
     )
 
+    imbalance: float = param(
+        0.05,
+        doc="borders between ranks move where the work on both sides differs by more than this part "
+        "of it; inf: never",
+        ge=0,
+    )
+
     @field_validator("method")
     @classmethod
     def _one_that_there_is(cls, name: str) -> str:

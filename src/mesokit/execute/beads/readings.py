@@ -52,7 +52,11 @@ class SoluteReadings:
 
     def folded(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
         """Places in the box, velocities there, and boxes that each bead is away."""
-        r, v = self.places.copy(), self.velocities.copy()
+        return self.folded_of(self.places, self.velocities)
+
+    def folded_of(self, r: Floats, v: Floats) -> tuple[Floats, Floats, NDArray[np.int32]]:
+        """The same of beads with these places and velocities."""
+        r, v = r.copy(), v.copy()
         boxes = np.zeros(self.shape)
         rows = r.reshape(-1), v.reshape(-1), boxes.reshape(-1)
         fold_beads(self.memory.box, *rows, self.memory.physics.zero)

@@ -9,7 +9,7 @@ from mesokit.execute.cpu.strips.records import spread, take
 from mesokit.execute.cpu.strips.rows import load_scratch, load_values, store_scratch, store_values
 from mesokit.execute.cpu.strips.terms import nothing_found, read_sums
 from mesokit.execute.neighbours.gradient import gradient_at
-from mesokit.execute.ranks.shared import key_of, shares
+from mesokit.execute.ranks.shared import any_own, key_of, shares
 from mesokit.method.mpcd.collision.protocol import Cell, freedom
 from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.method.mpcd.thermostat.protocol import draw, guess
@@ -164,6 +164,8 @@ def collide(team, now, physics, fluid):
         batches = 0
     first, last = share(batches, team.thread, team.threads)
     for b in range(first, last):
+        if not any_own(cells.shared, b):
+            continue
         start = b * LANES
         count = min(LANES, cells.number - start)
         total_block(cells.sums, start, count, totals, physics.terms)

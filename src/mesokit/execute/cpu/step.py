@@ -2,7 +2,7 @@
 
 from mesokit.case.box import at_time
 from mesokit.execute.beads.coupling import answer_beads, join_beads
-from mesokit.execute.cpu.clock import CELLS, FINISH, START, SWEEP, lap
+from mesokit.execute.cpu.clock import BEADS, CELLS, FINISH, START, SWEEP, lap
 from mesokit.execute.cpu.collide import collide
 from mesokit.execute.cpu.grid import moved_grid
 from mesokit.execute.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM, Now
@@ -28,7 +28,9 @@ from mesokit.scalar.random import Counter, grid_shift
 def step(team, now, physics, fluid, beads, walls):
     """One collision interval: r, v from t to t + dt."""
     stream(team, now, physics, fluid, beads)  # v: the collision at t; r, v: t -> t + dt; sums
+    lap(team, SWEEP)
     move_beads(team, now, physics, fluid, beads)  # the same for solutes, in sub-steps
+    lap(team, BEADS)
     fill_walls(team, now, physics, fluid, walls)  # virtual particles at t + dt
     meet(team)
     lap(team, SWEEP)

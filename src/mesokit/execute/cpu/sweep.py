@@ -35,6 +35,7 @@ from mesokit.execute.cpu.strips.layout import (
 )
 from mesokit.execute.cpu.strips.rows import load_particle, mass_of
 from mesokit.execute.ranks.guests import note_guests
+from mesokit.execute.ranks.migrate import note_strays
 from mesokit.scalar.cache import inner
 from mesokit.scalar.fixed_point import add_fixed, added_fixed, integers
 from mesokit.scalar.jit import by_type, seldom
@@ -90,6 +91,7 @@ def _stream_singles(team, now, physics, fluid):
             tallied = tally(physics.energy, 0.0, zero)
             add_strip(cell, terms, sums, lanes, physics.terms, tallied)
             note_guests(team, s, fluid, cell, terms, lanes, physics.terms, tallied)
+            note_strays(team, now, physics, fluid, strip, s)
 
 
 @inner
@@ -141,6 +143,8 @@ def _stream_molecules(team, now, physics, fluid):
             tallied = tally(physics.energy, 0.0, zero)
             add_strip(cell, terms, sums, lanes, physics.terms, tallied)
             note_guests(team, s, fluid, cell, terms, lanes, physics.terms, tallied)
+            if k == 0:
+                note_strays(team, now, physics, fluid, strip, s)
 
 
 @seldom

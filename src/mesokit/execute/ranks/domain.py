@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -135,14 +136,7 @@ class Domain:
 
     def owners(self, positions: NDArray[np.float64]) -> NDArray[np.int64]:
         """The rank (n,) of each place (n, d) by the cells without a shift."""
-        found = np.full(len(positions), -1, np.int64)
-        cells = np.floor(positions).astype(np.int64)
-        whole = np.array(self.space.cells)
-        cells %= np.where(self.numbers.closed, whole - 1, whole)
-        for rank, block in enumerate(self.tree.blocks):
-            inside = ((cells >= block.low) & (cells < block.high)).all(axis=1)
-            found[inside] = rank
-        return found
+        return owners(self.tree.blocks, self.numbers, positions)
 
     # --- memory ---------------------------------------------------------------------------------
 
@@ -170,6 +164,7 @@ class Domain:
         return Shared(
             post=post(self.comm, 4 * q),
             keys=np.pad(keys(self.region, self.space), (0, LANES)),
+            mixed=self._batches_with_own(),
             cells=np.array(self.space.cells, np.int64),
             own=np.array(self.block, np.int64),
             limits=tuple(tuple(float(n) for n in side) for side in self.block),
@@ -198,6 +193,7 @@ class Domain:
             guest_owner=zeros((threads, self.guests_of_thread), np.int64),
             guest_terms=zeros((threads, self.guests_of_thread, width), np.int64),
             guests=zeros((threads, 8), np.int64),
+            strays=zeros((threads, memory.strips + 1), np.int64),
             leaving=zeros((threads, 1 + int(moved_at[-1])), np.int64),
             owner=zeros((threads, 1 + int(moved_at[-1])), np.int64),
             left=zeros((threads, 8), np.int64),
@@ -210,6 +206,11 @@ class Domain:
             slots=self.guest_slots,
             room=self.room,
         )
+
+    def _batches_with_own(self) -> NDArray[np.bool_]:
+        mine = np.zeros(-(-self.region.number // LANES) * LANES, bool)
+        mine[own(self.region, self.space, self.block)] = True
+        return mine.reshape(-1, LANES).any(axis=1)
 
     def roster(self, given: Solutes, terms: int) -> Any:
         """Which beads of solutes are whose."""
@@ -238,6 +239,18 @@ class Domain:
                 away = np.abs((probes[:, k] - middle + 0.5 * whole) % whole - 0.5 * whole)
             near &= away <= half
         return np.flatnonzero(near)
+
+
+def owners(
+    blocks: Sequence[Block], numbers: Numbers, positions: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """The rank (n,) of each place (n, d) by the cells without a shift."""
+    found = np.full(len(positions), -1, np.int64)
+    cells, whole = np.floor(positions).astype(np.int64), np.array(numbers.cells)
+    cells %= np.where(numbers.closed, whole - 1, whole)
+    for rank, block in enumerate(blocks):
+        found[((cells >= block.low) & (cells < block.high)).all(axis=1)] = rank
+    return found
 
 
 NEAR = 4.0  # cells from a block: a piece of surface so far away may matter in it

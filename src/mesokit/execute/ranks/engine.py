@@ -14,10 +14,13 @@ from mesokit.execute.cpu.engine import CPU
 from mesokit.execute.cpu.memory import Memory
 from mesokit.execute.cpu.numbers import Floats, Numbers
 from mesokit.execute.cpu.threads import Threads
-from mesokit.execute.ranks.domain import Domain, axes_to_cut
+from mesokit.execute.ranks.balance import Balance, Load, still_good
+from mesokit.execute.ranks.domain import Domain, axes_to_cut, owners
+from mesokit.execute.ranks.parcels import given_away, packed, unpacked
 from mesokit.execute.ranks.readings import SharedReadings
 from mesokit.execute.ranks.shared import DONE, FAR, FAULTS, FULL, MOLECULES, STRETCHED
 from mesokit.execute.ranks.tree import Tree, divided
+from mesokit.execute.ranks.window import Window
 from mesokit.scalar.system import TICK
 
 if TYPE_CHECKING:
@@ -47,6 +50,8 @@ class Ranks(CPU):
         self.threads, self.measures = Threads(threads), measures
         self.n, self.dimension, self.box = self.numbers.n, self.numbers.dimension, self.numbers.box
         self.sort_seconds = 0.0
+        self.balancing = Balance(comm, case.run.imbalance)
+        self._window = Window()
         tree = divided(self.numbers.cells, comm.size, axes_to_cut(self.numbers))
         self._live_in(tree, self.numbers.filling.molecules // comm.size)
 
@@ -118,7 +123,8 @@ class Ranks(CPU):
         left = steps
         while True:
             before = self.memory.step
-            super()._steps(left, what)
+            with self._window.timing(self):
+                super()._steps(left, what)
             noted = self.memory.fluid.cells.shared.noted
             self.memory.step = before + int(noted[DONE])
             left -= int(noted[DONE])
@@ -128,6 +134,74 @@ class Ranks(CPU):
             if left <= 0:
                 return
             self._make_room()
+
+    # --- balance --------------------------------------------------------------------------------
+
+    def sort(self) -> None:
+        with self._window.timing(self):
+            super().sort()
+        if self.step > 0:
+            self._balance()
+
+    def _balance(self) -> None:
+        """Move borders if the window before the last said so."""
+        times = self.balancing.heard()
+        if times is not None:
+            limit = self.balancing.limit
+            kept = still_good(self.domain.tree, times, limit)
+            if kept.nodes != self.domain.tree.nodes:
+                self.cut_anew(kept)
+        self.balancing.tell(self._window.work)
+        self._window = Window()
+
+    def cut_anew(self, kept: Tree | None = None) -> None:
+        """Cut by what each cell has cost of late; nodes in `kept` stay."""
+        load = Load(self.domain.block, self._costs(), self.comm)
+        cells, weights = self.numbers.cells, axes_to_cut(self.numbers)
+        tree = divided(cells, self.comm.size, weights, load.layers, kept)
+        if tree.blocks != self.domain.tree.blocks:
+            self.live_in(tree)
+        self.balancing.moved(self.step, tree.blocks)
+
+    def _costs(self) -> Floats:
+        """Seconds of this rank's work in each of its cells, x varying fastest."""
+        block, window = self.domain.block, self._window
+        lengths = np.array(block.lengths)
+
+        def counted(places: Floats) -> Floats:
+            where = np.floor(places).astype(np.int64) - np.array(block.low)
+            where = np.clip(where % np.array(self.numbers.cells), 0, lengths - 1)
+            number = np.ravel_multi_index(tuple(where.T[::-1]), tuple(lengths[::-1]))
+            return np.bincount(number, minlength=lengths.prod()).astype(float)
+
+        particles = counted(self.memory.rows_of()[0])
+        costs = np.full(lengths.prod(), window.cells / lengths.prod())
+        costs += window.particles * particles / max(particles.sum(), 1.0)
+        if self.solutes is not None:
+            beads = counted(self.solutes.own_places())
+            costs += window.beads * beads / max(beads.sum(), 1.0)
+        return costs
+
+    def live_in(self, tree: Tree) -> None:
+        """Have the blocks of another tree, and the particles that are there."""
+        memory, rates = self.memory, self.readings.wall_rates()
+        solutes = None if self.solutes is None else self.solutes.state()
+        who = memory.fluid.particles.ident[memory.places]
+        rows = packed(who, *memory.rows_of())
+        leaders = memory.rows_of()[0][:: self.numbers.beads]
+        owner = np.repeat(owners(tree.blocks, self.numbers, leaders), self.numbers.beads)
+        rows = given_away(rows, owner, self.comm)
+        self._live_in(tree, len(rows) // self.numbers.beads)
+        self._go_on_from(memory)
+        self.memory.wall_rates[:] = rates
+        self._hold(*unpacked(rows))
+        if solutes is not None:
+            self.solutes.restore(solutes)
+
+    def balance(self) -> dict[str, Any]:
+        """Most over mean of the ranks' work at first and of late, and the moves of borders."""
+        known = self.balancing
+        return {"first": known.first, "last": known.last, "moves": list(known.moves)}
 
     def _check_messages(self, noted: NDArray[np.int64]) -> None:
         faults, post = int(noted[FAULTS]), self.memory.fluid.cells.shared.post

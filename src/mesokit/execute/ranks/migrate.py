@@ -18,10 +18,10 @@ from mesokit.execute.cpu.strips.layout import (
     Molecules,
     Singles,
     beads_of,
+    lanes_in,
     place,
     place_of_bead,
     record_length,
-    share,
     strip_at,
 )
 from mesokit.execute.cpu.strips.rows import load_particle
@@ -123,29 +123,43 @@ def home(box, grid, closed):
     return lambda box, grid, closed: moved_grid(grid, scaled(0.0, grid.shift), closed)
 
 
-@scalar
-def find_leaving(team, now, physics, fluid):
-    """Note the molecules of this thread's share that belong to others, as many as may go."""
-    shared, particles, t = fluid.cells.shared, fluid.particles, team.thread
-    most = shared.leaving.shape[1]
-    first, last = share(particles.filling.molecules, t, team.threads)
-    grid, found, beads = home(now.box, now.grid, shared.closed), 0, beads_of(particles.filling)
-    start = first // LANES * LANES
-    for base in range(start, last, LANES):
-        strip = particles.data[strip_at(base // LANES * beads, particles.rows)]
-        away = np.int64(0)
+@by_type
+def note_strays(team, now, physics, fluid, strip, s):
+    """Note strip s, which is in the cache, if any of its leaders is to go to another rank now."""
+    if not shares(fluid):
+        return lambda team, now, physics, fluid, strip, s: None
+    return _note_strays
+
+
+def _note_strays(team, now, physics, fluid, strip, s):
+    shared, t = fluid.cells.shared, team.thread
+    if np.int64(now.counter.step) % shared.every == 0:
+        grid, away = home(now.box, now.grid, shared.closed), np.int64(0)
         for i in range(LANES):
             r = load_particle(strip, i, 0, physics.zero)
             away |= is_away(shared.limits, r, grid)
         if away != 0:
-            for i in range(max(first - base, 0), min(last - base, LANES)):
-                r = load_particle(strip, i, 0, physics.zero)
-                if is_away(shared.limits, r, grid) != 0 and found < most:
-                    owner, _ = owner_of(shared, cell_in_box(r, grid))
-                    if owner != NOBODY:
-                        shared.leaving[t, found], shared.owner[t, found] = base + i, owner
-                        found += 1
-    shared.left[t, 0] = found
+            shared.strays[t, shared.left[t, 1]] = s
+            shared.left[t, 1] += 1
+
+
+@scalar
+def find_leaving(team, now, physics, fluid):
+    """Note the molecules of this thread's strips that belong to others, as many as may go."""
+    shared, particles, t = fluid.cells.shared, fluid.particles, team.thread
+    most, found, beads = shared.leaving.shape[1], 0, beads_of(particles.filling)
+    grid = home(now.box, now.grid, shared.closed)
+    for j in range(shared.left[t, 1]):
+        s = shared.strays[t, j]
+        strip, first = particles.data[strip_at(s, particles.rows)], s // beads * LANES
+        for i in range(lanes_in(particles.filling, s)):
+            r = load_particle(strip, i, 0, physics.zero)
+            if is_away(shared.limits, r, grid) != 0 and found < most:
+                owner, _ = owner_of(shared, cell_in_box(r, grid))
+                if owner != NOBODY:
+                    shared.leaving[t, found], shared.owner[t, found] = first + i, owner
+                    found += 1
+    shared.left[t, 0], shared.left[t, 1] = found, 0
 
 
 @scalar

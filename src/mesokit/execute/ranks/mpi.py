@@ -14,7 +14,7 @@ from llvmlite import binding
 from numba import types
 
 from mesokit.scalar.jit import scalar
-from mesokit.scalar.system import yield_core
+from mesokit.scalar.system import read_work_clock, yield_core
 
 SPINS = 1_000  # times that a rank looks for its messages before it lets others have the core
 FAILED = 1  # bit of `Post.flag[1]`: a call of the library failed
@@ -34,7 +34,7 @@ class Post(NamedTuple):
 
     comm, words: handles of the communicator and of the type of 64-bit numbers; requests, statuses:
     memory of the library, `size` bytes for each request; flag (2,) int32: its answer, and what
-    failed.
+    failed; waited (3,): room for the clock, and ticks spent in waiting.
     """
 
     comm: int
@@ -43,6 +43,7 @@ class Post(NamedTuple):
     requests: Any
     statuses: Any
     flag: Any
+    waited: Any
 
 
 def post(comm: Any, messages: int) -> Post:
@@ -61,6 +62,7 @@ def post(comm: Any, messages: int) -> Post:
         requests=np.zeros(size * messages + 8, np.uint8),
         statuses=np.zeros(MPI._sizeof(MPI.Status) * messages + 8, np.uint8),
         flag=np.zeros(2, np.int32),
+        waited=np.zeros(3, np.int64),
     )
 
 
@@ -92,7 +94,7 @@ def receive(post, n, address, words, rank, tag):
 def finish(post, n):
     """Wait until the n messages in hand have been sent and have come."""
     requests, statuses = post.requests.ctypes.data, post.statuses.ctypes.data
-    post.flag[0], spins = 0, 0
+    post.flag[0], spins, began = 0, 0, read_work_clock(post.waited)
     while post.flag[0] == 0:
         failed = _test(
             np.int32(n), np.int64(requests), np.int64(post.flag.ctypes.data), np.int64(statuses)
@@ -103,3 +105,4 @@ def finish(post, n):
         spins += 1
         if spins > SPINS:
             yield_core()
+    post.waited[2] += read_work_clock(post.waited) - began

@@ -124,6 +124,12 @@ class SharedSolutes(SoluteReadings):
         self.fetch()
         return self.state_of.v.reshape(self.shape)
 
+    def own_places(self) -> Floats:
+        """Places of this rank's own beads, in the box."""
+        beads = self.state_of
+        own = beads.roster.who[OWN, : beads.roster.count[OWN]]
+        return self.folded_of(beads.r.reshape(self.shape), beads.v.reshape(self.shape))[0][own]
+
     def fetch(self) -> None:
         """Get those of all ranks, unless nothing has moved since."""
         if self.known:

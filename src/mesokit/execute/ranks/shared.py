@@ -26,7 +26,8 @@ class Shared(NamedTuple):
     cells that are not known: their rows go to whoever has the cell, their answers into a slot
     behind all known cells.
 
-    keys (known + LANES,): number in the whole box of each known cell.
+    keys (known + LANES,): number in the whole box of each known cell. mixed (batches,): whether any
+    cell of a batch is this rank's own.
     own: block of this rank (2, d); blocks (q, 2, d): of partners; regions (q, 2, d): first and
     number of the cells that they know. cells (d,): of the box.
     ranks (q,): their numbers.
@@ -38,7 +39,8 @@ class Shared(NamedTuple):
     field_out, field_in: numbers of cells whose neighbours are asked for, in the order of `given` and
     of `mine`.
     guest_place, guest_cell, guest_owner (T, guests), guest_terms (T, guests, width), guests (T, 8).
-    leaving, owner (T, most), left (T, 8): molecules that go to others, and to whom; moved_at
+    strays (T, strips), left (T, 8): strips that hold some who go to others, numbers of those and of
+    these; leaving, owner (T, most): molecules that go to others, and to whom; moved_at
     (q + 1,), moved_out, moved_in (rows, record): where those of each partner begin, and their
     numbers.
     every: steps from one move to the next; slots: guests of all threads; room: molecules that the
@@ -47,6 +49,7 @@ class Shared(NamedTuple):
 
     post: Post
     keys: Any
+    mixed: Any
     cells: Any
     own: Any
     limits: tuple
@@ -75,6 +78,7 @@ class Shared(NamedTuple):
     guest_owner: Any
     guest_terms: Any
     guests: Any
+    strays: Any
     leaving: Any
     owner: Any
     left: Any
@@ -91,6 +95,14 @@ class Shared(NamedTuple):
 def shares(fluid: Any) -> bool:
     """Whether a fluid is that of one rank of several, from the numba type of `Fluid`."""
     return len(field_of(field_of(fluid, "cells"), "shared")) > 0
+
+
+@by_type
+def any_own(shared, batch):
+    """Whether a batch of cells has one that is this rank's own."""
+    if len(shared) == 0:
+        return lambda shared, batch: True
+    return lambda shared, batch: shared.mixed[batch]
 
 
 @by_type
