@@ -20,7 +20,9 @@ import numpy as np
 
 from mesokit import (
     AT,
+    FENE,
     SRD,
+    WCA,
     ATPlusA,
     Box,
     Case,
@@ -30,10 +32,12 @@ from mesokit import (
     NoForce,
     NoThermostat,
     Plates,
+    Polymer,
     Run,
     Sampled,
     Simulation,
     Solids,
+    Solutes,
     SRDPlusA,
     Uniform,
 )
@@ -47,8 +51,8 @@ def case(name: str) -> Case:
 
     W1@48 is W1 with another length of the box. W5 is a 2D fluid of 400 x 50 cells with a
     thermostat: empty, or a channel with -plates, with -disks that cover 10 % of the area as well,
-    or with these -sampled. B-dimers-5 and B-decamers-5 are fluids of molecules, by 5 sub-steps, and
-    S-1000-10 a thousand beads of solutes by 10.
+    or with these -sampled. B-dimers-5 and B-decamers-5 are fluids of molecules, by 5 sub-steps,
+    S-1000-10 a thousand beads of solutes alone by 10, C-5000-10 5,000 of them in a fluid.
     """
     if name.startswith("B-"):
         from benchmarks import bonded
@@ -73,6 +77,9 @@ def case(name: str) -> Case:
             fluid=Fluid(density=10, timestep=solutes.TIMESTEP),
             solutes=solutes.solutes(int(beads), int(substeps)),
         )
+    if name.startswith("C-"):
+        _, beads, substeps = name.split("-")
+        return _chains(int(beads), int(substeps))
     if name.startswith("W5"):
         return _channel(name.partition("-")[2])
     workload, _, variant = name.partition("-")
@@ -91,6 +98,18 @@ def case(name: str) -> Case:
             force=Uniform([0.01, 0, 0]) if wall else NoForce(),
         ),
         walls=[Plates("z")] if wall else [],
+    )
+
+
+def _chains(beads: int, substeps: int) -> Case:
+    """Chains in a fluid of particles."""
+    return Case(
+        run=Run(steps=STEPS),
+        box=Box([40] * 3),
+        fluid=Fluid(density=10, timestep=0.1, collision=SRD(angle=130)),
+        solutes=Solutes(
+            (Polymer(beads // 20, 20),), bond=FENE(), pair=WCA(), mass=10.0, substeps=substeps
+        ),
     )
 
 

@@ -38,8 +38,8 @@ def test_the_step_is_on_one_page(name: str) -> None:
     path = SOURCE / "execute" / "cpu" / "step.py"
     [function] = [f for f in functions(path) if f.name == name]
     assert parameters(function) <= 6
-    assert len(function.body) - 1 <= 15  # the docstring is not counted
-    assert (function.end_lineno or 0) - function.lineno <= 17
+    assert len(function.body) - 1 <= 20  # the docstring is not counted
+    assert (function.end_lineno or 0) - function.lineno <= 22
 
 
 def test_no_formatting_is_switched_off_for_arguments() -> None:

@@ -32,8 +32,8 @@ class Run:
 
     imbalance: float = param(
         0.05,
-        doc="borders between ranks move where the work on both sides differs by more than this part "
-        "of it; inf: never",
+        doc="borders between ranks move where the work on both sides differs by more than this "
+        "part of it; inf: never",
         ge=0,
     )
 

@@ -143,7 +143,7 @@ class SoluteReadings:
 
 
 def energy_in(memory: Memory, beads: Any, places: Floats) -> float:
-    """Potential energy of beads, of what they do from outside, and of those that act on the fluid."""
+    """Potential energy of beads, also of forces from outside and of those on the fluid."""
     energy = float(energy_of(ALONE, beads, memory.box, memory.physics.zero))
     energy += external_energy(beads.external, places)
     return energy + (energy_in_fluid(memory) if beads.embedded else 0.0)

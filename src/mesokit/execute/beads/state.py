@@ -73,7 +73,7 @@ class KindsOfLinks(NamedTuple):
     number: int
 
 
-# Places in `Roster.count`: beads of this rank, these and those that it hears of, those in its cells.
+# Places in `Roster.count`: own beads, these and those heard of, those in own cells.
 OWN, AROUND, PRESENT = 0, 1, 2
 
 

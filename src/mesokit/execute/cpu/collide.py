@@ -107,11 +107,11 @@ class InRow(NamedTuple):
 
 
 class Asked(NamedTuple):
-    """Cells that rows of numbers name in their first column: `count` of them, from a row on."""
+    """Cells that rows of numbers name in their first column: so many `cells`, from a row on."""
 
     rows: Any
     start: int
-    count: int
+    cells: int
 
 
 @by_type
@@ -119,12 +119,12 @@ def cell_at(which, i):
     """Number of the cell of lane i of a batch."""
     if which.instance_class is InRow:
         return lambda which, i: which.start + i
-    return lambda which, i: which.rows[which.start + min(i, which.count - 1), 0]
+    return lambda which, i: which.rows[which.start + min(i, which.cells - 1), 0]
 
 
 @scalar
 def settle_batch(team, now, physics, fluid, which, count):
-    """What the cells of a batch need to collide, from rows of their sums to rows of coefficients."""
+    """What the cells of a batch need to collide: rows of coefficients from rows of sums."""
     cells, scratch = fluid.cells, fluid.scratch
     rows, totals = scratch.coefficients[team.thread], scratch.terms[team.thread]
     doubtful, none = scratch.marks[team.thread], nothing_found(physics.terms)

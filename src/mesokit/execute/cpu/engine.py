@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -182,7 +182,7 @@ class CPU:
 
     # --- its state ------------------------------------------------------------------------------
 
-    def state(self) -> dict[str, NDArray]:
+    def state(self) -> dict[str, Any]:
         """Everything that the next step depends on, by particle number.
 
         Raises RunError if sums have overflowed.

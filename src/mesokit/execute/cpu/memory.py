@@ -153,7 +153,8 @@ class Memory:
     @property
     def places(self) -> NDArray[np.int64]:
         """Where particles lie; among molecules some places are empty."""
-        molecules, beads = self.fluid.particles.filling.molecules, self.numbers.beads
+        filling: Any = self.fluid.particles.filling
+        molecules, beads = filling.molecules, self.numbers.beads
         if (molecules, beads) != self._placed:
             self._places = np.arange(molecules)
             if beads > 1:
@@ -244,7 +245,10 @@ class Memory:
 
     def read(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
         """Positions and velocities as they lie in memory, and images (n, d), by particle number."""
-        who, (positions, velocities, images) = self.fluid.particles.ident[self.places], self.rows_of()
+        who, (positions, velocities, images) = (
+            self.fluid.particles.ident[self.places],
+            self.rows_of(),
+        )
         out = np.empty((len(who), 2 * self.numbers.dimension))
         out[who] = np.concatenate([positions, velocities], axis=1)
         counts = np.empty(images.shape, np.int32)

@@ -9,6 +9,7 @@ Comput. Phys. 231, 612 (2012): sigma_T = sqrt(<T^2> - <T>^2) / <T> of the branch
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -54,7 +55,7 @@ class Balance:
         self._request = self.comm.Iallgather(self._own, self._times)
 
     def heard(self) -> NDArray[np.float64] | None:
-        """The times (ranks,) of the window before, the same on all ranks; None if there was none."""
+        """Times (ranks,) of the window before, the same on all ranks; None if there was none."""
         if self._request is None:
             return None
         self._request.Wait()
@@ -116,14 +117,17 @@ class Load:
         self.block, self.comm = block, comm
         self.cells = np.rint(cells * 1e9).astype(np.int64).reshape(block.lengths[::-1])
 
-    def layers(self, asked: list[tuple[Block, int]]) -> list[NDArray[np.float64]]:
+    def layers(self, asked: Sequence[tuple[Block, int]]) -> list[NDArray[np.float64]]:
         """The work of all ranks in the layers of some blocks across an axis."""
         parts = [self._own(block, axis) for block, axis in asked]
         together = np.concatenate([np.zeros(0, np.int64), *parts])
         total = np.empty_like(together)
         self.comm.Allreduce(together, total)
         ends = np.cumsum([len(part) for part in parts])
-        return [total[end - len(part) : end].astype(float) for end, part in zip(ends, parts)]
+        return [
+            total[end - len(part) : end].astype(float)
+            for end, part in zip(ends, parts, strict=True)
+        ]
 
     def _own(self, block: Block, axis: int) -> NDArray[np.int64]:
         out, d = np.zeros(block.lengths[axis], np.int64), len(block.low)

@@ -119,7 +119,7 @@ class Domain:
     def grid(self, whole: Any) -> Part:
         """The cells of the box as this rank knows them."""
         first, known = (tuple(float(n) for n in numbers) for numbers in self.region)
-        return Part(*whole, first, known)
+        return Part(whole.shift, whole.origin, whole.cells, whole.inverse, first, known)
 
     def owned(self, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Which of some cells, by their numbers in the box, are this rank's own."""
@@ -210,7 +210,7 @@ class Domain:
     def _batches_with_own(self) -> NDArray[np.bool_]:
         mine = np.zeros(-(-self.region.number // LANES) * LANES, bool)
         mine[own(self.region, self.space, self.block)] = True
-        return mine.reshape(-1, LANES).any(axis=1)
+        return np.asarray(mine.reshape(-1, LANES).any(axis=1))
 
     def roster(self, given: Solutes, terms: int) -> Any:
         """Which beads of solutes are whose."""

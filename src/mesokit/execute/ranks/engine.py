@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +17,7 @@ from mesokit.execute.cpu.threads import Threads
 from mesokit.execute.ranks.balance import Balance, Load, still_good
 from mesokit.execute.ranks.domain import Domain, axes_to_cut, owners
 from mesokit.execute.ranks.parcels import given_away, packed, unpacked
-from mesokit.execute.ranks.readings import SharedReadings
+from mesokit.execute.ranks.readings import SharedReadings, SharedSolutes
 from mesokit.execute.ranks.shared import DONE, FAR, FAULTS, FULL, MOLECULES, STRETCHED
 from mesokit.execute.ranks.tree import Tree, divided
 from mesokit.execute.ranks.window import Window
@@ -99,7 +99,8 @@ class Ranks(CPU):
     def _count(self, molecules: int) -> None:
         """Have so many molecules in memory."""
         fluid = self.memory.fluid
-        filling = fluid.particles.filling._replace(molecules=molecules)
+        filling: Any = fluid.particles.filling
+        filling = filling._replace(molecules=molecules)
         self.memory.fluid = fluid._replace(particles=fluid.particles._replace(filling=filling))
         fluid.cells.shared.noted[MOLECULES] = molecules
 
@@ -177,7 +178,7 @@ class Ranks(CPU):
         particles = counted(self.memory.rows_of()[0])
         costs = np.full(lengths.prod(), window.cells / lengths.prod())
         costs += window.particles * particles / max(particles.sum(), 1.0)
-        if self.solutes is not None:
+        if isinstance(self.solutes, SharedSolutes):
             beads = counted(self.solutes.own_places())
             costs += window.beads * beads / max(beads.sum(), 1.0)
         return costs
@@ -195,7 +196,7 @@ class Ranks(CPU):
         self._go_on_from(memory)
         self.memory.wall_rates[:] = rates
         self._hold(*unpacked(rows))
-        if solutes is not None:
+        if self.solutes is not None and solutes is not None:
             self.solutes.restore(solutes)
 
     def balance(self) -> dict[str, Any]:
@@ -214,8 +215,8 @@ class Ranks(CPU):
             )
         if faults & STRETCHED:
             raise RunError(
-                f"step {self.step}: a bead of solutes went farther in a step, or its bonds are longer, "
-                "than ranks can follow; expected fewer ranks or a shorter fluid.timestep"
+                f"step {self.step}: a bead of solutes went farther in a step, or its bonds are "
+                "longer, than ranks can follow; expected fewer ranks or a shorter fluid.timestep"
             )
         if faults & FAR:
             raise RunError(
@@ -231,12 +232,12 @@ class Ranks(CPU):
         return super().seconds | {name: TICK * float(clock[3 + k]) for name, k in names.items()}
 
     def _check_sums(self, crowd: int) -> None:
-        if self.memory.fluid.particles.filling.molecules:
+        if len(self.memory.places):
             super()._check_sums(crowd)
 
     # --- its state ------------------------------------------------------------------------------
 
-    def state(self) -> dict[str, NDArray]:
+    def state(self) -> dict[str, Any]:
         self.check()
         everybody = np.arange(self.n)
         seen = self.readings.as_they_are(everybody)

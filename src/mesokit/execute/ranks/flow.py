@@ -8,7 +8,7 @@ import numpy as np
 
 from mesokit.execute.cpu.physics import field_of
 from mesokit.execute.ranks.shared import FAULTS, FULL, HEADER
-from mesokit.execute.virtual.gradient import EVERY, PROBES, remember, straighten
+from mesokit.execute.virtual.gradient import PROBES, remember, straighten
 from mesokit.scalar.jit import by_type, elementwise, for_each
 
 

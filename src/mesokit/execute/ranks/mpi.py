@@ -67,13 +67,16 @@ def post(comm: Any, messages: int) -> Post:
 
 
 @scalar
+def request_of(post, n):
+    """Where the library keeps the nth message in hand."""
+    return np.int64(post.requests.ctypes.data) + n * post.size
+
+
+@scalar
 def send(post, n, address, words, rank, tag):
     """Begin to send so many 64-bit numbers from an address to a rank; the nth message in hand."""
-    place = np.int64(post.requests.ctypes.data) + n * post.size
-    failed = _send(
-        np.int64(address), np.int32(words), post.words, np.int32(rank), np.int32(tag), post.comm,
-        place,
-    )  # fmt: skip
+    number, to, mark = np.int32(words), np.int32(rank), np.int32(tag)
+    failed = _send(np.int64(address), number, post.words, to, mark, post.comm, request_of(post, n))
     post.flag[1] |= failed != 0
     return n + 1
 
@@ -81,11 +84,10 @@ def send(post, n, address, words, rank, tag):
 @scalar
 def receive(post, n, address, words, rank, tag):
     """Be ready for at most so many from a rank."""
-    place = np.int64(post.requests.ctypes.data) + n * post.size
+    number, by, mark = np.int32(words), np.int32(rank), np.int32(tag)
     failed = _receive(
-        np.int64(address), np.int32(words), post.words, np.int32(rank), np.int32(tag), post.comm,
-        place,
-    )  # fmt: skip
+        np.int64(address), number, post.words, by, mark, post.comm, request_of(post, n)
+    )
     post.flag[1] |= failed != 0
     return n + 1
 

@@ -13,7 +13,6 @@ from mesokit.potential.thermal import mean_square
 
 if TYPE_CHECKING:
     from mesokit.execute.cpu.numbers import Numbers
-    from mesokit.execute.ranks.domain import Domain
     from mesokit.method.mpcd.solutes import Solutes
 
 FAST = 9.0  # thermal speeds: no bead is faster
@@ -42,8 +41,8 @@ def reach_of_beads(numbers: Numbers, given: Solutes) -> float:
     return reach + 2.0 * way_in_a_step(numbers, given)
 
 
-def roster_of(domain: Domain, given: Solutes, terms: int) -> Roster:
-    """Nobody's beads yet, and room for all."""
+def roster_of(domain: Any, given: Solutes, terms: int) -> Roster:
+    """Nobody's beads yet, and room for all; `domain` is the rank's `Domain`."""
     numbers, q, beads = domain.numbers, max(len(domain.partners), 1), given.beads
     d = numbers.dimension
 

@@ -18,7 +18,7 @@ HALF = 32  # bits: high and low halves of whole numbers are added up apart, so t
 
 
 class SharedReadings(Readings):
-    """Readings of all ranks, the same on each: every one of them must ask, and in the same order."""
+    """Readings of all ranks, the same on each: every one must ask, and in the same order."""
 
     def __init__(self, memory: Memory, threads: Threads, comm: Any) -> None:
         super().__init__(memory, threads)
@@ -81,7 +81,7 @@ class SharedReadings(Readings):
         return Seen(rows[:, :d], rows[:, d : 2 * d], rows[:, 2 * d :].astype(np.int32))
 
     def wall_rates(self) -> Floats:
-        """How the flow rises from all pieces of surface, each as the rank has it that it is near."""
+        """How the flow rises from all pieces of surface, each as the rank nearby has it."""
         virtual = self.memory.walls.virtual
         if not virtual or not len(virtual.rates):
             return self.memory.wall_rates.copy()
@@ -100,7 +100,8 @@ class SharedReadings(Readings):
         d, zero = self.dimension, self.memory.physics.zero
         slots = np.full(len(self.memory.fluid.particles.cell), -1, np.int32)
         slots[places] = np.arange(len(places))
-        out = Seen(*(np.zeros((len(places), d)) for _ in range(2)), np.zeros((len(places), d), np.int32))
+        shape = len(places), d
+        out = Seen(np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32))
         looked = measure.Looked(slots, *out)
         where = self.memory.box, self.memory.fluid.particles
         self.threads.run(measure.gather_by_place, zero, *where, unwrapped, looked)

@@ -103,9 +103,7 @@ def shared(mine: Region, theirs: Region, space: Space, block: Block) -> tuple[Nu
     """The cells of another rank's block that are known here: their numbers here and there."""
     here = _along(mine, space, block)
     places = _global(mine, space)
-    there = [
-        (places[k][index] - theirs.first[k]) % space.cells[k] for k, index in enumerate(here)
-    ]
+    there = [(places[k][index] - theirs.first[k]) % space.cells[k] for k, index in enumerate(here)]
     return numbered(here, mine.known), numbered(there, theirs.known)
 
 

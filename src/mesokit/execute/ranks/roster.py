@@ -15,12 +15,9 @@ from mesokit.execute.beads.state import (
     AROUND,
     OWN,
     PRESENT,
-    bead_of,
     load_folded,
     load_place,
     load_velocity,
-    store_place,
-    store_velocity,
 )
 from mesokit.execute.cpu.grid import cell_in_box, moved_grid
 from mesokit.execute.cpu.strips.rows import load_values, store_values
@@ -116,7 +113,9 @@ def hand_over(now, physics, box, shared, beads):
     number = roster.count[OWN]
     for n in range(number):
         i = roster.who[OWN, n]
-        r, _, _ = fold(box, load_place(beads, i, zero), load_velocity(beads, i, zero), zero_of(zero))
+        r, _, _ = fold(
+            box, load_place(beads, i, zero), load_velocity(beads, i, zero), zero_of(zero)
+        )
         owner = owner_or_own(shared, cell_in_box(r, grid))
         if owner == NOBODY:
             roster.who[OWN, kept] = i
@@ -384,7 +383,7 @@ def send_terms(beads, shared, n):
 
 def _send_terms(beads, shared, n):
     roster = beads.roster
-    post, terms, words = roster.post, len(beads.terms), roster.terms_out.shape[2]
+    terms, words = len(beads.terms), roster.terms_out.shape[2]
     most = roster.terms_out.shape[1] * words
     size = np.uint64(8 * most)
     for p in range(len(roster.ranks)):

@@ -36,8 +36,8 @@ class Shared(NamedTuple):
     out_at, in_at (q + 1,): where the rows of each partner begin; sums_out, sums_in (rows, 1 +
     width); answers_out, answers_in (rows, answer); asked (rows,): which cell a row is of.
     counting (T, q): rows of each thread; sent (q,): of all.
-    field_out, field_in: numbers of cells whose neighbours are asked for, in the order of `given` and
-    of `mine`.
+    field_out, field_in: numbers of cells whose neighbours are asked for, in the order of `given`
+    and of `mine`.
     guest_place, guest_cell, guest_owner (T, guests), guest_terms (T, guests, width), guests (T, 8).
     strays (T, strips), left (T, 8): strips that hold some who go to others, numbers of those and of
     these; leaving, owner (T, most): molecules that go to others, and to whom; moved_at

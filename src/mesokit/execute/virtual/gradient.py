@@ -109,8 +109,7 @@ def probe_at(virtual, e, p, zero):
 
 @scalar
 def look(virtual, e, p, physics, grid, sums):
-    """What is seen at a probe: u / h (d) and h; not good if its cell is empty or holds some solid.
-    """
+    """What is seen at a probe, u / h (d) and h: not good if its cell is empty or holds solid."""
     solid, zero = physics.solid, physics.zero
     probe, n = probe_at(virtual, e, p, zero), zero
     middle = probe

@@ -1,0 +1,123 @@
+"""Ranks: two of one thread beside one of two, and what is sent as their number grows.
+
+    python -m benchmarks.ranks            (tables for docs/benchmark.md)
+    mpiexec -n 2 python -m benchmarks.ranks --one W2 --threads 1 --steps 100
+
+The second form is one timed run; rank 0 prints a JSON line.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+WAYS = {"1 x 1": (1, 1), "1 x 2": (1, 2), "2 x 1": (2, 1)}  # ranks, threads of each
+CASES = {
+    "W1": "3D periodic 30^3",
+    "W2": "3D periodic 64^3",
+    "W2@128": "3D periodic 128^3",
+    "W3": "3D slit 30^3, force",
+    "W4": "2D periodic 160^2",
+    "W5-disks": "2D channel 400 x 50 with disks",
+    "B-dimers-5": "dimers 30^3, 5 sub-steps",
+    "C-5000-10": "5,000 beads in a fluid of 40^3, 10 sub-steps",
+}
+LEAST_STEPS = 100
+
+
+def run(name: str, ranks: int, threads: int, steps: int) -> dict[str, Any]:
+    """One timed run in processes of its own."""
+    mpiexec = Path(sys.executable).with_name("mpiexec")
+    command = [str(mpiexec), "-n", str(ranks), sys.executable, "-m", "benchmarks.ranks"]
+    command += ["--one", name, "--threads", str(threads), "--steps", str(steps)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError(done.stderr[-2000:])
+    found: dict[str, Any] = json.loads(done.stdout.strip().splitlines()[-1])
+    return found
+
+
+def one(name: str, threads: int, steps: int) -> dict[str, Any] | None:
+    """Time so many steps on all ranks together; the answer is rank 0's."""
+    from mpi4py import MPI
+
+    from benchmarks.workloads import case
+    from mesokit.execute.cpu.engine import CPU
+    from mesokit.execute.ranks.engine import Ranks
+    from mesokit.method.mpcd.start.fluid import start
+
+    comm = MPI.COMM_WORLD
+    engine = Ranks(case(name), threads, [], comm) if comm.size > 1 else CPU(case(name), threads)
+    start(engine)
+    engine.advance(engine.numbers.sort_every + 1)
+    shared = engine.memory.fluid.cells.shared
+    meter = np.array(shared.meter) if comm.size > 1 else np.zeros(8)
+    before = engine.seconds
+    comm.Barrier()
+    began = MPI.Wtime()
+    engine.advance(steps)
+    comm.Barrier()
+    spent = MPI.Wtime() - began
+    stages = {key: value - before[key] for key, value in engine.seconds.items()}
+    if comm.size > 1:
+        meter = np.array(engine.memory.fluid.cells.shared.meter) - meter
+    all_stages, meters = comm.gather(stages), comm.gather(meter.tolist())
+    bytes_held = comm.gather(engine.memory.bytes_held)
+    count = engine.totals()[0]
+    if comm.rank:
+        return None
+    return {
+        "name": name, "ranks": comm.size, "threads": threads, "steps": steps, "particles": count,
+        "nanoseconds": 1e9 * spent / steps / count, "stages": all_stages, "meters": meters,
+        "bytes": bytes_held,
+    }  # fmt: skip
+
+
+def speed(rounds: int, seconds: float, names: list[str]) -> Iterator[str]:
+    """Ranks and threads in turn."""
+    yield "Nanoseconds per particle-step, ranks x threads in turn; ratios are medians of rounds."
+    yield ""
+    yield "| case | " + " | ".join(WAYS) + " | 2 x 1 over 1 x 1 | least, most | 2 x 1 over 1 x 2 |"
+    yield "|---|" + "---|" * (len(WAYS) + 3)
+    for name in names:
+        first = run(name, 1, 1, LEAST_STEPS)
+        for ways in list(WAYS.values())[1:]:
+            run(name, *ways, LEAST_STEPS)  # compiles
+        pace = first["nanoseconds"] * first["particles"] * 1e-9
+        steps = max(LEAST_STEPS, int(seconds / pace / 100) * 100)
+        rows = [[run(name, *ways, steps)["nanoseconds"] for ways in WAYS.values()]
+                for _ in range(rounds)]  # fmt: skip
+        middle = [median(column) for column in zip(*rows, strict=True)]
+        faster = sorted(row[0] / row[2] for row in rows)
+        beside = median(row[1] / row[2] for row in rows)
+        yield (
+            f"| {name} {CASES[name]} | "
+            + " | ".join(f"{x:.2f}" for x in middle)
+            + f" | {median(faster):.2f} | {faster[0]:.2f}, {faster[-1]:.2f} | {beside:.2f} |"
+        )
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--one")
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--steps", type=int, default=LEAST_STEPS)
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--seconds", type=float, default=4.0)
+    parser.add_argument("--cases", nargs="*", default=list(CASES))
+    given = parser.parse_args()
+    if given.one:
+        answer = one(given.one, given.threads, given.steps)
+        if answer:
+            print(json.dumps(answer))
+    else:
+        for line in speed(given.rounds, given.seconds, given.cases):
+            print(line, flush=True)
