@@ -13,6 +13,7 @@ HOMES = {
     "running/cores.py": {"os.sched_getaffinity"},
     "case/warnings.py": {"os.sysconf"},
     "scalar/system.py": {"time.CLOCK_MONOTONIC", "ctypes", "ExternalFunction"},
+    "execute/ranks/messages/mpi.py": {"ctypes", "ExternalFunction"},
     "io/run_directory.py": {"/proc"},
 }
 MODULES = {"fcntl", "resource", "pwd", "grp", "termios", "tty", "pty", "posix", "syslog", "ctypes"}

@@ -16,7 +16,7 @@ from mesokit.execute.cpu.strips.layout import LANES, record_length, share
 from mesokit.execute.cpu.strips.rows import load_values, store_values
 from mesokit.execute.cpu.strips.terms import read_sums, sums_of_cell
 from mesokit.execute.embedded.state import collides
-from mesokit.execute.ranks.shared import key_of
+from mesokit.execute.ranks.messages.shared import key_of
 from mesokit.method.mpcd.collision.protocol import Cell, contribute, freedom
 from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.method.mpcd.thermostat.protocol import guess

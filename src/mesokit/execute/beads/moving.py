@@ -21,7 +21,7 @@ from mesokit.execute.beads.traverse import each_on_bead
 from mesokit.execute.beads.verlet import drift, flown, kick
 from mesokit.execute.cpu.physics import kind_of_solid, momentum_scale
 from mesokit.execute.cpu.threads import Team, meet
-from mesokit.execute.ranks.roster import tell_places
+from mesokit.execute.ranks.beads.roster import tell_places
 from mesokit.geometry.solids.none import Nothing
 from mesokit.method.mpcd.field.none import Zero
 from mesokit.method.mpcd.field.protocol import acceleration

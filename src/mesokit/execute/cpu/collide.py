@@ -9,7 +9,7 @@ from mesokit.execute.cpu.strips.records import spread, take
 from mesokit.execute.cpu.strips.rows import load_scratch, load_values, store_scratch, store_values
 from mesokit.execute.cpu.strips.terms import nothing_found, read_sums
 from mesokit.execute.neighbours.gradient import gradient_at
-from mesokit.execute.ranks.shared import any_own, key_of, shares
+from mesokit.execute.ranks.messages.shared import any_own, key_of, shares
 from mesokit.method.mpcd.collision.protocol import Cell, freedom
 from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.method.mpcd.thermostat.protocol import draw, guess

@@ -51,7 +51,7 @@ class Cells(NamedTuple):
     coefficients: Any  # a record for each cell: what its particles need to collide
     sums: Any  # (threads, ...) fixed-point sums over the particles of each cell
     field: tuple  # one of these sums in all cells, where the rule asks for its gradient, or ()
-    shared: Any  # with other ranks (`ranks.shared.Shared`), or ()
+    shared: Any  # with other ranks (`ranks.messages.shared.Shared`), or ()
 
 
 class Scratch(NamedTuple):

@@ -10,8 +10,8 @@ from mesokit.execute.cpu.physics import at_middle
 from mesokit.execute.cpu.threads import meet
 from mesokit.execute.embedded.stages import move_beads, stream
 from mesokit.execute.neighbours.gradient import fill_field
-from mesokit.execute.ranks.exchange import answer_others, give_sums, take_answers
-from mesokit.execute.ranks.migrate import (
+from mesokit.execute.ranks.messages.exchange import answer_others, give_sums, take_answers
+from mesokit.execute.ranks.messages.migrate import (
     holding,
     migrate,
     molecules_held,

@@ -11,7 +11,7 @@ from mesokit.execute.cpu.physics import field_of
 from mesokit.execute.cpu.strips.cell_energy import untangled
 from mesokit.execute.cpu.strips.layout import LANES, share, sums_length
 from mesokit.execute.cpu.threads import meet
-from mesokit.execute.ranks.field import share_field
+from mesokit.execute.ranks.messages.field import share_field
 from mesokit.scalar.fixed_point import from_fixed
 from mesokit.scalar.jit import by_type, scalar
 

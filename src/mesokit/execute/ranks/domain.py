@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from mesokit.execute.cpu.grid import Part
 from mesokit.execute.cpu.strips.layout import LANES, record_length, sums_length, zeros
-from mesokit.execute.ranks.mpi import post
-from mesokit.execute.ranks.muster import reach_of_beads, roster_of
-from mesokit.execute.ranks.region import (
+from mesokit.execute.ranks.beads.muster import reach_of_beads, roster_of
+from mesokit.execute.ranks.blocks.region import (
     Region,
     Space,
     keys,
@@ -22,8 +21,9 @@ from mesokit.execute.ranks.region import (
     region_of,
     shared,
 )
-from mesokit.execute.ranks.shared import METER_SIZE, Shared
-from mesokit.execute.ranks.tree import Block, Tree
+from mesokit.execute.ranks.blocks.tree import Block, Tree
+from mesokit.execute.ranks.messages.mpi import post
+from mesokit.execute.ranks.messages.shared import METER_SIZE, Shared
 from mesokit.execute.virtual.gradient import PROBES
 from mesokit.execute.virtual.particles import Seen
 from mesokit.potential.thermal import mean_square

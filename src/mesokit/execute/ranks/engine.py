@@ -14,13 +14,13 @@ from mesokit.execute.cpu.engine import CPU
 from mesokit.execute.cpu.memory import Memory
 from mesokit.execute.cpu.numbers import Floats, Numbers
 from mesokit.execute.cpu.threads import Threads
-from mesokit.execute.ranks.balance import Balance, Load, still_good
+from mesokit.execute.ranks.blocks.balance import Balance, Load, still_good
+from mesokit.execute.ranks.blocks.parcels import given_away, packed, unpacked
+from mesokit.execute.ranks.blocks.tree import Tree, divided
+from mesokit.execute.ranks.blocks.window import Window
 from mesokit.execute.ranks.domain import Domain, axes_to_cut, owners
-from mesokit.execute.ranks.parcels import given_away, packed, unpacked
+from mesokit.execute.ranks.messages.shared import DONE, FAR, FAULTS, FULL, MOLECULES, STRETCHED
 from mesokit.execute.ranks.readings import SharedReadings, SharedSolutes
-from mesokit.execute.ranks.shared import DONE, FAR, FAULTS, FULL, MOLECULES, STRETCHED
-from mesokit.execute.ranks.tree import Tree, divided
-from mesokit.execute.ranks.window import Window
 from mesokit.scalar.system import TICK
 
 if TYPE_CHECKING:

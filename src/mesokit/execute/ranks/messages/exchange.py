@@ -12,10 +12,7 @@ from mesokit.execute.cpu.strips.layout import LANES, record_length, share, sums_
 from mesokit.execute.cpu.strips.rows import load_scratch, store_scratch, store_values
 from mesokit.execute.cpu.strips.terms import nothing_found, sums_of_cell
 from mesokit.execute.cpu.threads import meet
-from mesokit.execute.ranks.flow import take_seen, write_seen
-from mesokit.execute.ranks.guests import find_owners
-from mesokit.execute.ranks.mpi import finish, receive, send
-from mesokit.execute.ranks.roster import (
+from mesokit.execute.ranks.beads.roster import (
     bead_row,
     beads_that_ask,
     find_bead_owners,
@@ -23,7 +20,10 @@ from mesokit.execute.ranks.roster import (
     send_terms,
     take_terms,
 )
-from mesokit.execute.ranks.shared import (
+from mesokit.execute.ranks.messages.flow import take_seen, write_seen
+from mesokit.execute.ranks.messages.guests import find_owners
+from mesokit.execute.ranks.messages.mpi import finish, receive, send
+from mesokit.execute.ranks.messages.shared import (
     ANSWER_WORDS,
     FAULTS,
     FULL,

@@ -3,7 +3,7 @@
 from typing import Any, NamedTuple
 
 from mesokit.execute.cpu.physics import field_of
-from mesokit.execute.ranks.mpi import Post
+from mesokit.execute.ranks.messages.mpi import Post
 from mesokit.scalar.jit import by_type
 
 # Places in `Shared.noted`: molecules held, steps done by the last call, faults, newcomers in hand.

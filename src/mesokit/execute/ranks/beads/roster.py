@@ -22,9 +22,9 @@ from mesokit.execute.beads.state import (
 from mesokit.execute.cpu.grid import cell_in_box, moved_grid
 from mesokit.execute.cpu.strips.rows import load_values, store_values
 from mesokit.execute.cpu.threads import meet
-from mesokit.execute.ranks.guests import NOBODY, owner_of
-from mesokit.execute.ranks.mpi import Post, finish, receive, send
-from mesokit.execute.ranks.shared import BEAD_WORDS, FAR, FAULTS, MESSAGES, STRETCHED
+from mesokit.execute.ranks.messages.guests import NOBODY, owner_of
+from mesokit.execute.ranks.messages.mpi import Post, finish, receive, send
+from mesokit.execute.ranks.messages.shared import BEAD_WORDS, FAR, FAULTS, MESSAGES, STRETCHED
 from mesokit.scalar.cache import inner
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.vector import added_scaled, dot, scaled

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.execute.ranks.tree import Block, Node, Tree
+from mesokit.execute.ranks.blocks.tree import Block, Node, Tree
 
 HIGHER = 0.5  # of the limit, more for each level above the lowest branches
 PATIENCE = 2  # windows after a move that are not looked at

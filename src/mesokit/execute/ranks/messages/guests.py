@@ -9,7 +9,7 @@ import numpy as np
 from mesokit.execute.cpu.grid import cell_in_box
 from mesokit.execute.cpu.strips.layout import LANES, SCRATCH_ROW, strip_at
 from mesokit.execute.cpu.strips.rows import load_particle, load_scratch
-from mesokit.execute.ranks.shared import FAR, FAULTS, FULL, shares
+from mesokit.execute.ranks.messages.shared import FAR, FAULTS, FULL, shares
 from mesokit.scalar.jit import by_type, optional, scalar, seldom
 
 NOBODY = -1

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesokit.execute.ranks.mpi import post
-from mesokit.execute.ranks.roster import Roster
+from mesokit.execute.ranks.beads.roster import Roster
+from mesokit.execute.ranks.messages.mpi import post
 from mesokit.potential.thermal import mean_square
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.execute.ranks.tree import Block, Cells
+from mesokit.execute.ranks.blocks.tree import Block, Cells
 
 Numbers = NDArray[np.int64]
 

@@ -26,9 +26,9 @@ from mesokit.execute.cpu.strips.layout import (
 )
 from mesokit.execute.cpu.strips.rows import load_particle
 from mesokit.execute.cpu.threads import meet
-from mesokit.execute.ranks.guests import NOBODY, owner_of
-from mesokit.execute.ranks.mpi import finish, receive, send
-from mesokit.execute.ranks.shared import (
+from mesokit.execute.ranks.messages.guests import NOBODY, owner_of
+from mesokit.execute.ranks.messages.mpi import finish, receive, send
+from mesokit.execute.ranks.messages.shared import (
     ARRIVED,
     DONE,
     HEADER,

@@ -7,7 +7,7 @@ piece of surface hear of it, and take it into their means in the same way.
 import numpy as np
 
 from mesokit.execute.cpu.physics import field_of
-from mesokit.execute.ranks.shared import FAULTS, FULL, HEADER
+from mesokit.execute.ranks.messages.shared import FAULTS, FULL, HEADER
 from mesokit.execute.virtual.gradient import PROBES, remember, straighten
 from mesokit.scalar.jit import by_type, elementwise, for_each
 
