@@ -146,10 +146,9 @@ class Ranks(CPU):
 
     def _balance(self) -> None:
         """Move borders if the window before the last said so."""
-        times = self.balancing.heard()
-        if times is not None:
-            limit = self.balancing.limit
-            kept = still_good(self.domain.tree, times, limit)
+        windows = self.balancing.heard()
+        if windows:
+            kept = still_good(self.domain.tree, windows, self.balancing.limit)
             if kept.nodes != self.domain.tree.nodes:
                 self.cut_anew(kept)
         self.balancing.tell(self._window.work)

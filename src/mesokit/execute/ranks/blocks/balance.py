@@ -9,6 +9,7 @@ Comput. Phys. 231, 612 (2012): sigma_T = sqrt(<T^2> - <T>^2) / <T> of the branch
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 from mesokit.execute.ranks.blocks.tree import Block, Node, Tree
 
 HIGHER = 0.5  # of the limit, more for each level above the lowest branches
-PATIENCE = 2  # windows after a move that are not looked at
+PATIENCE = 1  # windows after a move that are not looked at
 LEAST = 0.02  # seconds of work: a shorter window tells nothing
 
 
@@ -45,39 +46,46 @@ class Balance:
         self.comm, self.limit = comm, limit
         self.moves: list[Move] = []
         self.first = self.last = np.nan  # imbalance of the first and the last window
-        self._times = np.zeros(comm.size)
-        self._request: Any = None
+        self._times, self._earlier = np.zeros(comm.size), np.zeros(0)
+        self._pending: list[Any] = []
+        weakref.finalize(self, finish, self._pending)
         self._wait = 1  # windows to let pass: the first has the compiling in it
 
     def tell(self, seconds: float) -> None:
         """Send what this rank has worked in the window that ends, to all, without waiting."""
         self._own = np.array([seconds])
-        self._request = self.comm.Iallgather(self._own, self._times)
+        self._pending.append(self.comm.Iallgather(self._own, self._times))
 
-    def heard(self) -> NDArray[np.float64] | None:
-        """Times (ranks,) of the window before, the same on all ranks; None if there was none."""
-        if self._request is None:
-            return None
-        self._request.Wait()
-        self._request = None
+    def heard(self) -> list[NDArray[np.float64]]:
+        """Times (ranks,) of the two windows before, the same on all ranks; nothing if there were
+        none: what is seen twice is no accident."""
+        if not finish(self._pending):
+            return []
         if self._wait > 0:
             self._wait -= 1
-            return None
-        times = self._times.copy()
+            return []
+        earlier, times = self._earlier, self._times.copy()
         if times.mean() < LEAST:
-            return None
+            return []
         self.last = imbalance(times)
         if np.isnan(self.first):
             self.first = self.last
-        return times
+        self._earlier = times
+        return [earlier, times] if len(earlier) else []
 
     def moved(self, step: int, blocks: tuple[Block, ...]) -> None:
         """Borders have moved: the window in hand tells nothing of the new ones."""
         self.moves.append(Move(step, float(self.last), blocks))
-        if self._request is not None:
-            self._request.Wait()
-            self._request = None
-        self._wait = PATIENCE
+        finish(self._pending)
+        self._wait, self._earlier = PATIENCE, np.zeros(0)
+
+
+def finish(pending: list[Any]) -> bool:
+    """Wait for a message that all ranks have sent, if there is one; also where a run ends."""
+    if not pending:
+        return False
+    pending.pop().Wait()
+    return True
 
 
 def imbalance(times: NDArray[np.float64]) -> float:
@@ -85,15 +93,19 @@ def imbalance(times: NDArray[np.float64]) -> float:
     return float(times.max() / times.mean()) if times.mean() > 0 else 1.0
 
 
-def spread(node: Node, times: NDArray[np.float64]) -> float:
-    """sigma_T of the two branches of a node, from the mean times of their ranks."""
-    few = node.ranks // 2
-    low = times[node.first : node.first + few].mean()
-    high = times[node.first + few : node.first + node.ranks].mean()
-    return float(abs(high - low) / (high + low)) if high + low > 0 else 0.0
+def spread(node: Node, windows: Sequence[NDArray[np.float64]]) -> float:
+    """sigma_T of the two branches of a node, from the mean times of their ranks: the least of some
+    windows, 0 if these do not agree on which side has more to do."""
+    few, found = node.ranks // 2, []
+    for times in windows:
+        low = times[node.first : node.first + few].mean()
+        high = times[node.first + few : node.first + node.ranks].mean()
+        found.append(float((high - low) / (high + low)) if high + low > 0 else 0.0)
+    agreed = all(x > 0 for x in found) or all(x < 0 for x in found)
+    return min(abs(x) for x in found) if agreed else 0.0
 
 
-def still_good(tree: Tree, times: NDArray[np.float64], limit: float) -> Tree:
+def still_good(tree: Tree, windows: Sequence[NDArray[np.float64]], limit: float) -> Tree:
     """The nodes whose branches differ by less than their limits, and so do those above them."""
     kept: list[tuple[Node, ...]] = []
     bad: list[tuple[int, int]] = []  # ranks of branches that are cut anew
@@ -102,7 +114,7 @@ def still_good(tree: Tree, times: NDArray[np.float64], limit: float) -> Tree:
         stay = []
         for node in level:
             inside = any(a <= node.first < b for a, b in bad)
-            if inside or spread(node, times) > limit * (1.0 + HIGHER * above):
+            if inside or spread(node, windows) > limit * (1.0 + HIGHER * above):
                 bad.append((node.first, node.first + node.ranks))
             else:
                 stay.append(node)

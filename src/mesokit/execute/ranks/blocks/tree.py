@@ -93,7 +93,7 @@ def divided(
     while open_:
         blocks |= {first: block for block, first, number in open_ if number == 1}
         parts = [part for part in open_ if part[2] > 1]
-        stay = {node[:3]: node for node in (kept.nodes[len(found)] if kept else ()) if parts}
+        stay = {node[:3]: node for node in (kept.nodes[len(found)] if kept and parts else ())}
         axes = [_longest(block, weights) for block, _, _ in parts]
         asked = [part not in stay for part in parts]
         loads = iter(work([(p[0], a) for p, a, new in zip(parts, axes, asked, strict=True) if new]))
