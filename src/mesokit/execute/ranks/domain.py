@@ -193,7 +193,6 @@ class Domain:
             guest_owner=zeros((threads, self.guests_of_thread), np.int64),
             guest_terms=zeros((threads, self.guests_of_thread, width), np.int64),
             guests=zeros((threads, 8), np.int64),
-            strays=zeros((threads, memory.strips + 1), np.int64),
             leaving=zeros((threads, 1 + int(moved_at[-1])), np.int64),
             owner=zeros((threads, 1 + int(moved_at[-1])), np.int64),
             left=zeros((threads, 8), np.int64),

@@ -22,7 +22,6 @@ from mesokit.execute.cpu.strips.layout import (
     place,
     place_of_bead,
     record_length,
-    strip_at,
 )
 from mesokit.execute.cpu.strips.rows import load_particle
 from mesokit.execute.cpu.threads import meet
@@ -40,7 +39,7 @@ from mesokit.execute.ranks.messages.shared import (
 )
 from mesokit.scalar.cache import inner
 from mesokit.scalar.fixed_point import bits, from_bits
-from mesokit.scalar.jit import by_type, scalar
+from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.vector import scaled
 
 PARTICLES = 4  # tag of messages
@@ -93,7 +92,6 @@ def _migrate(team, now, physics, fluid):
     shared = fluid.cells.shared
     if np.int64(now.counter.step) % shared.every != 0:
         return True
-    find_leaving(team, now, physics, fluid)
     meet(team)
     if team.thread == 0:
         for p in range(len(shared.ranks)):
@@ -102,6 +100,7 @@ def _migrate(team, now, physics, fluid):
         for t in range(team.threads - 1, -1, -1):  # the last first: they leave no holes
             for j in range(shared.left[t, 0] - 1, -1, -1):
                 n = leave(fluid, physics, shared.leaving[t, j], shared.owner[t, j], n)
+            shared.left[t, 0] = 0
         exchange(shared)
         shared.noted[ARRIVED] = 0
         for p in range(len(shared.ranks)):
@@ -125,41 +124,41 @@ def home(box, grid, closed):
 
 @by_type
 def note_strays(team, now, physics, fluid, strip, s):
-    """Note strip s, which is in the cache, if any of its leaders is to go to another rank now."""
+    """Note the leaders in strip s, which is in the cache, that are to go to other ranks now."""
     if not shares(fluid):
         return lambda team, now, physics, fluid, strip, s: None
     return _note_strays
 
 
 def _note_strays(team, now, physics, fluid, strip, s):
-    shared, t = fluid.cells.shared, team.thread
+    shared, away = fluid.cells.shared, np.int64(0)
     if np.int64(now.counter.step) % shared.every == 0:
-        grid, away = home(now.box, now.grid, shared.closed), np.int64(0)
+        marks, grid = fluid.scratch.marks[team.thread], home(now.box, now.grid, shared.closed)
         for i in range(LANES):
             r = load_particle(strip, i, 0, physics.zero)
-            away |= is_away(shared.limits, r, grid)
+            marks[i] = is_away(shared.limits, r, grid)
+            away |= marks[i]
         if away != 0:
-            shared.strays[t, shared.left[t, 1]] = s
-            shared.left[t, 1] += 1
+            note_leaving(team.thread, fluid, strip, s, grid, physics.zero)
 
 
-@scalar
-def find_leaving(team, now, physics, fluid):
-    """Note the molecules of this thread's strips that belong to others, as many as may go."""
-    shared, particles, t = fluid.cells.shared, fluid.particles, team.thread
-    most, found, beads = shared.leaving.shape[1], 0, beads_of(particles.filling)
-    grid = home(now.box, now.grid, shared.closed)
-    for j in range(shared.left[t, 1]):
-        s = shared.strays[t, j]
-        strip, first = particles.data[strip_at(s, particles.rows)], s // beads * LANES
-        for i in range(lanes_in(particles.filling, s)):
-            r = load_particle(strip, i, 0, physics.zero)
-            if is_away(shared.limits, r, grid) != 0 and found < most:
-                owner, _ = owner_of(shared, cell_in_box(r, grid))
-                if owner != NOBODY:
-                    shared.leaving[t, found], shared.owner[t, found] = first + i, owner
-                    found += 1
-    shared.left[t, 0], shared.left[t, 1] = found, 0
+@seldom
+def note_leaving(thread, fluid, strip, s, grid, zero):
+    """Note the marked molecules of a strip and whose they are, as many as may go."""
+    shared, marks, filling = (
+        fluid.cells.shared,
+        fluid.scratch.marks[thread],
+        fluid.particles.filling,
+    )
+    found, first = shared.left[thread, 0], s // beads_of(filling) * LANES
+    for i in range(lanes_in(filling, s)):
+        if marks[i] != 0 and found < shared.leaving.shape[1]:
+            r = load_particle(strip, i, 0, zero)
+            owner, _ = owner_of(shared, cell_in_box(r, grid))
+            if owner != NOBODY:
+                shared.leaving[thread, found], shared.owner[thread, found] = first + i, owner
+                found += 1
+    shared.left[thread, 0] = found
 
 
 @scalar

@@ -39,8 +39,7 @@ class Shared(NamedTuple):
     field_out, field_in: numbers of cells whose neighbours are asked for, in the order of `given`
     and of `mine`.
     guest_place, guest_cell, guest_owner (T, guests), guest_terms (T, guests, width), guests (T, 8).
-    strays (T, strips), left (T, 8): strips that hold some who go to others, numbers of those and of
-    these; leaving, owner (T, most): molecules that go to others, and to whom; moved_at
+    leaving, owner (T, most), left (T, 8): molecules that go to others, and to whom; moved_at
     (q + 1,), moved_out, moved_in (rows, record): where those of each partner begin, and their
     numbers.
     every: steps from one move to the next; slots: guests of all threads; room: molecules that the
@@ -78,7 +77,6 @@ class Shared(NamedTuple):
     guest_owner: Any
     guest_terms: Any
     guests: Any
-    strays: Any
     leaving: Any
     owner: Any
     left: Any
