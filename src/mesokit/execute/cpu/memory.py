@@ -228,23 +228,38 @@ class Memory:
         """Write what is known of each particle (n, d), by particle number, in the present order."""
         who = self.fluid.particles.ident[self.places]
         images = np.broadcast_to(images, positions.shape)
-        self.put(positions[who], velocities[who], images[who])
+        self.put(who, positions[who], velocities[who], images[who])
 
-    def put(self, positions: Floats, velocities: Floats, images: NDArray[Any]) -> None:
-        """The same in the order of memory."""
-        particles, d = self.fluid.particles, self.numbers.dimension
-        data, who = particles.data, particles.ident[self.places]
+    def put(
+        self,
+        who: NDArray[np.int64],
+        positions: Floats,
+        velocities: Floats,
+        images: NDArray[Any],
+        first: int = 0,
+    ) -> None:
+        """Have these particles (n,), whole molecules, from this molecule on in memory."""
+        particles, d, start = (
+            self.fluid.particles,
+            self.numbers.dimension,
+            first * self.numbers.beads,
+        )
+        data, places = particles.data, self.places[start : start + len(who)]
+        particles.ident[places] = who
         for k in range(d):
-            data[self.at(k)] = positions[:, k]
-            data[self.at(d + k)] = velocities[:, k]
-        particles.image[:, self.places] = images.T
+            data[self.at(k, places)] = positions[:, k]
+            data[self.at(d + k, places)] = velocities[:, k]
+        particles.image[:, places] = images.T
         if self.rows > 2 * d:
-            data[self.at(2 * d)] = self.numbers.masses_of(who)
+            data[self.at(2 * d, places)] = self.numbers.masses_of(who)
         self.fluid.room[:] = 0.0
 
     def read(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
         """Positions and velocities as they lie in memory, and images (n, d), by particle number."""
-        who, (positions, velocities, images) = self.fluid.particles.ident[self.places], self.rows_of()
+        who, (positions, velocities, images) = (
+            self.fluid.particles.ident[self.places],
+            self.rows_of(),
+        )
         out = np.empty((len(who), 2 * self.numbers.dimension))
         out[who] = np.concatenate([positions, velocities], axis=1)
         counts = np.empty(images.shape, np.int32)
@@ -258,6 +273,14 @@ class Memory:
         for k in range(2 * d):
             out[:, k] = particles.data[self.at(k)]
         return out[:, :d], out[:, d:], particles.image[:, self.places].T
+
+    def columns(self, name: str, places: NDArray[np.int64]) -> NDArray[Any]:
+        """Positions, velocities or images (n, d), by name, of those at these places in memory."""
+        particles, d = self.fluid.particles, self.numbers.dimension
+        if name == "images":
+            return particles.image[:, places].T
+        first = {"positions": 0, "velocities": d}[name]
+        return np.stack([particles.data[self.at(first + k, places)] for k in range(d)], axis=1)
 
     def at(self, row: int, places: Any = None) -> NDArray[np.int64]:
         """Where a row's values lie in memory: those of all particles, or at these places."""

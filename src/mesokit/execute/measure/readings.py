@@ -15,7 +15,7 @@ from mesokit.execute.cpu.strips.layout import LANES, SCRATCH_ROW, sums_length, z
 from mesokit.execute.cpu.threads import Threads
 from mesokit.execute.measure import sums as measure
 from mesokit.method.mpcd import topology
-from mesokit.scalar.fixed_point import ROUNDER_BITS, total
+from mesokit.scalar.fixed_point import ROUNDER_BITS, halves, joined, total
 
 if TYPE_CHECKING:
     from mesokit.method.mpcd.molecule import Molecule
@@ -77,11 +77,19 @@ class Readings:
 
     def total(self, rows: NDArray[np.int64], scale: Any) -> Floats:
         """Sums over the rows (n, ...) of whole numbers, over the scale."""
-        return total(rows, scale)
+        return self.joined(halves(rows), scale)
+
+    def joined(self, parts: NDArray[np.int64], scale: Any) -> Floats:
+        """The same of the halves of sums."""
+        return joined(self.reduced(parts), scale)
 
     def added(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
         """Whole numbers that the threads have found together."""
-        return numbers.sum(axis=0)
+        return self.reduced(numbers.sum(axis=0))
+
+    def reduced(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
+        """The sum over all that have a part of the particles: here, all are in one hand."""
+        return numbers
 
     def moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
         """Number, mass, momentum (d, ...) and sum of m v^2 in bins along one or two axes."""

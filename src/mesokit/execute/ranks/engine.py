@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,9 +15,13 @@ from mesokit.execute.cpu.engine import CPU
 from mesokit.execute.cpu.memory import Memory
 from mesokit.execute.cpu.numbers import Floats, Numbers
 from mesokit.execute.cpu.threads import Threads
+from mesokit.execute.pieces import Piece, of_state, pieces, require_finite
+from mesokit.execute.ranks.deal import dealt
 from mesokit.execute.ranks.domain import Domain, axes_to_cut
+from mesokit.execute.ranks.here import Here
 from mesokit.execute.ranks.readings import SharedReadings
 from mesokit.execute.ranks.shared import DONE, FAR, FAULTS, FULL, MOLECULES
+from mesokit.execute.ranks.state import ROOT, SPREAD, Spread, lowest
 from mesokit.execute.ranks.tree import Tree, divided
 from mesokit.scalar.system import TICK
 
@@ -42,6 +47,8 @@ class Ranks(CPU):
         Of all ranks.
     """
 
+    readings: SharedReadings
+
     def __init__(self, case: Case, threads: int, measures: Sequence[str], comm: Any) -> None:
         self.case, self.numbers, self.comm = case, Numbers(case), comm
         self.threads, self.measures = Threads(threads), measures
@@ -63,19 +70,22 @@ class Ranks(CPU):
 
     # --- running --------------------------------------------------------------------------------
 
-    def begin(self, positions: Floats, velocities: Floats) -> None:
-        images = np.zeros(positions.shape, np.int32)
-        self._take(np.arange(self.n), positions, velocities, images)
-        self.sort()
+    def parts(self) -> Iterator[tuple[int, int]]:
+        beads, molecules = self.numbers.beads, self.n // self.numbers.beads
+        first, last = (molecules * (self.comm.rank + k) // self.comm.size for k in (0, 1))
+        return pieces(first * beads, last * beads, beads)
 
-    def _take(
-        self, who: NDArray[np.int64], positions: Floats, velocities: Floats, images: NDArray
-    ) -> None:
-        """Of these molecules, whole, those that are in this rank's block."""
-        beads = self.numbers.beads
-        owner = self.domain.owners(positions[::beads])
-        mine = np.repeat(owner == self.comm.rank, beads)
-        self._hold(who[mine], positions[mine], velocities[mine], images[mine])
+    def _take(self, particles: Iterable[Piece]) -> None:
+        """Have those of these particles, and of those of other ranks, that are in this block."""
+        beads, held = self.numbers.beads, 0
+        self._count(0)
+        come = dealt(self.comm, particles, self.domain.owners, beads, self.dimension)
+        for piece in come:
+            first, held = held, held + len(piece.who) // beads
+            if held > self.domain.room:
+                self._make_room(held)
+            self._count(held)
+            self.memory.put(*piece, first=first)
 
     def _hold(
         self, who: NDArray[np.int64], positions: Floats, velocities: Floats, images: NDArray
@@ -85,9 +95,7 @@ class Ranks(CPU):
         if molecules > self.domain.room:
             self._live_in(self.domain.tree, molecules)
         self._count(molecules)
-        memory = self.memory
-        memory.fluid.particles.ident[memory.places] = who
-        memory.put(positions, velocities, images)
+        self.memory.put(who, positions, velocities, images)
 
     def _count(self, molecules: int) -> None:
         """Have so many molecules in memory."""
@@ -96,11 +104,12 @@ class Ranks(CPU):
         self.memory.fluid = fluid._replace(particles=fluid.particles._replace(filling=filling))
         fluid.cells.shared.noted[MOLECULES] = molecules
 
-    def _make_room(self) -> None:
-        """Larger arrays for what this rank has."""
+    def _make_room(self, least: int = 0) -> None:
+        """Larger arrays for what this rank has, and for as many molecules at least."""
         memory, rows = self.memory, self.memory.rows_of()
         who = memory.fluid.particles.ident[memory.places]
-        self._live_in(self.domain.tree, int(GROWTH * len(who) / self.numbers.beads) + 1)
+        molecules = int(GROWTH * len(who) / self.numbers.beads) + 1
+        self._live_in(self.domain.tree, max(molecules, least))
         self._go_on_from(memory)
         self._hold(who, *rows)
 
@@ -143,6 +152,11 @@ class Ranks(CPU):
             )
 
     @property
+    def here(self) -> Here:
+        """What this rank may ask of its own particles without the others."""
+        return Here(self.readings)
+
+    @property
     def seconds(self) -> dict[str, float]:
         """Time spent so far in each stage, on this rank."""
         names = {"share": SHARE, "wait": WAIT, "move": MOVE}
@@ -155,15 +169,16 @@ class Ranks(CPU):
 
     # --- its state ------------------------------------------------------------------------------
 
-    def state(self) -> dict[str, NDArray]:
+    def state(self) -> dict[str, Any]:
+        """As of `CPU`; positions, velocities and images come piece by piece (`Spread`), as long as
+        nobody moves on."""
         self.check()
-        everybody = np.arange(self.n)
-        seen = self.readings.as_they_are(everybody)
+        comm, shape, rows = self.comm, (self.n, self.dimension), self.readings.rows_in_memory
         return {
             **(self.solutes.state() if self.solutes else {}),
-            "positions": seen.positions,
-            "velocities": seen.velocities,
-            "images": seen.images,
+            "positions": Spread(comm, shape, np.float64, partial(rows, "positions")),
+            "velocities": Spread(comm, shape, np.float64, partial(rows, "velocities")),
+            "images": Spread(comm, shape, np.int32, partial(rows, "images")),
             "step": np.int64(self.step),
             "impulse": self.readings.impulse,
             "wall_steps": np.int64(self.readings.wall_steps),
@@ -171,5 +186,32 @@ class Ranks(CPU):
         }
 
     def _wall_rates(self) -> Floats:
-        """Those of all pieces of surface, each as the rank has it that they are nearest to."""
-        return self.memory.wall_rates.copy()
+        """Those of all pieces of surface, each as the first rank has it that keeps it."""
+        rates, virtual = self.memory.wall_rates, self.memory.walls.virtual
+        if not virtual or not len(rates):
+            return rates.copy()
+        mine = np.zeros(len(rates), bool)
+        mine[virtual.seen.here] = True
+        bits = np.where(lowest(self.comm, mine)[:, None], rates, 0.0).view(np.int64)
+        return self.readings.reduced(bits).view(float)
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Go on from a state, which only the first rank has to have."""
+        root = self.comm.rank == ROOT
+        plain = {k: np.asarray(v) for k, v in state.items() if k not in SPREAD} if root else None
+        plain = self.comm.bcast(plain, ROOT)
+        self.readings.forget()
+        self.memory.fluid.taken.faults[:] = 0
+        self._take(self._given(state) if root else ())
+        memory, taken = self.memory, self.memory.fluid.taken
+        memory.step = int(plain["step"])
+        taken.impulse[:] = 0
+        taken.impulse[0] = plain["impulse"] if root else 0
+        self.readings.wall_steps = int(plain["wall_steps"])
+        memory.wall_rates[:] = plain["wall_rates"]
+        if self.solutes is not None:
+            self.solutes.restore(plain)
+
+    def _given(self, state: Mapping[str, Any]) -> Iterator[Piece]:
+        require_finite(state)
+        yield from of_state(state, (self.n, self.dimension), self.numbers.beads)
