@@ -185,7 +185,7 @@ def _particles(
     steps: NDArray[np.int64],
 ) -> None:
     group = file.create_group(f"particles/{case.groups[0].name}")
-    n, frames = len(trajectory.ids), len(steps)
+    n, frames = trajectory.number, len(steps)
     mass, kind = masses_and_kinds(case.groups)
     kind = kind[trajectory.ids]
     group.attrs["dimension"] = case.box.dimension
@@ -220,9 +220,11 @@ def _particles(
         group["time"][index] = frame["time"]
         edges[index] = _edges(case, float(frame["time"]), edges.shape[1:])
         for name, data in sets.items():
-            row = np.zeros((n, 3), data.dtype)
-            row[:, columns(name, case.box.dimension)] = frame[name]
-            data[index] = row
+            for start in range(0, n, CHUNK):
+                rows = frame[name][start : start + CHUNK]
+                deep = np.zeros((len(rows), 3), data.dtype)
+                deep[:, columns(name, case.box.dimension)] = rows
+                data[index, start : start + len(rows)] = deep
     del group["step"], group["time"]  # the elements have linked them
 
 
