@@ -238,12 +238,7 @@ class Readings:
 
     def _way(self, r: Floats, image: NDArray, first: NDArray, second: NDArray) -> Floats:
         """From one bead to another, whatever images they lie in."""
-        boxes = image[second] - image[first]
-        way = r[second] - r[first] + boxes * self.numbers.box
-        box = self.memory.box
-        if isinstance(box, SLIDING):
-            way[:, 0] += boxes[:, 1] * box.offset
-        return way
+        return between(r, image, first, second, self.numbers.box, self.memory.box)
 
     def _gather(self, ids: NDArray | None, unwrapped: bool) -> Seen:
         """Places, velocities, images by particle id; those of beads of solutes follow the fluid."""
@@ -321,3 +316,14 @@ class Readings:
         """Count anew what surfaces take."""
         self.memory.fluid.taken.impulse[:] = 0
         self.wall_steps = 0
+
+
+def between(
+    r: Floats, image: NDArray, first: NDArray, second: NDArray, size: Floats, box: tuple
+) -> Floats:
+    """From some particles to others, whatever images of a box of this size they lie in."""
+    boxes = image[second] - image[first]
+    way: Floats = r[second] - r[first] + boxes * size
+    if isinstance(box, SLIDING):
+        way[:, 0] += boxes[:, 1] * box.offset
+    return way
