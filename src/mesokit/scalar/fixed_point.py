@@ -116,5 +116,4 @@ def added_halves(parts: NDArray[np.int64]) -> NDArray[np.int64]:
 def joined(halves: NDArray[np.int64], scale: Any) -> NDArray[np.float64]:
     """The sums of which these are the halves, over the scale."""
     high, low = halves
-    exact = high.astype(object) * 2**HALF + low
-    return np.asarray(exact / scale, float)
+    return np.asarray((high * 2.0**HALF + low) / scale)  # rounded once by the sum

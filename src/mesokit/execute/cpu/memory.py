@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.errors import RunError
 from mesokit.execute.beads.allocate import beads_of
 from mesokit.execute.beads.registers import bead_size
 from mesokit.execute.cpu.grid import Grid
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from mesokit.execute.cpu.numbers import Numbers
 
 Floats = NDArray[np.float64]
+MOST = 2**31 - 2
 
 
 class Memory:
@@ -130,6 +132,7 @@ class Memory:
         if self.domain is not None:
             filling, room = filling._replace(molecules=0), self.domain.room
             self.cells, self.number_of_cells = self.domain.region.known, self.domain.region.number
+        self._require_few(room * beads)
         self.rows = 2 * d + (not numbers.uniform)
         self.strips = strips_for(room, beads)
         lanes = blocks_for(self.strips * LANES) * BLOCK
@@ -149,6 +152,20 @@ class Memory:
             zeros(room * beads, np.int32), ends, spare, spare.view(np.int32), spare.view(np.int64)
         )
         self.walls = self._walls()
+
+    def _require_few(self, particles: int) -> None:
+        """Raise RunError for more cells or particles than 32 bits can number, here or on a rank."""
+        slots = 0 if self.domain is None else self.domain.slots
+        if self.number_of_cells + slots >= MOST:
+            raise RunError(
+                f"box.size: {self.number_of_cells} cells are more than one process can number; "
+                "expected several ranks, or more of them"
+            )
+        if particles >= MOST:
+            raise RunError(
+                f"fluid.density: {particles} particles are more than one process can number; "
+                "expected several ranks, or more of them"
+            )
 
     @property
     def places(self) -> NDArray[np.int64]:

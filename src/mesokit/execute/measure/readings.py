@@ -11,16 +11,23 @@ from numpy.typing import NDArray
 from mesokit.case.box import SLIDING
 from mesokit.execute.beads.readings import SoluteReadings
 from mesokit.execute.cpu.memory import Floats, Memory
-from mesokit.execute.cpu.strips.layout import LANES, SCRATCH_ROW, sums_length, zeros
+from mesokit.execute.cpu.strips.layout import (
+    LANES,
+    SCRATCH_ROW,
+    strips_for,
+    sums_length,
+    zeros,
+)
 from mesokit.execute.cpu.threads import Threads
 from mesokit.execute.measure import sums as measure
 from mesokit.method.mpcd import topology
-from mesokit.scalar.fixed_point import ROUNDER_BITS, halves, joined, total
+from mesokit.scalar.fixed_point import ROUNDER_BITS, added_halves, halves, joined, total
 
 if TYPE_CHECKING:
     from mesokit.method.mpcd.molecule import Molecule
     from mesokit.potential import Bond, Pair
 
+STRIPS = 2**10  # that a thread adds up at once: sums of more could overflow
 Moments = tuple[Floats, Floats, Floats, Floats]
 
 
@@ -107,13 +114,19 @@ class Readings:
         part = zeros((threads, size * length), np.int64)
         place = np.zeros((threads, LANES), np.int32)
         terms = np.zeros((threads, (d + 2) * SCRATCH_ROW), np.int64)
-        chosen = measure.Bins(*two, scales, place, terms)
         where = self.memory.box, self.memory.fluid.particles
-        self.threads.run(measure.bin_sums, *self._vectors, *where, chosen, part)
-        total = self.added(part).reshape(size, length)[:, : d + 3]
-        number, sums = total[:, 0], total[:, 1:] - total[:, :1] * ROUNDER_BITS
-        values = (sums / np.array(scales)).T.reshape(-1, *bins)
-        return number.astype(float).reshape(bins), values[d], values[:d], values[d + 1]
+        strips = strips_for(self.memory.fluid.particles.filling.molecules, self.beads)
+        sums = np.zeros((2, size, d + 3), np.int64)
+        for first in range(0, strips, STRIPS * threads):
+            part[:] = 0
+            last = min(first + STRIPS * threads, strips)
+            chosen = measure.Bins(*two, scales, place, terms, first, last)
+            self.threads.run(measure.bin_sums, *self._vectors, *where, chosen, part)
+            found = part.reshape(threads, size, length)[:, :, : d + 3]
+            found[:, :, 1:] -= found[:, :, :1] * ROUNDER_BITS
+            sums = added_halves(np.stack([sums, halves(found)]))
+        values = self.joined(sums, np.array((1.0, *scales))).T.reshape(-1, *bins)
+        return values[0], values[d + 1], values[1 : d + 1], values[d + 2]
 
     def modes(self, wavevectors: NDArray) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Sums of m exp(-i k r) (K,) and of m v exp(-i k r) (K, d) for wave vectors (K, d)."""

@@ -64,6 +64,8 @@ class Bins(NamedTuple):
     scales: tuple  # whole numbers per unit of momentum (d), mass and m v^2
     place: Any  # (threads, LANES)
     terms: Any  # (threads, ...)
+    first: int  # of the strips that are looked at
+    last: int  # and where they end
 
 
 @kernel
@@ -76,8 +78,8 @@ def bin_sums(team, zero, masses, box, particles, bins, sums):
     filling, scales, d = particles.filling, bins.scales, len(zero)
     place, quanta, out = bins.place[team.thread], bins.terms[team.thread], sums[team.thread]
     terms = integers(scales)
-    first, last = share(strips_in(filling), team.thread, team.threads)
-    for b in range(first, last):
+    first, last = share(bins.last - bins.first, team.thread, team.threads)
+    for b in range(bins.first + first, bins.first + last):
         strip = data[strip_at(b, rows)]
         for i in range(LANES):
             r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
