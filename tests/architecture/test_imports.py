@@ -119,7 +119,7 @@ HOMES = {
     "h5py": ("io/",),
     "gsd": ("io/",),
     "MDAnalysis": ("io/",),
-    "mpi4py": (),
+    "mpi4py": ("ranks/", "execute/ranks/"),
     "numba.cuda": (),
 }
 

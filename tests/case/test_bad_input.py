@@ -158,7 +158,7 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "one cell": ({"[20, 10]": "[20, 1]"}, ("box.size", "at least 2")),
     "one dimension": ({"[20, 10]": "[20]"}, ("box.size", "2D", "3D")),
     "four dimensions": ({"[20, 10]": "[4, 4, 4, 4]"}, ("box.size", "2D", "3D")),
-    "huge box": ({"[20, 10]": "[1000000, 1000000]"}, ("box.size", "cells")),
+    "huge box": ({"[20, 10]": "[1000000000, 1000000000]"}, ("box.size", "cells")),
     "empty box": ({"density = 5": "density = 0.001"}, ("fluid.density", "particles")),
     "every 0": ({"[[observe]]": "[[observe]]\nevery = 0"},
                 ("observe[#1].every = 0", "at least 1")),
@@ -211,7 +211,10 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     # combinations
     "long mean free path": ({"timestep = 0.1": "timestep = 11"},
                             ("fluid.timestep = 11", "mean free path", "at most 10")),
-    "too many particles": ({"density = 5": "density = 1e8"}, ("fluid.density", "at most 2147483")),
+    "too many particles": (
+        {"[20, 10]": "[100000, 100000]", "density = 5": "density = 1e8"},
+        ("fluid.density", "at most 9007199"),
+    ),
     "too many bins": ({"[[observe]]": "[[observe]]\nbins_per_cell = 100_000_000"},
                       ("observe[#1].bins_per_cell = 100000000", "at most 16777216")),
     "too many bins of a map": ({'"velocity-profile"\naxis = "y"':

@@ -98,7 +98,7 @@ def test_full_disk_leaves_the_old_one(path, where, monkeypatch):
     def full(*args, **kwargs):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    target = {"write": "numpy.savez", "fsync": "os.fsync", "replace": "os.replace"}[where]
+    target = {"write": "zipfile.ZipFile.open", "fsync": "os.fsync", "replace": "os.replace"}[where]
     monkeypatch.setattr(target, full)
     with pytest.raises(RunError, match=r"cannot write .*checkpoint\.npz: no space left on device"):
         checkpoint.write(path, ARRAYS, {"step": 200})

@@ -82,6 +82,17 @@ def masses_and_kinds(groups: Sequence[Group]) -> tuple[NDArray[np.float64], NDAr
     )
 
 
+def kinds_of(groups: Sequence[Group], ids: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The kind of some particles.
+
+    >>> groups = [Group("fluid", (Kind(1.0, 3),)), Group("solutes", (Kind(5.0, 2),))]
+    >>> kinds_of(groups, np.array([2, 3]))
+    array([0, 1])
+    """
+    numbers = [kind.number for group in groups for kind in group.kinds]
+    return np.searchsorted(np.cumsum(numbers), ids, side="right")
+
+
 def names_and_diameters(groups: Sequence[Group]) -> tuple[tuple[str, ...], NDArray[np.float64]]:
     """What other programs are told of each kind of particles: a name, and how large it is drawn.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import CheckpointError
-from mesokit.io.atomic import replacing
+from mesokit.io import arrays_file
 
 FORMAT = 5  # raise it when the contents change their meaning
 _META = "meta"
@@ -46,16 +47,21 @@ def digest_of_file(path: str | Path) -> str:
 
 
 def write(
-    path: str | Path, arrays: Mapping[str, NDArray[Any]], meta: Mapping[str, Any], case: str = ""
+    path: str | Path,
+    arrays: Mapping[str, Any],
+    meta: Mapping[str, Any],
+    case: str = "",
+    here: bool = True,
 ) -> None:
     """Replace the checkpoint at `path` by a new one, or leave it as it is.
 
     Parameters
     ----------
     path: the file.
-    arrays: what the run needs to go on, by name.
+    arrays: what the run needs to go on, by name; some may come in pieces (see `arrays_file`).
     meta: plain numbers and texts that go with them.
     case: `digest` of the resolved case.
+    here: whether this rank, of several that all call this, is the one that writes.
 
     Raises RunError if it cannot be written, with the old checkpoint untouched.
 
@@ -71,21 +77,21 @@ def write(
     header = json.dumps(
         {"format": FORMAT, "case": case, "arrays": sorted(arrays), "meta": dict(meta)}
     )
-    with replacing(path) as temporary, temporary.open("wb") as file:
-        np.savez(file, **{_META: np.array(header)}, **arrays)  # type: ignore[arg-type]
+    arrays_file.save(path, {_META: np.array(header), **arrays}, here)
 
 
 def read(
-    path: str | Path, case: str | None = None, start_key: str = ""
+    path: str | Path, case: str | None = None, start_key: str = "", large: float = math.inf
 ) -> tuple[Arrays, dict[str, Any]]:
     """Arrays and meta of the checkpoint at `path`; every byte is checked.
 
     With `case`, the digest of the case to go on with, and the key by which another case may start
-    from this state, if there is one. Raises CheckpointError for a file that is missing, truncated,
+    from this state, if there is one. Arrays of so many bytes (`large`) stay in the file, which is
+    read where they are asked. Raises CheckpointError for a file that is missing, truncated,
     corrupted, of another format or of another case.
     """
     path = Path(path)
-    arrays, header = _load(path)
+    arrays, header = _load(path, large=large)
     if sorted(arrays) != header["arrays"]:
         raise CheckpointError(f"{path}: damaged: its arrays are not those that it names")
     if case is not None and header["case"] != case:
@@ -104,14 +110,18 @@ def part(arrays: Mapping[str, Any], start: str) -> dict[str, Any]:
 
 def read_meta(path: str | Path) -> dict[str, Any]:
     """Meta alone, without the arrays. Raises CheckpointError as `read` does."""
-    return dict(_load(Path(path), (_META,))[1]["meta"])
+    return dict(_load(Path(path), _META)[1]["meta"])
 
 
-def _load(path: Path, only: tuple[str, ...] | None = None) -> tuple[Arrays, dict[str, Any]]:
-    """Arrays (all unless said) and header. Raises CheckpointError for a file of another format."""
+def _load(
+    path: Path, only: str | None = None, large: float = math.inf
+) -> tuple[Arrays, dict[str, Any]]:
+    """Arrays (all, or the only one) and header. Raises CheckpointError for another format."""
     try:
-        with np.load(path, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in only or file.files}
+        if only is None:
+            arrays = arrays_file.load(path, large)
+        else:
+            arrays = {only: arrays_file.one(path, only)}
         header = json.loads(str(arrays.pop(_META)))
         version = header["format"]
         header = {name: header[name] for name in ("case", "arrays", "meta")}

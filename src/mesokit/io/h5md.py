@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.component import name_of
-from mesokit.case.trajectory import masses_and_kinds, names_and_diameters
+from mesokit.case.trajectory import kinds_of, names_and_diameters
 from mesokit.errors import RunError
 from mesokit.io.atomic import replacing
 from mesokit.method.protocol import method_of
@@ -185,20 +185,17 @@ def _particles(
     steps: NDArray[np.int64],
 ) -> None:
     group = file.create_group(f"particles/{case.groups[0].name}")
-    n, frames = len(trajectory.ids), len(steps)
-    mass, kind = masses_and_kinds(case.groups)
-    kind = kind[trajectory.ids]
+    n, frames = trajectory.number, len(steps)
     group.attrs["dimension"] = case.box.dimension
-    group["id"] = trajectory.ids
     own = trajectory.own
-    group["mass"], group["species"] = own.get("mass", mass[kind]), kind
+    _who(group, case, trajectory, own)
     if "diameter" in own:
         group["radius"] = 0.5 * own["diameter"]
         group["radius"].attrs["reduced_unit"] = UNITS["radius"]
     group["species"].attrs["names"] = names_and_diameters(case.groups)[0]
     bonds = method_of(case).bonds(case)
     if len(bonds):
-        _bonds(file, group, bonds, trajectory.ids)
+        _bonds(file, group, bonds, trajectory.first, n)
     group["step"] = steps
     group.create_dataset("time", (frames,), float).attrs["reduced_unit"] = UNITS["time"]
     sets = {}
@@ -220,16 +217,34 @@ def _particles(
         group["time"][index] = frame["time"]
         edges[index] = _edges(case, float(frame["time"]), edges.shape[1:])
         for name, data in sets.items():
-            row = np.zeros((n, 3), data.dtype)
-            row[:, columns(name, case.box.dimension)] = frame[name]
-            data[index] = row
+            for start in range(0, n, CHUNK):
+                rows = frame[name][start : start + CHUNK]
+                deep = np.zeros((len(rows), 3), data.dtype)
+                deep[:, columns(name, case.box.dimension)] = rows
+                data[index, start : start + len(rows)] = deep
     del group["step"], group["time"]  # the elements have linked them
 
 
-def _bonds(file: Any, group: Any, pairs: NDArray[np.int64], ids: NDArray[np.int64]) -> None:
+def _who(group: Any, case: Case, trajectory: TrajectoryWriter, own: Mapping[str, Any]) -> None:
+    """Number, mass and kind of each particle, some after the other."""
+    n = trajectory.number
+    masses = np.array([kind.mass for one in case.groups for kind in one.kinds], float)
+    sets = {
+        name: group.create_dataset(name, (n,), kind)
+        for name, kind in (("id", np.int64), ("mass", float), ("species", np.int64))
+    }
+    for start in range(0, n, CHUNK):
+        rows = slice(start, min(start + CHUNK, n))
+        ids = trajectory.first + np.arange(rows.start, rows.stop)
+        kinds = kinds_of(case.groups, ids)
+        sets["id"][rows], sets["species"][rows] = ids, kinds
+        sets["mass"][rows] = own["mass"][rows] if own else masses[kinds]
+
+
+def _bonds(file: Any, group: Any, pairs: NDArray[np.int64], first: int, number: int) -> None:
     """Rows of the trajectory whose particles are linked, as H5MD has it."""
-    pairs = pairs - (ids[0] if len(ids) else 0)
-    there = ((pairs >= 0) & (pairs < len(ids))).all(axis=1)
+    pairs = pairs - first
+    there = ((pairs >= 0) & (pairs < number)).all(axis=1)
     bonds = file.require_group("connectivity").create_dataset(
         "bonds", data=pairs[there], compression=4
     )

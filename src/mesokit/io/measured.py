@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from mesokit.errors import CheckpointError
 from mesokit.io import checkpoint
+from mesokit.io.arrays_file import LARGE
 from mesokit.io.run_directory import RunDirectory
 from mesokit.method.protocol import method_of
 from mesokit.observe.shared.pooled import pool
@@ -18,23 +22,37 @@ if TYPE_CHECKING:
 
 
 def keep(
-    directory: RunDirectory, case: Case, meta: Mapping[str, Any], arrays: Mapping[str, Any]
+    directory: RunDirectory,
+    case: Case,
+    meta: Mapping[str, Any],
+    arrays: Mapping[str, Any],
+    here: bool = True,
 ) -> None:
-    """Write a checkpoint of these arrays. Raises RunError."""
-    checkpoint.write(directory.checkpoint_file, dict(arrays), dict(meta), _motion(directory, case))
+    """Write a checkpoint of these arrays; of several ranks all do, and one is `here`.
+
+    Raises RunError.
+    """
+    motion = _motion(directory, case)
+    checkpoint.write(directory.checkpoint_file, dict(arrays), dict(meta), motion, here)
 
 
 def take_up(
-    directory: RunDirectory, case: Case, parts: Iterable[tuple[str, Any]]
+    directory: RunDirectory, case: Case, parts: Iterable[tuple[str, Any]], comm: Any = None
 ) -> dict[str, Any]:
     """Let engines and accumulators go on from the checkpoint; what else was kept with it.
 
-    `parts` are replicas, each with what the names of its arrays begin with.
+    `parts` are replicas, each with what the names of its arrays begin with. Of several ranks, those
+    of `comm`, the first one reads.
 
     Raises CheckpointError if it is damaged or of another case.
     """
     path = directory.checkpoint_file
-    arrays, meta = _read(directory, case)
+    parts = list(parts)
+    if comm is None:
+        arrays, meta = _read(directory, case)
+    else:
+        engines = tuple(f"{prefix}engine/" for prefix, _ in parts)
+        arrays, meta = _read_by_one(directory, case, engines, comm)
     with fitting(path):
         for prefix, replica in parts:
             own = checkpoint.part(arrays, prefix)
@@ -43,9 +61,31 @@ def take_up(
     return meta
 
 
-def _read(directory: RunDirectory, case: Case) -> tuple[dict[str, Any], dict[str, Any]]:
+def _read(
+    directory: RunDirectory, case: Case, large: float = math.inf
+) -> tuple[dict[str, Any], dict[str, Any]]:
     path, motion = directory.checkpoint_file, _motion(directory, case)
-    return checkpoint.read(path, motion, method_of(case).start_from_run)
+    return checkpoint.read(path, motion, method_of(case).start_from_run, large)
+
+
+def _read_by_one(
+    directory: RunDirectory, case: Case, engines: tuple[str, ...], comm: Any
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """The same on all ranks: the first reads, and tells the others what is not of its engines,
+    which see to it themselves."""
+    arrays: dict[str, Any] = {}
+    told: Any = None
+    if comm.rank == 0:
+        try:
+            arrays, meta = _read(directory, case, LARGE)
+            plain = {k: np.asarray(v) for k, v in arrays.items() if not k.startswith(engines)}
+            told = plain, meta, ""
+        except CheckpointError as error:
+            told = {}, {}, str(error)
+    plain, meta, wrong = comm.bcast(told)
+    if wrong:
+        raise CheckpointError(wrong)
+    return arrays or plain, meta
 
 
 def _motion(directory: RunDirectory, case: Case) -> str:

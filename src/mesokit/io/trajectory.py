@@ -8,8 +8,9 @@ twice. At the end all frames go to the data file of the run, one by one.
 
 from __future__ import annotations
 
+import math
 import shutil
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,12 +18,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
-from mesokit.io.atomic import replacing
+from mesokit.io.arrays_file import LARGE, load, one, save
 
 if TYPE_CHECKING:
     from mesokit.case.trajectory import Trajectory
 
-Frame = dict[str, NDArray[Any]]
+Frame = dict[str, Any]  # arrays, or what comes in pieces
 OWN = ("mass", "diameter")  # what each sphere has of its own, the same in all frames
 LARGEST = 64 * 2**20  # bytes of frames kept in memory
 
@@ -34,6 +35,9 @@ class TrajectoryWriter:
     that may be written. Call `record` where a frame is due, `flush`
     before every checkpoint, `resume` before going on from one.
 
+    Ranks that share the particles keep, each, the rows of theirs (`engine.here`) until all flush
+    together: of these, one is `here`, which writes, and resumes and reads alone.
+
     Of `spheres` it also keeps what each has of its own (`own`): masses and diameters (n,).
     """
 
@@ -44,9 +48,10 @@ class TrajectoryWriter:
         particles: int,
         first: int = 0,
         spheres: bool = False,
+        here: bool = True,
     ) -> None:
-        self.trajectory, self.folder = trajectory, Path(folder)
-        self.ids = first + np.arange(min(trajectory.subset or particles, particles))
+        self.trajectory, self.folder, self.here = trajectory, Path(folder), here
+        self.first, self.number = first, min(trajectory.subset or particles, particles)
         self.spheres = spheres
         self._own: Frame = {}
         self._frames: list[Frame] = []
@@ -55,19 +60,34 @@ class TrajectoryWriter:
     def record(self, engine: Any) -> None:
         """Take one frame of an engine. Raises RunError if a full memory cannot be written out."""
         frame: Frame = {"step": np.array(engine.step), "time": np.array(engine.time)}
+        shares = hasattr(engine, "here")
+        of = engine.here if shares else engine
+        ids = of.ids(self.first, self.first + self.number) if shares else self.ids
         real = np.dtype(self.trajectory.precision)
         fields = self.trajectory.fields
         if "position" in fields:
-            frame["position"] = _inside(engine.positions(self.ids).astype(real), engine.box)
+            frame["position"] = _inside(of.positions(ids).astype(real), engine.box)
         if "velocity" in fields:
-            frame["velocity"] = engine.velocities(self.ids).astype(real)
+            frame["velocity"] = of.velocities(ids).astype(real)
         if "spin" in fields:
-            frame["spin"] = engine.spins(self.ids).astype(real)
+            frame["spin"] = of.spins(ids).astype(real)
         if "image" in fields:
-            frame["image"] = engine.images(self.ids).astype(np.int32)
+            frame["image"] = of.images(ids).astype(np.int32)
         if self.spheres and not self._own:
-            self._own = {"mass": engine.masses(self.ids), "diameter": engine.diameters(self.ids)}
+            self._own = {"mass": of.masses(ids), "diameter": of.diameters(ids)}
+        if shares:
+            places = ids - self.first
+            frame |= {
+                name: of.spread(self.number, places, rows)
+                for name, rows in frame.items()
+                if name not in ("step", "time")
+            }
         self._add(frame)
+
+    @property
+    def ids(self) -> NDArray[np.int64]:
+        """The particles of a frame, in the order of its rows."""
+        return self.first + np.arange(self.number)
 
     @property
     def own(self) -> Frame:
@@ -91,9 +111,7 @@ class TrajectoryWriter:
         if len(self.steps()):
             return
         shutil.rmtree(self.coming, ignore_errors=True)  # we may have been killed here before
-        back = TrajectoryWriter(
-            self.trajectory, self.coming, len(self.ids), int(self.ids[0]), self.spheres
-        )
+        back = TrajectoryWriter(self.trajectory, self.coming, self.number, self.first, self.spheres)
         back._own = own
         for frame in frames:
             back._add({name: np.asarray(entry) for name, entry in frame.items()})
@@ -108,7 +126,7 @@ class TrajectoryWriter:
 
     def _add(self, frame: Frame) -> None:
         self._frames.append(frame)
-        self._bytes += sum(array.nbytes for array in frame.values())
+        self._bytes += sum(math.prod(a.shape) * a.dtype.itemsize for a in frame.values())
         if self._bytes >= LARGEST:
             self.flush()
 
@@ -116,18 +134,16 @@ class TrajectoryWriter:
         """Write what is in memory to a new segment. Raises RunError."""
         if not self._frames:
             return
-        try:
-            self.folder.mkdir(exist_ok=True)
-        except OSError as error:
-            raise RunError(f"cannot make {self.folder}: {error.strerror}") from None
         if self._own and not self._own_file.exists():
-            _save(self._own_file, self._own)
+            save(self._own_file, self._own, folder=True)
         self._write(self._frames)
         self._frames, self._bytes = [], 0
 
     def resume(self, step: int) -> None:
         """Forget all frames after `step`. Raises RunError for a damaged segment before it."""
         self._frames, self._bytes = [], 0
+        if not self.here:
+            return
         for path in self.segments():
             if int(path.stem.split("-")[1]) > step:
                 path.unlink()
@@ -164,13 +180,24 @@ class TrajectoryWriter:
 
     def _write(self, frames: list[Frame]) -> None:
         path = self.folder / f"segment-{int(frames[0]['step']):015d}.npz"
-        stacked = {name: np.stack([frame[name] for frame in frames]) for name in frames[0]}
-        _save(path, stacked)
+        stacked = {name: Stacked([frame[name] for frame in frames]) for name in frames[0]}
+        save(path, stacked, self.here, folder=True)
 
 
-def _save(path: Path, arrays: Frame) -> None:
-    with replacing(path) as temporary, temporary.open("wb") as file:
-        np.savez(file, **arrays)  # type: ignore[arg-type]
+class Stacked:
+    """An entry of some frames as one array, frame after frame."""
+
+    def __init__(self, entries: Sequence[Any]) -> None:
+        self.entries, self.dtype = entries, entries[0].dtype
+        self.shape = len(entries), *entries[0].shape
+
+    def blocks(self) -> Iterator[NDArray[Any]]:
+        """Its rows, so many at a time."""
+        for entry in self.entries:
+            if hasattr(entry, "blocks"):
+                yield from entry.blocks()
+            else:
+                yield entry
 
 
 def _inside(position: NDArray[Any], box: NDArray[Any]) -> NDArray[Any]:
@@ -181,16 +208,15 @@ def _inside(position: NDArray[Any], box: NDArray[Any]) -> NDArray[Any]:
 
 def _load(path: Path, name: str) -> NDArray[Any]:
     try:
-        with np.load(path, allow_pickle=False) as file:
-            return np.asarray(file[name])
+        return one(path, name)
     except Exception:  # zip, zlib and numpy have many words for a damaged file
         raise RunError(f"{path}: damaged: it is not a whole segment of a trajectory") from None
 
 
 def _read(path: Path) -> Iterator[Frame]:
+    """The frames of a segment; large ones stay there, and are read where they are asked."""
     try:
-        with np.load(path, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
+        arrays = load(path, LARGE)
     except Exception:
         raise RunError(f"{path}: damaged: it is not a whole segment of a trajectory") from None
     for index in range(len(arrays["step"])):

@@ -13,6 +13,7 @@ from mesokit.scalar.intrinsics import mul_add
 from mesokit.scalar.jit import elementwise, for_each, scalar
 
 ROUNDER = 1.5 * 2.0**52
+HALF, LOW = 32, 2**32 - 1  # bits: what is added up apart, so that nothing overflows
 ROUNDER_BITS = int(np.float64(ROUNDER).view(np.int64))
 
 
@@ -97,6 +98,22 @@ def add_integers(array, values):
 
 def total(rows: NDArray[np.int64], scale: Any) -> NDArray[np.float64]:
     """Sums over the rows (n, ...) of whole numbers, exact whatever their size, over the scale."""
-    high, low = (rows >> 32).sum(axis=0), (rows & 0xFFFFFFFF).sum(axis=0)
-    exact = high.astype(object) * 2**32 + low
-    return np.asarray(exact / scale, float)
+    return joined(halves(rows), scale)
+
+
+def halves(rows: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The same sums as high and low halves (2, ...): these may be added up and halved again."""
+    low = (rows & LOW).sum(axis=0)
+    return np.stack([(rows >> HALF).sum(axis=0) + (low >> HALF), low & LOW])
+
+
+def added_halves(parts: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The sum over some halves (n, 2, ...), again as halves."""
+    high, low = parts.sum(axis=0)
+    return np.stack([high + (low >> HALF), low & LOW])
+
+
+def joined(halves: NDArray[np.int64], scale: Any) -> NDArray[np.float64]:
+    """The sums of which these are the halves, over the scale."""
+    high, low = halves
+    return np.asarray((high * 2.0**HALF + low) / scale)  # rounded once by the sum

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +20,7 @@ from mesokit.execute.cpu.step import advance
 from mesokit.execute.cpu.strips.cell_energy import MOST_PARTICLES, ONE_PARTICLE, WithCount
 from mesokit.execute.cpu.threads import Threads
 from mesokit.execute.measure.readings import Moments, Readings
+from mesokit.execute.pieces import Piece, of_state, pieces, require_finite
 from mesokit.method.mpcd.molecule import Springs
 from mesokit.scalar.system import TICK
 
@@ -70,10 +71,19 @@ class CPU:
 
     # --- running --------------------------------------------------------------------------------
 
-    def begin(self, positions: Floats, velocities: Floats) -> None:
-        """Give the fluid's particles their first positions and velocities (n, d), by number."""
-        self.memory.fill(positions, velocities)
+    def parts(self) -> Iterator[tuple[int, int]]:
+        """Numbers of the particles, from one to before another, that are to be made here."""
+        return pieces(0, self.n, self.numbers.beads)
+
+    def begin(self, particles: Iterable[tuple[Any, ...]]) -> None:
+        """Have the fluid's particles: a `Piece` for each of `parts`."""
+        self._take(Piece(*piece) for piece in particles)
         self.sort()
+
+    def _take(self, particles: Iterable[Piece]) -> None:
+        """Have these particles, in the order of their numbers."""
+        for piece in particles:
+            self.memory.put(*piece, first=int(piece.who[0]) // self.numbers.beads)
 
     def advance(self, steps: int, measure_stress: bool = False) -> None:
         """Run some steps; velocities are then those after the collision of the last."""
@@ -204,13 +214,10 @@ class CPU:
     def restore(self, state: Mapping[str, NDArray]) -> None:
         """Go on from a state, with the same bits whatever the number of threads was."""
         memory, taken = self.memory, self.memory.fluid.taken
-        for name in ("positions", "velocities"):
-            if not np.isfinite(state[name].astype(float)).all():
-                raise ValueError(f"{name} that are no numbers")
+        require_finite(state)
         self.readings.forget()
         taken.faults[:] = 0
-        memory.fluid.particles.ident[memory.places] = np.arange(self.n)
-        memory.fill(state["positions"], state["velocities"], state["images"])
+        self._take(of_state(state, (self.n, self.dimension), self.numbers.beads))
         memory.step = int(state["step"])
         taken.impulse[:] = 0
         taken.impulse[0] = state["impulse"]

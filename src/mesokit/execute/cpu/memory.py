@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.errors import RunError
 from mesokit.execute.beads.allocate import beads_of
 from mesokit.execute.beads.registers import bead_size
 from mesokit.execute.cpu.grid import Grid
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from mesokit.execute.cpu.numbers import Numbers
 
 Floats = NDArray[np.float64]
+MOST = 2**31 - 2
 
 
 class Memory:
@@ -130,6 +132,7 @@ class Memory:
         if self.domain is not None:
             filling, room = filling._replace(molecules=0), self.domain.room
             self.cells, self.number_of_cells = self.domain.region.known, self.domain.region.number
+        self._require_few(room * beads)
         self.rows = 2 * d + (not numbers.uniform)
         self.strips = strips_for(room, beads)
         lanes = blocks_for(self.strips * LANES) * BLOCK
@@ -149,6 +152,20 @@ class Memory:
             zeros(room * beads, np.int32), ends, spare, spare.view(np.int32), spare.view(np.int64)
         )
         self.walls = self._walls()
+
+    def _require_few(self, particles: int) -> None:
+        """Raise RunError for more cells or particles than 32 bits can number, here or on a rank."""
+        slots = 0 if self.domain is None else self.domain.slots
+        if self.number_of_cells + slots >= MOST:
+            raise RunError(
+                f"box.size: {self.number_of_cells} cells are more than one process can number; "
+                "expected several ranks, or more of them"
+            )
+        if particles >= MOST:
+            raise RunError(
+                f"fluid.density: {particles} particles are more than one process can number; "
+                "expected several ranks, or more of them"
+            )
 
     @property
     def places(self) -> NDArray[np.int64]:
@@ -229,18 +246,30 @@ class Memory:
         """Write what is known of each particle (n, d), by particle number, in the present order."""
         who = self.fluid.particles.ident[self.places]
         images = np.broadcast_to(images, positions.shape)
-        self.put(positions[who], velocities[who], images[who])
+        self.put(who, positions[who], velocities[who], images[who])
 
-    def put(self, positions: Floats, velocities: Floats, images: NDArray[Any]) -> None:
-        """The same in the order of memory."""
-        particles, d = self.fluid.particles, self.numbers.dimension
-        data, who = particles.data, particles.ident[self.places]
+    def put(
+        self,
+        who: NDArray[np.int64],
+        positions: Floats,
+        velocities: Floats,
+        images: NDArray[Any],
+        first: int = 0,
+    ) -> None:
+        """Have these particles (n,), whole molecules, from this molecule on in memory."""
+        particles, d, start = (
+            self.fluid.particles,
+            self.numbers.dimension,
+            first * self.numbers.beads,
+        )
+        data, places = particles.data, self.places[start : start + len(who)]
+        particles.ident[places] = who
         for k in range(d):
-            data[self.at(k)] = positions[:, k]
-            data[self.at(d + k)] = velocities[:, k]
-        particles.image[:, self.places] = images.T
+            data[self.at(k, places)] = positions[:, k]
+            data[self.at(d + k, places)] = velocities[:, k]
+        particles.image[:, places] = images.T
         if self.rows > 2 * d:
-            data[self.at(2 * d)] = self.numbers.masses_of(who)
+            data[self.at(2 * d, places)] = self.numbers.masses_of(who)
         self.fluid.room[:] = 0.0
 
     def read(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
@@ -262,6 +291,14 @@ class Memory:
         for k in range(2 * d):
             out[:, k] = particles.data[self.at(k)]
         return out[:, :d], out[:, d:], particles.image[:, self.places].T
+
+    def columns(self, name: str, places: NDArray[np.int64]) -> NDArray[Any]:
+        """Positions, velocities or images (n, d), by name, of those at these places in memory."""
+        particles, d = self.fluid.particles, self.numbers.dimension
+        if name == "images":
+            return particles.image[:, places].T
+        first = {"positions": 0, "velocities": d}[name]
+        return np.stack([particles.data[self.at(first + k, places)] for k in range(d)], axis=1)
 
     def at(self, row: int, places: Any = None) -> NDArray[np.int64]:
         """Where a row's values lie in memory: those of all particles, or at these places."""

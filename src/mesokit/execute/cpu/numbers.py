@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -109,6 +110,12 @@ class Numbers:
         if isinstance(self.energy, WithCount):
             unit = 1.0 / self.energy.scale
         return FLOOR * unit * math.sqrt(self.n / self.case.box.volume + 1.0)
+
+    @property
+    def total_mass(self) -> float:
+        """Of all particles, rounded once."""
+        kinds = zip(self.masses_of_kinds, self.counts, strict=True)
+        return float(sum((Fraction(mass) * count for mass, count in kinds), Fraction(0)))
 
     def masses(self) -> Floats:
         """Masses (n,) by particle number: kinds are numbered one after the other."""

@@ -11,17 +11,25 @@ from numpy.typing import NDArray
 from mesokit.case.box import SLIDING
 from mesokit.execute.beads.readings import SoluteReadings
 from mesokit.execute.cpu.memory import Floats, Memory
-from mesokit.execute.cpu.strips.layout import LANES, SCRATCH_ROW, sums_length, zeros
+from mesokit.execute.cpu.strips.layout import (
+    LANES,
+    SCRATCH_ROW,
+    strips_for,
+    sums_length,
+    zeros,
+)
 from mesokit.execute.cpu.threads import Threads
 from mesokit.execute.measure import sums as measure
 from mesokit.method.mpcd import topology
-from mesokit.scalar.fixed_point import ROUNDER_BITS, total
+from mesokit.scalar.fixed_point import ROUNDER_BITS, added_halves, halves, joined
 
 if TYPE_CHECKING:
     from mesokit.method.mpcd.molecule import Molecule
     from mesokit.potential import Bond, Pair
 
+STRIPS = 2**10  # that a thread adds up at once: sums of more could overflow
 Moments = tuple[Floats, Floats, Floats, Floats]
+AT_ONCE = 2**10  # strips of a thread: sums of the terms of more particles may overflow
 
 
 class Seen(NamedTuple):
@@ -77,11 +85,19 @@ class Readings:
 
     def total(self, rows: NDArray[np.int64], scale: Any) -> Floats:
         """Sums over the rows (n, ...) of whole numbers, over the scale."""
-        return total(rows, scale)
+        return self.joined(halves(rows), scale)
+
+    def joined(self, parts: NDArray[np.int64], scale: Any) -> Floats:
+        """The same of the halves of sums."""
+        return joined(self.reduced(parts), scale)
 
     def added(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
         """Whole numbers that the threads have found together."""
-        return numbers.sum(axis=0)
+        return self.reduced(numbers.sum(axis=0))
+
+    def reduced(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
+        """The sum over all that have a part of the particles: here, all are in one hand."""
+        return numbers
 
     def moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
         """Number, mass, momentum (d, ...) and sum of m v^2 in bins along one or two axes."""
@@ -99,13 +115,20 @@ class Readings:
         part = zeros((threads, size * length), np.int64)
         place = np.zeros((threads, LANES), np.int32)
         terms = np.zeros((threads, (d + 2) * SCRATCH_ROW), np.int64)
-        chosen = measure.Bins(*two, scales, place, terms)
         where = self.memory.box, self.memory.fluid.particles
-        self.threads.run(measure.bin_sums, *self._vectors, *where, chosen, part)
-        total = self.added(part).reshape(size, length)[:, : d + 3]
-        number, sums = total[:, 0], total[:, 1:] - total[:, :1] * ROUNDER_BITS
-        values = (sums / np.array(scales)).T.reshape(-1, *bins)
-        return number.astype(float).reshape(bins), values[d], values[:d], values[d + 1]
+        filling: Any = self.memory.fluid.particles.filling
+        strips = strips_for(filling.molecules, self.beads)
+        sums = np.zeros((2, size, d + 3), np.int64)
+        for first in range(0, strips, AT_ONCE * threads):
+            part[:] = 0
+            last = min(first + AT_ONCE * threads, strips)
+            chosen = measure.Bins(*two, scales, place, terms, first, last)
+            self.threads.run(measure.bin_sums, *self._vectors, *where, chosen, part)
+            found = part.reshape(threads, size, length)[:, :, : d + 3]
+            found[:, :, 1:] -= found[:, :, :1] * ROUNDER_BITS
+            sums = added_halves(np.stack([sums, halves(found)]))
+        values = self.joined(sums, np.array((1.0, *scales))).T.reshape(-1, *bins)
+        return values[0], values[d + 1], values[1 : d + 1], values[d + 2]
 
     def modes(self, wavevectors: NDArray) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Sums of m exp(-i k r) (K,) and of m v exp(-i k r) (K, d) for wave vectors (K, d)."""
@@ -230,12 +253,7 @@ class Readings:
 
     def _way(self, r: Floats, image: NDArray, first: NDArray, second: NDArray) -> Floats:
         """From one bead to another, whatever images they lie in."""
-        boxes = image[second] - image[first]
-        way = r[second] - r[first] + boxes * self.numbers.box
-        box = self.memory.box
-        if isinstance(box, SLIDING):
-            way[:, 0] += boxes[:, 1] * box.offset
-        return way
+        return between(r, image, first, second, self.numbers.box, self.memory.box)
 
     def _gather(self, ids: NDArray | None, unwrapped: bool) -> Seen:
         """Places, velocities, images by particle id; those of beads of solutes follow the fluid."""
@@ -313,3 +331,14 @@ class Readings:
         """Count anew what surfaces take."""
         self.memory.fluid.taken.impulse[:] = 0
         self.wall_steps = 0
+
+
+def between(
+    r: Floats, image: NDArray, first: NDArray, second: NDArray, size: Floats, box: tuple
+) -> Floats:
+    """From some particles to others, whatever images of a box of this size they lie in."""
+    boxes = image[second] - image[first]
+    way: Floats = r[second] - r[first] + boxes * size
+    if isinstance(box, SLIDING):
+        way[:, 0] += boxes[:, 1] * box.offset
+    return way

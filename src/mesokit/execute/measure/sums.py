@@ -64,6 +64,8 @@ class Bins(NamedTuple):
     scales: tuple  # whole numbers per unit of momentum (d), mass and m v^2
     place: Any  # (threads, LANES)
     terms: Any  # (threads, ...)
+    first: int  # of the strips that are looked at
+    last: int  # and where they end
 
 
 @kernel
@@ -76,8 +78,8 @@ def bin_sums(team, zero, masses, box, particles, bins, sums):
     filling, scales, d = particles.filling, bins.scales, len(zero)
     place, quanta, out = bins.place[team.thread], bins.terms[team.thread], sums[team.thread]
     terms = integers(scales)
-    first, last = share(strips_in(filling), team.thread, team.threads)
-    for b in range(first, last):
+    first, last = share(bins.last - bins.first, team.thread, team.threads)
+    for b in range(bins.first + first, bins.first + last):
         strip = data[strip_at(b, rows)]
         for i in range(LANES):
             r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
@@ -127,7 +129,7 @@ def modes(team, zero, masses, box, particles, waves, scale, out):
 class Looked(NamedTuple):
     """Who is looked at, and what is found of them."""
 
-    slots: Any  # by particle number, or by place in memory: that among those looked at, or -1
+    slots: Any  # by particle number: that among those looked at, or -1; or places in memory
     position: Any
     velocity: Any
     image: Any
@@ -145,14 +147,12 @@ def gather_by_id(team, zero, box, particles, unwrapped, looked):
 
 
 @kernel
-def gather_by_place(team, zero, box, particles, unwrapped, looked):
-    """The same by their places in memory."""
-    first, last = share(strips_in(particles.filling), team.thread, team.threads)
-    for b in range(first, last):
-        for i in range(lanes_in(particles.filling, b)):
-            slot = looked.slots[b * LANES + i]
-            if slot >= 0:
-                look_at(b, i, zero, box, particles, unwrapped, looked, slot)
+def gather_at(team, zero, box, particles, unwrapped, looked):
+    """The same of those that `slots` lists, by their places in memory."""
+    first, last = share(len(looked.slots), team.thread, team.threads)
+    for slot in range(first, last):
+        i = looked.slots[slot]
+        look_at(i // LANES, i % LANES, zero, box, particles, unwrapped, looked, slot)
 
 
 @scalar

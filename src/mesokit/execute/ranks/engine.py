@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,17 +15,29 @@ from mesokit.execute.cpu.engine import CPU
 from mesokit.execute.cpu.memory import Memory
 from mesokit.execute.cpu.numbers import Floats, Numbers
 from mesokit.execute.cpu.threads import Threads
+from mesokit.execute.pieces import Piece, of_state, pieces, require_finite
 from mesokit.execute.ranks.blocks.balance import Balance, Load, still_good
-from mesokit.execute.ranks.blocks.parcels import given_away, packed, unpacked
 from mesokit.execute.ranks.blocks.tree import Tree, divided
 from mesokit.execute.ranks.blocks.window import Window
+from mesokit.execute.ranks.deal import dealt
 from mesokit.execute.ranks.domain import Domain, axes_to_cut, owners
+from mesokit.execute.ranks.here import Here
 from mesokit.execute.ranks.messages.shared import DONE, FAR, FAULTS, FULL, MOLECULES, STRETCHED
 from mesokit.execute.ranks.readings import SharedReadings, SharedSolutes
+from mesokit.execute.ranks.state import ROOT, SPREAD, Spread
 from mesokit.scalar.system import TICK
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+
+
+def pieces_of(memory: Memory) -> Iterator[Piece]:
+    """The particles in a rank's memory, whole molecules."""
+    who = memory.fluid.particles.ident
+    for first, last in pieces(0, len(memory.places), memory.numbers.beads):
+        places = memory.places[first:last]
+        columns = (memory.columns(name, places) for name in SPREAD)
+        yield Piece(who[places], *columns)
 
 
 GROWTH = 1.3  # times as many molecules as there are, when arrays become too small
@@ -45,6 +58,8 @@ class Ranks(CPU):
         Of all ranks.
     """
 
+    readings: SharedReadings
+
     def __init__(self, case: Case, threads: int, measures: Sequence[str], comm: Any) -> None:
         self.case, self.numbers, self.comm = case, Numbers(case), comm
         self.threads, self.measures = Threads(threads), measures
@@ -61,28 +76,29 @@ class Ranks(CPU):
         earlier = self.memory if hasattr(self, "memory") else None
         self.domain = Domain(self.numbers, self.comm, tree, size, molecules)
         self.memory = Memory(self.numbers, size, self.measures, self.domain, earlier)
-        steps = self.readings.wall_steps if earlier is not None else 0
+        before = self.readings if earlier is not None else None
         self.readings = SharedReadings(self.memory, self.threads, self.comm)
-        self.readings.wall_steps = steps
+        self.readings.go_on_from(before)
         self.solutes = self.readings.solutes
 
     # --- running --------------------------------------------------------------------------------
 
-    readings: SharedReadings
+    def parts(self) -> Iterator[tuple[int, int]]:
+        beads, molecules = self.numbers.beads, self.n // self.numbers.beads
+        first, last = (molecules * (self.comm.rank + k) // self.comm.size for k in (0, 1))
+        return pieces(first * beads, last * beads, beads)
 
-    def begin(self, positions: Floats, velocities: Floats) -> None:
-        images = np.zeros(positions.shape, np.int32)
-        self._take(np.arange(self.n), positions, velocities, images)
-        self.sort()
-
-    def _take(
-        self, who: NDArray[np.int64], positions: Floats, velocities: Floats, images: NDArray
-    ) -> None:
-        """Of these molecules, whole, those that are in this rank's block."""
-        beads = self.numbers.beads
-        owner = self.domain.owners(positions[::beads])
-        mine = np.repeat(owner == self.comm.rank, beads)
-        self._hold(who[mine], positions[mine], velocities[mine], images[mine])
+    def _take(self, particles: Iterable[Piece]) -> None:
+        """Have those of these particles, and of those of other ranks, that are in this block."""
+        beads, held = self.numbers.beads, 0
+        self._count(0)
+        come = dealt(self.comm, particles, self.domain.owners, beads, self.dimension)
+        for piece in come:
+            first, held = held, held + len(piece.who) // beads
+            if held > self.domain.room:
+                self._make_room(held)
+            self._count(held)
+            self.memory.put(*piece, first=first)
 
     def _hold(
         self, who: NDArray[np.int64], positions: Floats, velocities: Floats, images: NDArray
@@ -92,9 +108,7 @@ class Ranks(CPU):
         if molecules > self.domain.room:
             self._live_in(self.domain.tree, molecules)
         self._count(molecules)
-        memory = self.memory
-        memory.fluid.particles.ident[memory.places] = who
-        memory.put(positions, velocities, images)
+        self.memory.put(who, positions, velocities, images)
 
     def _count(self, molecules: int) -> None:
         """Have so many molecules in memory."""
@@ -104,11 +118,12 @@ class Ranks(CPU):
         self.memory.fluid = fluid._replace(particles=fluid.particles._replace(filling=filling))
         fluid.cells.shared.noted[MOLECULES] = molecules
 
-    def _make_room(self) -> None:
-        """Larger arrays for what this rank has."""
+    def _make_room(self, least: int = 0) -> None:
+        """Larger arrays for what this rank has, and for as many molecules at least."""
         memory, rows = self.memory, self.memory.rows_of()
         who = memory.fluid.particles.ident[memory.places]
-        self._live_in(self.domain.tree, int(GROWTH * len(who) / self.numbers.beads) + 1)
+        molecules = int(GROWTH * len(who) / self.numbers.beads) + 1
+        self._live_in(self.domain.tree, max(molecules, least))
         self._go_on_from(memory)
         self._hold(who, *rows)
 
@@ -119,6 +134,10 @@ class Ranks(CPU):
         new.fluid.taken.impulse[:] = memory.fluid.taken.impulse
         new.wall_rates[:] = memory.wall_rates
         new.fluid.cells.shared.meter[:] = memory.fluid.cells.shared.meter
+        if memory.solutes:
+            beads, before = new.solutes, memory.solutes
+            beads.r[:], beads.v[:] = before.r, before.v
+            beads.roster.who[:], beads.roster.count[:] = before.roster.who, before.roster.count
 
     def _steps(self, steps: int, what: int) -> None:
         left = steps
@@ -186,15 +205,12 @@ class Ranks(CPU):
         """Have the blocks of another tree, and the particles that are there."""
         memory, rates = self.memory, self.readings.wall_rates()
         solutes = None if self.solutes is None else self.solutes.state()
-        who = memory.fluid.particles.ident[memory.places]
-        rows = packed(who, *memory.rows_of())
         leaders = memory.rows_of()[0][:: self.numbers.beads]
-        owner = np.repeat(owners(tree.blocks, self.numbers, leaders), self.numbers.beads)
-        rows = given_away(rows, owner, self.comm)
-        self._live_in(tree, len(rows) // self.numbers.beads)
+        here = np.bincount(owners(tree.blocks, self.numbers, leaders), minlength=self.comm.size)
+        self._live_in(tree, int(self.readings.reduced(here)[self.comm.rank]))
         self._go_on_from(memory)
         self.memory.wall_rates[:] = rates
-        self._hold(*unpacked(rows))
+        self._take(pieces_of(memory))
         if self.solutes is not None and solutes is not None:
             self.solutes.restore(solutes)
 
@@ -224,6 +240,11 @@ class Ranks(CPU):
             )
 
     @property
+    def here(self) -> Here:
+        """What this rank may ask of its own particles without the others."""
+        return Here(self.readings)
+
+    @property
     def seconds(self) -> dict[str, float]:
         """Time spent so far in each stage, on this rank."""
         names = {"share": SHARE, "wait": WAIT, "move": MOVE}
@@ -237,16 +258,38 @@ class Ranks(CPU):
     # --- its state ------------------------------------------------------------------------------
 
     def state(self) -> dict[str, Any]:
+        """As of `CPU`; positions, velocities and images come piece by piece (`Spread`), as long as
+        nobody moves on."""
         self.check()
-        everybody = np.arange(self.n)
-        seen = self.readings.as_they_are(everybody)
+        comm, shape, rows = self.comm, (self.n, self.dimension), self.readings.rows_in_memory
         return {
             **(self.solutes.state() if self.solutes else {}),
-            "positions": seen.positions,
-            "velocities": seen.velocities,
-            "images": seen.images,
+            "positions": Spread(comm, shape, np.float64, partial(rows, "positions")),
+            "velocities": Spread(comm, shape, np.float64, partial(rows, "velocities")),
+            "images": Spread(comm, shape, np.int32, partial(rows, "images")),
             "step": np.int64(self.step),
             "impulse": self.readings.impulse,
             "wall_steps": np.int64(self.readings.wall_steps),
             "wall_rates": self.readings.wall_rates(),
         }
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Go on from a state, which only the first rank has to have."""
+        root = self.comm.rank == ROOT
+        plain = {k: np.asarray(v) for k, v in state.items() if k not in SPREAD} if root else None
+        plain = self.comm.bcast(plain, ROOT)
+        self.readings.forget()
+        self.memory.fluid.taken.faults[:] = 0
+        self._take(self._given(state) if root else ())
+        memory, taken = self.memory, self.memory.fluid.taken
+        memory.step = int(plain["step"])
+        taken.impulse[:] = 0
+        taken.impulse[0] = plain["impulse"] if root else 0
+        self.readings.wall_steps = int(plain["wall_steps"])
+        memory.wall_rates[:] = plain["wall_rates"]
+        if self.solutes is not None:
+            self.solutes.restore(plain)
+
+    def _given(self, state: Mapping[str, Any]) -> Iterator[Piece]:
+        require_finite(state)
+        yield from of_state(state, (self.n, self.dimension), self.numbers.beads)

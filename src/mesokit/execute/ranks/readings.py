@@ -14,8 +14,6 @@ from mesokit.execute.cpu.threads import Threads
 from mesokit.execute.measure import sums as measure
 from mesokit.execute.measure.readings import Readings, Seen
 
-HALF = 32  # bits: high and low halves of whole numbers are added up apart, so that none overflows
-
 
 class SharedReadings(Readings):
     """Readings of all ranks, the same on each: every one must ask, and in the same order."""
@@ -33,31 +31,32 @@ class SharedReadings(Readings):
         if isinstance(self.solutes, SharedSolutes):
             self.solutes.known = False
 
-    def total(self, rows: NDArray[np.int64], scale: Any) -> Floats:
-        halves = np.stack([(rows >> HALF).sum(axis=0), (rows & (2**HALF - 1)).sum(axis=0)])
-        high, low = self.reduced(halves)
-        exact = high.astype(object) * 2**HALF + low
-        return np.asarray(exact / scale, float)
-
-    def added(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
-        return self.reduced(numbers.sum(axis=0))
+    def go_on_from(self, earlier: SharedReadings | None) -> None:
+        """Take over what is counted from readings of memory that was given up."""
+        if earlier is not None:
+            self.wall_steps = earlier.wall_steps
+            if isinstance(self.solutes, SharedSolutes):
+                self.solutes.known = getattr(earlier.solutes, "known", True)
 
     def reduced(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
-        """The sum over all ranks."""
         out = np.empty_like(np.ascontiguousarray(numbers))
         self.comm.Allreduce(np.ascontiguousarray(numbers), out)
         return out
 
     def own_rows(self, ids: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Which of the particles asked for are here: their places in `ids`, and among all here."""
+        who, order = self._by_number()
+        at = np.minimum(np.searchsorted(who, ids), max(len(who) - 1, 0))
+        here = np.flatnonzero(who[at] == ids) if len(who) else np.zeros(0, np.int64)
+        return here, order[at[here]]
+
+    def _by_number(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """The numbers of all that are here, rising, and their places among all here."""
         if self._sorted is None:
             who = self.memory.fluid.particles.ident[self.memory.places]
             order = np.argsort(who)
             self._sorted = who[order], order
-        who, order = self._sorted
-        at = np.minimum(np.searchsorted(who, ids), max(len(who) - 1, 0))
-        here = np.flatnonzero(who[at] == ids) if len(who) else np.zeros(0, np.int64)
-        return here, order[at[here]]
+        return self._sorted
 
     def together(self, here: NDArray[np.int64], rows: Floats, number: int) -> Floats:
         """Rows (number, columns) of which each rank has those with these numbers."""
@@ -70,11 +69,17 @@ class SharedReadings(Readings):
         out[whole[:, 0]] = np.ascontiguousarray(whole[:, 1:]).view(float)
         return out
 
-    def as_they_are(self, ids: NDArray[np.int64]) -> Seen:
-        """Positions, velocities and images of particles as they lie in memory."""
-        here, which = self.own_rows(ids)
-        rows = np.concatenate([part[which] for part in self.memory.rows_of()], axis=1)
-        return self._seen_of(self.together(here, rows, len(ids)))
+    def numbers_here(self, first: int, last: int) -> NDArray[np.int64]:
+        """Who is here of the particles from one number to before another, rising."""
+        who, _ = self._by_number()
+        return who[slice(*np.searchsorted(who, (first, last)))].copy()
+
+    def rows_in_memory(self, name: str, first: int, last: int) -> tuple[NDArray, NDArray]:
+        """Of the particles from one number to before another, who is here, and their positions,
+        velocities or images as they lie in memory."""
+        who, order = self._by_number()
+        part = slice(*np.searchsorted(who, (first, last)))
+        return who[part], self.memory.columns(name, self.memory.places[order[part]])
 
     def _seen_of(self, rows: Floats) -> Seen:
         d = self.dimension
@@ -97,15 +102,17 @@ class SharedReadings(Readings):
 
     def rows_at(self, places: NDArray[np.int64], unwrapped: bool) -> Floats:
         """Position, velocity and images (n, 3 d) of the particles at these places in memory."""
-        d, zero = self.dimension, self.memory.physics.zero
-        slots = np.full(len(self.memory.fluid.particles.cell), -1, np.int32)
-        slots[places] = np.arange(len(places))
-        shape = len(places), d
+        seen = self.seen_at(places, unwrapped)
+        return np.concatenate([seen.positions, seen.velocities, seen.images.astype(float)], axis=1)
+
+    def seen_at(self, places: NDArray[np.int64], unwrapped: bool) -> Seen:
+        """The same, each by itself."""
+        shape, zero = (len(places), self.dimension), self.memory.physics.zero
         out = Seen(np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32))
-        looked = measure.Looked(slots, *out)
+        looked = measure.Looked(places, *out)
         where = self.memory.box, self.memory.fluid.particles
-        self.threads.run(measure.gather_by_place, zero, *where, unwrapped, looked)
-        return np.concatenate([out.positions, out.velocities, out.images.astype(float)], axis=1)
+        self.threads.run(measure.gather_at, zero, *where, unwrapped, looked)
+        return out
 
 
 class SharedSolutes(SoluteReadings):

@@ -61,7 +61,7 @@ def virtual_particles(
     """Virtual particles of the walls of a case; those of one rank's cells, if they are shared."""
     case, solids, d = numbers.case, numbers.solids, numbers.dimension
     assert solids is not None
-    slit, size, masses = numbers.slit, case.box.size, numbers.masses()
+    slit, size = numbers.slit, case.box.size
     density, rule = case.fluid.density, case.fluid.collision
     if slit is not None:
         starts, cells, corners = plates.cut_cells(slit, size, numbers.cells)
@@ -99,7 +99,7 @@ def virtual_particles(
         probes=probes,
         terms=terms,
         rates=np.zeros((len(terms), columns(d))),
-        masses=masses[(np.arange(KINDS) * 7919) % len(masses)],
+        masses=numbers.masses_of((np.arange(KINDS) * 7919) % max(numbers.n, 1)),
         data=zeros((threads, blocks * rows * ROW)),
         cell=zeros((threads, blocks * BLOCK), np.int32),
         number=zeros((threads, blocks * BLOCK), np.int64),

@@ -23,7 +23,7 @@ from mesokit.potential.thermal import mean_square
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
-MOST_CELLS = MOST_PARTICLES = 2**31 - 1  # their numbers are 32-bit
+MOST_CELLS = MOST_PARTICLES = 2**53  # whole numbers that floats can tell apart
 MOST_CELLS_AMONG_SOLIDS = 2**27  # some hundred bytes for each while tables are made
 LONGEST_PATH = 10.0  # cells
 

@@ -29,15 +29,15 @@ FIRST_AGAIN = 2**20  # draws of this number and on are of those that were put el
 TRIES = 1000
 
 
-def out_of_beads(numbers: Numbers, places: Floats, beads: Floats) -> Floats:
-    """Places (n, d) in the fluid, those that beads push away drawn again.
+def out_of_beads(numbers: Numbers, who: NDArray[np.int64], places: Floats, beads: Floats) -> Floats:
+    """Places (n, d) of particles with these numbers, those that beads push away drawn again.
 
     Raises RunError where beads leave no room.
     """
     solutes = numbers.case.solutes
     if solutes is None or solutes.solvent_pair is None or not len(places):
         return places
-    random = Draws(numbers.case.run.seed, INITIAL_POSITION, np.arange(len(places)), FIRST_AGAIN)
+    random = Draws(numbers.case.run.seed, INITIAL_POSITION, who, FIRST_AGAIN)
     left, kT = np.arange(len(places)), numbers.case.fluid.kT
     for _ in range(TRIES):
         energy = _energy(numbers, places[left], beads, solutes.solvent_pair)
@@ -60,6 +60,7 @@ def _energy(numbers: Numbers, places: Floats, beads: Floats, pair: Pair) -> Floa
     ]
     trees = [cKDTree(x, boxsize=boxes) for x in inside]
     near = trees[1].sparse_distance_matrix(trees[0], pair.reach, output_type="ndarray")
+    near = near[np.lexsort((near["i"], near["j"]))]  # one order, whoever else is asked for
     total = np.zeros(len(places))
     np.add.at(total, near["j"], energies((pair.kernel(),), near["v"]))
     return total

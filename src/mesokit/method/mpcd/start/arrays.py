@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 State = Callable[["Case", str], tuple[Any, Any]]
+PIECE = 2**18  # rows that are looked at together
+MAGIC = b"\x93NUMPY"  # what a file .npy begins with
 MOST_IMAGES = 2**30  # boxes away from the primary one: image counts are 32-bit
 
 
@@ -25,6 +27,8 @@ def read_arrays(
     case: Case, owner: str, positions: Any, velocities: Any, **states: State
 ) -> tuple[Any, Any]:
     """The arrays to start from: those given, or those that the case names; None where none.
+
+    Rows of a .npy file or of an earlier run are read where they are asked for.
 
     `owner` is "fluid" or "solutes". `states` gives for each key that names a whole state (`run`,
     `file`) what reads positions and velocities that suit the case. Raises CaseError if an array is
@@ -54,8 +58,9 @@ def read_arrays(
         if owner == "fluid":
             _no_conformation(case)
         positions = _checked(case, owner, keys[0], positions)
-        _inside(case, keys[0], positions)
-        _near(case, keys[0], positions)
+        for first, rows in _pieces(positions):
+            _inside(case, keys[0], first, rows)
+            _near(case, keys[0], first, rows)
     if velocities is not None:
         velocities = _checked(case, owner, keys[1], velocities)
     return positions, velocities
@@ -84,7 +89,9 @@ def _load(where: str, name: str, path: str) -> Any:
     """An array from a .npy file, or the only one (or the one of that name) from a .npz file."""
     key = f"{where}.{name} = {path!r}"
     try:
-        found = np.load(path, allow_pickle=False)
+        with open(path, "rb") as file:
+            plain = file.read(len(MAGIC)) == MAGIC
+        found = np.load(path, mmap_mode="r" if plain else None, allow_pickle=False)
     except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
         reason = f": {error.strerror}" if isinstance(error, OSError) and error.strerror else ""
         raise CaseError(f"{key}: expected a .npy or .npz file of numbers{reason}") from None
@@ -95,17 +102,16 @@ def _load(where: str, name: str, path: str) -> Any:
     return found[name if name in found.files else found.files[0]]
 
 
-def _checked(case: Case, owner: str, key: str, values: Any) -> Floats:
-    """Numbers for each particle."""
+def _checked(case: Case, owner: str, key: str, values: Any) -> Any:
+    """Numbers for each particle; those of the fluid stay where they are, which may be a file."""
     if np.ma.isMaskedArray(values):
         raise CaseError(f"{key}: expected an array of numbers without a mask")
     try:
-        array = np.asarray(values)
+        array = values if hasattr(values, "state") else np.asarray(values)
     except (TypeError, ValueError):
         raise CaseError(f"{key}: expected an array of numbers") from None
     if array.dtype.kind not in "iuf":
         raise CaseError(f"{key}: expected an array of numbers, not of {array.dtype.name}")
-    array = array.astype(float)
     beads = case.solutes.beads if owner == "solutes" and case.solutes else case.particles
     shape = beads, case.box.dimension
     if array.shape != shape:
@@ -113,28 +119,35 @@ def _checked(case: Case, owner: str, key: str, values: Any) -> Floats:
             f"{key}: shape {array.shape}: expected {shape}, one row for each of the "
             + ("solutes' beads" if owner == "solutes" else "fluid's particles")
         )
-    if not np.isfinite(array).all():
-        row = int(np.argwhere(~np.isfinite(array))[0][0])
-        raise CaseError(f"{key}: row {row} is not finite")
-    return array
+    for first, rows in _pieces(array):
+        if not np.isfinite(rows).all():
+            row = first + int(np.argwhere(~np.isfinite(rows))[0][0])
+            raise CaseError(f"{key}: row {row} is not finite")
+    return array if owner == "fluid" else np.array(array, float)
 
 
-def _inside(case: Case, key: str, positions: Floats) -> None:
+def _pieces(array: Any) -> Iterator[tuple[int, Floats]]:
+    """Some rows after the other, as floats, and the number of the first."""
+    for first in range(0, len(array), PIECE):
+        yield first, np.asarray(array[first : first + PIECE], float)
+
+
+def _inside(case: Case, key: str, first: int, positions: Floats) -> None:
     """Nobody in a wall."""
     if not case.walls:
         return
     outside = solids_of(case).distance(positions) < 0
     if outside.any():
         row = int(np.argmax(outside))
-        raise CaseError(f"{key}: row {row} = {positions[row].tolist()} lies in a wall")
+        raise CaseError(f"{key}: row {first + row} = {positions[row].tolist()} lies in a wall")
 
 
-def _near(case: Case, key: str, positions: Floats) -> None:
+def _near(case: Case, key: str, first: int, positions: Floats) -> None:
     """Nobody so far away that the boxes between cannot be counted."""
     far = np.abs(positions / case.box.size) >= MOST_IMAGES
     if far.any():
         row = int(np.argmax(far.any(axis=1)))
         raise CaseError(
-            f"{key}: row {row} = {positions[row].tolist()} is 2^30 boxes away or more; expected "
-            "positions nearer to the box"
+            f"{key}: row {first + row} = {positions[row].tolist()} is 2^30 boxes away or more; "
+            "expected positions nearer to the box"
         )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.io import checkpoint
+from mesokit.io.arrays_file import LARGE
 from mesokit.io.run_directory import RunDirectory
 from mesokit.io.snapshot_file import read_snapshot
 from mesokit.method.mpcd.solute.free import FreeMolecule
@@ -16,6 +17,7 @@ from mesokit.method.mpcd.start.snapshot import fitted, fitted_beads
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.execute.cpu.numbers import Numbers
     from mesokit.method.mpcd.solutes import Solutes
 
 
@@ -78,8 +80,9 @@ def _last_beads(case: Case, path: str) -> tuple[Any, Any]:
 
     Raises CaseError unless that run has the box and the polymers of the case.
     """
-    fluid = _last_fluid(case, path, lambda case: ("solutes.polymers", _polymers(case)))
-    return fluid.solutes.places.copy(), fluid.solutes.velocities.copy()
+    _, state = _last_fluid(case, path, lambda case: ("solutes.polymers", _polymers(case)))
+    shape = -1, case.box.dimension
+    return state["solute_r"].reshape(shape), state["solute_v"].reshape(shape)
 
 
 def _polymers(case: Case) -> list[tuple[Any, ...]]:
@@ -100,14 +103,19 @@ def _last_state(case: Case, path: str) -> tuple[Any, Any]:
 
     Raises CaseError unless that run has the box and the species of the case.
     """
-    fluid = _last_fluid(case, path, lambda case: ("particles of (mass, number)", _kinds(case)))
-    return fluid.whole_positions(), fluid.velocities()
+    from mesokit.execute.measure.earlier import EarlierRows
+
+    told = lambda case: ("particles of (mass, number)", _kinds(case))  # noqa: E731
+    fluid = _last_fluid(case, path, told)
+    return EarlierRows(*fluid, "positions"), EarlierRows(*fluid, "velocities")
 
 
-def _last_fluid(case: Case, path: str, told: Callable[[Case], tuple[str, Any]]) -> Any:
-    """An earlier run at its last checkpoint, if its box and what is told of it are the same."""
+def _last_fluid(
+    case: Case, path: str, told: Callable[[Case], tuple[str, Any]]
+) -> tuple[Numbers, dict[str, Any]]:
+    """An earlier run and its last state, if its box and what is told of it are the same."""
     from mesokit.case.case import Case
-    from mesokit.execute.cpu.engine import CPU
+    from mesokit.execute.cpu.numbers import Numbers
 
     directory = RunDirectory.existing(path)
     earlier = Case.from_toml(directory.case_file)
@@ -120,10 +128,8 @@ def _last_fluid(case: Case, path: str, told: Callable[[Case], tuple[str, Any]]) 
     ):
         if one != other:
             raise CaseError(f"that run has {name} {show(one)}, this case {show(other)}")
-    arrays, _ = checkpoint.read(directory.checkpoint_file)
-    fluid = CPU(earlier)
-    fluid.restore(checkpoint.part(arrays, "engine/"))
-    return fluid
+    arrays, _ = checkpoint.read(directory.checkpoint_file, large=LARGE)
+    return Numbers(earlier), checkpoint.part(arrays, "engine/")
 
 
 def _kinds(case: Case) -> list[tuple[float, int]]:

@@ -1,4 +1,4 @@
-"""How a fluid starts: the first positions and velocities of its particles."""
+"""How a fluid starts: the first positions and velocities of its particles, made piece by piece."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ from mesokit.method.mpcd.start.conformation import connected, drawn
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.method.mpcd.start.room import periods, stays_out
 from mesokit.method.mpcd.start.solutes import first_beads
-from mesokit.scalar.fixed_point import total
+from mesokit.scalar.fixed_point import added_halves, halves
 from mesokit.scalar.random import INITIAL_POSITION, INITIAL_VELOCITY
 
 if TYPE_CHECKING:
     from mesokit.execute.cpu.numbers import Numbers
 
 Floats = NDArray[np.float64]
+Who = NDArray[np.int64]
 
 
 def start(
@@ -34,53 +35,72 @@ def start(
     Parameters
     ----------
     engine : Engine
-        A fluid in memory; its case says how to draw what is not given.
-    positions, velocities : array (n, d), optional
+        A fluid in memory; its case says how to draw what is not given, its `parts` which particles
+        are to be made here.
+    positions, velocities : array (n, d) or rows of a file, optional
         In cells, and in cells per unit of time, by particle number, as `read_arrays` has checked
         them.
     beads, bead_velocities : array (n, d), optional
         The same of the beads of solutes.
     """
     numbers: Numbers = engine.numbers
-    case, mass, at_rest = numbers.case, numbers.masses(), velocities is None
-    drift = np.zeros(numbers.dimension)
+    case, at_rest = numbers.case, velocities is None
+    drifts: list[Floats] = []  # to take off, one after the other
+    if at_rest:
+        drifts.append(_drift(engine))
     if case.solutes is not None:
         given = beads, bead_velocities
         beads, bead_velocities, drift = first_beads(numbers, case.solutes, *given, at_rest)
         engine.solutes.begin(beads, bead_velocities)
-    positions = first_positions(numbers, positions, beads)
-    if at_rest:
-        velocities = thermal_velocities(numbers, mass)
-        velocities = velocities - drift if case.solutes is not None else velocities
-    if at_rest and case.box.sheared:
-        velocities[:, 0] += case.box.first_rate * (positions[:, 1] - 0.5 * numbers.box[1])
-    engine.begin(positions, velocities)
+        drifts.append(drift)
+
+    def made(first: int, last: int) -> tuple[Who, Floats, Floats, NDArray[np.int32]]:
+        who = np.arange(first, last)
+        r = first_positions(numbers, who, positions, beads)
+        if not at_rest:
+            v = np.asarray(velocities[first:last], float)
+        else:
+            v = thermal_velocities(numbers, who)
+            for drift in drifts:
+                v -= drift
+            if case.box.sheared:
+                v[:, 0] += case.box.first_rate * (r[:, 1] - 0.5 * numbers.box[1])
+        return who, r, v, np.zeros(r.shape, np.int32)
+
+    engine.begin(made(*part) for part in engine.parts())
 
 
-def first_positions(numbers: Numbers, given: Any, beads: Any = None) -> Floats:
-    """Positions (n, d): the given ones, or drawn where there is no solid, and where the beads that
-    act on the fluid leave room."""
+def first_positions(numbers: Numbers, who: Who, given: Any, beads: Any = None) -> Floats:
+    """Positions (n, d) of particles with these numbers, in a row and whole molecules: the given
+    ones, or drawn where there is no solid, and where the beads that act on the fluid leave room."""
     case, molecule = numbers.case, numbers.case.fluid.molecule
     if given is not None:
-        return given if molecule is None else connected(given, molecule, periods(numbers))
-    number = numbers.n if molecule is None else numbers.n // molecule.length
-    random = Draws(case.run.seed, INITIAL_POSITION, np.arange(number))
+        places = np.asarray(given[who[0] : who[-1] + 1], float)
+        return places if molecule is None else connected(places, molecule, periods(numbers))
     if molecule is None:
-        places = _uniform(numbers, random)
-        return places if beads is None else out_of_beads(numbers, places, beads)
+        places = _uniform(numbers, Draws(case.run.seed, INITIAL_POSITION, who))
+        return places if beads is None else out_of_beads(numbers, who, places, beads)
+    random = Draws(case.run.seed, INITIAL_POSITION, who[:: molecule.length] // molecule.length)
     return drawn(molecule, case.fluid.kT, numbers.box, random, stays_out(numbers))
 
 
-def thermal_velocities(numbers: Numbers, mass: Floats) -> Floats:
-    """Maxwellian velocities (n, d) without momentum."""
-    case, who = numbers.case, np.arange(numbers.n)
-    found = Draws(case.run.seed, INITIAL_VELOCITY, who).normals(numbers.dimension)
-    found *= np.sqrt(case.fluid.kT / mass)[:, None]
+def thermal_velocities(numbers: Numbers, who: Who) -> Floats:
+    """Maxwellian velocities (n, d) of particles with these numbers."""
+    found = Draws(numbers.case.run.seed, INITIAL_VELOCITY, who).normals(numbers.dimension)
+    return found * np.sqrt(numbers.case.fluid.kT / numbers.masses_of(who))[:, None]
+
+
+def _drift(engine: Any) -> Floats:
+    """The mean velocity (d,) of all particles, wherever they are made."""
+    numbers: Numbers = engine.numbers
     scale = numbers.units["momentum"]
-    for k in range(numbers.dimension):
-        momentum = total(np.rint(mass * found[:, k] * scale).astype(np.int64), scale)
-        found[:, k] -= momentum / max(mass.sum(), 1e-300)
-    return found
+    sums = np.zeros((2, numbers.dimension), np.int64)
+    for first, last in engine.parts():
+        who = np.arange(first, last)
+        terms = numbers.masses_of(who)[:, None] * thermal_velocities(numbers, who) * scale
+        sums = added_halves(np.stack([sums, halves(np.rint(terms).astype(np.int64))]))
+    momentum = engine.readings.joined(sums, scale)
+    return np.asarray(momentum / max(numbers.total_mass, 1e-300))
 
 
 def _uniform(numbers: Numbers, random: Draws) -> Floats:
@@ -88,8 +108,9 @@ def _uniform(numbers: Numbers, random: Draws) -> Floats:
     places = random.units(numbers.dimension) * numbers.box
     if numbers.solids is None or numbers.slit is not None:
         return places
-    left = np.arange(numbers.n)
-    while len(left := left[numbers.solids.distance(places[left]) < MARGIN]):
-        random = random.of(np.searchsorted(random.who, left))
+    left = np.arange(len(places))
+    while len(left):
+        inside = numbers.solids.distance(places[left]) < MARGIN
+        left, random = left[inside], random.of(inside)
         places[left] = random.units(numbers.dimension) * numbers.box
     return places

@@ -41,7 +41,7 @@ def first_beads(
         if fluid_is_drawn:
             one = isinstance(mass, float)
             momentum = mass * velocities.sum(axis=0) if one else mass @ velocities
-            drift = momentum / (solutes.total_mass + numbers.masses().sum())
+            drift = momentum / (solutes.total_mass + numbers.total_mass)
             velocities -= drift
             velocities[:, 0] += case.box.first_rate * (places[:, 1] - 0.5 * numbers.box[1])
     return places, velocities, drift

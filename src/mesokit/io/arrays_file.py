@@ -1,0 +1,118 @@
+"""Files of named arrays (.npz), written and read piece by piece: none has to fit into memory.
+
+They are as `numpy.savez` makes them. An array that comes in pieces has a shape, a dtype and
+`blocks()`, which yields its rows in order.
+"""
+
+from __future__ import annotations
+
+import math
+import zipfile
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import IO, Any, NamedTuple
+
+import numpy as np
+from numpy.lib import format as npy
+from numpy.typing import NDArray
+
+from mesokit.errors import RunError
+from mesokit.io.atomic import replacing
+
+LARGE = 2**20  # bytes of an array, from which on it stays in the file
+READ = 2**20  # bytes at a time
+SUFFIX = ".npy"
+HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
+
+
+class Member(NamedTuple):
+    """An array of the file: its name, what numpy puts in front of it, its rows block by block."""
+
+    name: str
+    header: dict[str, Any]
+    blocks: Iterator[NDArray[Any]]
+
+
+def save(
+    path: str | Path, arrays: Mapping[str, Any], here: bool = True, folder: bool = False
+) -> None:
+    """Write a file of arrays whole, or leave the old one. Raises RunError if it cannot be written.
+
+    Of several ranks all call this, for arrays whose pieces they gather, and one of them is `here`;
+    where it cannot write, the others still get rid of what they send. `folder` says to make the
+    folder of the file where there is none.
+    """
+    members = [_member(name, entry) for name, entry in arrays.items()]
+    try:
+        if here:
+            if folder:
+                _make(Path(path).parent)
+            with replacing(path) as temporary, temporary.open("wb") as file:
+                _write(file, members)
+    finally:
+        for member in members:
+            for _ in member.blocks:
+                pass
+
+
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise RunError(f"cannot make {folder}: {error.strerror}") from None
+
+
+def _member(name: str, entry: Any) -> Member:
+    spread = hasattr(entry, "blocks")
+    array = entry if spread else np.asanyarray(entry)
+    descr = npy.dtype_to_descr(array.dtype)
+    header = {"shape": array.shape, "fortran_order": False, "descr": descr}
+    return Member(name, header, iter(entry.blocks() if spread else [array]))
+
+
+def _write(file: IO[bytes], members: list[Member]) -> None:
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED, allowZip64=True) as archive:
+        for name, header, blocks in members:
+            with archive.open(name + SUFFIX, "w", force_zip64=True) as member:
+                npy.write_array_header_1_0(member, header)
+                for rows in blocks:
+                    member.write(np.ascontiguousarray(rows).reshape(-1).view(np.uint8).data)
+
+
+def load(path: str | Path, large: float = math.inf) -> dict[str, NDArray[Any]]:
+    """The arrays of a file; those of so many bytes stay there, as maps that read what is asked for.
+
+    Every byte is checked first. Raises what zipfile, zlib and numpy do for a damaged file.
+    """
+    with zipfile.ZipFile(path) as archive:
+        for member in archive.infolist():
+            with archive.open(member) as stream:
+                while stream.read(READ):
+                    pass
+        return {
+            member.filename.removesuffix(SUFFIX): _array(path, archive, member, large)
+            for member in archive.infolist()
+        }
+
+
+def one(path: str | Path, name: str) -> NDArray[Any]:
+    """One array of a file, checked. Raises what zipfile, zlib and numpy do for a damaged file."""
+    with zipfile.ZipFile(path) as archive, archive.open(name + SUFFIX) as stream:
+        return np.asarray(npy.read_array(stream, allow_pickle=False))
+
+
+def _array(
+    path: str | Path, archive: zipfile.ZipFile, member: zipfile.ZipInfo, large: float
+) -> NDArray[Any]:
+    with archive.open(member) as stream:
+        if member.file_size < large or member.compress_type != zipfile.ZIP_STORED:
+            return np.asarray(npy.read_array(stream, allow_pickle=False))
+        shape, fortran, dtype = HEADERS[npy.read_magic(stream)](stream)
+        header = stream.tell()
+    if dtype.hasobject or math.prod(shape) * dtype.itemsize != member.file_size - header:
+        raise ValueError("not an array of numbers")
+    with open(path, "rb") as file:
+        file.seek(member.header_offset + 26)
+        name, extra = (int.from_bytes(file.read(2), "little") for _ in range(2))
+    start = member.header_offset + 30 + name + extra + header
+    return np.memmap(path, dtype, "r", start, shape, "F" if fortran else "C")
