@@ -73,7 +73,7 @@ def _member(name: str, entry: Any) -> Member:
 def _write(file: IO[bytes], members: list[Member]) -> None:
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED, allowZip64=True) as archive:
         for name, header, blocks in members:
-            with archive.open(name + SUFFIX, "w", force_zip64=True) as member:
+            with archive.open(name + SUFFIX, mode="w", force_zip64=True) as member:
                 npy.write_array_header_1_0(member, header)
                 for rows in blocks:
                     member.write(np.ascontiguousarray(rows).reshape(-1).view(np.uint8).data)

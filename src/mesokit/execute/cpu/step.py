@@ -34,16 +34,12 @@ def step(team, now, physics, fluid, beads, walls):
     fill_walls(team, now, physics, fluid, walls)  # virtual particles at t + dt
     meet(team)
     lap(team, SWEEP)
-    give_sums(
-        team, now, physics, fluid, beads
-    )  # of cells that are others', and theirs of cells here
+    give_sums(team, now, physics, fluid, beads)  # ranks: of cells of others
     follow_flow(team, now, physics, fluid, walls)  # what they will need to know of the fluid
     top_up_walls(team, now, physics, fluid, walls)  # those that depend on the fluid's number
     fill_field(team, physics, fluid)  # what cells must know of those next to them
     join_beads(team, now, physics, fluid, beads)  # cells with solutes: sums of both
-    answer_others(
-        team, now, physics, fluid, beads, walls
-    )  # first, for whoever has particles in them
+    answer_others(team, now, physics, fluid, beads, walls)  # ranks: who have particles here
     collide(team, now, physics, fluid)  # thermostat and rule at t + dt: coefficients of each cell
     answer_beads(team, now, physics, fluid, beads)
     take_answers(team, now, physics, fluid, walls)

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from mesokit.method.mpcd.molecule import Molecule
     from mesokit.potential import Bond, Pair
 
-STRIPS = 2**10  # that a thread adds up at once: sums of more could overflow
 Moments = tuple[Floats, Floats, Floats, Floats]
 AT_ONCE = 2**10  # strips of a thread: sums of the terms of more particles may overflow
 

@@ -1,0 +1,113 @@
+"""The same steps on one process and on all ranks of mpiexec; says which arrays differ.
+
+mpiexec -n 3 python -m mpi4py same_bits.py channel 2
+"""
+
+import sys
+
+import numpy as np
+from mpi4py import MPI
+
+from mesokit import (
+    FENE,
+    WCA,
+    Box,
+    Case,
+    Disk,
+    Fluid,
+    Harmonic,
+    MaxwellBoltzmann,
+    Molecule,
+    Plates,
+    Polymer,
+    Run,
+    Solutes,
+    Uniform,
+)
+from mesokit.execute.cpu.engine import CPU
+from mesokit.execute.ranks.blocks.tree import divided
+from mesokit.execute.ranks.engine import Ranks
+from mesokit.method.mpcd.start.fluid import start
+
+COMM = MPI.COMM_WORLD
+RUN, HELD = Run(steps=100), MaxwellBoltzmann()
+POLYMERS = (Polymer(number=6, length=6), Polymer(number=4, length=1))
+CASES = {
+    "channel": Case(
+        run=RUN,
+        box=Box([40, 20]),
+        fluid=Fluid(density=5, force=Uniform([0.01, 0]), thermostat=HELD),
+        walls=[
+            Plates("y"),
+            Disk(centre=[10.3, 9.7], radius=4),
+            Disk(centre=[30, 4], radius=3),
+        ],
+        solutes=Solutes(polymers=POLYMERS, bond=FENE(), pair=WCA(), mass=5.0),
+    ),
+    "sheared dimers": Case(
+        run=RUN,
+        box=Box([24, 20], shear_rate=0.05),
+        fluid=Fluid(density=5, thermostat=HELD, molecule=Molecule(length=2, bond=Harmonic(K=1.0))),
+    ),
+    "long flights": Case(
+        run=RUN,
+        box=Box([12, 10, 14]),
+        fluid=Fluid(density=5, timestep=1.0, thermostat=HELD),
+    ),
+}
+MEASURES = ("stress", "walls")
+
+
+def course(engine, case, moves):
+    """What is read on the way, borders moving every tenth step."""
+    found = {}
+    for k in range(3):
+        engine.advance(10)
+        if moves:
+            engine.live_in(anywhere(engine, k))
+    engine.advance(2, True)
+    found |= {f"stress {name}": part for name, part in engine.stress.items()}
+    found["totals"] = np.concatenate([np.atleast_1d(part) for part in engine.totals()])
+    for name, part in zip(
+        ("number", "mass", "momentum", "energy"), engine.moments((0,), (6,)), strict=True
+    ):
+        found[name] = part
+    found["modes"] = np.concatenate(
+        [part.ravel() for part in engine.modes(np.eye(2, engine.dimension))]
+    )
+    some = np.array([5, 3, engine.n - 1])
+    found["velocities"], found["places"] = engine.velocities(some), engine.positions(some, True)
+    if case.walls:
+        found["taken"] = engine.wall_impulse
+    if case.solutes or case.fluid.molecule:
+        found["potential energy"] = np.array(engine.potential_energy())
+    engine.advance(15)
+    return found | {f"state {name}": np.asarray(array) for name, array in engine.state().items()}
+
+
+def anywhere(engine, k):
+    """A tree whose planes lie anywhere."""
+    random = np.random.default_rng(k)
+    weights = tuple(random.random(engine.dimension))
+
+    def work(asked):
+        return [random.random(block.lengths[axis]) ** 3 for block, axis in asked]
+
+    return divided(engine.numbers.cells, COMM.size, weights, work)
+
+
+def main(name, threads):
+    """Compare; rank 0 says what it finds."""
+    case = CASES[name]
+    some = Ranks(case, threads, MEASURES, COMM)
+    start(some)
+    there = course(some, case, moves=True)
+    if COMM.rank == 0:
+        one = CPU(case, 1, MEASURES)
+        start(one)
+        here = course(one, case, moves=False)
+        print(*sorted(key for key in here if not np.array_equal(here[key], there[key])))
+        print("compared", len(here))
+
+
+main(sys.argv[1], int(sys.argv[2]))
