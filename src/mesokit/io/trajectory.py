@@ -34,6 +34,7 @@ class TrajectoryWriter:
     that may be written. Call `record` where a frame is due, `flush`
     before every checkpoint, `resume` before going on from one.
 
+    Ranks that only answer what is asked of all do not keep what they are told (`keeps`).
     Of `spheres` it also keeps what each has of its own (`own`): masses and diameters (n,).
     """
 
@@ -44,10 +45,11 @@ class TrajectoryWriter:
         particles: int,
         first: int = 0,
         spheres: bool = False,
+        keeps: bool = True,
     ) -> None:
         self.trajectory, self.folder = trajectory, Path(folder)
         self.ids = first + np.arange(min(trajectory.subset or particles, particles))
-        self.spheres = spheres
+        self.spheres, self.keeps = spheres, keeps
         self._own: Frame = {}
         self._frames: list[Frame] = []
         self._bytes = 0
@@ -107,6 +109,8 @@ class TrajectoryWriter:
         return self.folder.with_name(f".{self.folder.name}.coming")
 
     def _add(self, frame: Frame) -> None:
+        if not self.keeps:
+            return
         self._frames.append(frame)
         self._bytes += sum(array.nbytes for array in frame.values())
         if self._bytes >= LARGEST:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -225,6 +225,10 @@ class CPU:
         names = {"sweep": SWEEP, "cells": CELLS, "finish": FINISH}
         seconds = {name: TICK * float(self.threads.clock[3 + k]) for name, k in names.items()}
         return seconds | {"sort": self.sort_seconds}
+
+    def balance(self) -> dict[str, Any]:
+        """How the work was shared anew while it ran."""
+        return {}
 
     # --- what observables ask -------------------------------------------------------------------
 
