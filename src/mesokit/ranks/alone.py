@@ -72,4 +72,4 @@ class Alone:
         say("")
 
     def ended(self, status: int) -> None:
-        """This process ends in order."""
+        """This process has nothing more to do, and ends in order."""

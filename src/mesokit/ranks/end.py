@@ -62,9 +62,7 @@ def watch(here: Any) -> None:
 
         status = getattr(value, "status", 130) if issubclass(kind, KeyboardInterrupt) else 1
         here.leave(say, status)
-        here.ended(status)
-        if issubclass(kind, KeyboardInterrupt):  # Python would send itself the signal again
-            leave_orderly(status)
+        here.ended(status)  # after Ctrl-C Python would send itself the signal again
 
     sys.excepthook = hook
 

@@ -28,7 +28,8 @@ NOISE = re.compile(
     r"|^\[(proxy|mpiexec)[:@]|^Primary job  ?terminated|^-{60,}$|^(mpirun|mpiexec|prterun) noticed"
     r"|^a non-zero exit code|^Per user-direction"
 )
-DIED = re.compile(r"^=   PID (\d+) |process rank (\d+) with PID .* exited on signal")
+DIED = re.compile(r"=   PID (?P<process>\d+) |process rank (?P<rank>\d+) with PID")
+SIGNAL = re.compile(r"EXIT STRING: .*\(signal (\d+)\)|exited on signal (\d+)")
 CURSOR = "\x1b[?25h\n"  # shown again, where a bar has been cut off
 
 
@@ -71,7 +72,7 @@ def start(ranks: int, arguments: Sequence[str]) -> End:
             asked.append(by)
 
         with catching(stop):
-            died = _pass_on(process)
+            said = _pass_on(process)
             status = process.wait()
         ended = parent.number(folder / "ended")
         if ended is not None:
@@ -80,7 +81,7 @@ def start(ranks: int, arguments: Sequence[str]) -> End:
             print(CURSOR, end="", file=sys.stderr)
         if asked:
             return End(128 + asked[0], f"stopped by {asked[0].name}")
-        return End(status if 0 < status < 256 else 1, _reason(folder, died, status))
+        return _what_is_known(folder, said, status)
 
 
 def find() -> str:
@@ -105,35 +106,34 @@ def _terminal(stream: TextIO) -> dict[str, str]:
     return {parent.TERMINAL: ttyname(stream.fileno())}
 
 
-def _pass_on(process: subprocess.Popen[str]) -> list[re.Match[str]]:
-    """Say what ranks say; of what the launcher says, keep who has died."""
-    died: list[re.Match[str]] = []
+def _pass_on(process: subprocess.Popen[str]) -> list[str]:
+    """Say what ranks say; what the launcher says of how they ended is not said."""
+    kept: list[str] = []
 
     def say(lines: IO[str], stream: TextIO) -> None:
         for line in lines:
-            if found := DIED.search(line):
-                died.append(found)
-            elif line.strip() and not NOISE.search(line):
-                with contextlib.suppress(OSError):  # nobody is there to read it
-                    stream.write(line)
-                    stream.flush()
+            if NOISE.search(line) or not line.strip():
+                kept.append(line)
+                continue
+            with contextlib.suppress(OSError):  # nobody is there to read it
+                stream.write(line)
+                stream.flush()
 
     assert process.stdout is not None and process.stderr is not None
     other = threading.Thread(target=say, args=(process.stdout, sys.stdout))
     other.start()
     say(process.stderr, sys.stderr)
     other.join()
-    return died
+    return kept
 
 
-def _reason(folder: Path, died: list[re.Match[str]], status: int) -> str:
-    """Which rank has ended, and how."""
-    rank = None
-    if died:
-        process, number = died[0].groups()
-        rank = int(number) if number else parent.rank_of(folder, int(process))
-    who = "a rank" if rank is None else f"rank {rank}"
-    by = status - 128 if status > 128 else status
-    with contextlib.suppress(ValueError):
-        return f"{who} ended by {signal.Signals(by).name}"
-    return f"{who} ended with status {status}"
+def _what_is_known(folder: Path, said: list[str], status: int) -> End:
+    """Which rank has ended, and how, by what the launcher said."""
+    text, who = "".join(said), "a rank"
+    if found := DIED.search(text):
+        rank = found["rank"] or parent.rank_of(folder, int(found["process"]))
+        who = "a rank" if rank is None else f"rank {rank}"
+    if found := SIGNAL.search(text):
+        by = signal.Signals(int(found[1] or found[2]))
+        return End(128 + by, f"{who} ended by {by.name}")
+    return End(status if 0 < status < 256 else 1, f"{who} ended with status {status}")
