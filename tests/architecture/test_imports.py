@@ -100,7 +100,7 @@ ROWS = {
     "report/flow/moving_plates.py": ("case", "report", "spheres.wall"),
     "report/flow/shaded.py": ("report", "scalar.cache"),
     "study/": (
-        "case", "errors", "io", "method.protocol", "observe.shared", "report", "running",
+        "case", "errors", "io", "method.protocol", "observe.shared", "ranks", "report", "running",
         "simulation", "statistics", "study",
     ),
     "cli/": (

@@ -1,5 +1,6 @@
 """Whatever ends a rank ends all of them soon, with one message; the last checkpoint is whole."""
 
+import contextlib
 import os
 import random
 import re
@@ -8,7 +9,7 @@ import sys
 import time
 
 import pytest
-from rank_runs import same_files
+from rank_runs import MESOKIT, SOURCE, same_files
 
 import mesokit as mk
 from mesokit.io import checkpoint
@@ -176,3 +177,24 @@ def test_ctrl_c_in_a_script(folder, mpiexec):
     os.kill(begun(ranks, folder)[1], signal.SIGINT)
     assert ended_within(ranks, SOON) == 130
     assert ranks.err.count("Stopped: stopped at step") == 1
+
+
+def test_the_bar_is_drawn_on_our_terminal(folder):
+    """And Ctrl-C there is a signal to the run."""
+    import pty
+
+    process, terminal = pty.fork()
+    if process == 0:
+        os.chdir(folder)
+        os.environ |= {"PYTHONPATH": str(SOURCE), "TERM": "xterm"}
+        words = ["run", "endless.toml", "--output", "out", "--ranks", "2"]
+        os.execv(MESOKIT[0], [*MESOKIT, *words])
+    seen = b""
+    with contextlib.suppress(OSError):  # of a terminal that is closed
+        while piece := os.read(terminal, 4096):
+            seen += piece
+            if b"left" in seen and b"^C" not in seen:
+                os.write(terminal, b"\x03")
+    assert os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]) == 130
+    assert b"particle-steps/s" in seen and "━".encode() in seen
+    assert b"by SIGINT; go on with: mesokit resume out --ranks 2" in seen

@@ -78,6 +78,15 @@ def test_a_study(folder):
     assert said == "mesokit: error: --seeds: not on 2 ranks; expected one process"
 
 
+def test_a_study_of_a_script(folder):
+    (folder / "script.py").write_text(
+        "from mesokit import Study\nStudy('case.toml', None, 2, output='study').run()\n"
+    )
+    ranks = Ranks([MPIEXEC, "-n", "2", sys.executable, "script.py"], folder)
+    assert ranks.end() == 1
+    assert ranks.err.count("CaseError: Study.run: not on 2 ranks; expected one process") == 1
+
+
 def test_ranks_of_ranks(folder):
     said = refusal(start(folder, "run", "case.toml", "--ranks", "2"))
     assert said == "mesokit: error: --ranks: this is one of the ranks of an mpiexec; leave it out"
