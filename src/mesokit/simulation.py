@@ -22,14 +22,18 @@ from mesokit.io.one_writer import alone
 from mesokit.io.run_directory import RunDirectory, provenance
 from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.method.protocol import method_of
+from mesokit.ranks.order import Coming, Order
+from mesokit.ranks.world import world
 from mesokit.report.document.progress import reporter_for
 from mesokit.report.progress import Reporter
 from mesokit.running import record
 from mesokit.running.callbacks import Callback, Callbacks
 from mesokit.running.compiling import telling
-from mesokit.running.given import case_and_arrays, next_chunk, threads_of
+from mesokit.running.given import case_and_arrays, threads_of, told
 from mesokit.running.log import RunLog
 from mesokit.running.longer import longer, require_steps
+from mesokit.running.on_ranks import require_ranks, shared_work
+from mesokit.running.pace import Pace
 from mesokit.running.replicas import Replicas
 from mesokit.running.results import write_results
 from mesokit.running.schedule import Leg, Schedule
@@ -39,6 +43,22 @@ from mesokit.running.until import Goal, limit_of, next_length
 
 if TYPE_CHECKING:
     from mesokit.observe.shared.result import Result
+
+
+def _existing(output: str | Path, held: contextlib.ExitStack) -> RunDirectory:
+    """A run that can go on, and in whose folder nobody else writes as long as that is held."""
+    directory = RunDirectory.existing(output)
+    held.enter_context(alone(directory))
+    if not directory.checkpoint_file.exists() and "merged" in record.earlier(directory):
+        raise RunError(
+            f"{directory.path}: holds merged runs; go on with those and merge them again"
+        )
+    if directory.data_file.exists() and not directory.checkpoint_file.exists():
+        raise CheckpointError(
+            f"{directory.checkpoint_file}: no such checkpoint, though the run had come to "
+            f"{directory.data_file.name}; to run it anew: {directory.again}"
+        )
+    return directory
 
 
 class Simulation(Seen):
@@ -84,9 +104,11 @@ class Simulation(Seen):
         callbacks: Sequence[Callback] = (),
         **parts: Any,
     ) -> None:
+        self.ranks = world()
         self.callbacks = Callbacks(callbacks)
         self.case, arrays = case_and_arrays(case, parts)
-        self.threads = threads_of(threads)
+        self.threads = threads_of(threads, self.ranks)
+        self.ranks.require_same(lambda: told(self.case, self.callbacks, arrays))
         with blaming(self.case):
             self._build()
             self.replicas.start(arrays)
@@ -98,10 +120,11 @@ class Simulation(Seen):
 
     def write_to(self, output: str | Path) -> None:
         """Write to this new folder from now on. Raises RunError if it holds something already."""
-        directory = RunDirectory.create(output, self.case)
+        directory = self.ranks.on_root(lambda: RunDirectory.create(output, self.case))
         self.case = Case.from_toml(directory.case_file)  # what `resume` will read
         self._attach(directory)
-        directory.write_provenance(provenance(self.case, self.threads))
+        origin = provenance(self.case, self.threads, self.ranks.size)
+        self.ranks.on_root(lambda: directory.write_provenance(origin))
 
     @classmethod
     def resume(
@@ -121,8 +144,9 @@ class Simulation(Seen):
         Raises RunError, CheckpointError if there is none, it is damaged, or another process is
         writing there. A damaged record of where the run comes from is a warning, and begun anew.
         """
-        directory = RunDirectory.existing(output)
-        with alone(directory):
+        here = world()
+        with here.quietly(), contextlib.ExitStack() as held:
+            directory = here.on_root(lambda: _existing(output, held))
             return cls._resumed(directory, threads, steps, callbacks)
 
     @classmethod
@@ -133,40 +157,42 @@ class Simulation(Seen):
         steps: int | None,
         callbacks: Sequence[Callback],
     ) -> Simulation:
-        if not directory.checkpoint_file.exists() and "merged" in record.earlier(directory):
-            raise RunError(
-                f"{directory.path}: holds merged runs; go on with those and merge them again"
-            )
-        if directory.data_file.exists() and not directory.checkpoint_file.exists():
-            raise CheckpointError(
-                f"{directory.checkpoint_file}: no such checkpoint, though the run had come to "
-                f"{directory.data_file.name}; to run it anew: {directory.again}"
-            )
         self = cls.__new__(cls)
+        self.ranks = world()
         self.case = Case.from_toml(directory.case_file)
-        self.threads = threads_of(threads)
+        self.threads = threads_of(threads, self.ranks)
         self.callbacks = Callbacks(callbacks)
+        given = {"steps": str(steps)}
+        self.ranks.require_same(lambda: told(self.case, self.callbacks, {}) | given)
         self._build()
         self._attach(directory)
-        if directory.checkpoint_file.exists():
-            meta = take_up(directory, self.case, self.replicas.parts())
+        if self.ranks.on_root(directory.checkpoint_file.exists):
+            meta = take_up(directory, self.case, self.replicas.parts(), self.ranks.comm)
             self._looked = bool(meta["looked"])
         else:
             self.replicas.start({})
-        if self.writer is not None:
-            require_frames(directory, self.case, self.step if self._looked else NONE_YET)
-            self.writer.resume(self.step)
+        self.ranks.on_root(self._resume_frames)
         if steps is not None:
             self.lengthen(steps)
         if self.step < self.last_step:  # the case may have been made longer by hand
-            self._take_back()
+            self.ranks.on_root(self._take_back)
         self.callbacks.resume(self.step)
-        self.log.resume(self.step)
+        self.ranks.on_root(lambda: self.log.resume(self.step))
         begun = self._looked or self.step > 0
-        record.note_resumed(directory, self.case, self.threads, begun)
+        own = self.threads, self.ranks.size, begun
+        self.ranks.on_root(lambda: record.note_resumed(directory, self.case, *own))
         return self
 
+    def _resume_frames(self) -> None:
+        """Those that came after the checkpoint are forgotten."""
+        if self.writer is not None:
+            assert self.directory is not None
+            seen = self.step if self._looked else NONE_YET
+            require_frames(self.directory, self.case, seen)
+            self.writer.resume(self.step)
+
     def _build(self) -> None:
+        require_ranks(self.case, self.ranks.size)
         self.replicas = Replicas(self.case, self.threads)
         self.engine = self.replicas.first.engine
         self.accumulators = self.replicas.first.accumulators
@@ -175,17 +201,20 @@ class Simulation(Seen):
         self.writer: TrajectoryWriter | None = None
         self.schedule = Schedule(self.case)
         self._looked = False  # whether the state that the run begins with has been sampled
-        self._stopped_by: signal.Signals | None = None
+        self._asked_by: signal.Signals | None = None  # a signal that came to this rank
+        self._stopped_by: signal.Signals | None = None  # one that all ranks have stopped by
         self._compiling = False
 
     def _attach(self, directory: RunDirectory) -> None:
         self.directory = directory
-        self.log.write_to(directory.log_file)
+        if self.ranks.root:
+            self.log.write_to(directory.log_file)
         if self.case.trajectory is not None:
             folder = directory.trajectory_folder
             number, first = written(self.case.trajectory, self.case.groups)
             spheres = method_of(self.case).spheres
-            self.writer = TrajectoryWriter(self.case.trajectory, folder, number, first, spheres)
+            kept = spheres, self.ranks.root
+            self.writer = TrajectoryWriter(self.case.trajectory, folder, number, first, *kept)
 
     @property
     def step(self) -> int:
@@ -234,8 +263,11 @@ class Simulation(Seen):
         Ctrl-C, SIGTERM, SIGHUP or SIGUSR1 raises KeyboardInterrupt after the steps in hand, with a
         checkpoint where there is a folder; `resume`, or `run` again in the same process, goes on.
         """
-        with alone(self.directory):
-            self._carry_on(steps, until, reporter_for(progress))
+        self.ranks.require_same(lambda: {"steps": str(steps), "until": str(until)})
+        with self.ranks.quietly(), contextlib.ExitStack() as held:
+            self.ranks.on_root(lambda: held.enter_context(alone(self.directory)))
+            silent = Reporter(quiet=True)
+            self._carry_on(steps, until, reporter_for(progress) if self.ranks.root else silent)
 
     def _carry_on(self, steps: int | None, until: str | None, progress: Reporter) -> None:
         goal = None if until is None else Goal.parse(until, self.case)
@@ -251,7 +283,8 @@ class Simulation(Seen):
         self.log.tell = progress.tell
         if self.step < last or not self._looked:
             self._tell_start(progress, last)
-        self._stopped_by = None
+        self._stopped_by = self._asked_by = None
+        self.ranks.begin()
         try:
             with blaming(self.case), catching(self._stop):
                 if self.step < last:
@@ -263,7 +296,8 @@ class Simulation(Seen):
                 if self.step == self.last_step:
                     self._end()
         except Exception as error:
-            record.note_failed(self.directory, str(error) or repr(error))
+            if self.ranks.root:
+                record.note_failed(self.directory, str(error) or repr(error))
             raise
         finally:
             progress.finish()
@@ -273,7 +307,7 @@ class Simulation(Seen):
     def _reach(self, goal: Goal, limit: int, progress: Reporter) -> None:
         """Go on until the goal is reached, or so many steps after the warm-up are done."""
         every = next(o.every for o in self.case.observe if o.label == goal.observable)
-        while self.step == self.last_step and not self._stopping:
+        while self.step == self.last_step and not self._asked():
             excess, done = goal.excess(self[goal.observable]), self.case.run.steps
             said = f"{goal.said(self[goal.observable])} after {done} steps"
             if excess <= 1:
@@ -306,8 +340,11 @@ class Simulation(Seen):
             return
         self.case = longer(self.case, steps, self.step)
         self.schedule = Schedule(self.case)
-        if self.directory is None:
-            return
+        if self.directory is not None:
+            self.ranks.on_root(self._write_longer)
+
+    def _write_longer(self) -> None:
+        assert self.directory is not None
         self._take_back()
         self.directory.write_case(self.case)
         record.note_longer(self.directory, self.case, self.step)
@@ -333,10 +370,14 @@ class Simulation(Seen):
         return Stopped(by, f"stopped at step {self.step}{doing} by {by.name}")
 
     def _compile(self, progress: Reporter) -> None:
-        """Load or compile the kernels; say so if it takes long. A signal ends it at once."""
+        """Load or compile the kernels; say so if it takes long. A signal ends it at once.
+
+        Rank 0 does so first, and the others find what it has kept.
+        """
         self._compiling = True
         try:
             with telling(progress.compiling):
+                self.ranks.on_root(lambda: self.engine.advance(0))
                 self.engine.advance(0)
         finally:
             self._compiling = False
@@ -344,24 +385,54 @@ class Simulation(Seen):
             note_run(self.case)
 
     def _loop(self, progress: Reporter, last: int) -> None:
-        chunk, saved = 1, perf_counter()
         if self.step == self.case.run.warmup and not self._looked:
             self._go([self.schedule.leg(0, self.step)])
         self.callbacks.stopped = None
-        self.callbacks.call(self)
+        self._call_back()
+        pace = Pace(self.case.run)
+        coming = self._ahead(pace, self.step, last)
         while self.step < last and not self._stopping:
-            began, step = perf_counter(), self.step
-            stops = self.schedule.next_meeting(step), *self.callbacks.next_stops(step)
-            target = min(step + chunk, last, *stops)
-            self._go(self.schedule.legs(step, target))
-            chunk = next_chunk(target - step, perf_counter() - began)
-            self.callbacks.call(self)
-            if self._checkpoint_due(perf_counter() - saved):
+            order, began, step = coming(), perf_counter(), self.step
+            if order.stop:
+                self._stopped_by = signal.Signals(order.stop)
+                break
+            coming = self._ahead(pace, order.target, last)
+            self._go(self.schedule.legs(step, order.target))
+            pace.went(self.step - step, perf_counter() - began)
+            self._call_back()
+            if self._checkpoint_due(order):
                 self.checkpoint()
-                saved = perf_counter()
+                pace.kept()
             progress.update(self.step)
+        else:
+            coming()
         if self.step < self.last_step and self.directory is not None:
             self.checkpoint()
+
+    def _ahead(self, pace: Pace, step: int, last: int) -> Coming:
+        """What is to be done from a step on."""
+
+        def decide(stop: int) -> Order:
+            stops = self.schedule.next_meeting(step), *self.callbacks.next_stops(step)
+            return Order(min(step + pace.chunk, last, *stops), pace.save(), stop)
+
+        return self.ranks.ahead(decide, self._signal)
+
+    def _call_back(self) -> None:
+        """Let callbacks look, if one is due; whether they stop the run is said by rank 0."""
+        if self.callbacks.due(self.step):
+            self.callbacks.stopped = self.ranks.by_root(lambda: self.callbacks.call(self))
+
+    def _signal(self) -> int:
+        """The number of the signal that has come to this rank, or 0."""
+        return self._asked_by or 0
+
+    def _asked(self) -> bool:
+        """Whether a signal or a callback has asked to end the run, by what rank 0 knows."""
+        heard = self.ranks.heard(self._signal())
+        by = self.ranks.on_root(lambda: heard)
+        self._stopped_by = signal.Signals(by) if by else None
+        return self._stopping
 
     @property
     def _stopping(self) -> bool:
@@ -380,7 +451,9 @@ class Simulation(Seen):
         if self.directory is None:
             return
         self.checkpoint()
-        write_results(self.directory, self.case, self.results, self.timings, self.writer)
+        spent = {"timings": self.timings, "shared_work": shared_work(self.ranks, self.engine)}
+        what = self.directory, self.case, self.results, spent, self.writer
+        self.ranks.on_root(lambda: write_results(*what))
 
     @property
     def timings(self) -> dict[str, float]:
@@ -394,21 +467,27 @@ class Simulation(Seen):
         """Write a checkpoint now. Raises RunError if there is no folder or it cannot be written."""
         if self.directory is None:
             raise RunError("no checkpoint without an output folder")
+        self.ranks.by_root(self._keep)
+
+    def _keep(self) -> None:
+        """What came before a checkpoint is as safe as the checkpoint."""
+        assert self.directory is not None
         if self.writer is not None:
             self.writer.flush()
         self.log.sync()
         meta = {"step": self.step, "looked": self._looked}
-        keep(self.directory, self.case, meta, self.replicas.state())
+        keep(self.directory, self.case, meta, self.replicas.state(), self.ranks.root)
 
-    def _checkpoint_due(self, seconds: float) -> bool:
+    def _checkpoint_due(self, order: Order) -> bool:
         if self.directory is None or self._stopping:
             return False
-        return self.schedule.checkpoint_due(self.step, seconds)
+        return order.save or self.schedule.checkpoint_due(self.step)
 
     def _stop(self, by: signal.Signals) -> None:
         """A signal ends the loop after the steps in hand; a second one stops at once."""
-        if self._stopped_by is not None:
+        if self._asked_by is not None:
             raise Stopped(by)
-        self._stopped_by = by
+        self._asked_by = by
         if self._compiling:
+            self._stopped_by = by
             raise self._stopped

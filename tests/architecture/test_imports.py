@@ -30,13 +30,16 @@ ROWS = {
     "errors.py": (),
     "engine.py": (),
     "simulation.py": (
-        "case", "errors", "io", "=method", "method.protocol", "observe.shared", "report",
+        "case", "errors", "io", "=method", "method.protocol", "observe.shared", "ranks", "report",
         "running",
     ),
+    "ranks/": ("errors", "ranks"),
+    "ranks/mpiexec.py": ("errors", "ranks", "running.signals"),
     "running/cores.py": (),
     "running/signals.py": (),
     "running/": (
-        "case", "errors", "io", "=method", "method.protocol", "observe.shared", "report", "running",
+        "case", "errors", "io", "=method", "method.protocol", "observe.shared", "ranks", "report",
+        "running",
     ),
     "scalar/": ("scalar",),
     "theory/": ("theory",),
@@ -59,7 +62,9 @@ ROWS = {
     "method/mpcd/summary.py": (*MPCD, "method.protocol"),
     "method/mpcd/start/": START,
     "method/mpcd/start/first_state.py": (*MPCD, "execute", "io"),
-    "method/mpcd/method.py": (*MPCD, "engine", "execute", "io", "method.protocol", "observe"),
+    "method/mpcd/method.py": (
+        *MPCD, "engine", "execute", "io", "method.protocol", "observe", "ranks",
+    ),
     "method/event_driven/": (
         "case", "engine", "errors", "geometry", "method.event_driven", "method.protocol",
         "observe", "scalar", "spheres", "statistics", "theory",
@@ -95,11 +100,11 @@ ROWS = {
     "report/flow/moving_plates.py": ("case", "report", "spheres.wall"),
     "report/flow/shaded.py": ("report", "scalar.cache"),
     "study/": (
-        "case", "errors", "io", "method.protocol", "observe.shared", "report", "running",
+        "case", "errors", "io", "method.protocol", "observe.shared", "ranks", "report", "running",
         "simulation", "statistics", "study",
     ),
     "cli/": (
-        "case", "cli", "errors", "io", "=method", "method.protocol", "report", "running",
+        "case", "cli", "errors", "io", "=method", "method.protocol", "ranks", "report", "running",
         "simulation", "study",
     ),
     "cli/theory.py": ("case", "cli", "errors", "method.mpcd.fluid", "report", "theory"),

@@ -14,6 +14,7 @@ import click
 
 from mesokit import __version__
 from mesokit.cli.completion import keys
+from mesokit.cli.together import take_part
 from mesokit.errors import CaseError, RunError
 
 if TYPE_CHECKING:
@@ -33,11 +34,13 @@ if TYPE_CHECKING:
     metavar="MODULE",
     help="A Python module, of this folder or installed, with parts of one's own. May be repeated.",
 )
-def cli(modules: Sequence[str]) -> None:
+@click.pass_context
+def cli(context: click.Context, modules: Sequence[str]) -> None:
     """Mesoscale particle simulation, from a case file to a figure with the theory on it.
 
     Start with: mesokit new poiseuille, then mesokit run poiseuille.toml
     """
+    take_part(context.invoked_subcommand)
     for module in modules:
         sys.path[:0] = [os.getcwd()] if os.getcwd() not in sys.path else []
         try:

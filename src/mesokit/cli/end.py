@@ -20,16 +20,28 @@ from mesokit.cli import (  # noqa: F401  they register their commands
 from mesokit.cli.commands import cli
 from mesokit.cli.words import reason, say
 from mesokit.errors import MesokitError, RunError
+from mesokit.ranks.world import known, world
 
 
 def status_of(arguments: Sequence[str] | None) -> int:
     """Run a command and say what went wrong; the exit status."""
     try:
-        status = cli.main(arguments, prog_name="mesokit", standalone_mode=False)
+        status = _carried_out(sys.argv[1:] if arguments is None else list(arguments))
+    except SystemExit as end:
+        status = end.code if isinstance(end.code, int) else 0
+    known().ended(status)
+    return status
+
+
+def _carried_out(arguments: list[str]) -> int:
+    try:
+        status = cli.main(arguments, prog_name="mesokit", standalone_mode=False, obj=arguments)
         return status if isinstance(status, int) else 0
     except click.exceptions.Abort as abort:
         stop = abort.__cause__
-        raise stop if isinstance(stop, KeyboardInterrupt) else KeyboardInterrupt from None
+        return _interrupted(stop if isinstance(stop, KeyboardInterrupt) else KeyboardInterrupt())
+    except KeyboardInterrupt as stop:
+        return _interrupted(stop)
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message())
         return 2
@@ -55,5 +67,12 @@ def status_of(arguments: Sequence[str] | None) -> int:
 
 
 def _failed(message: str, status: int) -> int:
-    say(f"mesokit: error: {' '.join(message.split())}")
+    text = " ".join(message.split())
+    world().leave(lambda rank: say(f"mesokit: error: {rank}{text}"), status)
+    return status
+
+
+def _interrupted(stop: KeyboardInterrupt) -> int:
+    status: int = getattr(stop, "status", 130)
+    world().leave(lambda rank: say(f"mesokit: {rank}interrupted"), status)
     return status

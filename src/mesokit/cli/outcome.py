@@ -11,6 +11,8 @@ import click
 
 from mesokit.cli.words import reason, say
 from mesokit.errors import RunError
+from mesokit.io.shared_work import work_words
+from mesokit.ranks.world import world
 from mesokit.running.signals import Stopped
 
 
@@ -35,7 +37,9 @@ def stopping(again: str) -> Iterator[None]:
     except Stopped as stop:
         if not str(stop):  # stopped so hard that nothing is known
             raise
-        say(f"mesokit: {stop}; go on with: {again}")
+        here, text = world(), str(stop)
+        command = here.again(again)
+        here.leave(lambda rank: say(f"mesokit: {rank}{text}; go on with: {command}"), stop.status)
         raise SystemExit(stop.status) from None
     except OSError as error:
         raise RunError(reason(error)) from None
@@ -46,6 +50,8 @@ def show_results(output: Path) -> None:
     import mesokit
 
     done = mesokit.open(output)
+    for line in work_words(done.provenance):
+        click.echo(line)
     for result in done.results.values():
         for comparison in result.comparisons:
             click.echo(f"{result.name}: {comparison}")

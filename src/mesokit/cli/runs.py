@@ -21,8 +21,10 @@ from mesokit.cli.commands import (
     require_run,
 )
 from mesokit.cli.outcome import show_results, stopping, warnings_said
+from mesokit.cli.together import on_ranks
 from mesokit.cli.words import READING, in_json, patience, say
 from mesokit.errors import CaseError
+from mesokit.ranks.world import world
 
 NOT_REACHED = 3  # exit status of a run that had to end before an error was as small as was asked
 
@@ -36,6 +38,7 @@ NOT_REACHED = 3  # exit status of a run that had to end before an error was as s
 @click.option("--output", type=RUN, help="Folder of the run (the name of CASE unless said).")
 @click.option("--overwrite", is_flag=True, help="Replace an earlier run in that folder.")
 @click.option("--quiet", is_flag=True, help="No progress, no summary; errors only.")
+@on_ranks(lambda given: given["output"] or Path(given["case"].stem))
 def run(
     case: Path,
     settings: dict[str, str],
@@ -55,6 +58,7 @@ def run(
     from mesokit.method.protocol import summary_of
     from mesokit.report.progress import Reporter
 
+    here = world()
     if seed is not None:
         settings = {**settings, "run.seed": str(seed)}
     output = output or Path(case.stem)
@@ -63,11 +67,13 @@ def run(
 
         if overwrite:
             raise CaseError("--overwrite: not with --seeds, whose runs go on where they are")
+        if here.size > 1:
+            raise CaseError(f"--seeds: not on {here.size} ranks; expected one process")
         given = {"settings": settings, "threads": threads, "quiet": quiet}
         return run_seeds(case, seeds, output, given)
     with patience(READING, quiet):
         full = read(case, settings)
-    _claim(output, overwrite)
+    here.on_root(lambda: _claim(output, overwrite))
     if not quiet:
         for warning in summary_of(full, threads).warnings:
             say(f"warning: {warning}")
@@ -75,12 +81,12 @@ def run(
 
     with naming(case):
         simulation = Simulation(full, threads=threads)
-    _clear(output)  # only now: a case that cannot start must not cost an earlier run
+    here.on_root(lambda: _clear(output))  # only now: what cannot start costs no earlier run
     simulation.write_to(output)
     with stopping(f"mesokit resume {output}"):
         simulation.run(progress=Reporter(quiet))
     if not quiet:
-        show_results(output)
+        here.on_root(lambda: show_results(output))
 
 
 @cli.command()
@@ -94,6 +100,7 @@ def run(
 )
 @THREADS
 @click.option("--quiet", is_flag=True, help="No progress, no summary; errors only.")
+@on_ranks(lambda given: given["run"])
 def resume(
     run: Path, steps: int | None, until_error: str | None, threads: int | None, quiet: bool
 ) -> None:
@@ -104,7 +111,8 @@ def resume(
     """
     from mesokit.report.progress import Reporter
 
-    require_run(run)
+    here = world()
+    here.on_root(lambda: require_run(run))
     from mesokit.io.run_directory import RunDirectory
     from mesokit.simulation import Simulation
 
@@ -121,7 +129,7 @@ def resume(
             say(f"{run}: had ended at step {simulation.step}; drawing its figures again")
         simulation.run(limit, until=until_error, progress=Reporter(quiet or ended))
     if not quiet:
-        show_results(run)
+        here.on_root(lambda: show_results(run))
     if until_error and not simulation.reached(until_error):
         raise SystemExit(NOT_REACHED)
 

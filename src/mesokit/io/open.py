@@ -19,6 +19,7 @@ from mesokit.io.frames import require_frames, seen_until
 from mesokit.io.measured import measured
 from mesokit.io.pooled import merge_again, pooled_words
 from mesokit.io.run_directory import RunDirectory
+from mesokit.io.shared_work import work_words
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.method.protocol import method_of
 from mesokit.observe.shared.named import keyed
@@ -332,6 +333,8 @@ class RunFiles(Shown, Mapping[str, "Result"]):
             lines.append(f"  {self.state}")
         elif self.pooled:
             lines.append(f"  {self.pooled}")
+        with contextlib.suppress(RunError):  # results can be read without the record
+            lines += [f"  {line}" for line in work_words(self.provenance)]
         lines += ["  " + repr(result).replace("\n", "\n  ") for result in self.so_far().values()]
         if self.ended and self.trajectory is not None:
             lines.append(f"  {self.trajectory!r}")

@@ -191,13 +191,14 @@ class RunDirectory:
         write_text(self.provenance_file, json.dumps(provenance, indent=2) + "\n")
 
 
-def provenance(case: Case, threads: int) -> dict[str, Any]:
+def provenance(case: Case, threads: int, ranks: int = 1) -> dict[str, Any]:
     """Where the numbers of a run come from, as it starts: case, versions, host, time.
 
     `sources` tells the state of mesokit, `starts_from` that of files and runs it starts from.
     `units` says what a reduced unit is in SI, None if the case does not; `parts` which classes come
     from outside mesokit, and from where.
-    `ended` and `failed` (why) are None and `timings` empty until someone fills them in.
+    `threads` are those of each rank. `ended` and `failed` (why) are None, `timings` (of rank 0) and
+    `shared_work` (how several ranks have shared it) empty until someone fills them in.
     """
     return {
         **recorded_case(case),
@@ -212,6 +213,7 @@ def provenance(case: Case, threads: int) -> dict[str, Any]:
         "processor": _processor(),
         "cores": os.cpu_count(),
         "threads": threads,
+        "ranks": ranks,
         "device": "cpu",
         "command": sys.argv,
         "started": now(),
@@ -219,6 +221,7 @@ def provenance(case: Case, threads: int) -> dict[str, Any]:
         "ended": None,
         "failed": None,
         "timings": {},
+        "shared_work": {},
     }
 
 

@@ -89,15 +89,20 @@ class Callbacks:
         """The next step after this one at which each is due."""
         return [step + each.steps - step % each.steps for each in self.given]
 
-    def call(self, simulation: Any) -> None:
-        """Call those that are due at this step. Raises RunError if one of them fails."""
-        step = simulation.step
-        if step == self.called:
-            return
-        self.called = step
+    def due(self, step: int) -> bool:
+        """Whether one of them is to be called at this step, and has not been yet."""
+        return step != self.called and any(step % each.steps == 0 for each in self.given)
+
+    def call(self, simulation: Any) -> str | None:
+        """Call those that are due at this step; why one of them ends the run, if one does.
+
+        Raises RunError if one of them fails.
+        """
+        self.called = simulation.step
         for each in self.given:
-            if step % each.steps == 0:
+            if simulation.step % each.steps == 0:
                 self._call(each.call, simulation)
+        return self.stopped
 
     def _call(self, function: Function, simulation: Any) -> None:
         try:

@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+import hashlib
 import numbers
 import os
+import platform
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from mesokit import method as methods
 from mesokit.case.case import Case, method_named
 from mesokit.case.component import nearest, show
 from mesokit.errors import CaseError
-from mesokit.running.cores import usable_cores
+from mesokit.running.cores import usable_cores, which_cores
 
-CALL_SECONDS = 0.2  # of compiled code at a time, so that Ctrl-C and the progress bar are prompt
+if TYPE_CHECKING:
+    from mesokit.ranks.world import World
+    from mesokit.running.callbacks import Callbacks
+
 MOST_THREADS = 1024
 
 
@@ -36,16 +44,21 @@ def case_and_arrays(given: Any, parts: dict[str, Any]) -> tuple[Case, dict[str, 
     return given or Case(**parts), arrays
 
 
-def threads_of(given: Any) -> int:
-    """So many as said, or one for each core."""
+def threads_of(given: Any, here: World) -> int:
+    """So many as said, or one for each core, of which ranks on the same cores have a part each."""
     if given is None:
-        return usable_cores()
+        own = platform.node(), which_cores()
+        return max(1, usable_cores() // here.gathered(own).count(own))
     whole = isinstance(given, numbers.Integral) and not isinstance(given, bool)
     if whole and 1 <= int(given) <= MOST_THREADS:
         return int(given)
     raise CaseError(f"threads = {show(given)}: expected a whole number from 1 to {MOST_THREADS}")
 
 
-def next_chunk(steps: int, seconds: float) -> int:
-    """So many steps that the next call takes CALL_SECONDS, growing at most fourfold at a time."""
-    return max(1, min(4 * steps, int(steps * CALL_SECONDS / max(seconds, 1e-9))))
+def told(case: Case, callbacks: Callbacks, arrays: Mapping[str, Any]) -> dict[str, str]:
+    """All of it as texts, by which ranks see whether they were given the same."""
+    calls = ", ".join(str(each.steps) for each in callbacks.given)
+    return {"case": case.to_toml(), "steps of callbacks": f"[{calls}]"} | {
+        name: hashlib.sha256(np.asarray(array).tobytes()).hexdigest()
+        for name, array in arrays.items()
+    }

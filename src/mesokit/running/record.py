@@ -22,11 +22,14 @@ def earlier(directory: RunDirectory) -> dict[str, Any]:
         return {}
 
 
-def note_resumed(directory: RunDirectory, case: Case, threads: int, begun: bool) -> None:
+def note_resumed(
+    directory: RunDirectory, case: Case, threads: int, ranks: int, begun: bool
+) -> None:
     """It goes on, or begins if it had not begun. Raises RunError if that cannot be written."""
-    record = earlier(directory) or provenance(case, threads)
+    record = earlier(directory) or provenance(case, threads, ranks)
     resumed = [*record.get("resumed", []), *([now()] if begun else [])]
-    directory.write_provenance(record | recorded_case(case) | {"resumed": resumed, "failed": None})
+    now_is = {"resumed": resumed, "ranks": ranks, "failed": None}
+    directory.write_provenance(record | recorded_case(case) | now_is)
 
 
 def note_longer(directory: RunDirectory, case: Case, step: int) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mesokit.io import h5md
 from mesokit.io.run_directory import RunDirectory, now
@@ -18,11 +18,11 @@ def write_results(
     directory: RunDirectory,
     case: Case,
     results: Mapping[str, Result],
-    timings: Mapping[str, float],
+    spent: Mapping[str, Any],
     writer: TrajectoryWriter | None,
 ) -> None:
-    """Write all that a run says at its end. Raises RunError."""
-    kept = directory.read_provenance() | {"ended": now(), "timings": timings}
+    """Write all that a run says at its end; `spent` says where the time went. Raises RunError."""
+    kept = directory.read_provenance() | {"ended": now(), **spent}
     h5md.write(directory.data_file, case, kept, results.values(), writer)
     directory.write_provenance(kept)
     from mesokit.report import save_all

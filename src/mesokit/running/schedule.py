@@ -90,8 +90,7 @@ class Schedule:
         trajectory, passed = self.case.trajectory, step - self.warmup
         return trajectory is not None and passed >= 0 and passed % trajectory.every == 0
 
-    def checkpoint_due(self, step: int, seconds: float) -> bool:
-        """Whether a checkpoint is written at this step, so many seconds after the last one."""
-        run = self.case.run
-        by_steps = run.checkpoint_every is not None and step % run.checkpoint_every == 0
-        return by_steps or seconds > 60.0 * run.checkpoint_minutes
+    def checkpoint_due(self, step: int) -> bool:
+        """Whether a checkpoint is written at this step, whenever the last one was."""
+        every = self.case.run.checkpoint_every
+        return every is not None and step % every == 0

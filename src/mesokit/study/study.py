@@ -16,6 +16,7 @@ from mesokit.case.outside import outside_parts
 from mesokit.errors import CaseError, RunError
 from mesokit.io.atomic import write_text
 from mesokit.method.protocol import summary_of
+from mesokit.ranks.world import world
 from mesokit.running.cores import usable_cores
 from mesokit.study import table as tables
 from mesokit.study.axes import Axis
@@ -224,7 +225,11 @@ class Study(Shown):
 
         Raises RunError when all others have ended, if runs have failed. A signal raises
         KeyboardInterrupt when the runs in hand have come to a checkpoint; `run` again goes on.
+        Raises CaseError on several ranks of MPI: its runs are processes of its own.
         """
+        ranks = world().size
+        if ranks > 1:
+            raise CaseError(f"Study.run: not on {ranks} ranks; expected one process, no mpiexec")
         reporter = reporter_for(progress)
         if not all((run.path / CASE).exists() for run in self.runs):  # somebody removed them
             make(self.runs, self.base)

@@ -234,6 +234,10 @@ class CPU:
         seconds = {name: TICK * float(self.threads.clock[3 + k]) for name, k in names.items()}
         return seconds | {"sort": self.sort_seconds}
 
+    def balance(self) -> dict[str, Any]:
+        """How the work was shared anew while it ran."""
+        return {}
+
     # --- what observables ask -------------------------------------------------------------------
 
     def totals(self) -> tuple[int, Floats, float]:

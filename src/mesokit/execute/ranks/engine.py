@@ -215,9 +215,12 @@ class Ranks(CPU):
             self.solutes.restore(solutes)
 
     def balance(self) -> dict[str, Any]:
-        """Most over mean of the ranks' work at first and of late, and the moves of borders."""
+        """How often borders moved, and most over mean of the ranks' work at first and of late."""
         known = self.balancing
-        return {"first": known.first, "last": known.last, "moves": list(known.moves)}
+        found: dict[str, Any] = {"borders moved": len(known.moves)}
+        if not np.isnan(known.first):
+            found |= {"most over mean at first": known.first, "of late": known.last}
+        return found
 
     def _check_messages(self, noted: NDArray[np.int64]) -> None:
         faults, post = int(noted[FAULTS]), self.memory.fluid.cells.shared.post

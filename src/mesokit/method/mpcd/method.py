@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mesokit.case.component import show
+from mesokit.errors import CaseError
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.checks import combinations
@@ -25,6 +26,7 @@ from mesokit.method.mpcd.start.fluid import start
 from mesokit.method.mpcd.summary import summary
 from mesokit.method.protocol import Method
 from mesokit.observe import Observable
+from mesokit.ranks.world import world
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -44,7 +46,31 @@ def _first_state(case: Case, arrays: Mapping[str, Any]) -> FirstState:
 def _engine(case: Case, threads: int, measures: Sequence[str]) -> Engine:
     from mesokit.execute.cpu.engine import CPU
 
-    return CPU(case, threads, measures)
+    here = world()
+    if here.size == 1:
+        return CPU(case, threads, measures)
+    from mesokit.execute.ranks.engine import Ranks
+
+    return Ranks(case, threads, measures, here.comm)
+
+
+def _check_ranks(case: Case, ranks: int) -> None:
+    """What needs all particles in one memory, and a case with fewer cells than ranks."""
+    from mesokit.execute.cpu.numbers import Numbers
+    from mesokit.execute.ranks.domain import axes_to_cut
+    from mesokit.execute.ranks.blocks.tree import divided
+
+    if case.solutes is not None and case.solutes.coupling == "potential":
+        raise CaseError(
+            f"solutes.coupling = 'potential': not on {ranks} ranks; expected one rank, or "
+            "coupling = 'collision'"
+        )
+    numbers = Numbers(case)
+    try:
+        divided(numbers.cells, ranks, axes_to_cut(numbers))
+    except ValueError as error:
+        size = " x ".join(str(n) for n in numbers.cells)
+        raise CaseError(f"{ranks} ranks: too many for {size} cells: {error}") from None
 
 
 def _start(engine: Any, state: FirstState) -> None:
@@ -134,4 +160,5 @@ METHOD = Method(
     expected={theory.answers: theory for theory in (Displacement, Velocities, VelocityMemory)},
     log=columns,
     si=_si,
+    check_ranks=_check_ranks,
 )

@@ -1,0 +1,109 @@
+"""Commands on several ranks: who takes part, and how they are started on this machine."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import os
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+
+from mesokit.errors import CaseError, RunError
+from mesokit.ranks import launcher, parent
+from mesokit.ranks.world import stay_alone, world
+
+TOGETHER = ("run", "resume")  # all others are commands of one process
+ALONE = ("study",)  # those that would start runs of their own
+RANKS = click.option(
+    "--ranks",
+    type=click.IntRange(1),
+    help="Share the work among so many ranks of MPI on this machine (elsewhere: mpiexec -n N).",
+)
+Command = Callable[..., Any]
+
+
+def take_part(command: str | None) -> None:
+    """Have all ranks of a launcher in a command that they carry out together, and one in others."""
+    if not launcher.several():
+        return
+    if command in TOGETHER:
+        here = world()
+        if here.root:
+            parent.take_terminal()
+        else:
+            sys.stdout = sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+        return
+    if not launcher.first():
+        raise SystemExit(0)
+    stay_alone()
+    if command in ALONE:
+        raise CaseError(f"{command}: starts runs of its own; expected one process, no mpiexec")
+
+
+def on_ranks(folder: Callable[[dict[str, Any]], Path]) -> Callable[[Command], Command]:
+    """Give a command `--ranks N`: ranks of this machine then carry it out.
+
+    `folder` says from what is given where the run is.
+    """
+
+    def decorated(command: Command) -> Command:
+        @RANKS
+        @functools.wraps(command)
+        def carried(ranks: int | None, **given: Any) -> Any:
+            if ranks is None or ranks == 1:
+                return command(**given)
+            arguments = click.get_current_context().obj
+            raise SystemExit(_carried_by(ranks, arguments, folder(given)))
+
+        return carried
+
+    return decorated
+
+
+def _carried_by(ranks: int, arguments: Sequence[str], output: Path) -> int:
+    """Carry out a command on so many ranks of this machine; the status that they end with."""
+    from mesokit.ranks.mpiexec import start
+
+    if launcher.several():
+        raise CaseError("--ranks: this is one of the ranks of an mpiexec; leave it out")
+    end = start(ranks, without(arguments, "--ranks"))
+    if end.why:
+        from mesokit.cli.words import say
+
+        say(f"mesokit: {end.why}{_go_on(output, ranks)}")
+    return end.status
+
+
+def without(arguments: Sequence[str], option: str) -> list[str]:
+    """Arguments without an option and its value.
+
+    >>> without(["run", "a.toml", "--ranks", "4", "--quiet"], "--ranks")
+    ['run', 'a.toml', '--quiet']
+    >>> without(["run", "--ranks=4", "a.toml"], "--ranks")
+    ['run', 'a.toml']
+    """
+    left, found = iter(arguments), []
+    for word in left:
+        if word == option:
+            next(left, None)
+        elif not word.startswith(f"{option}="):
+            found.append(word)
+    return found
+
+
+def _go_on(output: Path, ranks: int) -> str:
+    """From where a run can go on, and how; nothing if it had not begun."""
+    from mesokit.io.checkpoint import read_meta
+    from mesokit.io.run_directory import RunDirectory
+
+    run = RunDirectory(output)
+    if not run.case_file.exists():
+        return ""
+    last = "there is no checkpoint yet"
+    with contextlib.suppress(RunError):
+        last = f"the last checkpoint is of step {read_meta(run.checkpoint_file)['step']}"
+    return f"; {last}: mesokit resume {output} --ranks {ranks}"

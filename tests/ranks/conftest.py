@@ -1,0 +1,40 @@
+"""A folder with a small case, and what starts ranks there."""
+
+import sys
+
+import pytest
+from rank_runs import CASE, MESOKIT, MPIEXEC, NOTES, Ranks
+
+
+@pytest.fixture(scope="session", autouse=True)
+def an_mpi():
+    pytest.importorskip("mpi4py", reason="no mpi4py here")
+    if MPIEXEC is None:
+        pytest.skip("no mpiexec here")
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """With the case, a longer one, and a module by which ranks say who they are."""
+    (tmp_path / "case.toml").write_text(CASE.format(steps=400, checkpoints=100))
+    (tmp_path / "long.toml").write_text(CASE.format(steps=6000, checkpoints=500))
+    (tmp_path / "endless.toml").write_text(CASE.format(steps=10**9, checkpoints=200))
+    (tmp_path / "notes.py").write_text(NOTES)
+    return tmp_path
+
+
+@pytest.fixture
+def mpiexec(folder):
+    """Start `mpiexec -n N` of some words, `mesokit` unless they begin with another program."""
+
+    def start(n, *words, **environ):
+        words = words if str(words[0]) == sys.executable else (*MESOKIT, *words)
+        return Ranks([MPIEXEC, "-n", n, *words], folder, **environ)
+
+    return start
+
+
+@pytest.fixture
+def mesokit(folder):
+    """Start `mesokit`."""
+    return lambda *words, **environ: Ranks([*MESOKIT, *words], folder, **environ)

@@ -1,0 +1,200 @@
+"""Whatever ends a rank ends all of them soon, with one message; the last checkpoint is whole."""
+
+import contextlib
+import os
+import random
+import re
+import signal
+import sys
+import time
+
+import pytest
+from rank_runs import MESOKIT, SOURCE, same_files
+
+import mesokit as mk
+from mesokit.io import checkpoint
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="no signals can be sent to a process")
+SOON = 30.0  # seconds; on a quiet machine it is one
+KILLS = 3
+
+# what goes wrong on one rank alone, as a module that is imported first
+FAULTS = """
+import notes
+from mesokit.errors import RunError
+{imports}
+
+def fail(original):
+    def wrapped(*given, **named):
+        if notes.rank == {rank} and wrapped.left == 0:
+            {fault}
+        wrapped.left -= 1
+        return original(*given, **named)
+    wrapped.left = 2
+    return wrapped
+
+{where} = fail({where})
+"""
+ENGINE = "from mesokit.execute.ranks.engine import Ranks", "Ranks.totals"
+
+
+def faulty(folder, rank, fault, imports, where):
+    (folder / "faulty.py").write_text(
+        FAULTS.format(rank=rank, fault=fault, imports=imports, where=where)
+    )
+
+
+def one_message(ranks, pattern):
+    """That is all that ranks have said, apart from the launcher."""
+    said = [line for line in ranks.err.splitlines() if line.startswith("mesokit: ")]
+    assert len(said) == 1, ranks.err
+    assert re.fullmatch(pattern, said[0]), said
+    return said[0]
+
+
+def ended_within(ranks, seconds):
+    began = time.monotonic()
+    status = ranks.end()
+    assert time.monotonic() - began < seconds
+    return status
+
+
+def begun(ranks, folder):
+    """The processes of a run that has written a checkpoint."""
+    ranks.until(folder / "out" / "checkpoint.npz")
+    return ranks.pids()
+
+
+@pytest.mark.parametrize("seed", range(KILLS))
+def test_a_rank_is_killed(folder, mesokit, seed):
+    draw = random.Random(seed)
+    mk.Simulation(folder / "long.toml", output=folder / "one", threads=1).run()
+    ranks = mesokit("--import", "notes", "run", "long.toml", "--output", "out", "--ranks", "2")
+    began = time.time_ns()
+    victim = draw.randrange(2)
+    pids = begun(ranks, folder)
+    ranks.until(folder / "out" / "log.csv", newer_than=began)
+    time.sleep(draw.random() * 0.3)
+    os.kill(pids[victim], signal.SIGKILL)
+    status = ended_within(ranks, SOON)
+    if status:  # it may have come to its end before
+        assert status == 128 + signal.SIGKILL
+        step = checkpoint.read_meta(folder / "out" / "checkpoint.npz")["step"]
+        how = f"the last checkpoint is of step {step}: mesokit resume out --ranks 2"
+        one_message(ranks, f"mesokit: rank {victim} ended by SIGKILL; {how}")
+        assert "BAD TERMINATION" not in ranks.out + ranks.err
+    again = mesokit("resume", "out", "--quiet", "--ranks", "2")
+    assert again.end() == 0, again.err
+    same_files(folder / "one", folder / "out")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("whom", ["mesokit", "mpiexec", "rank 0", "rank 1"])
+def test_a_signal_stops_all_ranks(folder, mesokit, mpiexec, whom, number):
+    words = "--import", "notes", "run", "endless.toml", "--output", "out"
+    ranks = mpiexec(2, *words) if whom == "mpiexec" else mesokit(*words, "--ranks", "2")
+    pids = begun(ranks, folder)
+    os.kill(int(pids[int(whom[-1])]) if "rank" in whom else ranks.process.pid, number)
+    assert ended_within(ranks, SOON) == 128 + number
+    step = checkpoint.read_meta(folder / "out" / "checkpoint.npz")["step"]
+    again = (
+        "mpiexec -n 2 mesokit resume out" if whom == "mpiexec" else "mesokit resume out --ranks 2"
+    )
+    one_message(ranks, f"mesokit: stopped at step {step} by {number.name}; go on with: {again}")
+
+
+@pytest.mark.parametrize("by_option", [False, True])
+@pytest.mark.parametrize("rank", [0, 1])
+def test_the_physics_of_one_rank_fails(folder, mesokit, mpiexec, rank, by_option):
+    faulty(folder, rank, "raise RunError('step 7: too fast')", *ENGINE)
+    words = "--import", "faulty", "run", "endless.toml", "--output", "out"
+    ranks = mesokit(*words, "--ranks", "2") if by_option else mpiexec(2, *words)
+    assert ranks.end() == 1
+    one_message(ranks, f"mesokit: error: rank {rank}: step 7: too fast")
+
+
+def test_the_physics_of_all_ranks_fails(folder, mpiexec):
+    faulty(folder, "notes.rank", "raise RunError('step 7: too fast')", *ENGINE)
+    ranks = mpiexec(3, "--import", "faulty", "run", "endless.toml", "--output", "out")
+    assert ranks.end() == 1
+    one_message(ranks, "mesokit: error: step 7: too fast")
+
+
+def test_two_of_three_ranks_fail(folder, mpiexec):
+    faulty(folder, "max(notes.rank, 1)", "raise RunError('step 7: too fast')", *ENGINE)
+    ranks = mpiexec(3, "--import", "faulty", "run", "endless.toml", "--output", "out")
+    assert ranks.end() == 1
+    one_message(ranks, "mesokit: error: rank 1: step 7: too fast")
+
+
+def test_a_mistake_in_one_rank(folder, mesokit):
+    """Of the program: it says where, and who."""
+    faulty(folder, 1, "return 1 / 0", *ENGINE)
+    ranks = mesokit("--import", "faulty", "run", "endless.toml", "--output", "out", "--ranks", "2")
+    assert ranks.end() == 1
+    one_message(ranks, "mesokit: rank 1: Traceback .*")
+    assert ranks.err.count("ZeroDivisionError: division by zero") == 1
+
+
+def test_the_disk_is_full(folder, mpiexec):
+    """Rank 0 may write no more than a few thousand bytes to a file."""
+    (folder / "little.py").write_text(
+        "import notes, resource, signal\n"
+        "if notes.rank == 0:\n"
+        "    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
+        "    resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000))\n"
+    )
+    ranks = mpiexec(2, "--import", "little", "run", "endless.toml", "--output", "out")
+    assert ranks.end() == 1
+    one_message(ranks, "mesokit: error: .*cannot write out/.*: file too large")
+
+
+SCRIPT = """
+from mesokit import Simulation, every
+
+def look(simulation):
+    if simulation.ranks.rank == 1 and simulation.step == 100:
+        raise ValueError("no such thing")
+
+Simulation("endless.toml", callbacks=[every(50, look)]).run()
+"""
+
+
+def test_a_callback_of_one_rank_fails(folder, mpiexec):
+    (folder / "script.py").write_text(SCRIPT)
+    ranks = mpiexec(2, sys.executable, "script.py")
+    assert ranks.end() == 1
+    assert "mesokit: rank 1: Traceback" in ranks.err
+    assert ranks.err.count("RunError: callback look at step 100: ValueError: no such thing") == 1
+
+
+def test_ctrl_c_in_a_script(folder, mpiexec):
+    script = SCRIPT.replace("== 100", "< 0").replace(
+        '"endless.toml"', '"endless.toml", output="out"'
+    )
+    (folder / "script.py").write_text(f"import notes\n{script}")
+    ranks = mpiexec(2, sys.executable, "script.py")
+    os.kill(begun(ranks, folder)[1], signal.SIGINT)
+    assert ended_within(ranks, SOON) == 130
+    assert ranks.err.count("Stopped: stopped at step") == 1
+
+
+def test_the_bar_is_drawn_on_our_terminal(folder):
+    """And Ctrl-C there is a signal to the run."""
+    import pty
+
+    process, terminal = pty.fork()
+    if process == 0:
+        os.chdir(folder)
+        os.environ |= {"PYTHONPATH": str(SOURCE), "TERM": "xterm"}
+        words = ["run", "endless.toml", "--output", "out", "--ranks", "2"]
+        os.execv(MESOKIT[0], [*MESOKIT, *words])
+    seen = b""
+    with contextlib.suppress(OSError):  # of a terminal that is closed
+        while piece := os.read(terminal, 4096):
+            seen += piece
+            if b"left" in seen and b"^C" not in seen:
+                os.write(terminal, b"\x03")
+    assert os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]) == 130
+    assert b"particle-steps/s" in seen and "━".encode() in seen
+    assert b"by SIGINT; go on with: mesokit resume out --ranks 2" in seen

@@ -1,0 +1,92 @@
+"""One run on several ranks writes what one on one rank does, however it is started."""
+
+import json
+import sys
+
+import pytest
+from rank_runs import MESOKIT, Ranks, same_files
+
+import mesokit as mk
+
+SCRIPT = """
+from mesokit import Simulation, every
+from mesokit.running.callbacks import StopRun
+
+calls = []
+
+def look(simulation):
+    calls.append((simulation.step, len(simulation.engine.positions())))
+    if STOP and simulation.ranks.root and simulation.step == 200:
+        raise StopRun("enough")
+
+simulation = Simulation("case.toml", output="out", callbacks=[every(100, look)])
+simulation.run()
+print(simulation.step, calls == [(n, 600) for n in range(0, simulation.step + 1, 100)], flush=True)
+"""
+
+
+@pytest.fixture
+def one(folder):
+    """The run on one rank."""
+    mk.Simulation(folder / "case.toml", output=folder / "one", threads=1).run()
+    return folder / "one"
+
+
+def test_the_same_files_by_mpiexec_and_by_an_option(folder, one, mpiexec, mesokit):
+    runs = {2: mpiexec(2, "run", "case.toml", "--output", "two")}
+    assert runs[2].end() == 0, runs[2].err
+    runs[3] = mesokit("run", "case.toml", "--output", "three", "--ranks", "3")
+    assert runs[3].end() == 0, runs[3].err
+    for n, name in ((2, "two"), (3, "three")):
+        same_files(one, folder / name)
+        assert runs[n].err.count("running: 400 steps") == 1
+        assert runs[n].out.count("picture: ") == 1
+        assert f"{n} ranks: one had" in runs[n].out
+        record = json.loads((folder / name / "provenance.json").read_text())
+        assert record["ranks"] == n
+        assert {"sweep", "wait"} < record["shared_work"]["stages"].keys()
+        assert f"{n} ranks: one had" in repr(mk.open(folder / name))
+    assert "ranks:" not in repr(mk.open(one))
+
+
+@pytest.mark.parametrize("stop", [False, True])
+def test_a_script_is_run_by_all_ranks(folder, one, mpiexec, stop):
+    (folder / "script.py").write_text(SCRIPT.replace("STOP", str(stop)))
+    ranks = mpiexec(2, sys.executable, "script.py")
+    assert ranks.end() == 0, ranks.err
+    assert ranks.out.splitlines() == 2 * [f"{200 if stop else 400} True"]
+    if not stop:
+        same_files(one, folder / "out")
+
+
+def test_a_script_that_uses_mpi_alone(folder):
+    """MPI in a single process: nothing is different."""
+    program = f"import mpi4py.MPI\n{SCRIPT.replace('STOP', 'False')}"
+    (folder / "script.py").write_text(program)
+    alone = Ranks([MESOKIT[0], "script.py"], folder)
+    assert alone.end() == 0, alone.err
+
+
+@pytest.mark.parametrize("ranks", [1, 3])
+def test_a_run_goes_on_with_another_number_of_ranks(folder, one, mpiexec, mesokit, ranks):
+    (folder / "script.py").write_text(SCRIPT.replace("STOP", "True"))
+    assert mpiexec(2, sys.executable, "script.py").end() == 0
+    again = mesokit("resume", "out", "--ranks", ranks)
+    assert again.end() == 0, again.err
+    same_files(one, folder / "out")
+    record = json.loads((folder / "out" / "provenance.json").read_text())
+    assert record["ranks"] == ranks and len(record["resumed"]) == 1
+
+
+def test_a_run_becomes_longer(folder, one, mpiexec):
+    (folder / "case.toml").write_text((folder / "case.toml").read_text().replace("400", "200"))
+    assert mpiexec(2, "run", "case.toml", "--output", "out").end() == 0
+    again = mpiexec(2, "resume", "out", "--steps", "400")
+    assert again.end() == 0, again.err
+    same_files(one, folder / "out")
+
+
+def test_one_process_does_what_is_not_for_ranks(folder, mpiexec):
+    check = mpiexec(2, "check", "case.toml")
+    assert check.end() == 0
+    assert check.out.count("[run]") == 1
