@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 HALO = 2  # cells around a block that are known
 STRAY = 0.4  # cells that a particle of thermal speed goes from one move to the next
-SPARE = 1.1  # times as many molecules as there are now, for which there is room
+SPARE = 1.03  # times as many molecules as there are now, for which there is room
 FAST = 9.0  # thermal speeds: nobody is faster
 FEW = 512  # rows to a partner that are always there
 

@@ -40,7 +40,7 @@ def pieces_of(memory: Memory) -> Iterator[Piece]:
         yield Piece(who[places], *columns)
 
 
-GROWTH = 1.3  # times as many molecules as there are, when arrays become too small
+GROWTH = 1.1  # times as many molecules as there are, when arrays become too small
 
 
 class Ranks(CPU):

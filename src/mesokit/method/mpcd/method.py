@@ -57,8 +57,8 @@ def _engine(case: Case, threads: int, measures: Sequence[str]) -> Engine:
 def _check_ranks(case: Case, ranks: int) -> None:
     """What needs all particles in one memory, and a case with fewer cells than ranks."""
     from mesokit.execute.cpu.numbers import Numbers
-    from mesokit.execute.ranks.domain import axes_to_cut
     from mesokit.execute.ranks.blocks.tree import divided
+    from mesokit.execute.ranks.domain import axes_to_cut
 
     if case.solutes is not None and case.solutes.coupling == "potential":
         raise CaseError(
