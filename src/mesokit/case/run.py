@@ -33,8 +33,9 @@ class Run:
     imbalance: float = param(
         0.05,
         doc="borders between ranks move where the work on both sides differs by more than this "
-        "part of it; inf: never",
+        "part of it; 1: never",
         ge=0,
+        le=1,
     )
 
     @field_validator("method")

@@ -114,7 +114,7 @@ def still_good(tree: Tree, windows: Sequence[NDArray[np.float64]], limit: float)
         stay = []
         for node in level:
             inside = any(a <= node.first < b for a, b in bad)
-            if inside or spread(node, windows) > limit * (1.0 + HIGHER * above):
+            if inside or spread(node, windows) > min(limit * (1.0 + HIGHER * above), 1.0):
                 bad.append((node.first, node.first + node.ranks))
             else:
                 stay.append(node)
