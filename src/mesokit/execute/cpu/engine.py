@@ -156,11 +156,11 @@ class CPU:
         if self.numbers.beads == 1:
             return int(np.diff(self.memory.order.ends[-1, :-1], prepend=0).max())
         cells = self.memory.fluid.particles.cell[self.memory.places]
-        return int(np.bincount(cells).max())
+        return int(np.bincount(cells, minlength=1).max())
 
     def _check_sums(self, crowd: int) -> None:
         """That a cell of so many particles of the fastest kind cannot make its sums overflow."""
-        _, fastest = self.readings.motion()
+        fastest = self.readings.fastest()
         if fastest >= self.numbers.fastest:
             slower = "lower the force or the velocity of the surfaces"
             held = self.case.fluid.thermostat.acts

@@ -67,20 +67,29 @@ class Readings:
 
     def totals(self) -> tuple[int, Floats, float]:
         """Number of particles, momentum (d,) and kinetic energy, beads of solutes included."""
-        number, (sums, _) = self.n, self.motion()
+        number, sums = self.n, self.motion()
         if self.solutes is not None:
             number, sums = number + self.solutes.shape[0], sums + self.solutes.motion()
         return number, sums[:-1], 0.5 * float(sums[-1])
 
-    def motion(self) -> tuple[Floats, float]:
-        """Momentum and sum of m v^2 of the fluid (d + 1,), and the largest component of |v|."""
+    def motion(self) -> Floats:
+        """Momentum and sum of m v^2 of the fluid (d + 1,)."""
+        sums, _ = self._motion_of_strips()
+        return self.total(sums, np.array(self.numbers.scales_of_motion))
+
+    def fastest(self) -> float:
+        """The largest component of |v| of what is in this memory."""
+        _, fastest = self._motion_of_strips()
+        return float(fastest.max(initial=0.0))
+
+    def _motion_of_strips(self) -> tuple[NDArray[np.int64], Floats]:
         scales = self.numbers.scales_of_motion
         sums = np.zeros((self.memory.strips, len(scales)), np.int64)
         fastest = np.zeros(self.memory.strips)
         _, masses = self._vectors
         particles = self.memory.fluid.particles
         self.threads.run(measure.totals, masses, particles, scales, sums, fastest)
-        return self.total(sums, np.array(scales)), float(fastest.max(initial=0.0))
+        return sums, fastest
 
     def total(self, rows: NDArray[np.int64], scale: Any) -> Floats:
         """Sums over the rows (n, ...) of whole numbers, over the scale."""

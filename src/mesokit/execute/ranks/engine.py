@@ -254,10 +254,6 @@ class Ranks(CPU):
         clock = self.threads.clock
         return super().seconds | {name: TICK * float(clock[3 + k]) for name, k in names.items()}
 
-    def _check_sums(self, crowd: int) -> None:
-        if len(self.memory.places):
-            super()._check_sums(crowd)
-
     # --- its state ------------------------------------------------------------------------------
 
     def state(self) -> dict[str, Any]:
