@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
 import time
 from collections.abc import Callable
 from typing import Any
 
-PATIENCE = 2.0  # seconds in which others may come to the same end
+PATIENCE = 4.0  # seconds in which others may come to the same end
 LISTEN = 0.3  # seconds in which those that fail too can say so
 KILLED = 10.0  # seconds in which the one that speaks ends this rank
 FAILED = 2  # tag of the message that a rank fails
@@ -73,5 +74,9 @@ def leave_orderly(status: int) -> None:
 
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
+    # the library waits for the others, of whom one may have gone without a word
+    late = threading.Timer(KILLED, os._exit, (status,))
+    late.daemon = True
+    late.start()
     MPI.Finalize()
     os._exit(status)
