@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from laboratory import make_case, make_fluid
-from mesokit.execute.ranks.region import Region, Space, keys
 
 from mesokit import Species
 from mesokit.errors import RunError
 from mesokit.execute.cpu.engine import CPU
 from mesokit.execute.cpu.numbers import Numbers
 from mesokit.execute.pieces import pieces
+from mesokit.execute.ranks.blocks.region import Region, Space, keys
 from mesokit.execute.ranks.blocks.tree import divided
 from mesokit.scalar.fixed_point import added_halves, halves, joined
 

@@ -110,4 +110,5 @@ def main(name, threads):
         print("compared", len(here))
 
 
-main(sys.argv[1], int(sys.argv[2]))
+if __name__ == "__main__":
+    main(sys.argv[1], int(sys.argv[2]))
