@@ -114,7 +114,7 @@ class Kernel32:
 ctypes.WinDLL, ctypes.CDLL, sys.platform = {"kernel32": Kernel32}.get, None, "win32"
 del time.CLOCK_MONOTONIC
 
-from mesokit.execute.cpu.clock import CELLS, START, STAGES, lap
+from mesokit.execute.cpu.clock import CELLS, FIRST, START, lap
 from mesokit.scalar.system import TICK
 from mesokit.execute.cpu.threads import Threads, meet
 
@@ -130,9 +130,9 @@ def work(team, most, sums):
 
 threads, sums = Threads(2), np.zeros(1, np.int64)
 threads.run(work, 0, sums)
-before, began = threads.clock[STAGES + CELLS], time.perf_counter()
+before, began = threads.clock[FIRST + CELLS], time.perf_counter()
 threads.run(work, 100_000, sums)
-took, told = time.perf_counter() - began, TICK * (threads.clock[STAGES + CELLS] - before)
+took, told = time.perf_counter() - began, TICK * (threads.clock[FIRST + CELLS] - before)
 assert sums[0] >= 10_000_000, sums
 assert calls["clock"] == 4 and calls["yield"] > 0, calls
 assert 0.3 * took < told <= took, (told, took)

@@ -8,7 +8,8 @@ from mesokit.scalar.system import read_clock
 STAGES = 7
 # stages whose time is kept
 START, SWEEP, CELLS, FINISH, SHARE, WAIT, MOVE, BEADS = -1, 0, 1, 2, 3, 4, 5, 6
-CLOCK_SIZE = 3 + STAGES
+FIRST = 3  # where their times begin in the clock
+CLOCK_SIZE = FIRST + STAGES
 
 
 @scalar
@@ -18,5 +19,5 @@ def lap(team, stage):
         clock = team.clock
         now = read_clock(clock)
         if stage >= 0:
-            clock[3 + stage] += now - clock[2]
+            clock[FIRST + stage] += now - clock[2]
         clock[2] = now

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from mesokit.errors import RunError
 from mesokit.execute.beads.torn import refuse_torn
-from mesokit.execute.cpu.clock import BEADS, CELLS, FINISH, SWEEP
+from mesokit.execute.cpu.clock import BEADS, CELLS, FINISH, FIRST, SWEEP
 from mesokit.execute.cpu.groups import MEASURE_STRESS, MEASURE_WALLS, Course
 from mesokit.execute.cpu.memory import Memory
 from mesokit.execute.cpu.numbers import Floats, Numbers
@@ -231,7 +231,7 @@ class CPU:
         """Time spent so far in each stage."""
         names = {"sweep": SWEEP, "cells": CELLS, "finish": FINISH}
         names |= {"beads": BEADS} if self.solutes is not None else {}
-        seconds = {name: TICK * float(self.threads.clock[3 + k]) for name, k in names.items()}
+        seconds = {name: TICK * float(self.threads.clock[FIRST + k]) for name, k in names.items()}
         return seconds | {"sort": self.sort_seconds}
 
     def balance(self) -> dict[str, Any]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
-from mesokit.execute.cpu.clock import MOVE, SHARE, WAIT
+from mesokit.execute.cpu.clock import FIRST, MOVE, SHARE, WAIT
 from mesokit.execute.cpu.engine import CPU
 from mesokit.execute.cpu.memory import Memory
 from mesokit.execute.cpu.numbers import Floats, Numbers
@@ -252,7 +252,7 @@ class Ranks(CPU):
         """Time spent so far in each stage, on this rank."""
         names = {"share": SHARE, "wait": WAIT, "move": MOVE}
         clock = self.threads.clock
-        return super().seconds | {name: TICK * float(clock[3 + k]) for name, k in names.items()}
+        return super().seconds | {name: TICK * float(clock[FIRST + k]) for name, k in names.items()}
 
     # --- its state ------------------------------------------------------------------------------
 

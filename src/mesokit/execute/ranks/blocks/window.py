@@ -7,10 +7,8 @@ import time
 from collections.abc import Iterator
 from typing import Any
 
-from mesokit.execute.cpu.clock import BEADS, CELLS
+from mesokit.execute.cpu.clock import BEADS, CELLS, FIRST
 from mesokit.scalar.system import TICK
-
-STAGES = 3  # where the stages begin in the clock of the threads
 
 
 class Window:
@@ -32,12 +30,12 @@ class Window:
     def timing(self, engine: Any) -> Iterator[None]:
         """Count what is done now."""
         clock, waits = engine.threads.clock, waiting(engine.memory)
-        stages, waited = clock[STAGES:].copy(), [int(post[2]) for post in waits]
+        stages, waited = clock[FIRST:].copy(), [int(post[2]) for post in waits]
         began = time.thread_time()
         yield
         idle = [TICK * (int(post[2]) - before) for post, before in zip(waits, waited, strict=True)]
         spent = time.thread_time() - began
-        gone = TICK * (clock[STAGES:] - stages)
+        gone = TICK * (clock[FIRST:] - stages)
         work, beads = max(spent - sum(idle), 0.0), max(float(gone[BEADS]) - sum(idle[1:]), 0.0)
         busy = max(float(gone.sum()) - sum(idle), 1e-12)  # by the clock on the wall
         self.work += work
