@@ -54,7 +54,8 @@ def test_a_script_is_run_by_all_ranks(folder, one, mpiexec, stop):
     (folder / "script.py").write_text(SCRIPT.replace("STOP", str(stop)))
     ranks = mpiexec(2, sys.executable, "script.py")
     assert ranks.end() == 0, ranks.err
-    assert ranks.out.splitlines() == 2 * [f"{200 if stop else 400} True"]
+    # two ranks speak at once, and their words may mix
+    assert ranks.out.count(f"{200 if stop else 400}") == ranks.out.count("True") == 2
     if not stop:
         same_files(one, folder / "out")
 
