@@ -68,6 +68,15 @@ def cell_in_box(r, grid):
     return r
 
 
+@scalar
+def in_block(limits, place):
+    """Whether a cell, by its place along each axis, lies in the block with these limits."""
+    inside = True
+    for k in range(len(place)):
+        inside &= (limits[0][k] <= place[k]) & (place[k] < limits[1][k])
+    return inside
+
+
 @by_type
 def cell_index(r, grid):
     """Number of the cell at r; x varies fastest. A place that is no number gets the spare cell, and

@@ -166,8 +166,7 @@ class Domain:
             keys=np.pad(keys(self.region, self.space), (0, LANES)),
             mixed=self._batches_with_own(),
             cells=np.array(self.space.cells, np.int64),
-            own=np.array(self.block, np.int64),
-            limits=tuple(tuple(float(n) for n in side) for side in self.block),
+            limits=self._limits,
             closed=tuple(float(shut) for shut in numbers.closed),
             ranks=np.array(self.partners, np.int64),
             blocks=np.array(blocks, np.int64).reshape(q, 2, d),
@@ -211,6 +210,11 @@ class Domain:
         mine[own(self.region, self.space, self.block)] = True
         return np.asarray(mine.reshape(-1, LANES).any(axis=1))
 
+    @property
+    def _limits(self) -> tuple[tuple[float, ...], ...]:
+        """The first cell of the block, and the first beyond it, along each axis."""
+        return tuple(tuple(float(n) for n in side) for side in self.block)
+
     def roster(self, given: Solutes, terms: int) -> Any:
         """Which beads of solutes are whose."""
         return roster_of(self, given, terms)
@@ -219,7 +223,7 @@ class Domain:
         """Which pieces of surface this rank keeps, and which the others do."""
         given = [self._pieces(probes, p) for p in self.partners]
         return Seen(
-            own=np.array(self.block, np.int64),
+            limits=self._limits,
             here=self._pieces(probes, self.rank),
             step=np.full((len(probes), PROBES), -1, np.int64),
             values=np.zeros((len(probes), PROBES, self.numbers.dimension + 1)),

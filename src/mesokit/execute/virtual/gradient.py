@@ -11,7 +11,7 @@ free, q is taken for 0.
 
 import numpy as np
 
-from mesokit.execute.cpu.grid import cell_in_box, cell_index
+from mesokit.execute.cpu.grid import cell_in_box, cell_index, in_block
 from mesokit.execute.cpu.physics import field_of
 from mesokit.execute.cpu.strips.layout import share
 from mesokit.execute.cpu.strips.terms import read_sums, sums_of_cell
@@ -80,22 +80,13 @@ def _see(team, now, physics, sums, virtual):
     for j in range(begin, end):
         e = pieces[j]
         for p in range(PROBES if e % EVERY == turn else 0):
-            if is_own(virtual.seen, probe_at(virtual, e, p, physics.zero), now.grid):
+            place = cell_in_box(probe_at(virtual, e, p, physics.zero), now.grid)
+            if in_block(virtual.seen.limits, place):
                 good, seen = look(virtual, e, p, physics, now.grid, sums)
                 if good:
                     virtual.seen.step[e, p] = np.int64(now.counter.step)
                     for k in range(len(seen)):
                         virtual.seen.values[e, p, k] = seen[k]
-
-
-@scalar
-def is_own(seen, r, grid):
-    """Whether the cell at r is one of this rank's own."""
-    place = cell_in_box(r, grid)
-    inside = True
-    for k in range(len(place)):
-        inside &= (seen.own[0, k] <= place[k]) & (place[k] < seen.own[1, k])
-    return inside
 
 
 @scalar

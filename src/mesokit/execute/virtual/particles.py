@@ -47,12 +47,13 @@ class VirtualParticles(NamedTuple):
 class Seen(NamedTuple):
     """What a rank of several sees of the flow at pieces of surface, and whom it tells.
 
-    own (2, d): its block of cells. here (pieces here,): pieces near it. step (pieces, PROBES),
-    values (pieces, PROBES, d + 1): when something was last seen at a probe, and what.
+    limits: its block of cells, as two tuples of floats. here (pieces here,): pieces near it.
+    step (pieces, PROBES), values (pieces, PROBES, d + 1): when something was last seen at a probe,
+    and what.
     given_starts (partners + 1,), given: the pieces that each of the others keeps.
     """
 
-    own: Any
+    limits: tuple
     here: Any
     step: Any
     values: Any

@@ -12,7 +12,7 @@ from mesokit.execute.cpu.strips.layout import LANES, record_length, share, sums_
 from mesokit.execute.cpu.strips.rows import load_scratch, store_scratch, store_values
 from mesokit.execute.cpu.strips.terms import nothing_found, sums_of_cell
 from mesokit.execute.cpu.threads import meet
-from mesokit.execute.ranks.beads.roster import (
+from mesokit.execute.ranks.beads.terms import (
     bead_row,
     beads_that_ask,
     find_bead_owners,
@@ -22,14 +22,14 @@ from mesokit.execute.ranks.beads.roster import (
 )
 from mesokit.execute.ranks.messages.flow import take_seen, write_seen
 from mesokit.execute.ranks.messages.guests import find_owners
-from mesokit.execute.ranks.messages.mpi import finish, receive, send
+from mesokit.execute.ranks.messages.mpi import finish
+from mesokit.execute.ranks.messages.rows import receive_rows, send_rows
 from mesokit.execute.ranks.messages.shared import (
     ANSWER_WORDS,
     FAULTS,
     FULL,
     GUESTS,
     HEADER,
-    MESSAGES,
     SUM_WORDS,
     shares,
 )
@@ -158,28 +158,18 @@ def write_rows(team, fluid, beads, p, physics):
 @scalar
 def send_sums(team, shared, beads):
     """Send all rows, and wait for those of the others."""
-    post, meter, n = shared.post, shared.meter, send_terms(beads, shared, 0)
-    words = shared.sums_out.shape[1]
-    size = np.uint64(8 * words)
-    base_in, base_out = shared.sums_in.ctypes.data, shared.sums_out.ctypes.data
-    for p in range(len(shared.ranks)):
-        most = shared.in_at[p + 1] - shared.in_at[p]
-        at = np.uint64(base_in) + np.uint64(shared.in_at[p]) * size
-        n = receive(post, n, at, most * words, shared.ranks[p], SUMS)
+    n = receive_rows(shared, send_terms(beads, shared, 0), shared.sums_in, shared.in_at, SUMS)
     for p in range(len(shared.ranks)):
         first, rows = shared.out_at[p], 0
         for t in range(team.threads):
             rows += shared.counting[t, p]
         shared.sent[p] = rows
         shared.sums_out[first + HEADER, 0] = rows
-        at = np.uint64(base_out) + np.uint64(first) * size
-        n = send(post, n, at, (rows + 1) * words, shared.ranks[p], SUMS)
-        meter[SUM_WORDS] += (rows + 1) * words
-        meter[MESSAGES] += 1
+        n = send_rows(shared, n, shared.sums_out, first, 1 + rows, p, SUMS, SUM_WORDS)
     for t in range(team.threads):
-        meter[GUESTS] = max(meter[GUESTS], shared.guests[t, 0])
+        shared.meter[GUESTS] = max(shared.meter[GUESTS], shared.guests[t, 0])
         shared.guests[t, 0] = 0
-    finish(post, n)
+    finish(shared.post, n)
 
 
 @scalar
@@ -251,22 +241,13 @@ def send_answers(now, physics, shared, walls):
 
     Messages in hand are counted on from 0: `take_answers` waits for them.
     """
-    post, meter, n = shared.post, shared.meter, 0
-    words = shared.answers_out.shape[1]
-    size = np.uint64(8 * words)
-    base_in, base_out = shared.answers_in.ctypes.data, shared.answers_out.ctypes.data
-    for p in range(len(shared.ranks)):
-        most = shared.out_at[p + 1] - shared.out_at[p]
-        at = np.uint64(base_in) + np.uint64(shared.out_at[p]) * size
-        n = receive(post, n, at, most * words, shared.ranks[p], ANSWERS)
+    n = receive_rows(shared, 0, shared.answers_in, shared.out_at, ANSWERS)
     for p in range(len(shared.ranks)):
         first, rows = shared.in_at[p], rows_in(shared, p)
         seen = write_seen(walls, now, physics, shared, p, first + HEADER + 1 + rows)
         shared.answers_out[first + HEADER, 0] = float(seen)
-        at = np.uint64(base_out) + np.uint64(first) * size
-        n = send(post, n, at, (1 + rows + seen) * words, shared.ranks[p], ANSWERS)
-        meter[ANSWER_WORDS] += (1 + rows + seen) * words
-        meter[MESSAGES] += 1
+        number = 1 + rows + seen
+        n = send_rows(shared, n, shared.answers_out, first, number, p, ANSWERS, ANSWER_WORDS)
 
 
 @by_type

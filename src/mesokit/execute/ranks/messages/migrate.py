@@ -10,7 +10,7 @@ import numpy as np
 
 from mesokit.case.box import SLIDING
 from mesokit.execute.cpu.clock import MOVE, lap
-from mesokit.execute.cpu.grid import cell_in_box, moved_grid
+from mesokit.execute.cpu.grid import cell_in_box, in_block, moved_grid
 from mesokit.execute.cpu.groups import Fluid, Particles
 from mesokit.execute.cpu.near_solids import FEW
 from mesokit.execute.cpu.strips.layout import (
@@ -26,12 +26,12 @@ from mesokit.execute.cpu.strips.layout import (
 from mesokit.execute.cpu.strips.rows import load_particle
 from mesokit.execute.cpu.threads import meet
 from mesokit.execute.ranks.messages.guests import NOBODY, owner_of
-from mesokit.execute.ranks.messages.mpi import finish, receive, send
+from mesokit.execute.ranks.messages.mpi import finish
+from mesokit.execute.ranks.messages.rows import receive_rows, send_rows
 from mesokit.execute.ranks.messages.shared import (
     ARRIVED,
     DONE,
     HEADER,
-    MESSAGES,
     MOLECULES,
     MOVED,
     MOVED_WORDS,
@@ -164,10 +164,7 @@ def note_leaving(thread, fluid, strip, s, grid, zero):
 @scalar
 def is_away(limits, r, grid):
     """1 if the cell at r is not one of this rank's own, whose block has these limits."""
-    place, away = cell_in_box(r, grid), np.int64(0)
-    for k in range(len(r)):
-        away |= np.int64((place[k] < limits[0][k]) | (place[k] >= limits[1][k]))
-    return away
+    return np.int64(not in_block(limits, cell_in_box(r, grid)))
 
 
 @scalar
@@ -215,22 +212,13 @@ def forget_part(fluid, i):
 @scalar
 def exchange(shared):
     """Messages to all partners, and from them."""
-    post, n, words = shared.post, 0, shared.moved_out.shape[1]
-    size = np.uint64(8 * words)
-    base_in, base_out = shared.moved_in.ctypes.data, shared.moved_out.ctypes.data
-    for p in range(len(shared.ranks)):
-        first, last = shared.moved_at[p], shared.moved_at[p + 1]
-        at = np.uint64(base_in) + np.uint64(first) * size
-        n = receive(post, n, at, (last - first) * words, shared.ranks[p], PARTICLES)
+    n = receive_rows(shared, 0, shared.moved_in, shared.moved_at, PARTICLES)
     for p in range(len(shared.ranks)):
         first = shared.moved_at[p]
         rows = shared.moved_out[first + HEADER, 0]
-        at = np.uint64(base_out) + np.uint64(first) * size
-        n = send(post, n, at, (rows + 1) * words, shared.ranks[p], PARTICLES)
-        shared.meter[MESSAGES] += 1
-        shared.meter[MOVED_WORDS] += (rows + 1) * words
+        n = send_rows(shared, n, shared.moved_out, first, 1 + rows, p, PARTICLES, MOVED_WORDS)
         shared.meter[MOVED] += rows
-    finish(post, n)
+    finish(shared.post, n)
 
 
 @scalar

@@ -28,7 +28,7 @@ class Shared(NamedTuple):
 
     keys (known + LANES,): number in the whole box of each known cell. mixed (batches,): whether any
     cell of a batch is this rank's own.
-    own: block of this rank (2, d); blocks (q, 2, d): of partners; regions (q, 2, d): first and
+    blocks (q, 2, d): of partners; regions (q, 2, d): first and
     number of the cells that they know. cells (d,): of the box.
     ranks (q,): their numbers.
     starts (q + 1,), mine, theirs: cells of each partner that are known here, their numbers here and
@@ -50,7 +50,6 @@ class Shared(NamedTuple):
     keys: Any
     mixed: Any
     cells: Any
-    own: Any
     limits: tuple
     closed: tuple
     ranks: Any
