@@ -84,7 +84,7 @@ def test_a_study_of_a_script(folder):
     )
     ranks = Ranks([MPIEXEC, "-n", "2", sys.executable, "script.py"], folder)
     assert ranks.end() == 1
-    assert ranks.err.count("CaseError: Study.run: not on 2 ranks; expected one process") == 1
+    assert ranks.err.count("CaseError: Study: not on 2 ranks; expected one process") == 1
 
 
 def test_ranks_of_ranks(folder):

@@ -60,7 +60,8 @@ class Study(Shown):
     Raises
     ------
     CaseError
-        For a case that cannot be, with the values that make it so; no folder is made then.
+        For a case that cannot be, with the values that make it so; no folder is made then. On
+        several ranks of MPI, for its runs are processes of its own.
     RunError
         Where another study lies, or a folder cannot be written.
 
@@ -87,6 +88,7 @@ class Study(Shown):
         output: str | Path,
         settings: Mapping[str, Any] | None = None,
     ) -> None:
+        require_one_process()  # before two ranks make the same folder
         base = Base.of(case, settings)
         self.path = Path(output)
         axes = Axis.from_mapping(vary) if isinstance(vary, Mapping) else list(vary or ())
@@ -227,9 +229,7 @@ class Study(Shown):
         KeyboardInterrupt when the runs in hand have come to a checkpoint; `run` again goes on.
         Raises CaseError on several ranks of MPI: its runs are processes of its own.
         """
-        ranks = world().size
-        if ranks > 1:
-            raise CaseError(f"Study.run: not on {ranks} ranks; expected one process, no mpiexec")
+        require_one_process()
         reporter = reporter_for(progress)
         if not all((run.path / CASE).exists() for run in self.runs):  # somebody removed them
             make(self.runs, self.base)
@@ -390,6 +390,13 @@ class Study(Shown):
         lines += [f"  {axis.keys[0]}: {len(axis.values)} values" for axis in self.axes]
         lines += [f"  {len(self.seeds)} seeds"]
         return "\n".join(lines)
+
+
+def require_one_process() -> None:
+    """Raise CaseError on several ranks of MPI."""
+    ranks = world().size
+    if ranks > 1:
+        raise CaseError(f"Study: not on {ranks} ranks; expected one process, no mpiexec")
 
 
 def _seeds(given: Any, base: Base) -> list[int]:
