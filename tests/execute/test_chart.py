@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 from shapes import EVERY, example, solids_of, walls_of
@@ -10,8 +12,10 @@ from mesokit.geometry.solids.clearance import (
     EVERYWHERE,
     OFFSETS,
     PARTS,
+    Held,
     clear_squares,
     cube_middles,
+    cut_cells,
     cut_planes,
     free_planes,
 )
@@ -58,7 +62,7 @@ def test_nothing_is_where_tables_say_so(case, tmp_path):
     assert parts == PARTS[d]
     assert reach == STRIDE
     rng, sides = np.random.default_rng(2), [n * parts for n in solids.size]
-    some = rng.integers(len(clear), size=2000)
+    some = rng.integers(len(clear) - 1, size=2000)  # the last is of no cube
     near = np.flatnonzero(plane_of >= 0)
     some = np.concatenate([some, rng.choice(near, min(len(near), 2000))])
     start = cube_middles(some, sides, parts) + (rng.random((len(some), d)) - 0.5) / parts
@@ -87,3 +91,36 @@ def test_planes_lie_on_surfaces(tmp_path):
         known = plane_of[cubes] >= 0
         found = (planes[plane_of[cubes], :2] * points).sum(axis=1) > planes[plane_of[cubes], 2]
         assert (known & found).mean() > least, name
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_tables_of_a_part_are_those_of_the_whole(d, tmp_path):
+    """A rank knows its part of the box, also across an end of it; of the rest it knows nothing."""
+    solids = solids_of(
+        walls_of(example("disk" if d == 2 else "sphere", d, "outside", tmp_path), d), d
+    )
+    clear, parts = clear_squares(solids, 0.0)
+    plane_of, planes, _ = free_planes(solids, clear, STRIDE, 0.0)
+    held = Held((-3,) * d, tuple(n - 2 for n in solids.size))
+    some, _ = clear_squares(solids, 0.0, held)
+    near, flat, _ = free_planes(solids, some, STRIDE, 0.0, held)
+    numbers = np.arange(len(some) - 1)
+    middles = cube_middles(numbers, [n * parts for n in held.cells], parts, held.first)
+    cubes = np.floor(middles % solids.size * parts).astype(int)
+    there = cubes @ np.cumprod([1, *(n * parts for n in solids.size[:-1])])
+    assert (some[:-1] == clear[there]).all()
+    assert some[-1] == 0.0 == clear[-1]
+    assert near[-1] == -1 == plane_of[-1]
+    known = near[:-1] >= 0
+    assert known.any()
+    assert (known == (plane_of[there] >= 0)).all()
+    assert (flat[near[:-1][known]] == planes[plane_of[there[known]]]).all()
+    cells, low, high = cells_of(solids), (2,) * d, tuple(n - 3 for n in cells_of(solids))
+    starts, which, corners = cut_cells(solids, cells)
+    inside = ((corners >= low) & (corners < high)).all(axis=1)
+    of_block = cut_cells(solids, cells, (low, high))
+    assert (
+        np.diff(of_block[0]) == [inside[a:b].sum() for a, b in itertools.pairwise(starts)]
+    ).all()
+    assert (of_block[1] == which[inside]).all()
+    assert (of_block[2] == corners[inside]).all()

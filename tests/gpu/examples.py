@@ -92,7 +92,7 @@ def hit(solid: Any) -> Any:
 
 
 def bodies(d: int) -> Bodies:
-    return Bodies(vec(d), vec(d), 1, 1, 1.0, 1, 1, 1.0, 1.0, vec(d), vec(d))
+    return Bodies(vec(d), vec(d), 1, 1.0, vec(d), vec(d), 1, 1, 1, 1.0, 1.0, vec(d), vec(d))
 
 
 SPRING, STIFF, REPELS = Harmonic(K=1.0).kernel(), Bending(1.0).kernel(), WCA().kernel()

@@ -59,7 +59,7 @@ class Memory:
         self.measures, self.domain = frozenset(measures), domain
         self._tables: list[Any] = []  # which compiled code knows by address
         self._places, self._placed = np.zeros(0, np.int64), (0, numbers.beads)
-        if earlier is None:
+        if earlier is None or (numbers.solids and earlier.domain.block != domain.block):
             self.physics = self._physics()
         else:  # tables of solids take long
             self.physics, self._tables = earlier.physics, earlier._tables
@@ -110,7 +110,8 @@ class Memory:
             return Nothing()
         if numbers.slit is not None:
             return numbers.slit.kernel(numbers.case.box.size)
-        bodies, tables = with_clearance(numbers.case, numbers.solids)
+        held = None if self.domain is None else self.domain.held
+        bodies, tables = with_clearance(numbers.case, numbers.solids, held)
         self._tables.append(tables)
         return bodies
 

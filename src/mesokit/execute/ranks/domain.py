@@ -26,6 +26,7 @@ from mesokit.execute.ranks.messages.mpi import post
 from mesokit.execute.ranks.messages.shared import METER_SIZE, Shared
 from mesokit.execute.virtual.gradient import PROBES
 from mesokit.execute.virtual.particles import Seen
+from mesokit.geometry.solids.clearance import Held
 from mesokit.potential.thermal import mean_square
 
 if TYPE_CHECKING:
@@ -121,14 +122,13 @@ class Domain:
         first, known = (tuple(float(n) for n in numbers) for numbers in self.region)
         return Part(whole.shift, whole.origin, whole.cells, whole.inverse, first, known)
 
-    def owned(self, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Which of some cells, by their numbers in the box, are this rank's own."""
-        inside = np.ones(len(cells), bool)
-        for k, (low, high) in enumerate(zip(*self.block, strict=True)):
-            i = cells % self.space.cells[k]
-            cells = cells // self.space.cells[k]
-            inside &= (i >= low) & (i < high)
-        return inside
+    @property
+    def held(self) -> Held:
+        """Cells without a shift that this rank's particles may come to."""
+        region = region_of(self.block, self.space, 1 + math.ceil(farthest(self.numbers)))
+        size = [math.ceil(length) for length in self.numbers.case.box.size]
+        known = zip(*region, size, self.space.wraps, strict=True)
+        return Held(region.first, tuple(n if on else min(n, all_ - a) for a, n, all_, on in known))
 
     def known(self, cells: NDArray[np.int64]) -> NDArray[np.int64]:
         """Numbers here of known cells, by their numbers in the box."""

@@ -14,11 +14,13 @@ from mesokit.execute.virtual.particles import KINDS, CellParticles, VirtualParti
 from mesokit.execute.virtual.per_cell import ROWS
 from mesokit.geometry.solids.bodies import Bodies
 from mesokit.geometry.solids.clearance import (
+    Held,
     clear_squares,
     cut_cells,
     cut_planes,
     free_planes,
     surface_pieces,
+    whole,
 )
 from mesokit.geometry.solids.contact import MARGIN
 from mesokit.scalar.pointer import address
@@ -33,18 +35,22 @@ MANY_SIGMA = 4.5  # of the Maxwell distribution: one particle in 20,000 is faste
 MANY_DEVIATIONS = 12.0  # of a Poisson number: no more will ever come
 
 
-def with_clearance(case: Case, solids: Solids) -> tuple[Bodies, Any]:
-    """The solids with the distances that are clear around each place; the tables that keep them."""
+def with_clearance(case: Case, solids: Solids, held: Held | None = None) -> tuple[Bodies, Any]:
+    """The solids with the distances that are clear around each place, or around those held; the
+    tables that keep them."""
+    held = held or whole(solids)
     bend = 0.125 * case.fluid.force.largest_in(case.box.size) * case.fluid.timestep**2
-    clear, parts = clear_squares(solids, bend)
+    clear, parts = clear_squares(solids, bend, held)
     lightest = min(kind.mass for kind in case.fluid.kinds)
     stride = MANY_SIGMA * math.sqrt(case.fluid.kT / lightest) * case.fluid.timestep + bend
-    plane_of, planes, reach = free_planes(solids, clear, stride, bend)
+    plane_of, planes, reach = free_planes(solids, clear, stride, bend, held)
     gap = bend + MARGIN  # no parabola is further from its straight line than a t^2 / 8
     ends = list(zip(solids.room.closed, case.box.size, strict=True))
     kernel = solids.kernel._replace(
-        clear=address(clear),
         parts=float(parts),
+        first=tuple(float(parts * (a % n)) for a, n in zip(held.first, solids.size, strict=True)),
+        held=tuple(float(parts * n) for n in held.cells),
+        clear=address(clear),
         plane_of=address(plane_of),
         planes=address(planes),
         reach=reach,
@@ -63,18 +69,13 @@ def virtual_particles(
     assert solids is not None
     slit, size = numbers.slit, case.box.size
     density, rule = case.fluid.density, case.fluid.collision
+    block = None if domain is None else domain.block
     if slit is not None:
-        starts, cells, corners = plates.cut_cells(slit, size, numbers.cells)
+        starts, keys, corners = plates.cut_cells(slit, size, numbers.cells, block)
         pieces, outward, probes, terms = plates.surface_pieces(slit, size)
     else:
-        starts, cells, corners = cut_cells(solids, numbers.cells)
+        starts, keys, corners = cut_cells(solids, numbers.cells, block)
         pieces, outward, probes, terms = surface_pieces(solids)
-    mine, keys, kept = cells, cells, slice(None)
-    if domain is not None:
-        kept = domain.owned(cells)
-        upto = np.concatenate([[0], np.cumsum(kept)])
-        starts, keys, corners = upto[starts], cells[kept], corners[kept]
-        mine = domain.known(keys)
     entries = int(np.diff(starts).max(initial=0)) // threads + 1  # at most, of a thread
     per_cell: CellParticles | tuple[()] = ()
     room = 0
@@ -85,13 +86,13 @@ def virtual_particles(
         if slit is not None:
             planes = plates.cut_planes(slit, size, corners)
         else:
-            planes = tuple(column[kept] for column in cut_planes(solids, numbers.cells))
+            planes = cut_planes(solids, numbers.cells, block)
         per_cell = _per_cell(planes, pieces, threads, entries, d)
     blocks = blocks_for(room)
     return VirtualParticles(
         density=density,
         starts=starts,
-        cells=np.pad(mine, (0, LANES)),
+        cells=np.pad(keys if domain is None else domain.known(keys), (0, LANES)),
         keys=np.pad(keys, (0, LANES)),
         corners=corners,
         pieces=pieces,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mesokit.case.box import AXES
+from mesokit.geometry.solids.clearance import corners_of
 
 if TYPE_CHECKING:
     from mesokit.geometry.shape.plates import Plates
@@ -21,12 +22,17 @@ def ends(plates: Plates, size: tuple[int, ...]) -> list[tuple[int, float, float]
     return [(term, at, up) for term, at, up, surface in both if surface.rule != "slip"]
 
 
-def cut_cells(plates: Plates, size: tuple[int, ...], cells: tuple[int, ...]) -> tuple[Any, ...]:
+def cut_cells(
+    plates: Plates,
+    size: tuple[int, ...],
+    cells: tuple[int, ...],
+    block: tuple[Any, Any] | None = None,
+) -> tuple[Any, ...]:
     """As `clearance.cut_cells`, for the one interval of offsets: starts, numbers and corners."""
-    where = _numbered(cells)
+    where = corners_of(*(block or ((0,) * len(cells), cells)))
     layer = where[:, AXES.index(plates.axis)]
-    chosen = np.flatnonzero(np.isin(layer, [at for _, at, _ in ends(plates, size)]))
-    return np.array([0, len(chosen)], np.int64), chosen, where[chosen]
+    chosen = where[np.isin(layer, [at for _, at, _ in ends(plates, size)])]
+    return np.array([0, len(chosen)], np.int64), _number(chosen.astype(np.int64), cells), chosen
 
 
 def cut_planes(plates: Plates, size: tuple[int, ...], corners: Any) -> tuple[Any, ...]:
@@ -46,7 +52,7 @@ def cut_planes(plates: Plates, size: tuple[int, ...], corners: Any) -> tuple[Any
 def surface_pieces(plates: Plates, size: tuple[int, ...]) -> tuple[Any, ...]:
     """As `clearance.surface_pieces`: number of the piece in each cell or -1, then for each piece
     its normal, the first place to look for fluid, and its term."""
-    axis, where = AXES.index(plates.axis), _numbered(size)
+    axis, where = AXES.index(plates.axis), corners_of((0,) * len(size), size)
     pieces = np.full(len(where), -1, np.int32)
     outward: list[Any] = []
     probes: list[Any] = []
@@ -66,13 +72,7 @@ def surface_pieces(plates: Plates, size: tuple[int, ...]) -> tuple[Any, ...]:
     return pieces, np.concatenate(outward), np.concatenate(probes), np.concatenate(terms)
 
 
-def _numbered(cells: tuple[int, ...]) -> Any:
-    """The places of all cells of a grid (cells, d), x varying fastest, as whole numbers."""
-    grids = np.meshgrid(*(np.arange(float(n)) for n in reversed(cells)), indexing="ij")
-    return np.stack([axis.ravel() for axis in reversed(grids)], axis=-1)
-
-
-def _number(where: Any, size: tuple[int, ...]) -> Any:
-    """Numbers of cells of the box from their places."""
-    strides = np.cumprod([1, *size[:-1]])
+def _number(where: Any, cells: tuple[int, ...]) -> Any:
+    """Numbers of cells from their places."""
+    strides = np.cumprod([1, *cells[:-1]])
     return where @ strides

@@ -37,9 +37,11 @@ class Bodies(NamedTuple):
     - SIZE: not an address but the whole lengths of the box, 3 places.
 
     Tables hold float64 or, for numbers of things, int32.
-    clear (cubes of the box): address of the square, float32, of a lower bound of the distance from
-    all solids but plates in cubes of 1/parts, `parts` to a cell along each axis, x varying fastest.
-    plane_of (cubes,): address of the number, int32, of the plane of each cube, or -1; planes
+    first, held: cubes of 1/parts, `parts` to a cell along each axis, of which more is known: from
+    the first along each axis, so many, which may go on across an end of the box.
+    clear (cubes + 1,): address of the square, float32, of a lower bound of the distance from all
+    solids but plates in each of these cubes, x varying fastest; of all others, the last, it is 0.
+    plane_of (cubes + 1,): address of the number, int32, of the plane of each cube, or -1; planes
     (planes, d + 1): address of normals and heights. No solid is above it, n r > height, as near as
     `reach` to the cube.
     stride: distance that hardly a particle flies beyond in a timestep.
@@ -50,8 +52,10 @@ class Bodies(NamedTuple):
     size: tuple[float, ...]
     inverse: tuple[float, ...]
     tables: int
-    clear: int
     parts: float
+    first: tuple[float, ...]
+    held: tuple[float, ...]
+    clear: int
     plane_of: int
     planes: int
     reach: float
@@ -78,18 +82,21 @@ def in_box(solid, r):
 
 @scalar
 def cube_of(solid, r):
-    """Number of the cube that holds the image of r in the box; 0 for what is no number."""
-    index, cubes = 0.0, 1.0
+    """Number of the cube that holds the image of r in the box; the last for others than those of
+    which more is known."""
+    index, cubes, known = 0.0, 1.0, True
     for j in range(len(r)):
         k = len(r) - 1 - j
         along = solid.size[k] * solid.parts
         i = floor(r[k] * solid.parts)
         # half a cube keeps the quotient away from whole numbers, where it might round either way
         images = floor((i + 0.5) * (solid.inverse[k] * (1.0 / solid.parts)))
-        i = min(max(mul_add(-along, images, i), 0.0), along - 1.0)
-        index = mul_add(index, along, i)
-        cubes *= along
-    return np.int32(index if (index >= 0.0) & (index < cubes) else 0.0)
+        i = min(max(mul_add(-along, images, i), 0.0), along - 1.0) - solid.first[k]
+        i += along if i < 0.0 else 0.0
+        index = mul_add(index, solid.held[k], i)
+        known &= (i >= 0.0) & (i < solid.held[k])
+        cubes *= solid.held[k]
+    return np.int32(index if known else cubes)
 
 
 @scalar

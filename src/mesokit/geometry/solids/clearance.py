@@ -10,7 +10,7 @@ import functools
 import itertools
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -31,6 +31,13 @@ EVERYWHERE = 1e30
 FAR = 1e6
 ROUNDING = 1e-9  # of a share
 KEPT = 4  # tables of solids that runs one after the other share: they take a moment to make
+
+
+class Held(NamedTuple):
+    """Cells of the box: from the first along each axis, so many, across an end of it too."""
+
+    first: tuple[int, ...]
+    cells: tuple[int, ...]
 
 
 @by_type
@@ -60,42 +67,52 @@ def origins(closed: tuple[bool, ...]) -> Iterator[tuple[float, ...]]:
     return itertools.product(*along)
 
 
-def centres(cells: tuple[int, ...], origin: tuple[float, ...]) -> Any:
-    """Middles of all cells of a grid (cells, d), x varying fastest."""
-    grids = [np.arange(n) + 0.5 - x for n, x in zip(cells, origin, strict=True)]
+def corners_of(low: Sequence[int], high: Sequence[int]) -> Any:
+    """Lower corners of the cells of a block (cells, d), x varying fastest."""
+    grids = [np.arange(float(a), float(b)) for a, b in zip(low, high, strict=True)]
     mesh = np.meshgrid(*reversed(grids), indexing="ij")
     return np.stack([axis.ravel() for axis in reversed(mesh)], axis=-1)
 
 
-def clear_squares(solids: Solids, bend: float) -> tuple[Any, int]:
-    """Square of a lower bound of the clearance in small cubes that fill the box, x varying fastest,
-    and their number to a cell along each axis.
+def clear_squares(solids: Solids, bend: float, held: Held | None = None) -> tuple[Any, int]:
+    """Square of a lower bound of the clearance in small cubes that fill the box, or the cells held,
+    x varying fastest, and then 0; and their number to a cell along each axis.
 
     No flight is farther than `bend` from the straight way to its end. Plates do not count.
     """
     d = solids.dimension
+    held = held or whole(solids)
     parts = PARTS[d]
-    sides = [n * parts for n in solids.size]
+    sides = [n * parts for n in held.cells]
     layer = math.prod(sides[:-1])
     rows = []
     for n in range(sides[-1]):  # layer by layer, for there may be many
-        middles = cube_middles(np.arange(n * layer, (n + 1) * layer), sides, parts)
+        middles = cube_middles(np.arange(n * layer, (n + 1) * layer), sides, parts, held.first)
         clear = solids.distance(middles, plates=False) - 0.5 * math.sqrt(d) / parts - bend - MARGIN
         squares = np.clip(clear, 0.0, FAR) ** 2
         rows.append(np.nextafter(squares.astype(np.float32), np.float32(0.0)))  # never too large
-    return np.concatenate(rows), parts
+    return np.concatenate([*rows, np.zeros(1, np.float32)]), parts
 
 
-def cube_middles(numbers: Any, sides: Sequence[int], parts: int) -> Any:
-    """Middles of small cubes, of which there are so many along each side of the box."""
+def whole(solids: Solids) -> Held:
+    """All cells of the box."""
+    return Held((0,) * solids.dimension, solids.size)
+
+
+def cube_middles(
+    numbers: Any, sides: Sequence[int], parts: int, first: Sequence[int] | None = None
+) -> Any:
+    """Middles of small cubes, of which there are so many along each side, from a first cell on."""
     places = []
-    for side in sides:
-        places.append((numbers % side + 0.5) / parts)
+    for side, begin in zip(sides, first or [0] * len(sides), strict=True):
+        places.append(begin + (numbers % side + 0.5) / parts)
         numbers = numbers // side
     return np.stack(places, axis=-1)
 
 
-def free_planes(solids: Solids, clear: Any, stride: float, bend: float) -> tuple[Any, Any, float]:
+def free_planes(
+    solids: Solids, clear: Any, stride: float, bend: float, held: Held | None = None
+) -> tuple[Any, Any, float]:
     """Planes above which there is no solid, for the small cubes that have some as near as a stride.
 
     Number of the plane of each cube, or -1; normals and heights; how near to the cube that holds.
@@ -104,13 +121,15 @@ def free_planes(solids: Solids, clear: Any, stride: float, bend: float) -> tuple
     parts = PARTS[d]
     corner = 0.5 * math.sqrt(d) / parts
     reach = max(min(stride, REACH - corner - bend), 0.0)
-    numbers = np.flatnonzero(clear < stride * stride)
-    middles = cube_middles(numbers, [n * parts for n in solids.size], parts)
+    held = held or whole(solids)
+    numbers = np.flatnonzero(clear[:-1] < stride * stride)
+    middles = cube_middles(numbers, [n * parts for n in held.cells], parts, held.first)
     found = solids.distance(middles, plates=False) > -corner  # the others hold no fluid
     numbers, middles = numbers[found], middles[found]
     planes = np.zeros((len(numbers), d + 1))
     away = corner + reach + bend
-    planes_above(solids.kernel, solids.like, away, COLUMNS[d], middles, planes)
+    in_box = middles % np.where(solids.room.closed, np.inf, solids.size)
+    planes_above(solids.kernel, solids.like, away, COLUMNS[d], in_box, planes)
     planes[:, d] += bend + MARGIN
     plane_of = np.full(len(clear), -1, np.int32)
     plane_of[numbers] = np.arange(len(numbers))
@@ -118,24 +137,29 @@ def free_planes(solids: Solids, clear: Any, stride: float, bend: float) -> tuple
 
 
 @functools.lru_cache(maxsize=KEPT)
-def cut_cells(solids: Solids, cells: tuple[int, ...]) -> tuple[Any, Any, Any]:
-    """Cells that may hold both fluid and solid: where those of each offset start, and their lower
-    corners in the grid (entries, d), as whole numbers."""
+def cut_cells(
+    solids: Solids, cells: tuple[int, ...], block: tuple[Any, Any] | None = None
+) -> tuple[Any, Any, Any]:
+    """Cells of the grid, or of a block of it (lowest, and beyond the highest), that may hold both
+    fluid and solid: where those of each offset start, and their lower corners in the grid
+    (entries, d), as whole numbers."""
     starts, numbers, corners = [0], [], []
+    every = corners_of(*(block or ((0,) * len(cells), cells)))
+    strides = np.cumprod([1, *cells[:-1]])
     half = 0.5 + 0.5 / OFFSETS[solids.dimension]
     for origin in origins(solids.room.closed):
-        middle = centres(cells, origin)
+        middle = every + 0.5 - np.array(origin)
         near = np.flatnonzero(np.abs(solids.distance(middle)) <= half * math.sqrt(len(cells)))
         found = np.zeros(len(near), np.int64)
         survey.cut(solids.kernel, solids.like, middle[near], half, PIECES, found)
         chosen = near[found > 0]
-        numbers.append(chosen)
-        corners.append(np.rint(middle[chosen] + np.array(origin) - 0.5))
+        numbers.append(every[chosen] @ strides)
+        corners.append(every[chosen])
         starts.append(starts[-1] + len(chosen))
     return (
         np.array(starts, np.int64),
         np.concatenate(numbers).astype(np.int64),
-        np.concatenate(corners).astype(float),
+        np.concatenate(corners),
     )
 
 
@@ -146,7 +170,7 @@ def surface_pieces(solids: Solids) -> tuple[Any, Any, Any, Any]:
     for fluid, and its term.
     """
     d, size = solids.dimension, solids.size
-    middle = centres(size, (0.0,) * d)
+    middle = corners_of((0,) * d, size) + 0.5
     terms = np.zeros(len(middle), np.int64)
     distance, normal = np.zeros(len(middle)), np.zeros(middle.shape)
     survey.who_is_near(solids.kernel, solids.like, middle, terms, distance, normal)
@@ -170,10 +194,12 @@ def shifts_within(d: int) -> Any:
 
 
 @functools.lru_cache(maxsize=KEPT)
-def cut_planes(solids: Solids, cells: tuple[int, ...]) -> tuple[Any, Any, Any, Any, Any]:
-    """For each cut cell the normal and height of the plane that cuts it, its middle in the box, its
-    term, and the cell of the box in which the surface lies that is nearest to its middle."""
-    starts, _, corners = cut_cells(solids, cells)
+def cut_planes(
+    solids: Solids, cells: tuple[int, ...], block: tuple[Any, Any] | None = None
+) -> tuple[Any, Any, Any, Any, Any]:
+    """For each cell of `cut_cells` the normal and height of the plane that cuts it, its middle in
+    the box, its term, and the cell of the box in which the surface lies nearest to its middle."""
+    starts, _, corners = cut_cells(solids, cells, block)
     middles = np.empty(corners.shape)
     for number, origin in enumerate(origins(solids.room.closed)):
         some = slice(starts[number], starts[number + 1])

@@ -142,15 +142,15 @@ class SolidTables:
             self._places[number] = place
         self._places[SIZE : SIZE + self.dimension] = self.size
         size = tuple(float(length) for length in self.size)
-        unsure = self._keep(np.zeros(math.prod(self.size)), np.float32)
-        no_plane = self._keep(np.full(math.prod(self.size), -1))
         return Bodies(
             size,
             inverse,
             address(self._places),
-            clear=unsure,
             parts=1.0,
-            plane_of=no_plane,
+            first=self.like,
+            held=self.like,
+            clear=self._keep([0.0], np.float32),
+            plane_of=self._keep([-1]),
             planes=0,
             reach=0.0,
             stride=0.0,
