@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
 import sys
 from collections import namedtuple
 from pathlib import Path
@@ -91,3 +93,19 @@ def test_what_no_other_process_can_name_is_not_kept() -> None:
         x: float
 
     assert place(0, 1, Local(1.0)) is None
+
+
+def test_of_processes_that_need_a_kernel_one_compiles(tmp_path: Path) -> None:
+    """The ranks of a run all need the same ones; a lock that somebody left does not matter."""
+    program = (
+        "import mesokit\n"
+        "from mesokit.geometry.solids.solids import Solids\n"
+        "from mesokit.geometry.solids.survey import near_blocks\n"
+        "Solids([mesokit.Disk(centre=[5, 5], radius=2)], mesokit.Box([10, 10]))\n"
+        "print(sum(near_blocks.stats.cache_misses.values()))\n"
+    )
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
+    command = [sys.executable, "-c", program]
+    some = [subprocess.Popen(command, stdout=subprocess.PIPE, env=environment) for _ in range(3)]
+    assert sorted(int(one.communicate(timeout=300)[0]) for one in some) == [0, 0, 1]
+    assert not [file for file in tmp_path.rglob("locks/*") if file.is_file()]

@@ -21,6 +21,7 @@ from numba import config, njit
 from numba.core.caching import FunctionCache
 from numba.core.registry import CPUDispatcher
 
+from mesokit.scalar.one_compiles import released, taken
 from mesokit.scalar.part import part
 
 COMPILED = ("scalar", "case", "geometry", "potential", "spheres", "method", "execute")
@@ -64,6 +65,7 @@ class _Kernel(CPUDispatcher):
             return super().compile(sig)
         finally:
             gc.set_threshold(*usual)
+            self._cache.end_turn()
 
 
 def inner(function: Callable) -> Any:
@@ -77,6 +79,7 @@ class KernelFiles:
     def __init__(self, function: Callable) -> None:
         self.function = function
         self.caches: dict[str, FunctionCache] = {}
+        self._turn: Any = None
 
     @property
     def cache_path(self) -> str:
@@ -84,15 +87,31 @@ class KernelFiles:
         return folder()
 
     def load_overload(self, signature: Any, target: Any) -> Any:
-        """The compiled kernel for these types, None if there is none."""
+        """The compiled kernel for these types; None if there is none, and it is for this process to
+        compile it."""
         cache = self._cache(signature)
-        return None if cache is None else cache.load_overload(signature, target)
+        if cache is None:
+            return None
+        found = cache.load_overload(signature, target)
+        if found is None:
+            self._turn = taken(cache.cache_path, f"{self.function.__qualname__} {signature}")
+            found = cache.load_overload(signature, target)
+        return found
+
+    def end_turn(self) -> None:
+        """Let others look for what was compiled here."""
+        released(self._turn)
+        self._turn = None
 
     def save_overload(self, signature: Any, compiled: Any) -> None:
         """Keep a compiled kernel."""
         cache = self._cache(signature)
         if cache is not None:
-            cache.save_overload(signature, compiled)
+            lock = taken(cache.cache_path, self.function.__qualname__)  # two at once would lose one
+            try:
+                cache.save_overload(signature, compiled)
+            finally:
+                released(lock)
 
     def flush(self) -> None:
         """Forget what is on disk."""
