@@ -5,9 +5,9 @@ from mesokit.scalar.system import read_clock
 
 # The clock is an int64 array: two places for the system's answer, the time of the last lap, then
 # ticks of the system's clock for each stage.
-STAGES = 7
+STAGES = 8
 # stages whose time is kept
-START, SWEEP, CELLS, FINISH, SHARE, WAIT, MOVE, BEADS = -1, 0, 1, 2, 3, 4, 5, 6
+START, SWEEP, CELLS, FINISH, SHARE, WAIT, MOVE, BEADS, SORT = -1, 0, 1, 2, 3, 4, 5, 6, 7
 FIRST = 3  # where their times begin in the clock
 CLOCK_SIZE = FIRST + STAGES
 

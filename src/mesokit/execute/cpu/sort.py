@@ -8,6 +8,7 @@ sorted as a whole, by the cell of their first bead.
 from typing import Any, NamedTuple
 
 from mesokit.case.box import SLIDING, fold, unfold
+from mesokit.execute.cpu.clock import SORT, START, lap
 from mesokit.execute.cpu.grid import cell_index
 from mesokit.execute.cpu.strips.layout import (
     LANES,
@@ -40,6 +41,7 @@ class Order(NamedTuple):
 @kernel
 def sort(team, zero, box, grid, particles, memory):
     """Bring everybody back into the box, and those of one cell together."""
+    lap(team, START)
     wrap(team, zero, box, grid, particles)
     meet(team)
     order_by_cell(team, particles, memory)
@@ -49,6 +51,7 @@ def sort(team, zero, box, grid, particles, memory):
         reorder(team, particles.ident, memory.long, particles.filling, memory.order, bead)
         for k in range(len(zero)):
             reorder(team, particles.image[k], memory.whole, particles.filling, memory.order, bead)
+    lap(team, SORT)
 
 
 @inner

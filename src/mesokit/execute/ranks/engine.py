@@ -64,7 +64,6 @@ class Ranks(CPU):
         self.case, self.numbers, self.comm = case, Numbers(case), comm
         self.threads, self.measures = Threads(threads), measures
         self.n, self.dimension, self.box = self.numbers.n, self.numbers.dimension, self.numbers.box
-        self.sort_seconds = 0.0
         self.balancing = Balance(comm, case.run.imbalance)
         self._window = Window()
         tree = divided(self.numbers.cells, comm.size, axes_to_cut(self.numbers))
