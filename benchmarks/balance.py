@@ -118,7 +118,10 @@ def late(found: dict[str, Any]) -> float:
 
 def table(counts: list[int], windows: int, rounds: int) -> Iterator[str]:
     """With and without moves, in turn."""
-    yield "| case | ranks | most over mean, borders fixed | moving | moves | seconds, fixed | moving | ratio |"
+    yield (
+        "| case | ranks | most over mean, borders fixed | moving | moves | "
+        "seconds, fixed | moving | ratio |"
+    )
     yield "|---|---|---|---|---|---|---|---|"
     kept = {}
     for name, about in CASES.items():

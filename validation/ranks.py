@@ -1,10 +1,11 @@
 """Every example and template, made short, on ranks and threads in any mixture: the same bits.
 
-    python -m validation.ranks [--ways 1x2 2x1 3x1 4x2 8x1] [--steps 40] [names]
+    python -m validation.ranks [--ways 1x2 2x1 3x1 4x2 8x1] [--resumed 3x1-2x1] [--steps 40] [names]
 
 Each case runs on one process first, then in each of the ways (ranks x threads), with borders that
-move whenever work differs. What is compared: the arrays of the checkpoint, of run.h5 (results and
-frames) and the log. A line for each case.
+move whenever work differs; then to its middle in one way and on from there in another. What is
+compared: the arrays of the checkpoint, of run.h5 (results and frames) and the log. A line for each
+case.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from mesokit import Case, MesokitError
 ROOT = Path(__file__).parents[1]
 PLACES = "examples/*.toml", "examples/*/*.toml", "src/mesokit/method/mpcd/templates/*.toml"
 WAYS = "1x2", "2x1", "3x1", "4x2", "8x1"
+RESUMED = ("3x1-2x1",)
 
 
 def cases(names: list[str]) -> Iterator[tuple[str, Path]]:
@@ -83,7 +85,13 @@ def different(one: dict[str, bytes], other: dict[str, bytes]) -> list[str]:
     return sorted(name for name in one.keys() | other.keys() if one.get(name) != other.get(name))
 
 
-def compared(path: Path, steps: int, ways: list[str]) -> Iterator[str]:
+def words(way: str) -> tuple[str, ...]:
+    """How the command is told of ranks and threads."""
+    ranks, threads = way.split("x")
+    return "--ranks", ranks, "--threads", threads, "--quiet"
+
+
+def compared(path: Path, steps: int, ways: list[str], resumed: list[str]) -> Iterator[str]:
     """What each way differs in."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -92,12 +100,20 @@ def compared(path: Path, steps: int, ways: list[str]) -> Iterator[str]:
         mesokit("run", file, "--output", folder / "one", "--threads", 1, "--quiet")
         reference = kept(folder / "one")
         for way in ways:
-            ranks, threads = way.split("x")
-            where = folder / way
-            words = "--ranks", ranks, "--threads", threads, "--quiet"
-            mesokit("run", file, "--output", where, *words)
-            found = different(reference, kept(where))
-            yield f"{way}: {'same' if not found else ', '.join(found[:3])}"
+            mesokit("run", file, "--output", folder / way, *words(way))
+            yield f"{way}: {said(reference, folder / way)}"
+        for ways_ in resumed:
+            first, then = ways_.split("-")
+            half = f"run.steps={steps // 2}"
+            mesokit("run", file, "--output", folder / ways_, "--set", half, *words(first))
+            mesokit("resume", folder / ways_, "--steps", steps, *words(then))
+            yield f"{ways_}: {said(reference, folder / ways_)}"
+
+
+def said(reference: dict[str, bytes], folder: Path) -> str:
+    """Whether all numbers of a run are the same, or which are not."""
+    found = different(reference, kept(folder))
+    return ", ".join(found[:3]) if found else "same"
 
 
 def main() -> None:
@@ -105,14 +121,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*")
     parser.add_argument("--ways", nargs="*", default=list(WAYS))
+    parser.add_argument("--resumed", nargs="*", default=list(RESUMED))
     parser.add_argument("--steps", type=int, default=40)
     given = parser.parse_args()
     for name, path in cases(given.names):
         try:
-            said = "; ".join(compared(path, given.steps, given.ways))
+            line = "; ".join(compared(path, given.steps, given.ways, given.resumed))
         except (MesokitError, RuntimeError) as error:
-            said = f"refused: {error}"
-        print(f"{name}: {said}", flush=True)
+            line = f"refused: {error}"
+        print(f"{name}: {line}", flush=True)
 
 
 if __name__ == "__main__":
