@@ -29,6 +29,13 @@ class Alone:
         """What a function says that all ranks call: the answer of rank 0, or its MesokitError."""
         return function()
 
+    def each(self, function: Callable[[], T]) -> T:
+        """What a function says that all ranks call, each for its part.
+
+        Raises the MesokitError of one of them, the first that has any, on all ranks.
+        """
+        return function()
+
     def gathered(self, value: T) -> list[T]:
         """What each rank has, on all ranks."""
         return [value]

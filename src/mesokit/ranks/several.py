@@ -11,7 +11,7 @@ import hashlib
 import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
@@ -50,6 +50,17 @@ class Several:
             function()
             return _answer(self._own.bcast(None))
         return _answer(self._own.bcast(_outcome(function)))
+
+    def each(self, function: Callable[[], T]) -> T:
+        """What a function says that all ranks call, each for its part.
+
+        Raises the MesokitError of one of them, the first that has any, on all ranks.
+        """
+        answer, error = _outcome(function)
+        for wrong in self.gathered(error):
+            if wrong is not None:
+                raise wrong
+        return cast(T, answer)
 
     def gathered(self, value: T) -> list[T]:
         """What each rank has, on all ranks."""
