@@ -296,8 +296,8 @@ class Simulation(Seen):
                 if self.step == self.last_step:
                     self._end()
         except Exception as error:
-            if self.ranks.root:
-                record.note_failed(self.directory, str(error) or repr(error))
+            reason, directory = str(error) or repr(error), self.directory
+            self.ranks.failed(lambda who: record.note_failed(directory, f"{who}{reason}"))
             raise
         finally:
             progress.finish()

@@ -1,6 +1,7 @@
 """Whatever ends a rank ends all of them soon, with one message; the last checkpoint is whole."""
 
 import contextlib
+import json
 import os
 import random
 import re
@@ -50,6 +51,11 @@ def one_message(ranks, pattern):
     assert len(said) == 1, ranks.err
     assert re.fullmatch(pattern, said[0]), said
     return said[0]
+
+
+def failed(folder):
+    """Why the run failed, as its record has it."""
+    return json.loads((folder / "out" / "provenance.json").read_text())["failed"]
 
 
 def ended_within(ranks, seconds):
@@ -111,6 +117,7 @@ def test_the_physics_of_one_rank_fails(folder, mesokit, mpiexec, rank, by_option
     ranks = mesokit(*words, "--ranks", "2") if by_option else mpiexec(2, *words)
     assert ranks.end() == 1
     one_message(ranks, f"mesokit: error: rank {rank}: step 7: too fast")
+    assert failed(folder) == ("rank 1: " if rank else "") + "step 7: too fast"
 
 
 def test_the_physics_of_all_ranks_fails(folder, mpiexec):
@@ -118,6 +125,7 @@ def test_the_physics_of_all_ranks_fails(folder, mpiexec):
     ranks = mpiexec(3, "--import", "faulty", "run", "endless.toml", "--output", "out")
     assert ranks.end() == 1
     one_message(ranks, "mesokit: error: step 7: too fast")
+    assert failed(folder) == "step 7: too fast"
 
 
 def test_two_of_three_ranks_fail(folder, mpiexec):
@@ -125,6 +133,17 @@ def test_two_of_three_ranks_fail(folder, mpiexec):
     ranks = mpiexec(3, "--import", "faulty", "run", "endless.toml", "--output", "out")
     assert ranks.end() == 1
     one_message(ranks, "mesokit: error: rank 1: step 7: too fast")
+    assert failed(folder) == "rank 1: step 7: too fast"
+
+
+def test_a_particle_of_one_rank_is_too_fast(folder, mpiexec):
+    """It is the record of the run that says so, as on one process."""
+    fast = "memory.fluid.particles.data[memory.at(2, memory.places[:1])] = 1e9"
+    faulty(folder, 1, f"memory = given[0].memory; {fast}", *ENGINE)
+    ranks = mpiexec(2, "--import", "faulty", "run", "endless.toml", "--output", "out")
+    assert ranks.end() == 1
+    said = one_message(ranks, "mesokit: error: .*a particle moves at .*; the fluid heats up: .*")
+    assert said.endswith(failed(folder))
 
 
 def test_a_mistake_in_one_rank(folder, mesokit):

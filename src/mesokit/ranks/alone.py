@@ -70,6 +70,13 @@ class Alone:
 
     # --- the end --------------------------------------------------------------------------------
 
+    def failed(self, note: Callable[[str], Any]) -> None:
+        """A run fails here: note it on record, once for all ranks.
+
+        `note` is given what comes before the reason: the name of the rank, where not all fail.
+        """
+        note("")
+
     def leave(self, say: Callable[[str], Any], status: int) -> None:
         """Say why this process ends with a status, once for all ranks that end so.
 

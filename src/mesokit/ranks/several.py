@@ -35,6 +35,7 @@ class Several:
         self._last = comm.Dup()
         self._runs = 0  # begun so far
         self._told: list[Any] = []
+        self._note: Callable[[str], Any] = _nothing  # what is noted if this rank ends all
         parent.note_rank(self.rank)
         end.watch(self)
 
@@ -100,7 +101,7 @@ class Several:
     def begin(self) -> None:
         """A run begins: signals told before do not matter any more."""
         self._runs += 1
-        self._told = []
+        self._told, self._note = [], _nothing
 
     def heard(self, signal: int) -> int:
         """The number of the signal that has come to this rank, or on rank 0 to any; 0 if none."""
@@ -136,6 +137,16 @@ class Several:
 
     # --- the end --------------------------------------------------------------------------------
 
+    def failed(self, note: Callable[[str], Any]) -> None:
+        """A run fails here: rank 0 notes it, or the first of those that fail if rank 0 does not.
+
+        `note` is given what comes before the reason: the name of the rank, where not all fail.
+        """
+        if self.root:
+            note("")
+        else:
+            self._note = note
+
     def leave(self, say: Callable[[str], Any], status: int) -> None:
         """Say why this rank ends with a status, once for all ranks that end so.
 
@@ -145,6 +156,7 @@ class Several:
             if self.root:
                 say("")
         elif end.first_of_those(self._last):
+            self._note(f"rank {self.rank}: ")
             parent.note_end(status)
             end.speak(lambda: say(f"rank {self.rank}: "))
             end.abort(self._last, status)
@@ -154,6 +166,10 @@ class Several:
         if self.root:
             parent.note_end(status)
         end.leave_orderly(status)
+
+
+def _nothing(who: str) -> None:
+    """No run fails."""
 
 
 def wait(request: Any) -> None:
