@@ -8,6 +8,7 @@ import re
 import signal
 import sys
 import time
+from pathlib import Path
 
 import pytest
 from rank_runs import MESOKIT, SOURCE, same_files
@@ -92,6 +93,29 @@ def test_a_rank_is_killed(folder, mesokit, seed):
     again = mesokit("resume", "out", "--quiet", "--ranks", "2")
     assert again.end() == 0, again.err
     same_files(folder / "one", folder / "out")
+
+
+def alive(pid):
+    """Whether a process is at work; one that has ended may wait to be asked for its status."""
+    with contextlib.suppress(ProcessLookupError):
+        os.kill(pid, 0)
+        stat = Path(f"/proc/{pid}/stat")
+        return not (stat.exists() and stat.read_text().rpartition(")")[2].split()[0] == "Z")
+    return False
+
+
+def test_nobody_outlives_the_process_that_is_killed(folder, mesokit):
+    words = "--import", "notes", "run", "endless.toml", "--output", "out", "--ranks", "2"
+    ranks = mesokit(*words)
+    pids = begun(ranks, folder)
+    assert len(pids) == 2 and all(map(alive, pids))
+    os.kill(ranks.process.pid, signal.SIGKILL)
+    last = time.monotonic() + 10.0
+    while any(map(alive, pids)):
+        assert time.monotonic() < last
+        time.sleep(0.05)
+    ranks.end()  # of the streams, which the launcher has as well: it has ended, too
+    checkpoint.read_meta(folder / "out" / "checkpoint.npz")
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
