@@ -3,65 +3,36 @@
 from __future__ import annotations
 
 import contextlib
-import signal
-import warnings
 from collections.abc import Sequence
 from pathlib import Path
-from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 from mesokit.case.case import Case
-from mesokit.case.kind import note_run
 from mesokit.case.outside import blaming
-from mesokit.case.trajectory import written
-from mesokit.errors import CheckpointError, RunError
-from mesokit.io import h5md
-from mesokit.io.frames import NONE_YET, require_frames
-from mesokit.io.measured import keep, take_up
+from mesokit.errors import RunError
+from mesokit.io.measured import take_up
 from mesokit.io.one_writer import alone
 from mesokit.io.run_directory import RunDirectory, provenance
-from mesokit.io.trajectory import TrajectoryWriter
-from mesokit.method.protocol import method_of
-from mesokit.ranks.order import Coming, Order
 from mesokit.ranks.world import world
 from mesokit.report.document.progress import reporter_for
 from mesokit.report.progress import Reporter
 from mesokit.running import record
 from mesokit.running.callbacks import Callback, Callbacks
-from mesokit.running.compiling import telling
+from mesokit.running.course.course import Course
+from mesokit.running.course.kept import existing
 from mesokit.running.given import case_and_arrays, threads_of, told
 from mesokit.running.log import RunLog
-from mesokit.running.longer import longer, require_steps
-from mesokit.running.on_ranks import require_ranks, shared_work
-from mesokit.running.pace import Pace
+from mesokit.running.longer import longer
+from mesokit.running.on_ranks import require_ranks
 from mesokit.running.replicas import Replicas
-from mesokit.running.results import write_results
-from mesokit.running.schedule import Leg, Schedule
-from mesokit.running.seen import Seen
-from mesokit.running.signals import Stopped, catching
-from mesokit.running.until import Goal, limit_of, next_length
+from mesokit.running.schedule import Schedule
+from mesokit.running.until import Goal
 
 if TYPE_CHECKING:
     from mesokit.observe.shared.result import Result
 
 
-def _existing(output: str | Path, held: contextlib.ExitStack) -> RunDirectory:
-    """A run that can go on, and in whose folder nobody else writes as long as that is held."""
-    directory = RunDirectory.existing(output)
-    held.enter_context(alone(directory))
-    if not directory.checkpoint_file.exists() and "merged" in record.earlier(directory):
-        raise RunError(
-            f"{directory.path}: holds merged runs; go on with those and merge them again"
-        )
-    if directory.data_file.exists() and not directory.checkpoint_file.exists():
-        raise CheckpointError(
-            f"{directory.checkpoint_file}: no such checkpoint, though the run had come to "
-            f"{directory.data_file.name}; to run it anew: {directory.again}"
-        )
-    return directory
-
-
-class Simulation(Seen):
+class Simulation(Course):
     """A case in memory, ready to run.
 
     Parameters
@@ -146,7 +117,7 @@ class Simulation(Seen):
         """
         here = world()
         with here.quietly(), contextlib.ExitStack() as held:
-            directory = here.on_root(lambda: _existing(output, held))
+            directory = here.on_root(lambda: existing(output, held))
             return cls._resumed(directory, threads, steps, callbacks)
 
     @classmethod
@@ -183,14 +154,6 @@ class Simulation(Seen):
         self.ranks.on_root(lambda: record.note_resumed(directory, self.case, *own))
         return self
 
-    def _resume_frames(self) -> None:
-        """Those that came after the checkpoint are forgotten."""
-        if self.writer is not None:
-            assert self.directory is not None
-            seen = self.step if self._looked else NONE_YET
-            require_frames(self.directory, self.case, seen)
-            self.writer.resume(self.step)
-
     def _build(self) -> None:
         require_ranks(self.case, self.ranks.size)
         self.replicas = Replicas(self.case, self.threads)
@@ -198,23 +161,10 @@ class Simulation(Seen):
         self.accumulators = self.replicas.first.accumulators
         self.log = RunLog(self.case)
         self.callbacks.given[:0] = self.log.callbacks()  # first: others may write a checkpoint
-        self.writer: TrajectoryWriter | None = None
+        self.writer = None
         self.schedule = Schedule(self.case)
-        self._looked = False  # whether the state that the run begins with has been sampled
-        self._asked_by: signal.Signals | None = None  # a signal that came to this rank
-        self._stopped_by: signal.Signals | None = None  # one that all ranks have stopped by
-        self._compiling = False
-
-    def _attach(self, directory: RunDirectory) -> None:
-        self.directory = directory
-        if self.ranks.root:
-            self.log.write_to(directory.log_file)
-        if self.case.trajectory is not None:
-            folder = directory.trajectory_folder
-            number, first = written(self.case.trajectory, self.case.groups)
-            spheres = method_of(self.case).spheres
-            kept = spheres, self.ranks.root
-            self.writer = TrajectoryWriter(self.case.trajectory, folder, number, first, *kept)
+        self._looked = self._compiling = False
+        self._asked_by = self._stopped_by = None
 
     @property
     def step(self) -> int:
@@ -269,63 +219,6 @@ class Simulation(Seen):
             silent = Reporter(quiet=True)
             self._carry_on(steps, until, reporter_for(progress) if self.ranks.root else silent)
 
-    def _carry_on(self, steps: int | None, until: str | None, progress: Reporter) -> None:
-        goal = None if until is None else Goal.parse(until, self.case)
-        ended = self._looked and self.step == self.last_step
-        if goal is not None and (ended or (self._looked and self[goal.observable].comparisons)):
-            goal.found(self[goal.observable])
-        limit = None if steps is None else self.step + require_steps(steps) - self.case.run.warmup
-        last = self.last_step
-        if limit is not None and goal is None:
-            last = limit + self.case.run.warmup
-            if last > self.last_step:
-                self.lengthen(limit)
-        self.log.tell = progress.tell
-        if self.step < last or not self._looked:
-            self._tell_start(progress, last)
-        self._stopped_by = self._asked_by = None
-        self.ranks.begin()
-        try:
-            with blaming(self.case), catching(self._stop):
-                if self.step < last:
-                    self._compile(progress)
-                if self.step < last or not self._looked:
-                    self._loop(progress, last)
-                if goal is not None:
-                    self._reach(goal, limit_of(self.case, limit), progress)
-                if self.step == self.last_step:
-                    self._end()
-        except Exception as error:
-            if self.ranks.root:
-                record.note_failed(self.directory, str(error) or repr(error))
-            raise
-        finally:
-            progress.finish()
-        if self._stopped_by is not None and self.step < max(last, self.last_step):
-            raise self._stopped
-
-    def _reach(self, goal: Goal, limit: int, progress: Reporter) -> None:
-        """Go on until the goal is reached, or so many steps after the warm-up are done."""
-        every = next(o.every for o in self.case.observe if o.label == goal.observable)
-        while self.step == self.last_step and not self._asked():
-            excess, done = goal.excess(self[goal.observable]), self.case.run.steps
-            said = f"{goal.said(self[goal.observable])} after {done} steps"
-            if excess <= 1:
-                return progress.tell(said)
-            if done >= limit:
-                return warnings.warn(f"{said}: more is needed", stacklevel=4)
-            self.lengthen(next_length(excess, done, every, limit))
-            if progress.phase:
-                progress.lengthen(self.last_step)
-            else:
-                self._tell_start(progress, self.last_step)
-            self._compile(progress)
-            self._loop(progress, self.last_step)
-
-    def _tell_start(self, progress: Reporter, last: int) -> None:
-        particles = sum(group.number for group in self.case.groups)
-        progress.start(last, particles, "running", self.step)
-
     def reached(self, until: str) -> bool:
         """Whether a number is known as well now as `run(until=...)` asks. Raises CaseError."""
         goal = Goal.parse(until, self.case)
@@ -343,117 +236,10 @@ class Simulation(Seen):
         if self.directory is not None:
             self.ranks.on_root(self._write_longer)
 
-    def _write_longer(self) -> None:
-        assert self.directory is not None
-        self._take_back()
-        self.directory.write_case(self.case)
-        record.note_longer(self.directory, self.case, self.step)
-
-    def _take_back(self) -> None:
-        """A run that goes on has no results yet: its frames come back out of the data file."""
-        assert self.directory is not None
-        if self.writer is not None and self.directory.data_file.exists():
-            file = self.directory.data_file
-            self.writer.take_back(h5md.frames(file), h5md.own(file))
-        self.directory.data_file.unlink(missing_ok=True)
-
     @property
     def last_step(self) -> int:
         """The step at which the run ends, the warm-up included."""
         return self.schedule.last_step
-
-    @property
-    def _stopped(self) -> Stopped:
-        """Where the run was stopped, and by what."""
-        by, doing = self._stopped_by, ", while compiling," if self._compiling else ""
-        assert by is not None
-        return Stopped(by, f"stopped at step {self.step}{doing} by {by.name}")
-
-    def _compile(self, progress: Reporter) -> None:
-        """Load or compile the kernels; say so if it takes long. A signal ends it at once.
-
-        Rank 0 does so first, and the others find what it has kept.
-        """
-        self._compiling = True
-        try:
-            with telling(progress.compiling):
-                self.ranks.on_root(lambda: self.engine.advance(0))
-                self.engine.advance(0)
-        finally:
-            self._compiling = False
-        with contextlib.suppress(OSError):  # kernels are then not kept either
-            note_run(self.case)
-
-    def _loop(self, progress: Reporter, last: int) -> None:
-        if self.step == self.case.run.warmup and not self._looked:
-            self._go([self.schedule.leg(0, self.step)])
-        self.callbacks.stopped = None
-        self._call_back()
-        pace = Pace(self.case.run)
-        coming = self._ahead(pace, self.step, last)
-        while self.step < last and not self._stopping:
-            order, began, step = coming(), perf_counter(), self.step
-            if order.stop:
-                self._stopped_by = signal.Signals(order.stop)
-                break
-            coming = self._ahead(pace, order.target, last)
-            self._go(self.schedule.legs(step, order.target))
-            pace.went(self.step - step, perf_counter() - began)
-            self._call_back()
-            if self._checkpoint_due(order):
-                self.checkpoint()
-                pace.kept()
-            progress.update(self.step)
-        else:
-            coming()
-        if self.step < self.last_step and self.directory is not None:
-            self.checkpoint()
-
-    def _ahead(self, pace: Pace, step: int, last: int) -> Coming:
-        """What is to be done from a step on."""
-
-        def decide(stop: int) -> Order:
-            stops = self.schedule.next_meeting(step), *self.callbacks.next_stops(step)
-            return Order(min(step + pace.chunk, last, *stops), pace.save(), stop)
-
-        return self.ranks.ahead(decide, self._signal)
-
-    def _call_back(self) -> None:
-        """Let callbacks look, if one is due; whether they stop the run is said by rank 0."""
-        if self.callbacks.due(self.step):
-            self.callbacks.stopped = self.ranks.by_root(lambda: self.callbacks.call(self))
-
-    def _signal(self) -> int:
-        """The number of the signal that has come to this rank, or 0."""
-        return self._asked_by or 0
-
-    def _asked(self) -> bool:
-        """Whether a signal or a callback has asked to end the run, by what rank 0 knows."""
-        heard = self.ranks.heard(self._signal())
-        by = self.ranks.on_root(lambda: heard)
-        self._stopped_by = signal.Signals(by) if by else None
-        return self._stopping
-
-    @property
-    def _stopping(self) -> bool:
-        """Whether a signal or a callback has asked to end the run."""
-        return self._stopped_by is not None or self.callbacks.stopped is not None
-
-    def _go(self, legs: Sequence[Leg]) -> None:
-        """Do steps and take samples, and the frame that is due then."""
-        self.replicas.go(legs)
-        if self.writer and self.schedule.frame_due(self.step):
-            self.writer.record(self.engine)
-        self._looked = self.step >= self.case.run.warmup
-
-    def _end(self) -> None:
-        self.replicas.check()
-        if self.directory is None:
-            return
-        self.checkpoint()
-        spent = {"timings": self.timings, "shared_work": shared_work(self.ranks, self.engine)}
-        what = self.directory, self.case, self.results, spent, self.writer
-        self.ranks.on_root(lambda: write_results(*what))
 
     @property
     def timings(self) -> dict[str, float]:
@@ -468,26 +254,3 @@ class Simulation(Seen):
         if self.directory is None:
             raise RunError("no checkpoint without an output folder")
         self.ranks.by_root(self._keep)
-
-    def _keep(self) -> None:
-        """What came before a checkpoint is as safe as the checkpoint."""
-        assert self.directory is not None
-        if self.writer is not None:
-            self.writer.flush()
-        self.log.sync()
-        meta = {"step": self.step, "looked": self._looked}
-        keep(self.directory, self.case, meta, self.replicas.state(), self.ranks.root)
-
-    def _checkpoint_due(self, order: Order) -> bool:
-        if self.directory is None or self._stopping:
-            return False
-        return order.save or self.schedule.checkpoint_due(self.step)
-
-    def _stop(self, by: signal.Signals) -> None:
-        """A signal ends the loop after the steps in hand; a second one stops at once."""
-        if self._asked_by is not None:
-            raise Stopped(by)
-        self._asked_by = by
-        if self._compiling:
-            self._stopped_by = by
-            raise self._stopped

@@ -23,7 +23,8 @@ MPCD = (
     "case", "errors", "geometry", "method.mpcd", "potential", "running.cores", "scalar",
     "statistics", "theory",
 )  # fmt: skip
-START = (*MPCD, "execute.cpu.numbers")  # a type hint only, as the test of what is loaded shows
+# type hints only, as the test of what is loaded shows
+START = (*MPCD, "execute.cpu.numbers", "ranks.world")
 ROWS = {
     "__init__.py": (),
     "__main__.py": ("cli",),
@@ -61,7 +62,7 @@ ROWS = {
     "method/mpcd/columns.py": (*MPCD, "method.protocol"),
     "method/mpcd/summary.py": (*MPCD, "method.protocol"),
     "method/mpcd/start/": START,
-    "method/mpcd/start/first_state.py": (*MPCD, "execute", "io"),
+    "method/mpcd/start/first_state.py": (*MPCD, "execute", "io", "ranks"),
     "method/mpcd/method.py": (
         *MPCD, "engine", "execute", "io", "method.protocol", "observe", "ranks",
     ),

@@ -61,6 +61,17 @@ def test_nobody_listens(folder: Path, streams: str) -> None:
     assert "heats up" in json.loads((folder / "hot" / "provenance.json").read_text())["failed"]
 
 
+def test_ranks_without_mpi4py(folder: Path) -> None:
+    """It is as if it were not installed."""
+    (folder / "sitecustomize.py").write_text("import sys\nsys.modules['mpi4py'] = None\n")
+    path = f"{SOURCE}{os.pathsep}{folder}"
+    ended = process(folder, "mesokit run case.toml --ranks 2", PYTHONPATH=path)
+    assert ended.returncode == 1
+    said = ended.stderr.decode().splitlines()
+    assert said == ["mesokit: error: --ranks: needs mpi4py: pip install 'mesokit[mpi]'"]
+    assert not (folder / "case").exists()
+
+
 def test_names_that_are_not_text(folder: Path) -> None:
     place = os.fsdecode(os.fsencode(folder) + b"/\xff")
     os.mkdir(place)

@@ -1,12 +1,14 @@
 """Whatever ends a rank ends all of them soon, with one message; the last checkpoint is whole."""
 
 import contextlib
+import json
 import os
 import random
 import re
 import signal
 import sys
 import time
+from pathlib import Path
 
 import pytest
 from rank_runs import MESOKIT, SOURCE, same_files
@@ -52,6 +54,11 @@ def one_message(ranks, pattern):
     return said[0]
 
 
+def failed(folder):
+    """Why the run failed, as its record has it."""
+    return json.loads((folder / "out" / "provenance.json").read_text())["failed"]
+
+
 def ended_within(ranks, seconds):
     began = time.monotonic()
     status = ranks.end()
@@ -88,6 +95,29 @@ def test_a_rank_is_killed(folder, mesokit, seed):
     same_files(folder / "one", folder / "out")
 
 
+def alive(pid):
+    """Whether a process is at work; one that has ended may wait to be asked for its status."""
+    with contextlib.suppress(ProcessLookupError):
+        os.kill(pid, 0)
+        stat = Path(f"/proc/{pid}/stat")
+        return not (stat.exists() and stat.read_text().rpartition(")")[2].split()[0] == "Z")
+    return False
+
+
+def test_nobody_outlives_the_process_that_is_killed(folder, mesokit):
+    words = "--import", "notes", "run", "endless.toml", "--output", "out", "--ranks", "2"
+    ranks = mesokit(*words)
+    pids = begun(ranks, folder)
+    assert len(pids) == 2 and all(map(alive, pids))
+    os.kill(ranks.process.pid, signal.SIGKILL)
+    last = time.monotonic() + 10.0
+    while any(map(alive, pids)):
+        assert time.monotonic() < last
+        time.sleep(0.05)
+    ranks.end()  # of the streams, which the launcher has as well: it has ended, too
+    checkpoint.read_meta(folder / "out" / "checkpoint.npz")
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("whom", ["mesokit", "mpiexec", "rank 0", "rank 1"])
 def test_a_signal_stops_all_ranks(folder, mesokit, mpiexec, whom, number):
@@ -111,6 +141,7 @@ def test_the_physics_of_one_rank_fails(folder, mesokit, mpiexec, rank, by_option
     ranks = mesokit(*words, "--ranks", "2") if by_option else mpiexec(2, *words)
     assert ranks.end() == 1
     one_message(ranks, f"mesokit: error: rank {rank}: step 7: too fast")
+    assert failed(folder) == ("rank 1: " if rank else "") + "step 7: too fast"
 
 
 def test_the_physics_of_all_ranks_fails(folder, mpiexec):
@@ -118,6 +149,7 @@ def test_the_physics_of_all_ranks_fails(folder, mpiexec):
     ranks = mpiexec(3, "--import", "faulty", "run", "endless.toml", "--output", "out")
     assert ranks.end() == 1
     one_message(ranks, "mesokit: error: step 7: too fast")
+    assert failed(folder) == "step 7: too fast"
 
 
 def test_two_of_three_ranks_fail(folder, mpiexec):
@@ -125,6 +157,17 @@ def test_two_of_three_ranks_fail(folder, mpiexec):
     ranks = mpiexec(3, "--import", "faulty", "run", "endless.toml", "--output", "out")
     assert ranks.end() == 1
     one_message(ranks, "mesokit: error: rank 1: step 7: too fast")
+    assert failed(folder) == "rank 1: step 7: too fast"
+
+
+def test_a_particle_of_one_rank_is_too_fast(folder, mpiexec):
+    """It is the record of the run that says so, as on one process."""
+    fast = "memory.fluid.particles.data[memory.at(2, memory.places[:1])] = 1e9"
+    faulty(folder, 1, f"memory = given[0].memory; {fast}", *ENGINE)
+    ranks = mpiexec(2, "--import", "faulty", "run", "endless.toml", "--output", "out")
+    assert ranks.end() == 1
+    said = one_message(ranks, "mesokit: error: .*a particle moves at .*; the fluid heats up: .*")
+    assert said.endswith(failed(folder))
 
 
 def test_a_mistake_in_one_rank(folder, mesokit):

@@ -29,6 +29,13 @@ class Alone:
         """What a function says that all ranks call: the answer of rank 0, or its MesokitError."""
         return function()
 
+    def each(self, function: Callable[[], T]) -> T:
+        """What a function says that all ranks call, each for its part.
+
+        Raises the MesokitError of one of them, the first that has any, on all ranks.
+        """
+        return function()
+
     def gathered(self, value: T) -> list[T]:
         """What each rank has, on all ranks."""
         return [value]
@@ -62,6 +69,13 @@ class Alone:
         return lambda: decide(signal())
 
     # --- the end --------------------------------------------------------------------------------
+
+    def failed(self, note: Callable[[str], Any]) -> None:
+        """A run fails here: note it on record, once for all ranks.
+
+        `note` is given what comes before the reason: the name of the rank, where not all fail.
+        """
+        note("")
 
     def leave(self, say: Callable[[str], Any], status: int) -> None:
         """Say why this process ends with a status, once for all ranks that end so.

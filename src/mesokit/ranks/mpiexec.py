@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import IO, NamedTuple, TextIO
 
 from mesokit.errors import RunError
-from mesokit.ranks import parent
+from mesokit.ranks import lifeline, parent
 from mesokit.running.signals import catching
 
 # what launchers and libraries say about a rank that has ended, each in its way
@@ -43,13 +43,16 @@ class End(NamedTuple):
 def start(ranks: int, arguments: Sequence[str]) -> End:
     """Run `mesokit` with these arguments on so many ranks; wait, and pass on what they say.
 
-    A signal goes to rank 0, which stops all at a checkpoint; a second one ends them at once.
+    A signal goes to rank 0, which stops all at a checkpoint; a second one ends them at once. If
+    this process is killed, they end by themselves.
 
     Raises RunError where there is no MPI.
     """
     command = [find(), "-n", str(ranks), sys.executable, "-m", "mesokit", *arguments]
-    with tempfile.TemporaryDirectory(prefix="mesokit-ranks-") as name:
+    with contextlib.ExitStack() as held:
+        name = held.enter_context(tempfile.TemporaryDirectory(prefix="mesokit-ranks-"))
         folder = Path(name)
+        held.enter_context(lifeline.held(folder))
         process = subprocess.Popen(
             command,
             stdin=subprocess.DEVNULL,

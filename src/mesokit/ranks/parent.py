@@ -10,6 +10,8 @@ import os
 import sys
 from pathlib import Path
 
+from mesokit.ranks import lifeline
+
 FOLDER = "MESOKIT_RANKS_FOLDER"
 TERMINAL = "MESOKIT_TERMINAL"  # where the progress bar of rank 0 is to be
 
@@ -20,8 +22,9 @@ def known() -> bool:
 
 
 def note_rank(rank: int) -> None:
-    """This process is that rank."""
+    """This process is that rank, and ends with the one that has started it."""
     if known():
+        lifeline.end_with(Path(os.environ[FOLDER]))
         _write(f"rank-{rank}", os.getpid())
 
 

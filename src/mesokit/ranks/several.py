@@ -11,7 +11,7 @@ import hashlib
 import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
@@ -35,6 +35,7 @@ class Several:
         self._last = comm.Dup()
         self._runs = 0  # begun so far
         self._told: list[Any] = []
+        self._note: Callable[[str], Any] = _nothing  # what is noted if this rank ends all
         parent.note_rank(self.rank)
         end.watch(self)
 
@@ -50,6 +51,17 @@ class Several:
             function()
             return _answer(self._own.bcast(None))
         return _answer(self._own.bcast(_outcome(function)))
+
+    def each(self, function: Callable[[], T]) -> T:
+        """What a function says that all ranks call, each for its part.
+
+        Raises the MesokitError of one of them, the first that has any, on all ranks.
+        """
+        answer, error = _outcome(function)
+        for wrong in self.gathered(error):
+            if wrong is not None:
+                raise wrong
+        return cast(T, answer)
 
     def gathered(self, value: T) -> list[T]:
         """What each rank has, on all ranks."""
@@ -89,7 +101,7 @@ class Several:
     def begin(self) -> None:
         """A run begins: signals told before do not matter any more."""
         self._runs += 1
-        self._told = []
+        self._told, self._note = [], _nothing
 
     def heard(self, signal: int) -> int:
         """The number of the signal that has come to this rank, or on rank 0 to any; 0 if none."""
@@ -125,6 +137,16 @@ class Several:
 
     # --- the end --------------------------------------------------------------------------------
 
+    def failed(self, note: Callable[[str], Any]) -> None:
+        """A run fails here: rank 0 notes it, or the first of those that fail if rank 0 does not.
+
+        `note` is given what comes before the reason: the name of the rank, where not all fail.
+        """
+        if self.root:
+            note("")
+        else:
+            self._note = note
+
     def leave(self, say: Callable[[str], Any], status: int) -> None:
         """Say why this rank ends with a status, once for all ranks that end so.
 
@@ -134,6 +156,7 @@ class Several:
             if self.root:
                 say("")
         elif end.first_of_those(self._last):
+            self._note(f"rank {self.rank}: ")
             parent.note_end(status)
             end.speak(lambda: say(f"rank {self.rank}: "))
             end.abort(self._last, status)
@@ -143,6 +166,10 @@ class Several:
         if self.root:
             parent.note_end(status)
         end.leave_orderly(status)
+
+
+def _nothing(who: str) -> None:
+    """No run fails."""
 
 
 def wait(request: Any) -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit import method as methods
 from mesokit.case.case import Case, method_named
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from mesokit.running.callbacks import Callbacks
 
 MOST_THREADS = 1024
+PIECE = 2**18  # rows
 
 
 def case_and_arrays(given: Any, parts: dict[str, Any]) -> tuple[Case, dict[str, Any]]:
@@ -59,6 +61,13 @@ def told(case: Case, callbacks: Callbacks, arrays: Mapping[str, Any]) -> dict[st
     """All of it as texts, by which ranks see whether they were given the same."""
     calls = ", ".join(str(each.steps) for each in callbacks.given)
     return {"case": case.to_toml(), "steps of callbacks": f"[{calls}]"} | {
-        name: hashlib.sha256(np.asarray(array).tobytes()).hexdigest()
-        for name, array in arrays.items()
+        name: _digest(np.asarray(array)) for name, array in arrays.items()
     }
+
+
+def _digest(array: NDArray[Any]) -> str:
+    """A fingerprint, made piece by piece: there may be no room for another such array."""
+    found, rows = hashlib.sha256(), np.atleast_1d(array)
+    for first in range(0, len(rows), PIECE):
+        found.update(rows[first : first + PIECE].tobytes())
+    return found.hexdigest()

@@ -69,8 +69,11 @@ class CPU:
 
     # --- running --------------------------------------------------------------------------------
 
-    def parts(self) -> Iterator[tuple[int, int]]:
-        """Numbers of the particles, from one to before another, that are to be made here."""
+    def parts(self, by_first: bool = False) -> Iterator[tuple[int, int]]:
+        """Numbers of the particles, from one to before another, that are to be made here.
+
+        Of several ranks each makes its part, or the first of them all.
+        """
         return pieces(0, self.n, self.numbers.beads)
 
     def begin(self, particles: Iterable[tuple[Any, ...]]) -> None:

@@ -82,9 +82,11 @@ class Ranks(CPU):
 
     # --- running --------------------------------------------------------------------------------
 
-    def parts(self) -> Iterator[tuple[int, int]]:
+    def parts(self, by_first: bool = False) -> Iterator[tuple[int, int]]:
         beads, molecules = self.numbers.beads, self.n // self.numbers.beads
         first, last = (molecules * (self.comm.rank + k) // self.comm.size for k in (0, 1))
+        if by_first:
+            first, last = 0, molecules if self.comm.rank == ROOT else 0
         return pieces(first * beads, last * beads, beads)
 
     def _take(self, particles: Iterable[Piece]) -> None:

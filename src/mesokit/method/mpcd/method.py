@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 def _first_state(case: Case, arrays: Mapping[str, Any]) -> FirstState:
     from mesokit.method.mpcd.start.first_state import first_state
 
-    return first_state(case, **arrays)
+    return first_state(case, **arrays, here=world())
 
 
 def _engine(case: Case, threads: int, measures: Sequence[str]) -> Engine:

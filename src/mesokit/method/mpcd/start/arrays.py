@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import zipfile
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,10 +12,12 @@ from numpy.typing import NDArray
 
 from mesokit.errors import CaseError, MesokitError
 from mesokit.geometry.solids.solids import solids_of
+from mesokit.method.mpcd.start.of_first import OfFirst, read_by_first, rows_of, told_by_first
 from mesokit.method.mpcd.start.section import Start
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.ranks.world import World
 
 Floats = NDArray[np.float64]
 State = Callable[["Case", str], tuple[Any, Any]]
@@ -24,11 +27,13 @@ MOST_IMAGES = 2**30  # boxes away from the primary one: image counts are 32-bit
 
 
 def read_arrays(
-    case: Case, owner: str, positions: Any, velocities: Any, **states: State
+    case: Case, owner: str, positions: Any, velocities: Any, here: World, **states: State
 ) -> tuple[Any, Any]:
     """The arrays to start from: those given, or those that the case names; None where none.
 
-    Rows of a .npy file or of an earlier run are read where they are asked for.
+    Rows of a .npy file or of an earlier run are read where they are asked for. Of several ranks
+    (`here`) each looks at its share of what all have, and all hear what is wrong. Other files rank
+    0 reads alone (`OfFirst`), but for those of solutes, whose beads all ranks know.
 
     `owner` is "fluid" or "solutes". `states` gives for each key that names a whole state (`run`,
     `file`) what reads positions and velocities that suit the case. Raises CaseError if an array is
@@ -39,30 +44,36 @@ def read_arrays(
     where = f"{owner}.start"
     _once(where, given, positions=positions, velocities=velocities)
     keys = f"{where}.positions", f"{where}.velocities"
+    taken = partial(read_by_first if owner == "fluid" else told_by_first, here)
+
+    def loaded(name: str, path: str) -> Any:
+        key = f"{where}.{name} = {path!r}"
+        if owner == "fluid" and here.on_root(lambda: _is_plain(path)):
+            return here.each(lambda: _load(key, name, path))
+        return taken(lambda: (_load(key, name, path),))[0]
+
     for name, read in states.items():
         if getattr(given, name) is None:
             continue
         key = f"{where}.{name} = {getattr(given, name)!r}"
         try:
-            positions, velocities = read(case, getattr(given, name))
+            positions, velocities = taken(partial(read, case, getattr(given, name)))
         except MesokitError as error:
             raise CaseError(f"{key}: {error}") from None
         keys = f"{key}: positions", f"{key}: velocities"
         break
     else:
         if positions is None and given.positions is not None:
-            positions = _load(where, "positions", given.positions)
+            positions = loaded("positions", given.positions)
         if velocities is None and given.velocities is not None:
-            velocities = _load(where, "velocities", given.velocities)
+            velocities = loaded("velocities", given.velocities)
     if positions is not None:
         if owner == "fluid":
             _no_conformation(case)
-        positions = _checked(case, owner, keys[0], positions)
-        for first, rows in _pieces(positions):
-            _inside(case, keys[0], first, rows)
-            _near(case, keys[0], first, rows)
+        positions = here.each(partial(_checked, case, owner, keys[0], positions, here))
+        here.each(partial(_require_room, case, keys[0], positions, here))
     if velocities is not None:
-        velocities = _checked(case, owner, keys[1], velocities)
+        velocities = here.each(partial(_checked, case, owner, keys[1], velocities, here))
     return positions, velocities
 
 
@@ -85,13 +96,19 @@ def _no_conformation(case: Case) -> None:
         )
 
 
-def _load(where: str, name: str, path: str) -> Any:
-    """An array from a .npy file, or the only one (or the one of that name) from a .npz file."""
-    key = f"{where}.{name} = {path!r}"
+def _is_plain(path: str) -> bool:
+    """Whether a file is a .npy one, of which rows can be read where they are asked for."""
     try:
         with open(path, "rb") as file:
-            plain = file.read(len(MAGIC)) == MAGIC
-        found = np.load(path, mmap_mode="r" if plain else None, allow_pickle=False)
+            return file.read(len(MAGIC)) == MAGIC
+    except OSError:
+        return False
+
+
+def _load(key: str, name: str, path: str) -> Any:
+    """An array from a .npy file, or the only one (or the one of that name) from a .npz file."""
+    try:
+        found = np.load(path, mmap_mode="r" if _is_plain(path) else None, allow_pickle=False)
     except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
         reason = f": {error.strerror}" if isinstance(error, OSError) and error.strerror else ""
         raise CaseError(f"{key}: expected a .npy or .npz file of numbers{reason}") from None
@@ -102,8 +119,11 @@ def _load(where: str, name: str, path: str) -> Any:
     return found[name if name in found.files else found.files[0]]
 
 
-def _checked(case: Case, owner: str, key: str, values: Any) -> Any:
+def _checked(case: Case, owner: str, key: str, given: Any, here: World) -> Any:
     """Numbers for each particle; those of the fluid stay where they are, which may be a file."""
+    values = rows_of(given)
+    if values is None:  # rank 0 has them
+        return given
     if np.ma.isMaskedArray(values):
         raise CaseError(f"{key}: expected an array of numbers without a mask")
     try:
@@ -119,17 +139,31 @@ def _checked(case: Case, owner: str, key: str, values: Any) -> Any:
             f"{key}: shape {array.shape}: expected {shape}, one row for each of the "
             + ("solutes' beads" if owner == "solutes" else "fluid's particles")
         )
-    for first, rows in _pieces(array):
+    for first, rows in _pieces(array, here, isinstance(given, OfFirst)):
         if not np.isfinite(rows).all():
             row = first + int(np.argwhere(~np.isfinite(rows))[0][0])
             raise CaseError(f"{key}: row {row} is not finite")
+    if isinstance(given, OfFirst):
+        return given
     return array if owner == "fluid" else np.array(array, float)
 
 
-def _pieces(array: Any) -> Iterator[tuple[int, Floats]]:
-    """Some rows after the other, as floats, and the number of the first."""
-    for first in range(0, len(array), PIECE):
-        yield first, np.asarray(array[first : first + PIECE], float)
+def _pieces(array: Any, here: World, alone: bool) -> Iterator[tuple[int, Floats]]:
+    """Some rows after the other, as floats, and the number of the first: all if this rank `alone`
+    has them, else its share."""
+    first, last = (len(array) * (here.rank + k) // here.size for k in (0, 1))
+    first, last = (0, len(array)) if alone else (first, last)
+    for start in range(first, last, PIECE):
+        yield start, np.asarray(array[start : min(start + PIECE, last)], float)
+
+
+def _require_room(case: Case, key: str, given: Any, here: World) -> None:
+    """Nobody where no particle may be."""
+    array = rows_of(given)
+    if array is not None:
+        for first, rows in _pieces(array, here, isinstance(given, OfFirst)):
+            _inside(case, key, first, rows)
+            _near(case, key, first, rows)
 
 
 def _inside(case: Case, key: str, first: int, positions: Floats) -> None:

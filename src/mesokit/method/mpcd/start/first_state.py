@@ -14,11 +14,15 @@ from mesokit.io.snapshot_file import read_snapshot
 from mesokit.method.mpcd.solute.free import FreeMolecule
 from mesokit.method.mpcd.start.arrays import read_arrays
 from mesokit.method.mpcd.start.snapshot import fitted, fitted_beads
+from mesokit.ranks.alone import Alone
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.execute.cpu.numbers import Numbers
     from mesokit.method.mpcd.solutes import Solutes
+    from mesokit.ranks.world import World
+
+ALONE = Alone()
 
 
 class FirstState(NamedTuple):
@@ -36,20 +40,25 @@ def first_state(
     velocities: Any = None,
     beads: Any = None,
     bead_velocities: Any = None,
+    here: World = ALONE,
 ) -> FirstState:
     """What to start from: given, or what the case names; None stands for what is to be drawn.
+
+    All ranks, which are `here`, ask at the same time; `OfFirst` is what rank 0 has for all.
 
     Raises CaseError for arrays that do not fit the case, and for files and runs that cannot be
     read.
     """
-    fluid = read_arrays(case, "fluid", positions, velocities, run=_last_state, file=_from_file)
+    fluid = read_arrays(
+        case, "fluid", positions, velocities, here, run=_last_state, file=_from_file
+    )
     if case.solutes is None:
         for name, array in (("beads", beads), ("bead_velocities", bead_velocities)):
             if array is not None:
                 raise CaseError(f"{name}: there are no solutes in this case")
         return FirstState(*fluid, None, None)
     solutes = read_arrays(
-        case, "solutes", beads, bead_velocities, run=_last_beads, file=_beads_from_file
+        case, "solutes", beads, bead_velocities, here, run=_last_beads, file=_beads_from_file
     )
     if solutes[0] is None:
         _require_drawable(case.solutes)

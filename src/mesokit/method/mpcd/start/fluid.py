@@ -11,6 +11,7 @@ from mesokit.geometry.solids.contact import MARGIN
 from mesokit.method.mpcd.start.around_beads import out_of_beads
 from mesokit.method.mpcd.start.conformation import connected, drawn
 from mesokit.method.mpcd.start.draws import Draws
+from mesokit.method.mpcd.start.of_first import OfFirst, rows_of
 from mesokit.method.mpcd.start.room import periods, stays_out
 from mesokit.method.mpcd.start.solutes import first_beads
 from mesokit.scalar.fixed_point import added_halves, halves
@@ -39,12 +40,14 @@ def start(
         are to be made here.
     positions, velocities : array (n, d) or rows of a file, optional
         In cells, and in cells per unit of time, by particle number, as `read_arrays` has checked
-        them.
+        them. Where rank 0 alone has some, it makes all particles, a piece at a time.
     beads, bead_velocities : array (n, d), optional
         The same of the beads of solutes.
     """
     numbers: Numbers = engine.numbers
     case, at_rest = numbers.case, velocities is None
+    parts = engine.parts(any(isinstance(array, OfFirst) for array in (positions, velocities)))
+    positions, velocities = rows_of(positions), rows_of(velocities)
     drifts: list[Floats] = []  # to take off, one after the other
     if at_rest:
         drifts.append(_drift(engine))
@@ -67,7 +70,7 @@ def start(
                 v[:, 0] += case.box.first_rate * (r[:, 1] - 0.5 * numbers.box[1])
         return who, r, v, np.zeros(r.shape, np.int32)
 
-    engine.begin(made(*part) for part in engine.parts())
+    engine.begin(made(*part) for part in parts)
 
 
 def first_positions(numbers: Numbers, who: Who, given: Any, beads: Any = None) -> Floats:

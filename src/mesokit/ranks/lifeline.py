@@ -1,0 +1,46 @@
+"""Ranks do not outlive the process that has started them on this machine, even if it is killed.
+
+It holds a lock, of which the system lets go when that process ends in whatever way; ranks ask for
+the lock, and who gets it ends.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+LOCK = "alive"
+PAUSE = 0.5  # seconds between two questions
+
+
+@contextlib.contextmanager
+def held(folder: Path) -> Iterator[None]:
+    """Be known to live. Where a file system knows no locks, nobody asks for it."""
+    from filelock import FileLock
+
+    lock = FileLock(folder / LOCK)
+    try:
+        lock.acquire(blocking=False)
+    except (OSError, NotImplementedError):
+        (folder / LOCK).unlink(missing_ok=True)
+    try:
+        yield
+    finally:
+        lock.release()
+
+
+def end_with(folder: Path) -> None:
+    """End this process, whatever it is at, as soon as the one that has that folder is gone."""
+    if (folder / LOCK).exists():
+        threading.Thread(target=_wait, args=(folder,), daemon=True).start()
+
+
+def _wait(folder: Path) -> None:
+    from filelock import FileLock
+
+    with contextlib.suppress(OSError):  # the folder is gone, and so is who made it
+        FileLock(folder / LOCK).acquire(poll_interval=PAUSE)
+    os._exit(1)
