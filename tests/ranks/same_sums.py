@@ -12,6 +12,7 @@ from same_bits import HELD, POLYMERS, RUN, anywhere
 from mesokit import (
     FENE,
     WCA,
+    Bending,
     BondLength,
     Box,
     Case,
@@ -21,7 +22,6 @@ from mesokit import (
     Disk,
     DomainSize,
     Fluid,
-    Harmonic,
     Molecule,
     Plates,
     Probe,
@@ -87,7 +87,7 @@ CASES = {
         fluid=Fluid(
             density=6,
             thermostat=HELD,
-            molecule=Molecule(length=3, bond=Harmonic(K=1.0, length=1.0), pair=WCA()),
+            molecule=Molecule(length=3, bond=FENE(), pair=WCA(), bending=Bending(kappa=2.0)),
         ),
         solutes=Solutes(polymers=POLYMERS, bond=FENE(), pair=WCA(), mass=5.0),
         observe=[
