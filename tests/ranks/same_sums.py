@@ -3,6 +3,7 @@
 mpiexec -n 3 python -m mpi4py same_sums.py "past a post"
 """
 
+import math
 import sys
 
 import numpy as np
@@ -38,8 +39,10 @@ from mesokit.execute import pieces
 from mesokit.execute.cpu.engine import CPU
 from mesokit.execute.ranks.engine import Ranks
 from mesokit.method.mpcd.start.fluid import start
+from mesokit.observe import domain_size
 
 COMM = MPI.COMM_WORLD
+domain_size.CLEAR = -math.inf  # noise is to have a size as well
 FEW, ALL = 37, 2**18  # particles of a piece
 CASES = {
     "past a post": Case(
