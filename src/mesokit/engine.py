@@ -7,7 +7,7 @@ arrays here are in the order of particle numbers, whatever the layout in memory 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -67,12 +67,39 @@ class Engine(Particles, Protocol):
         """Time spent so far in each stage of the step."""
 
 
+class Some(Protocol):
+    """Some particles of a fluid, whole molecules: numbers (n,), positions in the box, velocities
+    and images (n, d), masses (n,). What is found of one must not depend on who else is there."""
+
+    @property
+    def ids(self) -> Integers: ...
+    @property
+    def positions(self) -> Array: ...
+    @property
+    def velocities(self) -> Array: ...
+    @property
+    def images(self) -> NDArray[np.int32]: ...
+    @property
+    def masses(self) -> Array: ...
+
+
+# bins (m,) of whatever counts, and terms (m,) of each kind to add up in these
+Terms = tuple[NDArray[Any], Sequence[NDArray[Any]]]
+
+
 class RunningFluid(Particles, Protocol):
     """What observables may ask of an engine whose particles are a fluid.
 
     `totals` gives number, momentum (d,) and kinetic energy of all particles. `moments` gives
     number, mass (*bins), momentum (d, *bins) and sum of m v^2 (*bins) in equal bins over the
-    whole box along `axes`. `modes` gives sum m e^(-i k r) (K,) and sum m v e^(-i k r) (K, d).
+    whole box along `axes`. `modes` gives sum m e^(-i k r) (K,) and sum m v e^(-i k r) (K, d), of
+    all or of the particles from number `first` to before `last`.
+    `sums_of_particles` gives the sums (kinds of terms, bins) of what a function finds of some
+    particles at a time: no process needs to have all. `units` are about as large as a term of each
+    kind: sums are exact of terms rounded to 2^-52 of them, and nan where a term is above 2^44. The
+    particles are those of the fluid, or from number `first` to before `last`, solutes included.
+    `sums_of_bonds` does the same with numbers and vectors of the bonds of a kind, which is given by
+    its place in `bond_vectors` and counted from 0.
     `bond_vectors` (bonds, d) lead from the first to the second particle of each bond, in molecules
     of the fluid and then in solutes.
     `whole_positions` are those of whole molecules, each bead next to its first, whatever images
@@ -88,8 +115,23 @@ class RunningFluid(Particles, Protocol):
         self, axes: tuple[int, ...], bins: tuple[int, ...]
     ) -> tuple[Array, Array, Array, Array]: ...
     def modes(
-        self, wavevectors: Array
+        self, wavevectors: Array, first: int = 0, last: int | None = None
     ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]: ...
+    def sums_of_particles(
+        self,
+        of: Callable[[Some], Terms],
+        bins: int,
+        units: Sequence[float],
+        first: int = 0,
+        last: int | None = None,
+    ) -> Array: ...
+    def sums_of_bonds(
+        self,
+        of: Callable[[Integers, Array], Terms],
+        bins: int,
+        units: Sequence[float],
+        kind: slice,
+    ) -> Array: ...
     def velocities(self, ids: Integers | None = None) -> Array: ...
     def masses(self, ids: Integers | None = None) -> Array: ...
     def bond_vectors(self) -> Array: ...

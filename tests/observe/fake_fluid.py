@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from at_once import AtOnce
 
 from mesokit import Disk, Harmonic, Plates, Sphere, Uniform
 from mesokit.errors import CaseError
@@ -41,7 +42,7 @@ def taken(case, rng):
     return rng.normal(size=(len(solids_of(case).bodies) if case.walls else 2, columns))
 
 
-class FakeFluid:
+class FakeFluid(AtOnce):
     """Independent particles, thermal about a given flow; velocities keep a share each step.
 
     `flow` is v_x(y), or with `field` the velocity (n, d) at places (n, d). Particles stay out of
@@ -153,10 +154,11 @@ class FakeFluid:
         energy = total(self.m * (v**2).sum(axis=1))
         return total(np.ones(self.n)), total(self.m), momentum, energy
 
-    def modes(self, wavevectors):
-        angle = self.positions() @ np.asarray(wavevectors).T
+    def modes(self, wavevectors, first=0, last=None):
+        ids = np.arange(first, self.n if last is None else last)
+        angle = self.positions(ids) @ np.asarray(wavevectors).T
         phase = np.cos(angle) - 1j * np.sin(angle)  # in half the time of a complex exponential
-        return self.m @ phase, phase.T @ (self.m[:, None] * self.velocities())
+        return self.m[ids] @ phase, phase.T @ (self.m[ids, None] * self.velocities(ids))
 
 
 class FakeWaves:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from at_once import AtOnce
 from laboratory import make_case
 
 from mesokit import Harmonic, Polymer, Solutes
@@ -15,7 +16,7 @@ def case_with(observable, number=1, length=2, size=(20, 20), **parts):
     return make_case(size, [observable], solutes=solutes, **parts)
 
 
-class Moved:
+class Moved(AtOnce):
     """Beads (molecules, length, d) whose places are set before each sample."""
 
     def __init__(self, case):

@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+from at_once import AtOnce
 
 from mesokit import CellOccupancy, Disk, MaxwellBoltzmann, Plates, Uniform, VelocityDistribution
 
 SAMPLES = 2500
 
 
-class Gas:
+class Gas(AtOnce):
     """An ideal gas, drawn anew each time; on demand without momentum."""
 
     def __init__(self, case, resting=True, spread=1.0, crowded=1.0):
@@ -23,9 +24,9 @@ class Gas:
         v = self.spread * self.rng.normal(size=(self.n, self.d))
         return (v - self.resting * v.mean(axis=0))[ids]
 
-    def positions(self):
+    def positions(self, ids):
         r = self.rng.random((self.n, self.d)) ** self.crowded
-        return r * self.case.box.size
+        return (r * self.case.box.size)[ids]
 
 
 def watched(observable, case, **parts):

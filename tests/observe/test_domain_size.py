@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
+from at_once import AtOnce
 
 from mesokit import CaseError, DomainSize, Plates, Species
 from mesokit.report import plot
@@ -14,13 +13,21 @@ SIZE, SMALL = (48, 32), (12, 8, 16)
 TWO = (Species(mass=1, density=5), Species(mass=1, density=5))
 
 
+class Places(AtOnce):
+    def __init__(self, time, places):
+        self.time, self.places, self.n = time, places, len(places)
+
+    def positions(self, ids):
+        return self.places[ids]
+
+
 def measured(make_case, places, size=SIZE, **parts):
     each = len(places) / (2 * np.prod(size))
     kinds = (Species(mass=1, density=each), Species(mass=1, density=each))
     case = make_case(size, [DomainSize(**parts)], species=kinds)
     accumulator = DomainSize(**parts).accumulator(case)
     for time in range(2):
-        accumulator.observe(SimpleNamespace(time=float(time), positions=lambda: places))
+        accumulator.observe(Places(float(time), places))
     return accumulator.result()
 
 

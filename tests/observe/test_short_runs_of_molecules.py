@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from at_once import AtOnce
 from laboratory import make_case
 
 from mesokit import SRD, BondLength, Harmonic, MaxwellBoltzmann, MoleculeSize, Stress
@@ -20,7 +21,7 @@ DIMERS = {
 }
 
 
-class Dimers:
+class Dimers(AtOnce):
     """Bond vectors that relax as theory says, each on its own, and start in equilibrium."""
 
     def __init__(self, accumulator, seed):

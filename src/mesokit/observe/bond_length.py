@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit.case.component import component, param, tag
-from mesokit.engine import RunningFluid
+from mesokit.engine import RunningFluid, Terms
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import (
     KIND,
@@ -56,13 +57,21 @@ class BondLengthAccumulator(MoleculeTensorAccumulator):
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        way = fluid.bond_vectors()[self.bonds]
-        of_each = way.reshape(self.molecules, -1, way.shape[1])
-        products = np.einsum("mij,mik->mjk", of_each, of_each) / of_each.shape[1]
-        self.note_own(products[:, None])
-        square = way**2
-        elements = np.einsum("ij,ik->jk", square, square) / len(way)
-        self.note_squares(elements[None], (square.sum(axis=1) ** 2).mean(keepdims=True), len(way))
+        d, bonds = self.case.box.dimension, self.bonds.stop - self.bonds.start
+        units = [1.0] * (2 * d * d + 1)
+        sums = fluid.sums_of_bonds(self.products, self.own.groups, units, self.bonds)
+        products, (*elements, traces) = sums[: d * d], sums[d * d :].sum(axis=1) / bonds
+        self.note_sums(products.T * (self.molecules / bonds), self.molecules)
+        self.note_squares(np.reshape(elements, (1, d, d)), np.array([traces]), bonds)
+
+    def products(self, numbers: NDArray[np.int64], way: Array) -> Terms:
+        """Groups of molecules of some bonds; products of their components, their squares, and those
+        of their square lengths."""
+        molecule = numbers // ((self.bonds.stop - self.bonds.start) // self.molecules)
+        axes = way.T
+        products = [one * other for one in axes for other in axes]
+        squares = [product**2 for product in products]
+        return self.own.group_of(molecule), [*products, *squares, (way**2).sum(axis=1) ** 2]
 
     def result(self) -> Result:
         """The products, and the mean square bond length beside that of Boltzmann."""

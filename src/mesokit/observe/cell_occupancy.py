@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.component import component, tag
-from mesokit.engine import RunningFluid
+from mesokit.engine import RunningFluid, Some, Terms
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import free_volume, solids_of
 from mesokit.method.mpcd.expected import setting
@@ -74,16 +74,19 @@ class CellOccupancyAccumulator(BlockAccumulator):
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        size = self.case.box.size
-        place = np.floor(fluid.positions()).astype(np.int64)
-        for k, length in enumerate(size):  # what lies at the very end is in the last
-            place[:, k] = np.clip(place[:, k], 0, length - 1)
-        flat = np.ravel_multi_index(tuple(place.T), size)
-        held = np.bincount(flat, minlength=len(self.cells))[self.cells]
+        (number,) = fluid.sums_of_particles(self.cell_of, len(self.cells), [1.0])
+        held = number.astype(np.int64)[self.cells]
         bins = np.clip(held - self.first, 0, len(self.numbers) - 1)
         count = np.bincount(bins, minlength=len(self.numbers)).astype(float)
         square = chi_square.chi_square(chi_square.joined(count, self.of), self.classes)
         self.blocks.add(np.append(count / len(held), [held.mean(), held.var(), square]))
+
+    def cell_of(self, some: Some) -> Terms:
+        """Cells of some particles, each of which counts as one."""
+        size, place = self.case.box.size, np.floor(some.positions).astype(np.int64)
+        for k, length in enumerate(size):  # what lies at the very end is in the last
+            place[:, k] = np.clip(place[:, k], 0, length - 1)
+        return np.ravel_multi_index(tuple(place.T), size), [np.ones(len(place))]
 
     def result(self) -> Result:
         """Probabilities of the numbers."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.component import component, param, tag
-from mesokit.engine import RunningFluid
+from mesokit.engine import RunningFluid, Some, Terms
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import Group, group_of, kind_of, springs_of
@@ -153,22 +153,30 @@ class DensityProfileAccumulator(ProfileAccumulator):
         self.kind = 1 if observable.kind is None else observable.kind
         self.group = group_of(case, observable.of, observable.kind)
         self.everything = self.of == "particles" and not (case.fluid.species and observable.kind)
-        if not self.everything:
-            beads = self.group.beads()
-            self.beads = beads[:, _ends(self.group)] if self.of == "ends" else beads
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         if self.everything:
             super().observe(fluid)
             return
-        y = fluid.positions(self.beads.ravel(), unwrapped=self.of == "centres")[:, self.axis]
+        first, last = self.group.first, self.group.first + self.group.number * self.group.length
+        number = fluid.sums_of_particles(self.slices, self.bins, [1.0], first, last)
+        self.blocks.add(number / self.slice_volume)
+
+    def slices(self, some: Some) -> Terms:
+        """Slices of what counts among some molecules, each as one."""
+        y = some.positions[:, self.axis]
         if self.of == "centres":
-            y = y.reshape(self.beads.shape).mean(axis=1)
+            y = y + some.images[:, self.axis] * self.edges[-1]
+            y = y.reshape(-1, self.group.length).mean(axis=1)
             if self.periodic:
                 y = y % self.edges[-1]
-        number, _ = np.histogram(y, self.edges)
-        self.blocks.add(number[None] / self.slice_volume)
+        elif self.of == "ends":
+            y = y.reshape(-1, self.group.length)[:, _ends(self.group)].ravel()
+        place = np.searchsorted(self.edges, y, side="right") - 1
+        place[y == self.edges[-1]] -= 1  # what lies at the very end is in the last
+        place = place[(place >= 0) & (place < self.bins)]
+        return place, [np.ones(len(place))]
 
     def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
         """Particles per volume."""

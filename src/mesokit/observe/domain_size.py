@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.component import component, param, tag
-from mesokit.engine import RunningFluid
+from mesokit.engine import RunningFluid, Some, Terms
 from mesokit.errors import CaseError
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Array, Comparison, Result
@@ -63,8 +63,9 @@ class DomainSizeAccumulator:
         observable.check(case)
         self.name, self.size = observable.label, case.box.size
         first, second = (kind.number for kind in case.groups[0].kinds)
-        colour = np.repeat([1.0, -1.0], [first, second])
-        self.colour = colour - colour.mean()
+        self.first, mean = first, (first - second) / (first + second)
+        self.colours = 1.0 - mean, -1.0 - mean  # of one of either species, 0 in the mean
+        self.noise = first * self.colours[0] ** 2 + second * self.colours[1] ** 2
         # waves of cells: with the real transform those along the last axis stand for two but
         # for the first and the last
         turns = [np.fft.fftfreq(n) for n in self.size[:-1]] + [np.fft.rfftfreq(self.size[-1])]
@@ -80,12 +81,16 @@ class DomainSizeAccumulator:
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        cell = np.floor(fluid.positions()).astype(int) % np.array(self.size)
-        place = np.ravel_multi_index(tuple(cell.T), self.size)
-        colour = np.bincount(place, self.colour, math.prod(self.size)).reshape(self.size)
-        power = abs(np.fft.rfftn(colour)[self.counts]) ** 2 / (self.colour**2).sum()
+        (colour,) = fluid.sums_of_particles(self.colour_of, math.prod(self.size), [1.0])
+        power = abs(np.fft.rfftn(colour.reshape(self.size))[self.counts]) ** 2 / self.noise
         self.series.add(fluid.time, [self.size_of(power)])
         self.samples += 1
+
+    def colour_of(self, some: Some) -> Terms:
+        """Cells of some particles, and their colour."""
+        cell = np.floor(some.positions).astype(int) % np.array(self.size)
+        place = np.ravel_multi_index(tuple(cell.T), self.size)
+        return place, [np.where(some.ids < self.first, *self.colours)]
 
     def size_of(self, power: Array) -> float:
         """Of the structure factor of each wave, noise included."""

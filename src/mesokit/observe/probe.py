@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -12,7 +13,7 @@ from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.digits import two_digits
 from mesokit.case.describe.hints import Either
-from mesokit.engine import RunningFluid
+from mesokit.engine import RunningFluid, Some, Terms
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.expected import setting
@@ -128,14 +129,21 @@ class ProbeAccumulator:
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        away = fluid.positions() - self.centre
-        away -= np.where(np.isfinite(self.lengths), self.lengths, 0) * np.round(away / self.lengths)
-        inside = (np.abs(away) <= self.half).all(axis=1)
-        if inside.any():
-            m = fluid.masses()[inside]
-            self.last = m @ fluid.velocities()[inside] / m.sum()
+        mass, d = self.case.fluid.mass, self.dimension
+        units = [mass, *[math.sqrt(mass * self.case.fluid.kT)] * d]
+        m, *momentum = fluid.sums_of_particles(self.inside, 1, units)[:, 0]
+        if m > 0:
+            self.last = np.array(momentum) / m
         self.blocks.add(self.last)
         self.series.add(fluid.time, self.last)
+
+    def inside(self, some: Some) -> Terms:
+        """Mass and momentum of the particles in the small box."""
+        away = some.positions - self.centre
+        away -= np.where(np.isfinite(self.lengths), self.lengths, 0) * np.round(away / self.lengths)
+        inside = (np.abs(away) <= self.half).all(axis=1)
+        m = some.masses[inside]
+        return np.zeros(len(m), np.int64), [m, *(m * some.velocities[inside].T)]
 
     def state(self) -> State:
         """All it has to remember."""

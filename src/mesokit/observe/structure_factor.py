@@ -94,14 +94,14 @@ class StructureFactorAccumulator:
         self.of, self.groups = default_of(case, observable.of), observable.chosen(case)
         self.kind = observable.kind
         alone = self.of == "chains"
-        self.beads = [group.beads(observable.molecules if alone else None) for group in self.groups]
+        self.beads = self.groups[0].beads(observable.molecules if alone else 0)
         largest = observable.largest or min(LARGEST, reachable(case.box.size))
         every = wave_shells(case.box.size, largest, observable.shells, observable.waves)
         self.waves = np.concatenate(every)
         self.starts = np.cumsum([0, *(len(shell) for shell in every[:-1])])
         self.members = np.array([len(shell) for shell in every])
         self.lengths = np.sqrt((self.waves**2).sum(axis=1))
-        self.means = MeansOverMolecules(len(self.beads[0]) if alone else 1, len(every))
+        self.means = MeansOverMolecules(len(self.beads) if alone else 1, len(every))
         self.sums = np.zeros(len(self.waves))
         self.others: list[Array] = []  # means (waves,) of pooled runs
 
@@ -112,28 +112,41 @@ class StructureFactorAccumulator:
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
         if self.of == "chains":
-            beads = self.beads[0]
+            beads = self.beads
             r = fluid.whole_positions(beads.ravel()).reshape(*beads.shape, -1)
             found, number = amplitudes(r, self.waves), beads.shape[1]
         else:
             found = self.altogether(fluid)[None]
-            number = sum(beads.size for beads in self.beads)
+            number = sum(group.number * group.length for group in self.groups)
         each = (found.real**2 + found.imag**2) / number
         self.sums += each.mean(axis=0)
         self.means.add(self.over_shells(each))
 
     def altogether(self, fluid: RunningFluid) -> NDArray[np.complex128]:
         """Sum of e^(-i q r) over all that are looked at, (K,)."""
-        case = self.case
-        plain = case.solutes is None and not case.fluid.mixed
-        if plain and self.beads[0].size == case.particles:
-            return np.asarray(fluid.modes(self.waves)[0] / case.fluid.mass)
         found = np.zeros(len(self.waves), complex)
-        step = max(1, CHUNK // len(self.waves))
-        for beads in self.beads:
-            r = fluid.positions(beads.ravel())
-            for start in range(0, len(r), step):
-                found += amplitudes(r[None, start : start + step], self.waves)[0]
+        for group in self.groups:
+            of_fluid = group.first < self.case.particles
+            found += (self.of_particles if of_fluid else self.of_solutes)(fluid, group)
+        return found
+
+    def of_particles(self, fluid: RunningFluid, group: Group) -> NDArray[np.complex128]:
+        """The same of a group in the fluid, whose kinds have a mass each."""
+        found, start = np.zeros(len(self.waves), complex), 0
+        first, last = group.first, group.first + group.number * group.length
+        for kind in self.case.groups[0].kinds:
+            own = max(first, start), min(last, start + kind.number)
+            start += kind.number
+            if own[0] < own[1]:
+                found += fluid.modes(self.waves, *own)[0] / kind.mass
+        return found
+
+    def of_solutes(self, fluid: RunningFluid, group: Group) -> NDArray[np.complex128]:
+        """The same of solutes, few enough to ask for all."""
+        found, step = np.zeros(len(self.waves), complex), max(1, CHUNK // len(self.waves))
+        r = fluid.positions(group.beads().ravel())
+        for start in range(0, len(r), step):
+            found += amplitudes(r[None, start : start + step], self.waves)[0]
         return found
 
     def state(self) -> State:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, show, tag
-from mesokit.engine import RunningFluid
+from mesokit.engine import RunningFluid, Some, Terms
 from mesokit.errors import CaseError
 from mesokit.geometry.shape import array
 from mesokit.geometry.shape.cylinder import Cylinder
@@ -157,7 +158,15 @@ class WakeAccumulator:
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        body, r = self.body, fluid.positions()
+        mass = self.case.fluid.mass
+        units = [math.sqrt(mass * self.case.fluid.kT), mass]
+        self.blocks.add(fluid.sums_of_particles(self.behind, len(self.centres), units))
+        _, momentum, _ = fluid.totals()
+        self.whole.add(self.body.sign * momentum[self.body.axis])
+
+    def behind(self, some: Some) -> Terms:
+        """Bins of the particles in the strip, their momentum along the flow and their mass."""
+        body, r = self.body, some.positions
         behind = body.sign * (r[:, body.axis] - body.middle[body.axis]) - body.rear
         length = self.lengths[body.axis]
         if np.isfinite(length):
@@ -169,11 +178,8 @@ class WakeAccumulator:
         inside &= (behind >= 0) & (behind < self.edges[-1])
         bins = len(self.centres)
         place = np.minimum((behind[inside] / self.edges[-1] * bins).astype(int), bins - 1)
-        m = fluid.masses()[inside]
-        v = body.sign * fluid.velocities()[inside, body.axis]
-        self.blocks.add(np.stack([np.bincount(place, w, bins) for w in (m * v, m)]))
-        _, momentum, _ = fluid.totals()
-        self.whole.add(body.sign * momentum[body.axis])
+        m = some.masses[inside]
+        return place, [m * (body.sign * some.velocities[inside, body.axis]), m]
 
     def state(self) -> State:
         """All it has to remember."""

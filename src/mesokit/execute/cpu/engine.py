@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from mesokit.execute.cpu.sort import sort
 from mesokit.execute.cpu.step import advance
 from mesokit.execute.cpu.strips.cell_energy import MOST_PARTICLES, ONE_PARTICLE, WithCount
 from mesokit.execute.cpu.threads import Threads
+from mesokit.execute.measure.by_pieces import ByPieces, Some, Terms
 from mesokit.execute.measure.readings import Moments, Readings
 from mesokit.execute.pieces import Piece, of_state, pieces, require_finite
 from mesokit.method.mpcd.molecule import Springs
@@ -248,9 +249,32 @@ class CPU:
         """Number, mass, momentum (d, ...) and sum of m v^2 in bins along one or two axes."""
         return self.readings.moments(axes, bins)
 
-    def modes(self, wavevectors: NDArray) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    def modes(
+        self, wavevectors: NDArray, first: int = 0, last: int | None = None
+    ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """Sums of m exp(-i k r) (K,) and of m v exp(-i k r) (K, d) for wave vectors (K, d)."""
-        return self.readings.modes(wavevectors)
+        return self.readings.modes(wavevectors, first, last)
+
+    def sums_of_particles(
+        self,
+        of: Callable[[Some], Terms],
+        bins: int,
+        units: Sequence[float],
+        first: int = 0,
+        last: int | None = None,
+    ) -> Floats:
+        """Sums (terms, bins) of what `of` finds of some particles at a time."""
+        return ByPieces(self.readings).sums_of_particles(of, bins, units, first, last)
+
+    def sums_of_bonds(
+        self,
+        of: Callable[[NDArray[np.int64], Floats], Terms],
+        bins: int,
+        units: Sequence[float],
+        kind: slice,
+    ) -> Floats:
+        """The same of bonds, by their numbers and vectors."""
+        return ByPieces(self.readings).sums_of_bonds(of, bins, units, kind)
 
     def positions(self, ids: NDArray | None = None, unwrapped: bool = False) -> Floats:
         """Positions (n, d) by particle number, in the box or as if it had no bounds."""
@@ -286,7 +310,7 @@ class CPU:
 
     def potential_energy(self) -> float:
         """Of all bonds, angles and pairs of beads, and of solutes near walls."""
-        return self.readings.potential_energy()
+        return ByPieces(self.readings).potential_energy()
 
     @property
     def stress(self) -> dict[str, Floats]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,12 +20,7 @@ from mesokit.execute.cpu.strips.layout import (
 )
 from mesokit.execute.cpu.threads import Threads
 from mesokit.execute.measure import sums as measure
-from mesokit.method.mpcd import topology
 from mesokit.scalar.fixed_point import ROUNDER_BITS, added_halves, halves, joined
-
-if TYPE_CHECKING:
-    from mesokit.method.mpcd.molecule import Molecule
-    from mesokit.potential import Bond, Pair
 
 Moments = tuple[Floats, Floats, Floats, Floats]
 AT_ONCE = 2**10  # strips of a thread: sums of the terms of more particles may overflow
@@ -54,6 +49,7 @@ class Readings:
         self._slots_of_asked = np.zeros(0, np.int32)
         self._seen: dict[tuple, Moments] = {}  # moments at this step, for several observables
         self.stress: dict[str, Floats] = {}
+        self.tells_solutes = True  # whether sums take the beads of solutes from here
         self.solutes = SoluteReadings(memory) if memory.solutes else None
 
     @property
@@ -138,13 +134,17 @@ class Readings:
         values = self.joined(sums, np.array((1.0, *scales))).T.reshape(-1, *bins)
         return values[0], values[d + 1], values[1 : d + 1], values[d + 2]
 
-    def modes(self, wavevectors: NDArray) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        """Sums of m exp(-i k r) (K,) and of m v exp(-i k r) (K, d) for wave vectors (K, d)."""
-        waves = np.ascontiguousarray(wavevectors, float) / (2.0 * math.pi)
+    def modes(
+        self, wavevectors: NDArray, first: int = 0, last: int | None = None
+    ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Sums of m exp(-i k r) (K,) and of m v exp(-i k r) (K, d) for wave vectors (K, d), of all
+        particles or of those from one number to before another."""
+        turns = np.ascontiguousarray(wavevectors, float) / (2.0 * math.pi)
         d, scale = self.dimension, self.numbers.units["momentum"]
-        part = np.zeros((self.threads.size, len(waves), 2 + 2 * d), np.int64)
+        waves = measure.Waves(turns, scale, first, self.n if last is None else last)
+        part = np.zeros((self.threads.size, len(turns), 2 + 2 * d), np.int64)
         where = self.memory.box, self.memory.fluid.particles
-        self.threads.run(measure.modes, *self._vectors, *where, waves, scale, part)
+        self.threads.run(measure.modes, *self._vectors, *where, waves, part)
         total = self.added(part) / scale
         return total[:, 0] + 1j * total[:, 1], total[:, 2 : 2 + d] + 1j * total[:, 2 + d :]
 
@@ -224,42 +224,14 @@ class Readings:
         if self.beads == 1:
             return r
         first = np.repeat(np.arange(0, len(r), self.beads), self.beads)
-        return r[first] + self._way(r, image, first, np.arange(len(r)))
-
-    def potential_energy(self) -> float:
-        """Of all bonds, angles and pairs of beads, and of solutes near walls."""
-        beads = 0.0 if self.solutes is None else self.solutes.potential_energy()
-        molecule = self.numbers.case.fluid.molecule
-        return beads if molecule is None else beads + self._energy_of(molecule)
-
-    def _energy_of(self, molecule: Molecule) -> float:
-        """Potential energy of the molecules of the fluid."""
-        starts = np.arange(0, self.n, self.beads)[:, None, None]
-        total = self._central_energy(molecule.bond, self._bonds_of_fluid())
-        if molecule.pair is not None:
-            pairs = (starts + np.array(topology.pairs(self.beads))).reshape(-1, 2)
-            total += self._central_energy(molecule.pair, pairs)
-        if molecule.bending is not None and molecule.angles:
-            beads = (starts + np.array(molecule.angles)).reshape(-1, 3)
-            before, after = self._between(beads[:, :2]), self._between(beads[:, 1:])
-            out = np.zeros(len(beads))
-            measure.angle_energies(
-                molecule.bending.kernel(), before, after, self.memory.physics.zero, out
-            )
-            total += float(out.sum())
-        return total
-
-    def _central_energy(self, potential: Bond | Pair, pairs: NDArray[np.int64]) -> float:
-        out = (self._between(pairs) ** 2).sum(axis=1)
-        measure.central_energies(potential.kernel(), out)
-        return float(out.sum())
+        return r[first] + self.way(r, image, first, np.arange(len(r)))
 
     def _between(self, pairs: NDArray[np.int64]) -> Floats:
         """Vectors (n, d) between beads of one molecule."""
         r, _, image = self._gather(None, False)
-        return self._way(r, image, *pairs.T)
+        return self.way(r, image, *pairs.T)
 
-    def _way(self, r: Floats, image: NDArray, first: NDArray, second: NDArray) -> Floats:
+    def way(self, r: Floats, image: NDArray, first: NDArray, second: NDArray) -> Floats:
         """From one bead to another, whatever images they lie in."""
         return between(r, image, first, second, self.numbers.box, self.memory.box)
 
@@ -285,6 +257,15 @@ class Readings:
         zero, _ = self._vectors
         where = self.memory.box, self.memory.fluid.particles
         self.threads.run(measure.gather_by_id, zero, *where, unwrapped, looked)
+        return out
+
+    def seen_at(self, places: NDArray[np.int64], unwrapped: bool) -> Seen:
+        """Position, velocity and images of the particles at these places in memory."""
+        shape, zero = (len(places), self.dimension), self.memory.physics.zero
+        out = Seen(np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32))
+        looked = measure.Looked(places, *out)
+        where = self.memory.box, self.memory.fluid.particles
+        self.threads.run(measure.gather_at, zero, *where, unwrapped, looked)
         return out
 
     def _slots(self, ids: NDArray) -> NDArray[np.int32]:

@@ -96,13 +96,23 @@ def bin_sums(team, zero, masses, box, particles, bins, sums):
         add_strip(place, quanta, out, lanes_in(filling, b), terms, ())
 
 
+class Waves(NamedTuple):
+    """Wave vectors over 2 pi, in turns per length, whole numbers per unit of the sums, and which
+    particles count: from one number to before another."""
+
+    turns: Any
+    scale: float
+    first: int
+    last: int
+
+
 @kernel
-def modes(team, zero, masses, box, particles, waves, scale, out):
+def modes(team, zero, masses, box, particles, waves, out):
     """Fourier sums of mass and momentum as fixed-point sums: out (threads, waves, 2 (1 + d)).
 
-    `waves` are wave vectors over 2 pi, in turns per length. Each row holds mass times cosine and
-    minus sine, then the same of each component of the momentum; each sum has a multiple of LANES
-    terms, zero in spare lanes.
+    Each row holds mass times cosine and minus sine, then the same of each component of the
+    momentum; each sum has a multiple of LANES terms, zero in spare lanes and of those who do not
+    count.
     """
     data, rows = particles.data, particles.rows
     filling, d = particles.filling, len(zero)
@@ -110,19 +120,20 @@ def modes(team, zero, masses, box, particles, waves, scale, out):
     for b in range(first, last):
         strip = data[strip_at(b, rows)]
         lanes = lanes_in(filling, b)
-        for w in range(len(waves)):
-            wave = row(waves, w, zero)
+        for w in range(len(waves.turns)):
+            wave = row(waves.turns, w, zero)
             sums = integers((0.0, 0.0) + zero + zero)
             for i in range(LANES):
                 r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
                 r, v, _ = fold(box, r, v, scaled(0.0, zero))
                 m = mass_of(masses, strip, i, 2 * d)
-                m = m if i < lanes else 0.0
+                who = particles.ident[b * LANES + i]
+                m = m if i < lanes and waves.first <= who < waves.last else 0.0
                 phase = dot(wave, r)
                 s, c = sincos_turn(phase - floor(phase))
                 c, s = m * c, -m * s
                 values = (c, s) + scaled(c, v) + scaled(s, v)
-                sums = added_fixed(values, scale, sums)
+                sums = added_fixed(values, waves.scale, sums)
             add_fixed(out[team.thread, w], LANES, sums)
 
 

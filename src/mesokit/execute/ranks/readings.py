@@ -11,8 +11,8 @@ from mesokit.execute.beads.readings import SoluteReadings, energy_in
 from mesokit.execute.beads.state import OWN
 from mesokit.execute.cpu.memory import Floats, Memory
 from mesokit.execute.cpu.threads import Threads
-from mesokit.execute.measure import sums as measure
 from mesokit.execute.measure.readings import Readings, Seen
+from mesokit.execute.ranks.state import ROOT
 
 
 class SharedReadings(Readings):
@@ -21,6 +21,7 @@ class SharedReadings(Readings):
     def __init__(self, memory: Memory, threads: Threads, comm: Any) -> None:
         super().__init__(memory, threads)
         self.comm = comm
+        self.tells_solutes = comm.rank == ROOT  # all ranks know all beads: those of one count
         if memory.solutes:
             self.solutes = SharedSolutes(memory, comm)
         self._sorted: tuple[NDArray[np.int64], NDArray[np.int64]] | None = None
@@ -101,18 +102,9 @@ class SharedReadings(Readings):
         return self._seen_of(self.together(here, rows, len(asked)))
 
     def rows_at(self, places: NDArray[np.int64], unwrapped: bool) -> Floats:
-        """Position, velocity and images (n, 3 d) of the particles at these places in memory."""
+        """The same as `seen_at` in one array (n, 3 d)."""
         seen = self.seen_at(places, unwrapped)
         return np.concatenate([seen.positions, seen.velocities, seen.images.astype(float)], axis=1)
-
-    def seen_at(self, places: NDArray[np.int64], unwrapped: bool) -> Seen:
-        """The same, each by itself."""
-        shape, zero = (len(places), self.dimension), self.memory.physics.zero
-        out = Seen(np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32))
-        looked = measure.Looked(places, *out)
-        where = self.memory.box, self.memory.fluid.particles
-        self.threads.run(measure.gather_at, zero, *where, unwrapped, looked)
-        return out
 
 
 class SharedSolutes(SoluteReadings):

@@ -63,6 +63,12 @@ class MoleculeTensorAccumulator(TensorAccumulator):
         self.blocks.add(tensors.mean(axis=0))
         self.own.add(tensors.reshape(len(tensors), -1))
 
+    def note_sums(self, sums: Array, molecules: int) -> None:
+        """Take the sums (groups, parts d d) of the tensors of each group of so many molecules."""
+        mean = sums.sum(axis=0) / molecules
+        self.blocks.add(mean.reshape(len(self.parts), *[self.case.box.dimension] * 2))
+        self.own.add_sums(sums)
+
     def note_squares(self, elements: Array, traces: Array, number: int) -> None:
         """Take the means over `number` molecules of the squares of elements (parts, d, d) and of
         traces (parts,)."""

@@ -35,8 +35,21 @@ class OwnMeans:
 
     def add(self, each: Array) -> None:
         """Take one sample, (molecules, width)."""
-        self._sums += np.add.reduceat(each, self._starts, axis=0)
+        self.add_sums(np.add.reduceat(each, self._starts, axis=0))
+
+    def add_sums(self, sums: Array) -> None:
+        """The same of the sums over the molecules of each group, (groups, width)."""
+        self._sums += sums
         self._samples += 1
+
+    @property
+    def groups(self) -> int:
+        """Of the molecules of this run."""
+        return len(self._starts)
+
+    def group_of(self, molecules: NDArray[np.int64]) -> NDArray[np.int64]:
+        """The group of each of some molecules."""
+        return np.searchsorted(self._starts, molecules, side="right") - 1
 
     def state(self) -> State:
         """All it has to remember."""

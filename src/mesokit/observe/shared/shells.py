@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.engine import RunningFluid
+from mesokit.engine import RunningFluid, Some, Terms
 from mesokit.observe.shared.estimate import Estimate, of_mean, of_ratio
 from mesokit.observe.shared.mode_chi_square import mode_chi_square
 from mesokit.observe.shared.protocol import BlockAccumulator
@@ -32,7 +33,11 @@ class ShellAccumulator(BlockAccumulator):
 
     @abstractmethod
     def locate(self, r: Array) -> tuple[Array, Array]:
-        """The distance (n,) of each particle, and what `along` has to know of its place (n, d)."""
+        """The distance (n,) of each particle, and what `along` has to know of its place (n, d).
+
+        By its own row alone, as what `along` does: particles come in pieces, which are others for
+        another number of processes.
+        """
 
     @abstractmethod
     def along(self, place: Array, v: Array) -> Array:
@@ -40,15 +45,25 @@ class ShellAccumulator(BlockAccumulator):
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        distance, place = self.locate(fluid.positions())
+        self.blocks.add(fluid.sums_of_particles(self.terms, self.bins, self.units))
+
+    @property
+    def units(self) -> list[float]:
+        """About the size of each term."""
+        fluid, directions = self.case.fluid, self.blocks.shape[0] - MOMENTUM
+        momentum = math.sqrt(fluid.mass * fluid.kT)
+        return [1.0, fluid.mass, fluid.kT, *[momentum] * directions]
+
+    def terms(self, some: Some) -> Terms:
+        """Shells of those particles that are in one, and what each adds there."""
+        distance, place = self.locate(some.positions)
         first, last = self.edges[0], self.edges[-1]
         inside = np.flatnonzero((distance >= first) & (distance < last))
         shell = ((distance[inside] - first) * (self.bins / (last - first))).astype(np.int64)
         shell = np.minimum(shell, self.bins - 1)  # a product may round up
-        v, m = fluid.velocities()[inside], fluid.masses()[inside]
+        v, m = some.velocities[inside], some.masses[inside]
         velocities = self.along(place[inside], v)
-        terms = [np.ones(len(m)), m, m * (v**2).sum(axis=1), *(m * velocities)]
-        self.blocks.add(np.stack([np.bincount(shell, term, self.bins) for term in terms]))
+        return shell, [np.ones(len(m)), m, m * (v**2).sum(axis=1), *(m * velocities)]
 
     def velocity(self, direction: int) -> Estimate:
         """Mean velocity along one direction in each shell: momentum over mass."""
