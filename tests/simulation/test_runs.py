@@ -154,6 +154,15 @@ def test_a_fluid_that_is_too_fast_is_refused_at_the_end_as_well(thermostat):
     assert ("add a thermostat" in str(error.value)) == (not thermostat.acts)
 
 
+def test_what_is_no_number_ends_a_run(case):
+    """Wherever it came from: it would be in no cell, and nobody would miss it."""
+    simulation = Simulation(case, threads=1)
+    memory = simulation.engine.memory
+    memory.fluid.particles.data[memory.at(2)[7]] = np.nan  # a velocity
+    with pytest.raises(RunError, match=r"a particle moves at inf"):
+        simulation.engine.check()
+
+
 def test_positions_too_far_away_for_counting_boxes_are_refused(case, arrays):
     r = arrays[0].copy()
     r[5, 0] = -12 * (2**30 - 1)
