@@ -1,33 +1,39 @@
 """Every example and template, made short, on ranks and threads in any mixture: the same bits.
 
-    python -m validation.ranks [--ways 1x2 2x1 3x1 4x2 8x1] [--resumed 3x1-2x1] [--steps 40] [names]
+    mpiexec -n 8 python -m validation.ranks [--ways 1x2 2x1 3x1 4x2 8x1] [--resumed 3x1-2x1] [names]
 
 Each case runs on one process first, then in each of the ways (ranks x threads), with borders that
 move whenever work differs; then to its middle in one way and on from there in another. What is
-compared: the arrays of the checkpoint, of run.h5 (results and frames) and the log. A line for each
-case.
+compared: the arrays of the checkpoint, of run.h5 (results and frames) and the log. Rank 0 prints a
+line for each case. All is done by the same processes, so that nothing is compiled or loaded twice;
+figures, which show these numbers, are not drawn.
 """
 
 from __future__ import annotations
 
 import argparse
 import dataclasses
-import subprocess
-import sys
+import shutil
 import tempfile
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
+from mpi4py import MPI
 
-from mesokit import Case, MesokitError
+from mesokit import Case, MesokitError, Simulation, report
+from mesokit.ranks import world
+from mesokit.ranks.alone import Alone
+from mesokit.ranks.several import Several, wait
 
 ROOT = Path(__file__).parents[1]
 PLACES = "examples/*.toml", "examples/*/*.toml", "src/mesokit/method/mpcd/templates/*.toml"
 WAYS = "1x2", "2x1", "3x1", "4x2", "8x1"
 RESUMED = ("3x1-2x1",)
+ALL = MPI.COMM_WORLD
 
 
 def cases(names: list[str]) -> Iterator[tuple[str, Path]]:
@@ -56,12 +62,22 @@ def shortened(path: Path, steps: int) -> Case:
     return dataclasses.replace(case, run=run, observe=observe)
 
 
-def mesokit(*words: Any) -> None:
-    """Run the command; raises what it says."""
-    command = [sys.executable, "-m", "mesokit", *map(str, words)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise RuntimeError(done.stderr.strip().splitlines()[-1])
+class Ways:
+    """The first so many of all ranks, as those that run a case."""
+
+    def __init__(self, counts: set[int]) -> None:
+        self.those: dict[int, Any] = {1: Alone()}
+        for count in sorted(counts - {1}):
+            some = ALL.Split(0 if ALL.rank < count else MPI.UNDEFINED)
+            self.those[count] = None if ALL.rank >= count else Several(some)
+
+    def run(self, way: str, make: Any) -> None:
+        """Make a simulation of some threads, and run it, on so many ranks; the others wait."""
+        ranks, threads = map(int, way.split("x"))
+        if ALL.rank < ranks:
+            world._known = self.those[ranks]
+            make(threads).run(progress=False)
+        wait(ALL.Ibarrier())
 
 
 def kept(folder: Path) -> dict[str, bytes]:
@@ -80,40 +96,42 @@ def kept(folder: Path) -> dict[str, bytes]:
     return found | ({"log": log.read_bytes()} if log.exists() else {})
 
 
-def different(one: dict[str, bytes], other: dict[str, bytes]) -> list[str]:
-    """Names of what is not the same."""
-    return sorted(name for name in one.keys() | other.keys() if one.get(name) != other.get(name))
-
-
-def words(way: str) -> tuple[str, ...]:
-    """How the command is told of ranks and threads."""
-    ranks, threads = way.split("x")
-    return "--ranks", ranks, "--threads", threads, "--quiet"
-
-
-def compared(path: Path, steps: int, ways: list[str], resumed: list[str]) -> Iterator[str]:
-    """What each way differs in."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        file = folder / "case.toml"
-        file.write_text(shortened(path, steps).to_toml())
-        mesokit("run", file, "--output", folder / "one", "--threads", 1, "--quiet")
-        reference = kept(folder / "one")
-        for way in ways:
-            mesokit("run", file, "--output", folder / way, *words(way))
-            yield f"{way}: {said(reference, folder / way)}"
-        for ways_ in resumed:
-            first, then = ways_.split("-")
-            half = f"run.steps={steps // 2}"
-            mesokit("run", file, "--output", folder / ways_, "--set", half, *words(first))
-            mesokit("resume", folder / ways_, "--steps", steps, *words(then))
-            yield f"{ways_}: {said(reference, folder / ways_)}"
-
-
 def said(reference: dict[str, bytes], folder: Path) -> str:
     """Whether all numbers of a run are the same, or which are not."""
-    found = different(reference, kept(folder))
+    other = kept(folder)
+    names = reference.keys() | other.keys()
+    found = sorted(name for name in names if reference.get(name) != other.get(name))
     return ", ".join(found[:3]) if found else "same"
+
+
+def compared(path: Path, steps: int, runs: Ways, ways: list[str], resumed: list[str]) -> str:
+    """What each way differs in, on rank 0."""
+    folder = Path(ALL.bcast(tempfile.mkdtemp() if ALL.rank == 0 else None))
+    file, lines = folder / "case.toml", []
+    if ALL.rank == 0:
+        file.write_text(shortened(path, steps).to_toml())
+    wait(ALL.Ibarrier())
+    runs.run("1x1", lambda threads: Simulation(file, output=folder / "one", threads=threads))
+    reference = kept(folder / "one") if ALL.rank == 0 else {}
+    for way in ways:
+        where = folder / way
+        runs.run(way, lambda threads, to=where: Simulation(file, output=to, threads=threads))
+        lines.append(f"{way}: {said(reference, where)}" if ALL.rank == 0 else "")
+    for way in resumed:
+        where = folder / way
+        first, then = way.split("-")
+
+        def half(threads: int, to: Path = where) -> Simulation:
+            case = Case.from_toml(file)
+            run = dataclasses.replace(case.run, steps=steps // 2)
+            return Simulation(dataclasses.replace(case, run=run), output=to, threads=threads)
+
+        runs.run(first, half)
+        runs.run(then, lambda threads, to=where: Simulation.resume(to, threads, steps))
+        lines.append(f"{way}: {said(reference, where)}" if ALL.rank == 0 else "")
+    if ALL.rank == 0:
+        shutil.rmtree(folder)
+    return "; ".join(lines)
 
 
 def main() -> None:
@@ -124,12 +142,14 @@ def main() -> None:
     parser.add_argument("--resumed", nargs="*", default=list(RESUMED))
     parser.add_argument("--steps", type=int, default=40)
     given = parser.parse_args()
+    report.save_all = lambda *_: []
+    every = [*given.ways, *(way for pair in given.resumed for way in pair.split("-"))]
+    runs = Ways({int(way.split("x")[0]) for way in every})
     for name, path in cases(given.names):
-        try:
-            line = "; ".join(compared(path, given.steps, given.ways, given.resumed))
-        except (MesokitError, RuntimeError) as error:
-            line = f"refused: {error}"
-        print(f"{name}: {line}", flush=True)
+        began = time.monotonic()
+        line = compared(path, given.steps, runs, given.ways, given.resumed)
+        if ALL.rank == 0:
+            print(f"{name}: {line} ({time.monotonic() - began:.0f} s)", flush=True)
 
 
 if __name__ == "__main__":
