@@ -164,8 +164,8 @@ class Readings:
         """Masses (n,) by particle id: kinds are numbered one after the other, then come solutes."""
         if ids is None:
             return self.numbers.masses()
-        mass = self.numbers.masses_of(np.minimum(ids, max(self.n - 1, 0)))
-        beads = ids >= self.n
+        mass, beads = np.zeros(len(ids)), np.asarray(ids) >= self.n
+        mass[~beads] = self.numbers.masses_of(ids[~beads])
         if beads.any() and self.solutes is not None:
             mass[beads] = np.broadcast_to(self.solutes.masses(), self.solutes.shape[:1])[
                 ids[beads] - self.n
