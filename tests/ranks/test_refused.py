@@ -5,6 +5,8 @@ import sys
 import pytest
 from rank_runs import CASE, MESOKIT, MPIEXEC, Ranks
 
+from mesokit.running.cores import usable_cores
+
 FLOCK = """
 [run]
 steps = 10
@@ -137,3 +139,14 @@ def test_a_single_process_loads_no_mpi(folder):
     )
     alone = Ranks([sys.executable, "-c", program], folder)
     assert alone.end() == 0, alone.err
+
+
+def test_more_ranks_than_cores(folder):
+    """Some are slow, which is said; very many would keep the machine from anything else."""
+    cores = usable_cores()
+    many = Ranks([*MESOKIT, "run", "case.toml", "--ranks", 16 * cores + 1], folder)
+    assert f"expected at most {16 * cores}: 16 for each core" in refusal(many)
+    words = "--ranks", cores + 1, "--threads", 1, "--output", "out", "--set", "run.steps=2"
+    some = Ranks([*MESOKIT, "run", "case.toml", *words], folder)
+    assert some.end() == 0, some.err
+    assert f"warning: {cores + 1} ranks share {cores} cores" in some.err

@@ -1,5 +1,6 @@
 """What a run does while its kernels are compiled for the first time."""
 
+import ctypes
 import dataclasses
 import os
 import signal
@@ -11,9 +12,10 @@ from pathlib import Path
 import pytest
 
 import mesokit
-from mesokit import AT, Box, Case, Conservation, Fluid, Plates, Run
+from mesokit import AT, Box, Case, Conservation, Fluid, Plates, Run, Simulation
 from mesokit.case import kind
 from mesokit.method import templates
+from mesokit.running.signals import Stopped
 
 SOURCE = str(Path(mesokit.__file__).parent.parent)
 CASE = """
@@ -55,6 +57,22 @@ def test_interrupted_while_compiling(case_file, tmp_path):
     assert "mesokit resume case" in errors and "Traceback" not in errors
     written = {path.name for path in (tmp_path / "case").iterdir()}
     assert written == {".lock", "case.toml", "provenance.json"}
+
+
+@pytest.mark.parametrize("fails", [True, False])
+def test_a_signal_that_the_compiler_does_not_hand_on(fails, case_file, monkeypatch, capsys):
+    """It calls back into Python, which writes out and drops what is raised there; then it fails."""
+    simulation = Simulation(case_file, threads=1)
+
+    def compiles(steps):
+        ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGTERM))()
+        if fails:
+            raise RuntimeError("no compiled object yet")
+
+    monkeypatch.setattr(simulation.engine, "advance", compiles)
+    with pytest.raises(Stopped, match="stopped at step 0, while compiling, by SIGTERM"):
+        simulation.run(progress=False)
+    assert capsys.readouterr().err == ""
 
 
 def test_a_case_without_solids_is_checked_without_compiling(tmp_path):

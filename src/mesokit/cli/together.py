@@ -18,6 +18,7 @@ from mesokit.ranks.world import stay_alone, world
 
 TOGETHER = ("run", "resume")  # all others are commands of one process
 ALONE = ("study",)  # those that would start runs of their own
+MOST_OF_CORE = 16  # ranks: the machine would be busy with starting them
 RANKS = click.option(
     "--ranks",
     type=click.IntRange(1),
@@ -66,14 +67,20 @@ def on_ranks(folder: Callable[[dict[str, Any]], Path]) -> Callable[[Command], Co
 
 def _carried_by(ranks: int, arguments: Sequence[str], output: Path) -> int:
     """Carry out a command on so many ranks of this machine; the status that they end with."""
+    from mesokit.cli.words import say
     from mesokit.ranks.mpiexec import start
+    from mesokit.running.cores import usable_cores
 
     if launcher.several():
         raise CaseError("--ranks: this is one of the ranks of an mpiexec; leave it out")
+    cores = usable_cores()
+    if ranks > MOST_OF_CORE * cores:
+        most = f"expected at most {MOST_OF_CORE * cores}: {MOST_OF_CORE} for each core"
+        raise CaseError(f"--ranks = {ranks}: this machine has {cores} cores; {most}")
+    if ranks > cores and "--quiet" not in arguments:
+        say(f"warning: {ranks} ranks share {cores} cores: they are slower than {cores} would be")
     end = start(ranks, without(arguments, "--ranks"))
     if end.why:
-        from mesokit.cli.words import say
-
         say(f"mesokit: {end.why}{_go_on(output, ranks)}")
     return end.status
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import sys
 import threading
 from collections.abc import Callable, Iterator
 
@@ -18,3 +19,15 @@ def telling(tell: Callable[[], None]) -> Iterator[None]:
         yield
     finally:
         timer.cancel()
+
+
+@contextlib.contextmanager
+def swallowed(kind: type[BaseException]) -> Iterator[None]:
+    """Exceptions of a kind that C code cannot hand on, such as the compiler's, are not written out
+    where Python drops them."""
+    earlier = sys.unraisablehook
+    sys.unraisablehook = lambda told: None if isinstance(told.exc_value, kind) else earlier(told)
+    try:
+        yield
+    finally:
+        sys.unraisablehook = earlier

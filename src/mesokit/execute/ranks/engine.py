@@ -18,7 +18,7 @@ from mesokit.execute.cpu.threads import Threads
 from mesokit.execute.pieces import Piece, of_state, pieces, require_finite
 from mesokit.execute.ranks.blocks.balance import Balance, Load, still_good
 from mesokit.execute.ranks.blocks.tree import Tree, divided
-from mesokit.execute.ranks.blocks.window import Window
+from mesokit.execute.ranks.blocks.window import Window, waiting
 from mesokit.execute.ranks.deal import dealt
 from mesokit.execute.ranks.domain import Domain, axes_to_cut, owners
 from mesokit.execute.ranks.here import Here
@@ -250,10 +250,16 @@ class Ranks(CPU):
 
     @property
     def seconds(self) -> dict[str, float]:
-        """Time spent so far in each stage, on this rank."""
+        """Time spent so far in each stage, on this rank; waiting for beads is waiting."""
         names = {"share": SHARE, "wait": WAIT, "move": MOVE}
         clock = self.threads.clock
-        return super().seconds | {name: TICK * float(clock[FIRST + k]) for name, k in names.items()}
+        found = super().seconds | {
+            name: TICK * float(clock[FIRST + k]) for name, k in names.items()
+        }
+        for post in waiting(self.memory)[1:]:
+            waited = min(TICK * float(post[2]), found["beads"])
+            found["beads"], found["wait"] = found["beads"] - waited, found["wait"] + waited
+        return found
 
     # --- its state ------------------------------------------------------------------------------
 

@@ -10,11 +10,12 @@ from time import perf_counter
 from mesokit.case.kind import note_run
 from mesokit.ranks.order import Coming, Order
 from mesokit.report.progress import Reporter
-from mesokit.running.compiling import telling
+from mesokit.running.compiling import swallowed, telling
 from mesokit.running.course.kept import Kept
 from mesokit.running.course.stop import Stop
 from mesokit.running.pace import Pace
 from mesokit.running.schedule import Leg
+from mesokit.running.signals import Stopped
 
 
 class Loop(Stop, Kept):
@@ -27,9 +28,15 @@ class Loop(Stop, Kept):
         """
         self._compiling = True
         try:
-            with telling(progress.compiling):
+            with telling(progress.compiling), swallowed(Stopped):
                 self.ranks.on_root(lambda: self.engine.advance(0))
                 self.engine.advance(0)
+            if self._stopped_by is not None:  # a signal that the compiler has not handed on
+                raise self._stopped
+        except RuntimeError:  # what is left of a kernel then
+            if self._stopped_by is None:
+                raise
+            raise self._stopped from None
         finally:
             self._compiling = False
         with contextlib.suppress(OSError):  # kernels are then not kept either
