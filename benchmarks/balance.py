@@ -10,8 +10,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from statistics import mean, median
@@ -19,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks import ranks as ranks_of
 from mesokit import (
     WCA,
     Box,
@@ -101,13 +100,8 @@ def one(name: str, limit: float, windows: int) -> dict[str, Any] | None:
 
 def run(name: str, ranks: int, limit: float, windows: int) -> dict[str, Any]:
     """The same, in processes of its own."""
-    mpiexec = Path(sys.executable).with_name("mpiexec")
-    command = [str(mpiexec), "-n", str(ranks), sys.executable, "-m", "benchmarks.balance"]
-    command += ["--one", name, "--limit", str(limit), "--windows", str(windows)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise RuntimeError(done.stderr[-2000:])
-    found: dict[str, Any] = json.loads(done.stdout.strip().splitlines()[-1])
+    words = "--one", name, "--limit", limit, "--windows", windows
+    found: dict[str, Any] = ranks_of.said("benchmarks.balance", ranks, *words)
     return found
 
 

@@ -11,11 +11,10 @@ from __future__ import annotations
 import argparse
 import json
 import resource
-import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
+from benchmarks import ranks as ranks_of
 from mesokit import Box, Fluid, Run, Simulation
 
 SMALL, DENSITY, STEPS = 16, 10, 20
@@ -31,7 +30,7 @@ def one(side: int) -> None:
         run=Run(steps=STEPS), box=Box([side] * 3), fluid=Fluid(density=DENSITY),
         output=Path(folder) / "run", threads=1,
     )  # fmt: skip
-    simulation.run(quiet=True)
+    simulation.run(progress=False)
     peaks = comm.gather(1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
     if comm.rank == 0:
         print(json.dumps(peaks))
@@ -39,14 +38,7 @@ def one(side: int) -> None:
 
 def peaks(ranks: int, side: int) -> list[int]:
     """Of all ranks, in bytes."""
-    mpiexec = Path(sys.executable).with_name("mpiexec")
-    command = [str(mpiexec), "-n", str(ranks), sys.executable, "-m", "benchmarks.rank_memory"]
-    done = subprocess.run(
-        [*command, "--one", str(side)], capture_output=True, text=True, check=False
-    )
-    if done.returncode:
-        raise RuntimeError(done.stderr[-2000:])
-    found: list[int] = json.loads(done.stdout.strip().splitlines()[-1])
+    found: list[int] = ranks_of.said("benchmarks.rank_memory", ranks, "--one", side)
     return found
 
 

@@ -35,14 +35,19 @@ LEAST_STEPS = 100
 
 def run(name: str, ranks: int, threads: int, steps: int) -> dict[str, Any]:
     """One timed run in processes of its own."""
+    words = "--one", name, "--threads", threads, "--steps", steps
+    found: dict[str, Any] = said("benchmarks.ranks", ranks, *words)
+    return found
+
+
+def said(module: str, ranks: int, *words: Any) -> Any:
+    """What a module says in JSON on its last line, run by so many ranks. Raises RuntimeError."""
     mpiexec = Path(sys.executable).with_name("mpiexec")
-    command = [str(mpiexec), "-n", str(ranks), sys.executable, "-m", "benchmarks.ranks"]
-    command += ["--one", name, "--threads", str(threads), "--steps", str(steps)]
+    command = [str(mpiexec), "-n", str(ranks), sys.executable, "-m", module, *map(str, words)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError(done.stderr[-2000:])
-    found: dict[str, Any] = json.loads(done.stdout.strip().splitlines()[-1])
-    return found
+    return json.loads(done.stdout.strip().splitlines()[-1])
 
 
 def one(name: str, threads: int, steps: int) -> dict[str, Any] | None:

@@ -9,16 +9,14 @@ import pytest
 from shapes import EVERY, example, solids_of, walls_of
 
 from mesokit.geometry.solids.clearance import (
-    EVERYWHERE,
     OFFSETS,
     PARTS,
     Held,
     clear_squares,
     cube_middles,
-    cut_cells,
-    cut_planes,
     free_planes,
 )
+from mesokit.geometry.solids.cut_cells import EVERYWHERE, cut_cells, cut_planes
 from mesokit.geometry.solids.cut_cube import share_and_depth
 
 
@@ -124,3 +122,5 @@ def test_tables_of_a_part_are_those_of_the_whole(d, tmp_path):
     ).all()
     assert (of_block[1] == which[inside]).all()
     assert (of_block[2] == corners[inside]).all()
+    there, here = cut_planes(solids, cells), cut_planes(solids, cells, (low, high))
+    assert all((column[inside] == own).all() for column, own in zip(there, here, strict=True))

@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import os
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -41,6 +42,10 @@ def end_with(folder: Path) -> None:
 def _wait(folder: Path) -> None:
     from filelock import FileLock
 
-    with contextlib.suppress(OSError):  # the folder is gone, and so is who made it
-        FileLock(folder / LOCK).acquire(poll_interval=PAUSE)
+    while (folder / LOCK).exists():  # it goes with the one who made it
+        try:
+            FileLock(folder / LOCK).acquire(poll_interval=PAUSE)
+            break
+        except OSError:  # could not be asked for just now
+            time.sleep(PAUSE)
     os._exit(1)

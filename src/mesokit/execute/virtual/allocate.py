@@ -16,13 +16,12 @@ from mesokit.geometry.solids.bodies import Bodies
 from mesokit.geometry.solids.clearance import (
     Held,
     clear_squares,
-    cut_cells,
-    cut_planes,
     free_planes,
     surface_pieces,
     whole,
 )
 from mesokit.geometry.solids.contact import MARGIN
+from mesokit.geometry.solids.cut_cells import cut_cells, cut_planes
 from mesokit.scalar.pointer import address
 
 if TYPE_CHECKING:

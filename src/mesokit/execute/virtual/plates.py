@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mesokit.case.box import AXES
-from mesokit.geometry.solids.clearance import corners_of
+from mesokit.geometry.solids.clearance import Block, corners_of
 
 if TYPE_CHECKING:
     from mesokit.geometry.shape.plates import Plates
@@ -26,10 +26,10 @@ def cut_cells(
     plates: Plates,
     size: tuple[int, ...],
     cells: tuple[int, ...],
-    block: tuple[Any, Any] | None = None,
+    block: Block | None = None,
 ) -> tuple[Any, ...]:
     """As `clearance.cut_cells`, for the one interval of offsets: starts, numbers and corners."""
-    where = corners_of(*(block or ((0,) * len(cells), cells)))
+    where = corners_of(cells, block)
     layer = where[:, AXES.index(plates.axis)]
     chosen = where[np.isin(layer, [at for _, at, _ in ends(plates, size)])]
     return np.array([0, len(chosen)], np.int64), _number(chosen.astype(np.int64), cells), chosen
@@ -52,7 +52,7 @@ def cut_planes(plates: Plates, size: tuple[int, ...], corners: Any) -> tuple[Any
 def surface_pieces(plates: Plates, size: tuple[int, ...]) -> tuple[Any, ...]:
     """As `clearance.surface_pieces`: number of the piece in each cell or -1, then for each piece
     its normal, the first place to look for fluid, and its term."""
-    axis, where = AXES.index(plates.axis), corners_of((0,) * len(size), size)
+    axis, where = AXES.index(plates.axis), corners_of(size)
     pieces = np.full(len(where), -1, np.int32)
     outward: list[Any] = []
     probes: list[Any] = []

@@ -6,7 +6,6 @@ intervals of the shift along each axis, and hold for every shift of the interval
 
 from __future__ import annotations
 
-import functools
 import itertools
 import math
 from collections.abc import Iterator, Sequence
@@ -25,12 +24,9 @@ from mesokit.scalar.jit import by_type, scalar
 OFFSETS = {2: 4, 3: 2}  # along each axis, by dimension
 PARTS = {2: 4, 3: 2}  # of a cell along each axis, for which a bound of the clearance is kept
 COLUMNS = {2: 32, 3: 10}  # along each axis, by which the solid about a cube is probed
-PIECES = 5  # along each axis, by which a cell is searched for a surface
-SHIFTED_FINE = 4  # parts of a cell along each axis by which its volume is summed, for each shift
-EVERYWHERE = 1e30
 FAR = 1e6
-ROUNDING = 1e-9  # of a share
-KEPT = 4  # tables of solids that runs one after the other share: they take a moment to make
+# the lowest cell along each axis, and the one beyond the last
+Block = tuple[tuple[int, ...], tuple[int, ...]]
 
 
 class Held(NamedTuple):
@@ -67,8 +63,9 @@ def origins(closed: tuple[bool, ...]) -> Iterator[tuple[float, ...]]:
     return itertools.product(*along)
 
 
-def corners_of(low: Sequence[int], high: Sequence[int]) -> Any:
-    """Lower corners of the cells of a block (cells, d), x varying fastest."""
+def corners_of(cells: Sequence[int], block: Block | None = None) -> Any:
+    """Lower corners (n, d) of so many cells along each axis, or of a block; x varies fastest."""
+    low, high = block or ((0,) * len(cells), tuple(cells))
     grids = [np.arange(float(a), float(b)) for a, b in zip(low, high, strict=True)]
     mesh = np.meshgrid(*reversed(grids), indexing="ij")
     return np.stack([axis.ravel() for axis in reversed(mesh)], axis=-1)
@@ -136,33 +133,6 @@ def free_planes(
     return plane_of, planes, reach
 
 
-@functools.lru_cache(maxsize=KEPT)
-def cut_cells(
-    solids: Solids, cells: tuple[int, ...], block: tuple[Any, Any] | None = None
-) -> tuple[Any, Any, Any]:
-    """Cells of the grid, or of a block of it (lowest, and beyond the highest), that may hold both
-    fluid and solid: where those of each offset start, and their lower corners in the grid
-    (entries, d), as whole numbers."""
-    starts, numbers, corners = [0], [], []
-    every = corners_of(*(block or ((0,) * len(cells), cells)))
-    strides = np.cumprod([1, *cells[:-1]])
-    half = 0.5 + 0.5 / OFFSETS[solids.dimension]
-    for origin in origins(solids.room.closed):
-        middle = every + 0.5 - np.array(origin)
-        near = np.flatnonzero(np.abs(solids.distance(middle)) <= half * math.sqrt(len(cells)))
-        found = np.zeros(len(near), np.int64)
-        survey.cut(solids.kernel, solids.like, middle[near], half, PIECES, found)
-        chosen = near[found > 0]
-        numbers.append(every[chosen] @ strides)
-        corners.append(every[chosen])
-        starts.append(starts[-1] + len(chosen))
-    return (
-        np.array(starts, np.int64),
-        np.concatenate(numbers).astype(np.int64),
-        np.concatenate(corners),
-    )
-
-
 def surface_pieces(solids: Solids) -> tuple[Any, Any, Any, Any]:
     """A piece of surface in each cell of the box that has one, whose body follows the fluid.
 
@@ -170,7 +140,7 @@ def surface_pieces(solids: Solids) -> tuple[Any, Any, Any, Any]:
     for fluid, and its term.
     """
     d, size = solids.dimension, solids.size
-    middle = corners_of((0,) * d, size) + 0.5
+    middle = corners_of(size) + 0.5
     terms = np.zeros(len(middle), np.int64)
     distance, normal = np.zeros(len(middle)), np.zeros(middle.shape)
     survey.who_is_near(solids.kernel, solids.like, middle, terms, distance, normal)
@@ -185,47 +155,3 @@ def surface_pieces(solids: Solids) -> tuple[Any, Any, Any, Any]:
     feet = middle[where] - distance[where, None] * outward
     probes = feet + (0.3 + 0.5 * math.sqrt(d)) * outward  # with most shifts, that cell is free
     return pieces, outward, probes, terms[where]
-
-
-def shifts_within(d: int) -> Any:
-    """Shifts within an interval over which means are taken (shifts, d): Gauss's points."""
-    side = 0.5 / OFFSETS[d] / math.sqrt(3.0)
-    return np.array(list(itertools.product((-side, side), repeat=d)))
-
-
-@functools.lru_cache(maxsize=KEPT)
-def cut_planes(
-    solids: Solids, cells: tuple[int, ...], block: tuple[Any, Any] | None = None
-) -> tuple[Any, Any, Any, Any, Any]:
-    """For each cell of `cut_cells` the normal and height of the plane that cuts it, its middle in
-    the box, its term, and the cell of the box in which the surface lies nearest to its middle."""
-    starts, _, corners = cut_cells(solids, cells, block)
-    middles = np.empty(corners.shape)
-    for number, origin in enumerate(origins(solids.room.closed)):
-        some = slice(starts[number], starts[number + 1])
-        middles[some] = corners[some] + 0.5 - np.array(origin)
-    for k, (length, shut) in enumerate(zip(solids.size, solids.room.closed, strict=True)):
-        middles[:, k] = middles[:, k] if shut else middles[:, k] % length
-    shifts = shifts_within(solids.dimension)
-    share = np.mean([solids.open_part(middles - x, 1.0, SHIFTED_FINE) for x in shifts], axis=0)
-    normals, heights = np.zeros(middles.shape), np.zeros(len(middles))
-    terms, feet = np.zeros(len(middles), np.int64), np.zeros(middles.shape)
-    away = (0.5 + 0.5 / OFFSETS[solids.dimension]) * math.sqrt(solids.dimension) + MARGIN
-    near, like = solids.reaching(away), solids.like
-    found = survey.Planes(normals, heights, terms, feet)
-    survey.planes(near, like, away, shifts, middles, share, found)
-    slippery = np.array([body.surface.rule == "slip" for body in solids.bodies])
-    nobody = slippery[solids.body_of_term[terms]] | (share <= ROUNDING) | (share >= 1.0 - ROUNDING)
-    heights[nobody | (terms < 0)] = EVERYWHERE
-    return normals, heights, middles, terms, cell_numbers(solids, feet)
-
-
-def cell_numbers(solids: Solids, points: Any) -> Any:
-    """Number of the cell of the box that holds each point, which may be in an image."""
-    number, stride = np.zeros(len(points), np.int64), 1
-    for k, length in enumerate(solids.size):
-        cell = np.floor(points[:, k]).astype(np.int64)
-        cell = np.clip(cell, 0, length - 1) if solids.room.closed[k] else cell % length
-        number += stride * cell
-        stride *= length
-    return number

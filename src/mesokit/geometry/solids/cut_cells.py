@@ -1,0 +1,159 @@
+"""The cells that surfaces cut, for each offset of the grid of cells from the box (`clearance`).
+
+A search takes a moment. That of the whole grid is kept for runs that follow; that of a block, which
+a rank has, is put together from tiles, so that a block that moves a little is soon known.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from mesokit.geometry.solids import survey
+from mesokit.geometry.solids.clearance import OFFSETS, Block, corners_of, origins
+from mesokit.geometry.solids.contact import MARGIN
+from mesokit.geometry.solids.solids import Solids
+
+PIECES = 5  # along each axis, by which a cell is searched for a surface
+SHIFTED_FINE = 4  # parts of a cell along each axis by which its volume is summed, for each shift
+EVERYWHERE = 1e30
+ROUNDING = 1e-9  # of a share
+TILE = 16  # cells along each axis
+KEPT, KEPT_TILES = 4, 128  # of whole grids and of tiles, of which each has two tables
+
+
+def cut_cells(
+    solids: Solids, cells: tuple[int, ...], block: Block | None = None
+) -> tuple[Any, Any, Any]:
+    """Cells of the grid, or of a block of it, that may hold both fluid and solid: where those of
+    each offset start, their numbers in the grid (entries,), and their lower corners there
+    (entries, d), as whole numbers; by offset, and then by number."""
+    if block is None:
+        found: tuple[Any, Any, Any] = _of_all(_found, solids, cells, None)
+        return found
+    chosen, offsets = _of_tiles(solids, cells, block)
+    _, numbers, corners = _joined(_found, solids, cells, block)
+    number = math.prod([OFFSETS[solids.dimension]] * solids.dimension)
+    counts = np.bincount(offsets[chosen], minlength=number)
+    starts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+    return starts, numbers[chosen], corners[chosen]
+
+
+def cut_planes(
+    solids: Solids, cells: tuple[int, ...], block: Block | None = None
+) -> tuple[Any, ...]:
+    """For each of these the normal (entries, d) and height of the plane that cuts it, its middle in
+    the box, its term, and the cell of the box in which the surface lies nearest to its middle."""
+    if block is None:
+        found: tuple[Any, ...] = _of_all(_planes, solids, cells, None)
+        return found
+    chosen, _ = _of_tiles(solids, cells, block)
+    return tuple(column[chosen] for column in _joined(_planes, solids, cells, block))
+
+
+def _kept(make: Any, solids: Solids, cells: tuple[int, ...], block: Block | None) -> Any:
+    return make(solids, cells, block)
+
+
+_of_all = functools.lru_cache(maxsize=2 * KEPT)(_kept)
+_of_tile = functools.lru_cache(maxsize=2 * KEPT_TILES)(_kept)
+
+
+def _tiles(cells: tuple[int, ...], block: Block) -> Iterator[Block]:
+    """Those that a block has cells of; none reaches beyond the grid."""
+    along = [range(a // TILE, (b - 1) // TILE + 1) for a, b in zip(*block, strict=True)]
+    for at in itertools.product(*along):
+        low = tuple(TILE * i for i in at)
+        yield low, tuple(min(a + TILE, n) for a, n in zip(low, cells, strict=True))
+
+
+def _joined(make: Any, solids: Solids, cells: tuple[int, ...], block: Block) -> list[Any]:
+    """The columns of all tiles of a block."""
+    tables = [_of_tile(make, solids, cells, tile) for tile in _tiles(cells, block)]
+    return [np.concatenate(columns) for columns in zip(*tables, strict=True)]
+
+
+def _of_tiles(solids: Solids, cells: tuple[int, ...], block: Block) -> tuple[Any, Any]:
+    """Which rows of all tiles are of the block, in order, and the offset of each row."""
+    offsets = [
+        np.repeat(np.arange(len(starts) - 1), np.diff(starts))
+        for starts, _, _ in (_of_tile(_found, solids, cells, tile) for tile in _tiles(cells, block))
+    ]
+    _, numbers, corners = _joined(_found, solids, cells, block)
+    offset, (low, high) = np.concatenate(offsets), block
+    order = np.lexsort((numbers, offset))
+    inside = ((corners >= low) & (corners < high)).all(axis=1)
+    return order[inside[order]], offset
+
+
+def _found(solids: Solids, cells: tuple[int, ...], block: Block | None) -> tuple[Any, Any, Any]:
+    """As `cut_cells`, found by a search."""
+    starts, numbers, corners = [0], [], []
+    every = corners_of(cells, block)
+    strides = np.cumprod([1, *cells[:-1]])
+    half = 0.5 + 0.5 / OFFSETS[solids.dimension]
+    for origin in origins(solids.room.closed):
+        middle = every + 0.5 - np.array(origin)
+        near = np.flatnonzero(np.abs(solids.distance(middle)) <= half * math.sqrt(len(cells)))
+        found = np.zeros(len(near), np.int64)
+        survey.cut(solids.kernel, solids.like, middle[near], half, PIECES, found)
+        chosen = near[found > 0]
+        numbers.append(every[chosen] @ strides)
+        corners.append(every[chosen])
+        starts.append(starts[-1] + len(chosen))
+    return (
+        np.array(starts, np.int64),
+        np.concatenate(numbers).astype(np.int64),
+        np.concatenate(corners),
+    )
+
+
+def shifts_within(d: int) -> Any:
+    """Shifts within an interval over which means are taken (shifts, d): Gauss's points."""
+    side = 0.5 / OFFSETS[d] / math.sqrt(3.0)
+    return np.array(list(itertools.product((-side, side), repeat=d)))
+
+
+def _planes(solids: Solids, cells: tuple[int, ...], block: Block | None) -> tuple[Any, ...]:
+    """As `cut_planes`, of the cells that a search finds."""
+    starts, _, corners = (_of_all if block is None else _of_tile)(_found, solids, cells, block)
+    middles = np.empty(corners.shape)
+    for number, origin in enumerate(origins(solids.room.closed)):
+        some = slice(starts[number], starts[number + 1])
+        middles[some] = corners[some] + 0.5 - np.array(origin)
+    for k, (length, shut) in enumerate(zip(solids.size, solids.room.closed, strict=True)):
+        middles[:, k] = middles[:, k] if shut else middles[:, k] % length
+    shifts = shifts_within(solids.dimension)
+    share = np.mean([solids.open_part(middles - x, 1.0, SHIFTED_FINE) for x in shifts], axis=0)
+    normals, heights = np.zeros(middles.shape), np.zeros(len(middles))
+    terms, feet = np.zeros(len(middles), np.int64), np.zeros(middles.shape)
+    away = (0.5 + 0.5 / OFFSETS[solids.dimension]) * math.sqrt(solids.dimension) + MARGIN
+    near, like = _reaching(solids, away), solids.like
+    found = survey.Planes(normals, heights, terms, feet)
+    survey.planes(near, like, away, shifts, middles, share, found)
+    slippery = np.array([body.surface.rule == "slip" for body in solids.bodies])
+    nobody = slippery[solids.body_of_term[terms]] | (share <= ROUNDING) | (share >= 1.0 - ROUNDING)
+    heights[nobody | (terms < 0)] = EVERYWHERE
+    return normals, heights, middles, terms, cell_numbers(solids, feet)
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _reaching(solids: Solids, away: float) -> Any:
+    """Lists of what is so near to each cell of the box: once for all tiles."""
+    return solids.reaching(away)
+
+
+def cell_numbers(solids: Solids, points: Any) -> Any:
+    """Number of the cell of the box that holds each point, which may be in an image."""
+    number, stride = np.zeros(len(points), np.int64), 1
+    for k, length in enumerate(solids.size):
+        cell = np.floor(points[:, k]).astype(np.int64)
+        cell = np.clip(cell, 0, length - 1) if solids.room.closed[k] else cell % length
+        number += stride * cell
+        stride *= length
+    return number
