@@ -24,10 +24,11 @@ import h5py
 import numpy as np
 from mpi4py import MPI
 
-from mesokit import Case, MesokitError, Simulation, report
+from mesokit import Case, CaseError, MesokitError, Simulation, report
 from mesokit.ranks import world
 from mesokit.ranks.alone import Alone
 from mesokit.ranks.several import Several, wait
+from mesokit.running.on_ranks import require_ranks
 
 ROOT = Path(__file__).parents[1]
 PLACES = "examples/*.toml", "examples/*/*.toml", "src/mesokit/method/mpcd/templates/*.toml"
@@ -147,7 +148,11 @@ def main() -> None:
     runs = Ways({int(way.split("x")[0]) for way in every})
     for name, path in cases(given.names):
         began = time.monotonic()
-        line = compared(path, given.steps, runs, given.ways, given.resumed)
+        try:
+            require_ranks(Case.from_toml(path), 2)
+            line = compared(path, given.steps, runs, given.ways, given.resumed)
+        except CaseError as error:  # of all ranks: nothing has begun
+            line = f"refused: {error}"
         if ALL.rank == 0:
             print(f"{name}: {line} ({time.monotonic() - began:.0f} s)", flush=True)
 
