@@ -149,4 +149,4 @@ def test_more_ranks_than_cores(folder):
     words = "--ranks", cores + 1, "--threads", 1, "--output", "out", "--set", "run.steps=2"
     some = Ranks([*MESOKIT, "run", "case.toml", *words], folder)
     assert some.end() == 0, some.err
-    assert f"warning: {cores + 1} ranks share {cores} cores" in some.err
+    assert f"warning: {cores + 1} ranks share {cores} core" in some.err

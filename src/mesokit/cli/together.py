@@ -68,17 +68,19 @@ def on_ranks(folder: Callable[[dict[str, Any]], Path]) -> Callable[[Command], Co
 def _carried_by(ranks: int, arguments: Sequence[str], output: Path) -> int:
     """Carry out a command on so many ranks of this machine; the status that they end with."""
     from mesokit.cli.words import say
-    from mesokit.ranks.mpiexec import start
+    from mesokit.ranks.mpiexec import find, start
     from mesokit.running.cores import usable_cores
 
     if launcher.several():
         raise CaseError("--ranks: this is one of the ranks of an mpiexec; leave it out")
+    find()
     cores = usable_cores()
+    have = f"{cores} core{'s' * (cores > 1)}"
     if ranks > MOST_OF_CORE * cores:
         most = f"expected at most {MOST_OF_CORE * cores}: {MOST_OF_CORE} for each core"
-        raise CaseError(f"--ranks = {ranks}: this machine has {cores} cores; {most}")
+        raise CaseError(f"--ranks = {ranks}: this machine has {have}; {most}")
     if ranks > cores and "--quiet" not in arguments:
-        say(f"warning: {ranks} ranks share {cores} cores: they are slower than {cores} would be")
+        say(f"warning: {ranks} ranks share {have}: they are slower than {cores} would be")
     end = start(ranks, without(arguments, "--ranks"))
     if end.why:
         say(f"mesokit: {end.why}{_go_on(output, ranks)}")
