@@ -2,7 +2,8 @@
 
 python -m benchmarks [--rounds 5] [--seconds 3] [--only PART,PART]
 
-Parts: peers, cost, solids, bonded, solutes, event-driven, soft, flocks, observe, memory, startup.
+Parts: peers, ranks, cost, solids, bonded, solutes, event-driven, soft, flocks, observe, memory,
+startup.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from benchmarks import (
     event_driven,
     flocks,
     peers,
+    ranks,
     soft_spheres,
     solutes,
     startup,
@@ -25,6 +27,7 @@ from benchmarks import (
 
 PARTS = {
     "peers": peers.table,
+    "ranks": ranks.speed,
     "cost": costs.rules,
     "solids": costs.solids,
     "bonded": bonded.table,

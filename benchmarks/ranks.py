@@ -12,12 +12,14 @@ import argparse
 import json
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from statistics import median
 from typing import Any
 
 import numpy as np
+
+from benchmarks import lammps_peer
 
 WAYS = {"1 x 1": (1, 1), "1 x 2": (1, 2), "2 x 1": (2, 1)}  # ranks, threads of each
 CASES = {
@@ -86,28 +88,45 @@ def one(name: str, threads: int, steps: int) -> dict[str, Any] | None:
     }  # fmt: skip
 
 
-def speed(rounds: int, seconds: float, names: list[str]) -> Iterator[str]:
-    """Ranks and threads in turn."""
-    yield "Nanoseconds per particle-step, ranks x threads in turn; ratios are medians of rounds."
+def speed(rounds: int, seconds: float, names: Sequence[str] = tuple(CASES)) -> Iterator[str]:
+    """Ranks, threads and the peer on as many ranks, in turn."""
+    lammps_peer.install()
+    yield "## Ranks"
     yield ""
-    yield "| case | " + " | ".join(WAYS) + " | 2 x 1 over 1 x 1 | least, most | 2 x 1 over 1 x 2 |"
-    yield "|---|" + "---|" * (len(WAYS) + 3)
+    yield "Nanoseconds per particle-step, ranks x threads in turn; ratios are medians of rounds."
+    yield f"The peer is LAMMPS {lammps_peer.version()} on 2 ranks."
+    yield ""
+    yield (
+        "| case | " + " | ".join(WAYS) + " | 2 x 1 over 1 x 1 | least, most | 2 x 1 over 1 x 2 "
+        "| least, most | over the peer | least, most |"
+    )
+    yield "|---|" + "---|" * (len(WAYS) + 6)
     for name in names:
         first = run(name, 1, 1, LEAST_STEPS)
         for ways in list(WAYS.values())[1:]:
             run(name, *ways, LEAST_STEPS)  # compiles
         pace = first["nanoseconds"] * first["particles"] * 1e-9
         steps = max(LEAST_STEPS, int(seconds / pace / 100) * 100)
-        rows = [[run(name, *ways, steps)["nanoseconds"] for ways in WAYS.values()]
-                for _ in range(rounds)]  # fmt: skip
+        rows, theirs = [], []
+        for _ in range(rounds):
+            rows.append([run(name, *ways, steps)["nanoseconds"] for ways in WAYS.values()])
+            if name in lammps_peer.WORKLOADS:
+                theirs.append(1e9 / lammps_peer.measure(name, 2, seconds))
         middle = [median(column) for column in zip(*rows, strict=True)]
-        faster = sorted(row[0] / row[2] for row in rows)
-        beside = median(row[1] / row[2] for row in rows)
+        one, two = ([row[i] / row[2] for row in rows] for i in range(2))
+        peer = [a / row[2] for a, row in zip(theirs, rows, strict=False)]
         yield (
             f"| {name} {CASES[name]} | "
-            + " | ".join(f"{x:.2f}" for x in middle)
-            + f" | {median(faster):.2f} | {faster[0]:.2f}, {faster[-1]:.2f} | {beside:.2f} |"
+            + " | ".join([f"{x:.2f}" for x in middle] + [_spread(x) for x in (one, two, peer)])
+            + " |"
         )
+
+
+def _spread(ratios: list[float]) -> str:
+    """Median, and least and most, as two columns."""
+    if not ratios:
+        return " | "
+    return f"{median(ratios):.2f} | {min(ratios):.2f}, {max(ratios):.2f}"
 
 
 if __name__ == "__main__":

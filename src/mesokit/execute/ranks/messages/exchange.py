@@ -213,9 +213,9 @@ def _answer(team, now, physics, fluid, beads, walls):
             count = min(LANES, rows - b * LANES)
             answer_batch(team, now, physics, fluid, beads, start, count)
     meet(team)
-    lap(team, SHARE)
     if team.thread == 0:
         send_answers(now, physics, shared, walls)
+    lap(team, SHARE)
 
 
 @scalar
