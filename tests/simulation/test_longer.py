@@ -108,3 +108,23 @@ def test_not_shorter(half, tmp_path, steps, words):
         Simulation.resume(tmp_path / "run", steps=steps)
     record = json.loads((tmp_path / "run" / "provenance.json").read_text())
     assert record["ended"] and "lengthened" not in record
+
+
+def test_record_follows(tmp_path):
+    """What a run says of itself is of its length and its threads now: in SI, how long it was."""
+    bulk = mesokit.Simulation(
+        box=mesokit.Box([8, 8]),
+        run=mesokit.Run(steps=20),
+        units=mesokit.Units(cell=1e-6, match="thermal"),
+        output=tmp_path / "run",
+        threads=1,
+    )
+    bulk.run()
+    short = mesokit.open(tmp_path / "run").provenance
+    Simulation.resume(tmp_path / "run", threads=2, steps=40).run()
+    with h5md.opened(tmp_path / "run" / "run.h5") as file:
+        duration = file["parameters/units"].attrs["duration"]
+        record = json.loads(file["parameters/provenance"][()])
+    assert duration == record["units"]["duration"]
+    assert duration == pytest.approx(2 * short["units"]["duration"])
+    assert (short["threads"], record["threads"]) == (1, 2)

@@ -202,7 +202,6 @@ def provenance(case: Case, threads: int, ranks: int = 1) -> dict[str, Any]:
     """
     return {
         **recorded_case(case),
-        "units": _units(case),
         "seed": case.run.seed,
         "sources": sources(),
         "starts_from": parents(method_of(case).starts(case)),
@@ -225,10 +224,10 @@ def provenance(case: Case, threads: int, ranks: int = 1) -> dict[str, Any]:
     }
 
 
-def recorded_case(case: Case) -> dict[str, str]:
-    """What a record says of the case itself."""
+def recorded_case(case: Case) -> dict[str, Any]:
+    """What a record says of the case itself, and of its units."""
     text = case.to_toml()
-    return {"case": text, "case_digest": checkpoint.digest(text)}
+    return {"case": text, "case_digest": checkpoint.digest(text), "units": _units(case)}
 
 
 def _units(case: Case) -> dict[str, Any] | None:

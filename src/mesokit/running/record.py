@@ -28,7 +28,7 @@ def note_resumed(
     """It goes on, or begins if it had not begun. Raises RunError if that cannot be written."""
     record = earlier(directory) or provenance(case, threads, ranks)
     resumed = [*record.get("resumed", []), *([now()] if begun else [])]
-    now_is = {"resumed": resumed, "ranks": ranks, "failed": None}
+    now_is = {"resumed": resumed, "threads": threads, "ranks": ranks, "failed": None}
     directory.write_provenance(record | recorded_case(case) | now_is)
 
 
