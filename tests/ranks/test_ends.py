@@ -204,11 +204,75 @@ Simulation("endless.toml", callbacks=[every(50, look)]).run()
 
 
 def test_a_callback_of_one_rank_fails(folder, mpiexec):
+    """All ranks know, also where the script goes on: the one that failed, and where in its code."""
     (folder / "script.py").write_text(SCRIPT)
     ranks = mpiexec(2, sys.executable, "script.py")
     assert ranks.end() == 1
-    assert "mesokit: rank 1: Traceback" in ranks.err
-    assert ranks.err.count("RunError: callback look at step 100: ValueError: no such thing") == 1
+    gist = "RunError: rank 1: callback look at step 100: ValueError: no such thing"
+    assert ranks.err.count(gist) == 1
+    assert ranks.err.count('raise ValueError("no such thing")') == 1
+
+
+CAUGHT = """
+from mesokit import RunError, Simulation, StopRun, every
+
+def look(simulation):
+    if simulation.ranks.rank == 1 and simulation.step == 100:
+        WRONG
+
+simulation = Simulation("endless.toml", output="out", callbacks=[every(50, look)])
+try:
+    simulation.run()
+except RunError as error:
+    print(error, flush=True)
+print(simulation.step, simulation.callbacks.stopped, flush=True)
+"""
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said", "stopped"),
+    [
+        ('raise ValueError("x")', "rank 1: callback look at step 100: ValueError: x\n", "None"),
+        ("raise SystemExit(5)", "rank 1: sys.exit(5)\n", "None"),
+        ('raise StopRun("enough")', "", "enough"),
+    ],
+)
+def test_what_a_callback_of_one_rank_does_all_do(folder, mpiexec, wrong, said, stopped):
+    """Nobody waits for one that has gone on."""
+    (folder / "script.py").write_text(CAUGHT.replace("WRONG", wrong))
+    ranks = mpiexec(2, sys.executable, "script.py")
+    assert ranks.end() == 0, ranks.err
+    assert ranks.out.count(f"100 {stopped}\n") == 2
+    assert ranks.out.count(said) == (2 if said else len(ranks.out) + 1)
+    record = json.loads((folder / "out" / "provenance.json").read_text())
+    assert record["failed"] == (said.strip() or None)
+
+
+ASKS = """
+import notes
+from mesokit import Simulation, every
+from mesokit.ranks import several
+
+several.LONG = 0.5
+
+def look(simulation):
+    if simulation.ranks.root:
+        print(simulation.engine.totals())
+
+Simulation("case.toml", callbacks=[every(100, look)]).run()
+"""
+
+
+def test_a_question_that_one_rank_alone_asks(folder, mpiexec):
+    """Another says what it waits for, and signals end them."""
+    (folder / "script.py").write_text(ASKS)
+    ranks = mpiexec(2, sys.executable, "script.py")
+    said = ranks.process.stderr.readline()
+    assert said.startswith("warning: rank 1 has waited 0.5 seconds for callbacks of other ranks")
+    process = ranks.pids()[1]
+    os.kill(process, signal.SIGTERM)
+    os.kill(process, signal.SIGINT)
+    assert ended_within(ranks, SOON) != 0
 
 
 def test_ctrl_c_in_a_script(folder, mpiexec):

@@ -36,6 +36,14 @@ class Alone:
         """
         return function()
 
+    def answers(self, function: Callable[[], T]) -> list[T]:
+        """What a function of the user says that all ranks call: the answers of all.
+
+        Where it fails, or ends the program, on some ranks, RunError on all names the first of them;
+        its own error where it does on all.
+        """
+        return [function()]
+
     def gathered(self, value: T) -> list[T]:
         """What each rank has, on all ranks."""
         return [value]

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import sys
 import time
+import traceback
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, TypeVar, cast
@@ -22,6 +24,7 @@ from mesokit.ranks.order import Coming, Order
 T = TypeVar("T")
 SIGNAL = 1  # tag of a message to rank 0
 SOON, LATE = 1e-5, 2e-3  # seconds between two looks, at first and later
+LONG = 10.0  # seconds after which those that wait for callbacks of others say so
 
 
 class Several:
@@ -36,6 +39,7 @@ class Several:
         self._runs = 0  # begun so far
         self._told: list[Any] = []
         self._note: Callable[[str], Any] = _nothing  # what is noted if this rank ends all
+        self._said_so = self.rank > 1  # that it waits for callbacks of others; two are enough
         parent.note_rank(self.rank)
         end.watch(self)
 
@@ -47,10 +51,9 @@ class Several:
 
     def by_root(self, function: Callable[[], T]) -> T:
         """What a function says that all ranks call: the answer of rank 0, or its MesokitError."""
-        if not self.root:
-            function()
-            return _answer(self._own.bcast(None))
-        return _answer(self._own.bcast(_outcome(function)))
+        said = _outcome(function) if self.root else function()
+        wait(self._own.Ibarrier())
+        return _answer(self._own.bcast(said if self.root else None))
 
     def each(self, function: Callable[[], T]) -> T:
         """What a function says that all ranks call, each for its part.
@@ -62,6 +65,40 @@ class Several:
             if wrong is not None:
                 raise wrong
         return cast(T, answer)
+
+    def answers(self, function: Callable[[], T]) -> list[T]:
+        """What a function of the user says that all ranks call: the answers of all.
+
+        Where it fails, or ends the program, on some ranks, RunError on all names the first of them;
+        its own error where it does on all.
+        """
+        answer, error = None, None
+        try:
+            answer = function()
+        except (MesokitError, SystemExit) as wrong:
+            error = wrong
+        wait(self._own.Ibarrier(), self._waits_long)
+        said = self._own.allgather((answer, None if error is None else _told(error)))
+        failed = [rank for rank, (_, wrong) in enumerate(said) if wrong is not None]
+        if error is not None and len(failed) == self.size:
+            raise error
+        for rank in failed:
+            gist, trace = said[rank][1]
+            known = RunError(f"rank {rank}: {gist}")
+            if trace and rank != self.rank:
+                known.add_note(trace)
+            raise known from (error if rank == self.rank else None)
+        return [answer for answer, _ in said]
+
+    def _waits_long(self) -> None:
+        """What keeps the others may be that they ask this rank something meanwhile."""
+        if not self._said_so:
+            self._said_so = True
+            print(
+                f"warning: rank {self.rank} has waited {LONG:g} seconds for callbacks of other "
+                "ranks; what one asks of the fluid, those of all ranks must ask",
+                file=sys.stderr,
+            )
 
     def gathered(self, value: T) -> list[T]:
         """What each rank has, on all ranks."""
@@ -172,12 +209,16 @@ def _nothing(who: str) -> None:
     """No run fails."""
 
 
-def wait(request: Any) -> None:
-    """Until a message has come, without taking the core from others."""
-    pause = SOON
+def wait(request: Any, long: Callable[[], Any] | None = None) -> None:
+    """Until a message has come, without taking the core from others; `long` is called if it takes
+    that."""
+    pause, until = SOON, time.monotonic() + LONG
     while not request.Test():
         time.sleep(pause)
         pause = min(2 * pause, LATE)
+        if long is not None and time.monotonic() > until:
+            long()
+            long = None
 
 
 def _outcome(function: Callable[[], T]) -> tuple[T | None, MesokitError | None]:
@@ -185,6 +226,14 @@ def _outcome(function: Callable[[], T]) -> tuple[T | None, MesokitError | None]:
         return function(), None
     except MesokitError as error:
         return None, error
+
+
+def _told(error: MesokitError | SystemExit) -> tuple[str, str]:
+    """An error for other ranks: its gist, and where in the user's code it comes from."""
+    if isinstance(error, SystemExit):
+        return f"sys.exit({'' if error.code is None else error.code})", ""
+    cause = error.__cause__
+    return str(error), "" if cause is None else "".join(traceback.format_exception(cause)).rstrip()
 
 
 def _answer(said: Any) -> Any:

@@ -77,9 +77,10 @@ class Loop(Stop, Kept):
         return self.ranks.ahead(decide, self._signal)
 
     def _call_back(self) -> None:
-        """Let callbacks look, if one is due; whether they stop the run is said by rank 0."""
+        """Let callbacks look, if one is due; one that stops the run on any rank stops all."""
         if self.callbacks.due(self.step):
-            self.callbacks.stopped = self.ranks.by_root(lambda: self.callbacks.call(self))
+            reasons = self.ranks.answers(lambda: self.callbacks.call(self))
+            self.callbacks.stopped = next((one for one in reasons if one is not None), None)
 
     def _go(self, legs: Sequence[Leg]) -> None:
         """Do steps and take samples, and the frame that is due then."""
