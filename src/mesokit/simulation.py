@@ -79,7 +79,8 @@ class Simulation(Course):
         self.callbacks = Callbacks(callbacks)
         self.case, arrays = case_and_arrays(case, parts)
         self.threads = threads_of(threads, self.ranks)
-        self.ranks.require_same(lambda: told(self.case, self.callbacks, arrays))
+        where = {"output": str(output)}
+        self.ranks.require_same(lambda: told(self.case, self.callbacks, arrays) | where)
         with blaming(self.case):
             self._build()
             self.replicas.start(arrays)
