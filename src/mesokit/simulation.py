@@ -79,8 +79,8 @@ class Simulation(Course):
         self.callbacks = Callbacks(callbacks)
         self.case, arrays = case_and_arrays(case, parts)
         self.threads = threads_of(threads, self.ranks)
-        where = {"output": str(output)}
-        self.ranks.require_same(lambda: told(self.case, self.callbacks, arrays) | where)
+        facts = {"output": str(output)}
+        self.ranks.require_same(lambda: told(self.case, self.callbacks, arrays) | facts)
         with blaming(self.case):
             self._build()
             self.replicas.start(arrays)
@@ -117,6 +117,7 @@ class Simulation(Course):
         writing there. A damaged record of where the run comes from is a warning, and begun anew.
         """
         here = world()
+        here.require_same(lambda: {"output": str(output)})
         with here.quietly(), contextlib.ExitStack() as held:
             directory = here.on_root(lambda: existing(output, held))
             return cls._resumed(directory, threads, steps, callbacks)

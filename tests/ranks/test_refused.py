@@ -107,15 +107,18 @@ def test_other_ranks_have_another_case(folder):
     assert said == "mesokit: error: rank 1: case: density = 6.0 where rank 0 has density = 5.0"
 
 
-def test_one_rank_alone_writes(folder):
+@pytest.mark.parametrize(
+    "made", ["Simulation('case.toml', output={})", "Simulation.resume({} or 'other')"]
+)
+def test_one_rank_alone_has_the_folder(folder, made):
     """A folder is given on all ranks; the first writes there."""
-    program = (
-        "from mesokit import Simulation; from mpi4py import MPI\n"
-        "Simulation('case.toml', output=None if MPI.COMM_WORLD.rank else 'out')"
+    program = "from mesokit import Simulation; from mpi4py import MPI\n" + made.format(
+        "(None if MPI.COMM_WORLD.rank else 'out')"
     )
     ranks = Ranks([MPIEXEC, "-n", "2", sys.executable, "-c", program], folder)
     assert ranks.end() == 1
-    assert ranks.err.count("RunError: rank 1: output: None where rank 0 has out") == 1
+    other = "None" if "resume" not in made else "other"
+    assert ranks.err.count(f"RunError: rank 1: output: {other} where rank 0 has out") == 1
     assert not (folder / "out").exists()
 
 

@@ -80,15 +80,17 @@ class Several:
         wait(self._own.Ibarrier(), self._waits_long)
         said = self._own.allgather((answer, None if error is None else _told(error)))
         failed = [rank for rank, (_, wrong) in enumerate(said) if wrong is not None]
+        if not failed:
+            return [answer for answer, _ in said]
         if error is not None and len(failed) == self.size:
             raise error
-        for rank in failed:
-            gist, trace = said[rank][1]
-            known = RunError(f"rank {rank}: {gist}")
-            if trace and rank != self.rank:
-                known.add_note(trace)
-            raise known from (error if rank == self.rank else None)
-        return [answer for answer, _ in said]
+        first, (gist, trace) = failed[0], said[failed[0]][1]
+        known = RunError(f"rank {first}: {gist}")
+        if first == self.rank:
+            raise known from error
+        if trace:
+            known.add_note(trace)
+        raise known
 
     def _waits_long(self) -> None:
         """What keeps the others may be that they ask this rank something meanwhile."""
