@@ -99,7 +99,7 @@ ROWS = {
     "report/": ("case", "errors", "geometry", "io", "method.protocol", "observe", "report"),
     "report/flow/state.py": ("case", "method.protocol"),
     "report/flow/moving_plates.py": ("case", "report", "spheres.wall"),
-    "report/flow/shaded.py": ("report", "scalar.cache"),
+    "report/flow/shaded.py": ("report", "kernels.kernel"),
     "study/": (
         "case", "errors", "io", "method.protocol", "observe.shared", "ranks", "report", "running",
         "simulation", "statistics", "study",
@@ -112,6 +112,9 @@ ROWS = {
     "cli/chains.py": ("case", "errors", "theory"),
     "cli/chain_figures.py": ("cli", "errors", "report", "theory"),
 }  # fmt: skip
+ROWS["kernels/"] = ("kernels",)
+for _place, _row in ROWS.items():  # what is written as scalar functions is compiled
+    ROWS[_place] = (*_row, "kernels") if {"scalar", "method.mpcd"} & set(_row) else _row
 # what loads modules by names that are data: public names, methods, parts, figures, options
 BY_NAME = {
     "__init__.py", "method/__init__.py", "case/registry.py", "case/outside.py",

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import hashlib
 import re
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mesokit.scalar.cache import folder
+from mesokit.kernels.kept import kept, versions
+from mesokit.kernels.kernel import needs_of_all, processor
+from mesokit.kernels.store import Entry
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -22,18 +23,19 @@ NOT_COMPILED = ("[[observe]]", "[trajectory]", "[log]", "[units]", "[run]", "tit
 
 def has_run(case: Case) -> bool:
     """Whether a case of this kind has run here with these kernels; if not, they are to compile."""
-    return _mark(case).exists()
+    return kept().find(_key(case)) is not None
 
 
 def note_run(case: Case) -> None:
-    """Remember that the kernels for this kind of case are kept. Raises OSError."""
-    mark = _mark(case)
-    mark.parent.mkdir(parents=True, exist_ok=True)
-    mark.touch()
+    """Remember that the kernels for this kind of case are kept, while what they contain stays."""
+    needs = needs_of_all()
+    if needs is not None:
+        entry = Entry(f"kind {case.run.method}", needs, b"", "")
+        kept().keep(_key(case), lambda store: (entry, []))
 
 
-def _mark(case: Case) -> Path:
-    return Path(folder()) / "kinds" / kind_of(case)
+def _key(case: Case) -> str:
+    return f"kind {kind_of(case)} {processor()} {versions()}"
 
 
 def kind_of(case: Case) -> str:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.scalar.cache import kernel
+from mesokit.kernels.kernel import kernel
 from mesokit.scalar.fixed_point import ROUNDER
 
 QUANTA = 52  # bits of a unit: as fine as a number of its size is

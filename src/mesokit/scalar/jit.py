@@ -8,8 +8,9 @@ from typing import Any
 from numba import njit
 from numba.extending import overload
 
+from mesokit.kernels.made_of import CHOOSERS
+from mesokit.kernels.part import OPTIONS, part
 from mesokit.scalar.intrinsics import not_inlined
-from mesokit.scalar.part import OPTIONS, part
 
 
 def scalar(function: Callable) -> Any:
@@ -53,6 +54,8 @@ def by_type(choose: Callable) -> Any:
 def _overloaded(name: Callable, choose: Callable) -> Any:
     options = OPTIONS | {"forceinline": True, "_nrt": False}
     overload(name, strict=False, jit_options=options)(choose)
+    if not hasattr(name, "implementation"):
+        CHOOSERS[name] = choose
     return name
 
 
@@ -90,7 +93,11 @@ def generic(stub: Callable) -> Any:
         return table.get(kind, *others)
 
     def choose(*arguments: Any) -> Callable | None:
-        return found(getattr(arguments[0], "instance_class", None))
+        kind = getattr(arguments[0], "instance_class", None)
+        chosen = found(kind)
+        if chosen is not None:  # what is compiled depends on this choice
+            vars(chosen).setdefault("chosen_for", {})[dispatch, kind] = None
+        return chosen
 
     @functools.wraps(stub)
     def dispatch(*arguments: Any) -> Any:
@@ -120,6 +127,7 @@ def generic(stub: Callable) -> Any:
         return implementation
 
     names = inspect.signature(stub).parameters.keys()
+    dispatch.implementation = found  # type: ignore[attr-defined]
     dispatch.implementations = table  # type: ignore[attr-defined]
     dispatch.others = others  # type: ignore[attr-defined]
     dispatch.register = register  # type: ignore[attr-defined]

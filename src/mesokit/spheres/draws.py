@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.scalar.cache import kernel
+from mesokit.kernels.kernel import kernel
 from mesokit.scalar.random import METHOD, Counter, normals, unit, words
 
 Array = NDArray[np.float64]

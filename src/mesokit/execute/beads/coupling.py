@@ -17,10 +17,10 @@ from mesokit.execute.cpu.strips.rows import load_values, store_values
 from mesokit.execute.cpu.strips.terms import read_sums, sums_of_cell
 from mesokit.execute.embedded.state import collides
 from mesokit.execute.ranks.messages.shared import key_of
+from mesokit.kernels.kernel import inner
 from mesokit.method.mpcd.collision.protocol import Cell, contribute, freedom
 from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.method.mpcd.thermostat.protocol import guess
-from mesokit.scalar.cache import inner
 from mesokit.scalar.gamma import gamma_number
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.poisson import poisson_number

@@ -26,8 +26,8 @@ from mesokit.execute.cpu.strips.layout import record_length, share
 from mesokit.execute.cpu.strips.rows import load_values, store_values
 from mesokit.execute.cpu.threads import Team
 from mesokit.execute.ranks.beads.roster import call_roll
+from mesokit.kernels.kernel import inner
 from mesokit.method.mpcd.collision.protocol import collide, contribute
-from mesokit.scalar.cache import inner
 from mesokit.scalar.fixed_point import add_quanta
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.random import FIRST_BEAD

@@ -69,39 +69,39 @@ def _fly_springs(team, now, physics, fluid, batch):
 
 
 @drift.register(Moving)
-def _(moving, counter, physics):
+def _(moving, counter, physics, time):
     for k in range(physics.molecule.beads):
-        if drift_bead(moving, counter, physics, k):
+        if drift_bead(moving, counter, physics, time, k):
             forget(moving.fluid.room, moving.batch.strip + k, 1 << (moving.batch.start // FEW))
 
 
 @kick.register(Moving)
-def _(moving, step, box, physics):
+def _(moving, step, box, physics, time):
     molecule, zero, batch, fluid = physics.molecule, physics.zero, moving.batch, moving.fluid
     work = fluid.scratch.beads[moving.team.thread]
     if moving.flags & MEASURE_STRESS:
-        virial = Virial(physics.timestep, fluid.taken.tensor[2, batch.group], physics.stress_scale)
+        virial = Virial(time, fluid.taken.tensor[2, batch.group], physics.stress_scale)
         each_link(virial, molecule, work, batch.lanes, zero)
-    change = Kick(physics.timestep * molecule.inverse_mass)
+    change = Kick(time * molecule.inverse_mass)
     if each_link(change, molecule, work, WIDTH, zero):
         note_torn_bonds(moving, step, molecule, zero)
     for k in range(molecule.beads):
-        push_bead(physics, work[bead_at(k, zero)])
+        push_bead(physics, time, work[bead_at(k, zero)])
 
 
 @by_type
-def push_bead(physics, bead):
+def push_bead(physics, time, bead):
     """The body force, if there is one."""
-    return (
-        (lambda physics, bead: None) if field_of(physics, "field").instance_class is Zero else _push
-    )
+    if field_of(physics, "field").instance_class is Zero:
+        return lambda physics, time, bead: None
+    return _push
 
 
-def _push(physics, bead):
+def _push(physics, time, bead):
     zero = physics.zero
     for i in range(WIDTH):
         r, v = load_bead(bead, i, 0, zero), load_bead(bead, i, len(zero), zero)
-        v = added_scaled(v, physics.timestep, acceleration(physics.field, r))
+        v = added_scaled(v, time, acceleration(physics.field, r))
         store_bead(bead, i, len(zero), v)
 
 
@@ -151,21 +151,21 @@ def _remember(solid, bead, zero):
 
 
 @by_type
-def drift_bead(moving, counter, physics, k):
+def drift_bead(moving, counter, physics, time, k):
     """Straight flight of bead k, with reflections; whether any of the batch came near a solid."""
     return _drift if kind_of_solid(physics) is Nothing else _drift_among_solids
 
 
-def _drift(moving, counter, physics, k):
+def _drift(moving, counter, physics, time, k):
     zero = physics.zero
     d, bead = len(zero), moving.fluid.scratch.beads[moving.team.thread][bead_at(k, zero)]
     for i in range(WIDTH):
         r, v = load_bead(bead, i, 0, zero), load_bead(bead, i, d, zero)
-        store_bead(bead, i, 0, added_scaled(r, physics.timestep, v))
+        store_bead(bead, i, 0, added_scaled(r, time, v))
     return False
 
 
-def _drift_among_solids(moving, counter, physics, k):
+def _drift_among_solids(moving, counter, physics, time, k):
     # Beads that may hit a surface stay behind in the first loop, as in `stages.fly`. How far they
     # may go is known from where the timestep started: so the whole way from there counts.
     batch, fluid, thread, zero = moving.batch, moving.fluid, moving.team.thread, physics.zero
@@ -175,7 +175,7 @@ def _drift_among_solids(moving, counter, physics, k):
     any_hit = np.int64(0)
     for i in range(WIDTH):
         r, v = load_bead(bead, i, 0, zero), load_bead(bead, i, d, zero)
-        there, start = added_scaled(r, physics.timestep, v), load_bead(bead, i, 2 * d, zero)
+        there, start = added_scaled(r, time, v), load_bead(bead, i, 2 * d, zero)
         moved = added_scaled(there, -1.0, start)
         around = clear_of(physics.solid, clear, i)
         hit = np.int64(touches(physics.solid, around, start, moved, rest, 1.0))
@@ -188,7 +188,7 @@ def _drift_among_solids(moving, counter, physics, k):
     for i in range(batch.lanes):
         if hits[i] != 0:
             r, v = load_bead(bead, i, 0, zero), load_bead(bead, i, d, zero)
-            r, v = flown(physics, counter, numbers[i], m, r, v, impulse)
+            r, v = flown(physics, time, counter, numbers[i], m, r, v, impulse)
             store_bead(bead, i, 0, r + v)
     return True
 

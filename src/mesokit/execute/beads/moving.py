@@ -42,33 +42,33 @@ class Moving(NamedTuple):
 
 
 @drift.register(Moving)
-def _(moving, counter, physics):
+def _(moving, counter, physics, time):
     meet(moving.team)  # nobody looks at the places before any more
     for n in range(moving.first, moving.last):
         i = bead_of(moving.beads.roster, OWN, n)
-        drift_bead(moving.beads, i, counter, physics, moving.impulse)
+        drift_bead(moving.beads, i, counter, physics, time, moving.impulse)
 
 
 @by_type
-def drift_bead(beads, i, counter, physics, impulse):
+def drift_bead(beads, i, counter, physics, time, impulse):
     """Straight flight, with reflections."""
     return _drift if kind_of_solid(physics) is Nothing else _drift_among_solids
 
 
-def _drift(beads, i, counter, physics, impulse):
+def _drift(beads, i, counter, physics, time, impulse):
     r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
-    store_place(beads, i, added_scaled(r, physics.timestep, v))
+    store_place(beads, i, added_scaled(r, time, v))
 
 
-def _drift_among_solids(beads, i, counter, physics, impulse):
+def _drift_among_solids(beads, i, counter, physics, time, impulse):
     r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
-    r, v = flown(physics, counter, FIRST_BEAD + i, mass_of(beads, i), r, v, impulse)
+    r, v = flown(physics, time, counter, FIRST_BEAD + i, mass_of(beads, i), r, v, impulse)
     store_place(beads, i, r)
     store_velocity(beads, i, v)
 
 
 @kick.register(Moving)
-def _(moving, step, box, physics):
+def _(moving, step, box, physics, time):
     beads, team, zero = moving.beads, moving.team, physics.zero
     meet(team)
     tell_places(team, beads)  # ranks: where they are now
@@ -76,36 +76,36 @@ def _(moving, step, box, physics):
     if moving.measured:
         for n in range(moving.first, moving.last):
             i = bead_of(beads.roster, OWN, n)
-            virial = Virial(physics.timestep, beads.tensor[2, n // GROUP], physics.stress_scale)
+            virial = Virial(time, beads.tensor[2, n // GROUP], physics.stress_scale)
             each_on_bead(virial, (), beads, i, load_place(beads, i, zero), box)
     scale, faults = momentum_scale(physics), beads.faults[team.thread]
-    force = Force(physics.timestep, moving.impulse, scale, step, faults)
+    force = Force(time, moving.impulse, scale, step, faults)
     for n in range(moving.first, moving.last):
-        kick_bead(force, beads, bead_of(beads.roster, OWN, n), box, physics)
+        kick_bead(force, beads, bead_of(beads.roster, OWN, n), box, physics, time)
 
 
 @by_type
-def kick_bead(asked, beads, i, box, physics):
+def kick_bead(asked, beads, i, box, physics, time):
     """Change of the velocity of a bead by the forces on it."""
     external = beads.types[beads.fields.index("external")]
     return _kick_from_outside if len(external) else _kick
 
 
-def _kick(asked, beads, i, box, physics):
+def _kick(asked, beads, i, box, physics, time):
     r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
     force = each_on_bead(asked, scaled(0.0, physics.zero), beads, i, r, box)
-    v = added_scaled(v, physics.timestep * inverse_mass_of(beads, i), force)
-    store_velocity(beads, i, pushed(physics.field, physics.timestep, r, v))
+    v = added_scaled(v, time * inverse_mass_of(beads, i), force)
+    store_velocity(beads, i, pushed(physics.field, time, r, v))
 
 
-def _kick_from_outside(asked, beads, i, box, physics):
+def _kick_from_outside(asked, beads, i, box, physics, time):
     """Half of the change, a turn in the magnetic field, and the other half (Boris 1970)."""
     r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
     force = each_on_bead(asked, scaled(0.0, physics.zero), beads, i, r, box)
     force = from_outside(beads.external, force, i, r)
-    half = 0.5 * physics.timestep
+    half = 0.5 * time
     v = added_scaled(v, half * inverse_mass_of(beads, i), force)
-    v = turned(beads.external, physics.timestep, i, pushed(physics.field, half, r, v))
+    v = turned(beads.external, time, i, pushed(physics.field, half, r, v))
     v = added_scaled(v, half * inverse_mass_of(beads, i), force)
     store_velocity(beads, i, pushed(physics.field, half, r, v))
 

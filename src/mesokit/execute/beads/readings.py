@@ -18,7 +18,7 @@ from mesokit.execute.beads.traverse import each_on_bead
 from mesokit.execute.cpu.strips.rows import load_values, store_values
 from mesokit.execute.cpu.threads import Team
 from mesokit.execute.embedded.readings import energy_in_fluid, refuse_faults
-from mesokit.scalar.cache import kernel
+from mesokit.kernels.kernel import kernel
 from mesokit.scalar.fixed_point import total
 from mesokit.scalar.vector import scaled
 

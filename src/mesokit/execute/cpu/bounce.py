@@ -35,14 +35,14 @@ def take_sum(impulse, surface, given, scale):
 
 
 @seldom
-def bounce(physics, counter, number, m, r, v, a, impulse):
+def bounce(physics, timestep, counter, number, m, r, v, a, impulse):
     """Position and velocity a timestep later, with reflections; surfaces take the momentum lost.
 
     A particle that rounding leaves in a solid, or that still flies after MOST_HITS, stays where it
     was, with the velocity that its hits left it: no particle is ever in a solid. Between surfaces
     that touch and move they may have driven it to any speed: then it turns back with its own.
     """
-    solid, time = physics.solid, physics.timestep
+    solid, time = physics.solid, timestep
     start = homed(solid, r)
     away = added_scaled(r, -1.0, start)
     x, u, flying, touched = start, v, True, False
@@ -73,13 +73,13 @@ def bounce(physics, counter, number, m, r, v, a, impulse):
     if touched:
         x, u = fall(x, u, a, time)
     else:  # the same bits as for a particle that was seen to be far from all solids
-        x, u = fall(r, v, a, physics.timestep)
+        x, u = fall(r, v, a, timestep)
         away = scaled(0.0, r)
     at_home = homed(solid, x)
     place, good = settled(solid, at_home)
     caught = flying or not good
     if touched:
-        if caught and length(u) > DRIVEN * (length(v) + length(a) * physics.timestep):
+        if caught and length(u) > DRIVEN * (length(v) + length(a) * timestep):
             lost = scaled(m, added(u, v))
             given = added(given, lost + outer(lever(solid, last, start), lost))
             u = scaled(-1.0, v)

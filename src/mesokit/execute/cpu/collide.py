@@ -10,10 +10,10 @@ from mesokit.execute.cpu.strips.rows import load_scratch, load_values, store_scr
 from mesokit.execute.cpu.strips.terms import nothing_found, read_sums
 from mesokit.execute.neighbours.gradient import gradient_at
 from mesokit.execute.ranks.messages.shared import any_own, key_of, shares
+from mesokit.kernels.kernel import inner
 from mesokit.method.mpcd.collision.protocol import Cell, freedom
 from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.method.mpcd.thermostat.protocol import draw, guess
-from mesokit.scalar.cache import inner
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.random import CELL, words
 from mesokit.scalar.vector import added

@@ -129,8 +129,7 @@ class CPU:
             box=memory.box,
             grid=memory.grid,
         )
-        parts = memory.physics, memory.fluid, memory.solutes, memory.walls
-        self.threads.run(advance, course, *parts)
+        self.threads.run(advance, course, *memory.groups())
         memory.step += steps
 
     def _check_bonds(self) -> None:

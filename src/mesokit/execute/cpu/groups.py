@@ -3,6 +3,7 @@
 from typing import Any, NamedTuple
 
 from mesokit.execute.cpu.grid import Grid
+from mesokit.kernels.group import by_address
 from mesokit.scalar.random import Counter
 
 # What a stage is to do.
@@ -32,6 +33,7 @@ class Now(NamedTuple):
     flags: int
 
 
+@by_address("filling")  # of ranks, whose particles come and go
 class Particles(NamedTuple):
     """The fluid's particles, strip by strip (see `strips.layout`); lanes are counted through."""
 

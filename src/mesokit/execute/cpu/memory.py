@@ -32,6 +32,7 @@ from mesokit.execute.embedded.allocate import embedded_of
 from mesokit.execute.neighbours.gradient import Field
 from mesokit.execute.virtual.allocate import virtual_particles, with_clearance
 from mesokit.geometry.solids.none import Nothing
+from mesokit.kernels.group import all_packed
 
 if TYPE_CHECKING:
     from mesokit.execute.cpu.numbers import Numbers
@@ -57,6 +58,7 @@ class Memory:
         case, d = numbers.case, numbers.dimension
         self.numbers, self.threads, self.step = numbers, threads, 0
         self.measures, self.domain = frozenset(measures), domain
+        self._parts: tuple[Any, ...] = (None,) * 4  # those that are packed
         self._tables: list[Any] = []  # which compiled code knows by address
         self._places, self._placed = np.zeros(0, np.int64), (0, numbers.beads)
         if earlier is None or (numbers.solids and earlier.domain.block != domain.block):
@@ -78,6 +80,13 @@ class Memory:
         """The box as it is after the last step."""
         numbers = self.numbers
         return numbers.case.box.kernel(numbers.closed, self.step * numbers.timestep)
+
+    def groups(self) -> tuple[Any, ...]:
+        """Physics, fluid, solutes and walls as the step takes them; packed when one is another."""
+        parts = self.physics, self.fluid, self.solutes, self.walls
+        if any(one is not other for one, other in zip(parts, self._parts, strict=True)):
+            self._parts, self._groups = parts, all_packed(parts)
+        return self._groups
 
     def _physics(self) -> Physics:
         numbers, fluid, d = self.numbers, self.numbers.case.fluid, self.numbers.dimension

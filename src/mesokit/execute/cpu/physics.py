@@ -2,10 +2,12 @@
 
 from typing import Any, NamedTuple
 
+from mesokit.kernels.group import by_address
 from mesokit.method.mpcd.field.protocol import field_at
-from mesokit.scalar.jit import scalar
+from mesokit.scalar.jit import by_type, scalar
 
 
+@by_address()
 class Physics(NamedTuple):
     """Parameters of the parts, and tuples as long as what is kept for particles and cells."""
 
@@ -31,30 +33,14 @@ def momentum_scale(physics):
     return physics.scales[0]
 
 
-@scalar
-def for_time(physics, time):
-    """The same physics for another timestep."""
-    return Physics(
-        physics.rule,
-        physics.thermostat,
-        physics.field,
-        physics.solid,
-        physics.masses,
-        physics.energy,
-        time,
-        physics.kT,
-        physics.molecule,
-        physics.zero,
-        physics.coefficients,
-        physics.terms,
-        physics.scales,
-        physics.stress_scale,
-    )
-
-
-@scalar
+@by_type
 def at_middle(physics, done):
     """The same physics in the middle of the step after so many: forces may change in time."""
+    changes = field_of(physics, "field").instance_class in field_at.implementations
+    return _at_middle if changes else lambda physics, done: physics
+
+
+def _at_middle(physics, done):
     return Physics(
         physics.rule,
         physics.thermostat,

@@ -23,7 +23,7 @@ from mesokit.execute.cpu.strips.layout import (
 )
 from mesokit.execute.cpu.strips.rows import count_images, load_particle, store_particle
 from mesokit.execute.cpu.threads import meet
-from mesokit.scalar.cache import inner, kernel
+from mesokit.kernels.kernel import inner, kernel
 from mesokit.scalar.jit import by_type
 from mesokit.scalar.vector import scaled
 

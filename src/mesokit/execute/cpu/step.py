@@ -12,14 +12,13 @@ from mesokit.execute.embedded.stages import move_beads, stream
 from mesokit.execute.neighbours.gradient import fill_field
 from mesokit.execute.ranks.messages.exchange import answer_others, give_sums, take_answers
 from mesokit.execute.ranks.messages.migrate import (
-    holding,
+    hold_those_here,
     migrate,
-    molecules_held,
     note_done,
     room_left,
 )
 from mesokit.execute.virtual.stages import fill_walls, follow_flow, recoil, top_up_walls
-from mesokit.scalar.cache import inner, kernel
+from mesokit.kernels.kernel import inner, kernel
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.random import Counter, grid_shift
 
@@ -57,7 +56,7 @@ def advance(team, course, physics, fluid, beads, walls):
     while n < course.steps and room_left(fluid):
         number, now = interval(team, course, now, physics, fluid, beads, walls, n)
         n += number
-        fluid = holding(fluid, molecules_held(fluid))  # ranks: others may have come
+        hold_those_here(fluid)  # ranks: others may have come
     note_done(team, fluid, n)
     if n > 0:
         now = last_collision(course, now)

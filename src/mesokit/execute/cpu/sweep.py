@@ -36,7 +36,7 @@ from mesokit.execute.cpu.strips.layout import (
 from mesokit.execute.cpu.strips.rows import load_particle, mass_of
 from mesokit.execute.ranks.messages.guests import note_guests
 from mesokit.execute.ranks.messages.migrate import note_strays
-from mesokit.scalar.cache import inner
+from mesokit.kernels.kernel import inner
 from mesokit.scalar.fixed_point import add_fixed, added_fixed, integers
 from mesokit.scalar.jit import by_type, seldom
 from mesokit.scalar.vector import added, products

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
 from queue import SimpleQueue
 from typing import Any, NamedTuple
 
 import numpy as np
 from llvmlite import ir
-from numba import types
+from numba import typeof, types
 from numba.extending import intrinsic
 
 from mesokit.execute.cpu.clock import CLOCK_SIZE
+from mesokit.kernels.group import all_packed, packed
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.system import yield_core
 
@@ -82,13 +82,14 @@ class Threads:
             args = (self._team(thread), inbox, self._done)
             threading.Thread(target=_work, args=args, daemon=True).start()
 
-    def run(self, kernel: Callable, *arguments: Any) -> None:
+    def run(self, kernel: Any, *arguments: Any) -> None:
         """Call kernel(team, *arguments) in every thread; return when all are done.
 
         A kernel that is still to be compiled is compiled before any thread starts it.
         """
+        arguments = all_packed(arguments)
         if self.size > 1 and hasattr(kernel, "signatures"):
-            _compile(kernel, (self._team(0), *arguments))
+            kernel.compile(tuple(map(typeof, (self._team(0), *arguments))))
         for inbox in self._inboxes:
             inbox.put((kernel, arguments))
         kernel(self._team(0), *arguments)
@@ -97,8 +98,8 @@ class Threads:
             if error is not None:
                 raise error
 
-    def _team(self, thread: int) -> Team:
-        return Team(thread, self.size, self._gate, self.clock)
+    def _team(self, thread: int) -> Any:
+        return packed(Team(thread, self.size, self._gate, self.clock))
 
     def __del__(self) -> None:
         for inbox in self._inboxes:
@@ -116,9 +117,3 @@ def _work(team: Team, inbox: SimpleQueue, done: SimpleQueue) -> None:
             error = raised
         del job, kernel, arguments
         done.put(error)
-
-
-def _compile(kernel: Any, arguments: tuple[Any, ...]) -> None:
-    from numba import typeof
-
-    kernel.compile(tuple(typeof(argument) for argument in arguments))

@@ -33,8 +33,8 @@ from mesokit.execute.embedded.state import (
     Embedded,
 )
 from mesokit.geometry.solids.none import Nothing
+from mesokit.kernels.kernel import inner
 from mesokit.potential.protocol import central
-from mesokit.scalar.cache import inner
 from mesokit.scalar.fixed_point import add_integers, added_quanta, integers
 from mesokit.scalar.jit import by_type, elementwise, scalar
 from mesokit.scalar.vector import added_scaled, dot, scaled
@@ -63,15 +63,15 @@ def move_in_fluid(team, now, physics, fluid, beads):
 
 
 @drift.register(Together)
-def _(moving, counter, physics):
-    drift(moving.solutes, counter, physics)
+def _(moving, counter, physics, time):
+    drift(moving.solutes, counter, physics, time)
     solutes, embedded, thread = moving.solutes, moving.embedded, moving.solutes.team.thread
     for i in range(solutes.first, solutes.last):
         start = load_values(embedded.lists.made_at, np.uint64(i * len(physics.zero)), physics.zero)
         if has_left(start, load_place(solutes.beads, i, physics.zero), embedded.skin):
             note(embedded.faults[thread], step_of(counter), TOO_FAR, i + 1)
     for n in range(embedded.number[thread, COUNT]):
-        drift_particle(moving, n, counter, physics)
+        drift_particle(moving, n, counter, physics, time)
 
 
 @scalar
@@ -81,12 +81,12 @@ def step_of(counter):
 
 
 @scalar
-def drift_particle(moving, n, counter, physics):
+def drift_particle(moving, n, counter, physics, time):
     """Straight flight of one particle, with reflections."""
     embedded, thread, zero = moving.embedded, moving.solutes.team.thread, physics.zero
     at = np.uint64(n * len(zero))
     r, v = load_values(embedded.r[thread], at, zero), load_values(embedded.v[thread], at, zero)
-    r, v = moved(physics, counter, moving, embedded.lane[thread, n], r, v)
+    r, v = moved(physics, time, counter, moving, embedded.lane[thread, n], r, v)
     store_values(embedded.r[thread], at, r)
     store_values(embedded.v[thread], at, v)
     start = load_values(embedded.start[thread], at, zero)
@@ -95,17 +95,17 @@ def drift_particle(moving, n, counter, physics):
 
 
 @by_type
-def moved(physics, counter, moving, lane, r, v):
+def moved(physics, time, counter, moving, lane, r, v):
     """Place and velocity of the particle in a lane after a sub-step without forces."""
     if kind_of_solid(physics) is Nothing:
-        return lambda physics, counter, moving, lane, r, v: (
-            added_scaled(r, physics.timestep, v),
+        return lambda physics, time, counter, moving, lane, r, v: (
+            added_scaled(r, time, v),
             v,
         )
 
-    def among_solids(physics, counter, moving, lane, r, v):
+    def among_solids(physics, time, counter, moving, lane, r, v):
         m, who = mass_in_lane(physics, moving.particles, lane), moving.particles.ident[lane]
-        return flown(physics, counter, who, m, r, v, moving.solutes.impulse)
+        return flown(physics, time, counter, who, m, r, v, moving.solutes.impulse)
 
     return among_solids
 
@@ -118,13 +118,13 @@ def mass_in_lane(physics, particles, lane):
 
 
 @kick.register(Together)
-def _(moving, step, box, physics):
-    kick(moving.solutes, step, box, physics)  # threads meet: all places are known
+def _(moving, step, box, physics, time):
+    kick(moving.solutes, step, box, physics, time)  # threads meet: all places are known
     solutes, embedded, zero = moving.solutes, moving.embedded, physics.zero
     team, beads = solutes.team, solutes.beads
     embedded.taken[team.thread] = 0
     for n in range(embedded.number[team.thread, COUNT]):
-        kick_particle(moving, n, step, box, physics)
+        kick_particle(moving, n, step, box, physics, time)
     meet(team)
     unit = 1.0 / momentum_scale(physics)
     for i in range(solutes.first, solutes.last):
@@ -140,7 +140,7 @@ def _(moving, step, box, physics):
 
 
 @scalar
-def kick_particle(moving, n, step, box, physics):
+def kick_particle(moving, n, step, box, physics, time):
     """Change of the velocity of one particle by the beads near it, which take the opposite."""
     embedded, thread, zero = moving.embedded, moving.solutes.team.thread, physics.zero
     beads, at, d = moving.solutes.beads, np.uint64(n * len(zero)), len(zero)
@@ -152,17 +152,15 @@ def kick_particle(moving, n, step, box, physics):
         square = dot(separation, separation)
         _, push = central(embedded.potential, square)
         if push != 0.0:
-            if not abs(push) * physics.timestep * scale * square**0.5 < MOST_UNITS:
+            if not abs(push) * time * scale * square**0.5 < MOST_UNITS:
                 note(embedded.faults[thread], step, TOO_HARD, j + 1)
             else:
-                units = added_quanta(
-                    scaled(physics.timestep * push, separation), scale, integers(zero)
-                )
+                units = added_quanta(scaled(time * push, separation), scale, integers(zero))
                 given = all_added(given, units)
                 add_integers(embedded.taken[thread, j * d : (j + 1) * d], opposite(units))
     m = mass_in_lane(physics, moving.particles, embedded.lane[thread, n])
     v = added_scaled(v, 1.0 / (scale * m), floats(given))
-    store_values(embedded.v[thread], at, pushed(physics.field, physics.timestep, r, v))
+    store_values(embedded.v[thread], at, pushed(physics.field, time, r, v))
 
 
 @elementwise

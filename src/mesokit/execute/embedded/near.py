@@ -27,8 +27,8 @@ from mesokit.execute.embedded.state import (
     WHAT,
     WHICH,
 )
+from mesokit.kernels.kernel import inner
 from mesokit.method.mpcd.streaming import halfway, vector
-from mesokit.scalar.cache import inner
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.vector import added_scaled, dot, scaled

@@ -16,8 +16,8 @@ from mesokit.execute.cpu.strips.rows import load_particle
 from mesokit.execute.cpu.threads import Team
 from mesokit.execute.embedded.near import find_beads
 from mesokit.execute.embedded.state import STEP, TOO_FAR, TOO_HARD, WHAT, WHICH
+from mesokit.kernels.kernel import kernel
 from mesokit.potential.protocol import central
-from mesokit.scalar.cache import kernel
 from mesokit.scalar.fixed_point import quanta, total
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import dot

@@ -37,8 +37,8 @@ from mesokit.execute.embedded.near import choose_near, find_beads
 from mesokit.execute.embedded.state import COUNT
 from mesokit.geometry.protocol import leaps
 from mesokit.geometry.solids.none import Nothing
+from mesokit.kernels.kernel import inner
 from mesokit.method.mpcd.collision.protocol import contribute
-from mesokit.scalar.cache import inner
 from mesokit.scalar.jit import by_type, optional, scalar
 from mesokit.scalar.vector import added_scaled
 

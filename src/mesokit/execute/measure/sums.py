@@ -12,9 +12,9 @@ from mesokit.case.box import fold
 from mesokit.execute.cpu.stages import add_strip
 from mesokit.execute.cpu.strips.layout import LANES, lanes_in, share, strip_at, strips_in
 from mesokit.execute.cpu.strips.rows import load_particle, mass_of, store_scratch
+from mesokit.kernels.kernel import kernel
 from mesokit.potential.angle import bend
 from mesokit.potential.protocol import central
-from mesokit.scalar.cache import kernel
 from mesokit.scalar.elementary import sincos_turn
 from mesokit.scalar.fixed_point import (
     add_fixed,

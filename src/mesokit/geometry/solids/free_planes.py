@@ -16,7 +16,7 @@ from mesokit.geometry.solids.bodies import (
     term_clearance,
 )
 from mesokit.geometry.solids.flight import curves_away
-from mesokit.scalar.cache import kernel
+from mesokit.kernels.kernel import kernel
 from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.pointer import whole, word

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mesokit.scalar.cache import kernel
+from mesokit.kernels.kernel import kernel
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.random import INITIAL_POSITION, METHOD, Counter, normals, unit, words

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import signal
 from collections.abc import Sequence
 from time import perf_counter
@@ -39,8 +38,7 @@ class Loop(Stop, Kept):
             raise self._stopped from None
         finally:
             self._compiling = False
-        with contextlib.suppress(OSError):  # kernels are then not kept either
-            note_run(self.case)
+        note_run(self.case)
 
     def _loop(self, progress: Reporter, last: int) -> None:
         if self.step == self.case.run.warmup and not self._looked:

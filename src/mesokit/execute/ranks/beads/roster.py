@@ -23,7 +23,7 @@ from mesokit.execute.cpu.threads import meet
 from mesokit.execute.ranks.messages.guests import NOBODY, owner_of
 from mesokit.execute.ranks.messages.mpi import Post, finish, receive, send
 from mesokit.execute.ranks.messages.shared import BEAD_WORDS, FAULTS, MESSAGES, STRETCHED
-from mesokit.scalar.cache import inner
+from mesokit.kernels.kernel import inner
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.vector import scaled
 

@@ -33,7 +33,7 @@ from mesokit.execute.ranks.messages.shared import (
     SUM_WORDS,
     shares,
 )
-from mesokit.scalar.cache import inner
+from mesokit.kernels.kernel import inner
 from mesokit.scalar.jit import by_type, elementwise, for_each, scalar
 
 SUMS, ANSWERS = 1, 2  # tags of messages

@@ -5,7 +5,7 @@ import numpy as np
 from mesokit.execute.cpu.threads import meet
 from mesokit.execute.ranks.messages.mpi import finish, receive, send
 from mesokit.execute.ranks.messages.shared import FIELD_WORDS, MESSAGES, shares
-from mesokit.scalar.cache import inner
+from mesokit.kernels.kernel import inner
 from mesokit.scalar.jit import by_type
 
 FIELDS = 3  # tag of messages

@@ -11,12 +11,9 @@ import numpy as np
 from mesokit.case.box import SLIDING
 from mesokit.execute.cpu.clock import MOVE, lap
 from mesokit.execute.cpu.grid import cell_in_box, in_block, moved_grid
-from mesokit.execute.cpu.groups import Fluid, Particles
 from mesokit.execute.cpu.near_solids import FEW
 from mesokit.execute.cpu.strips.layout import (
     LANES,
-    Molecules,
-    Singles,
     beads_of,
     lanes_in,
     place,
@@ -37,7 +34,8 @@ from mesokit.execute.ranks.messages.shared import (
     MOVED_WORDS,
     shares,
 )
-from mesokit.scalar.cache import inner
+from mesokit.kernels.group import writer
+from mesokit.kernels.kernel import inner
 from mesokit.scalar.fixed_point import bits, from_bits
 from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.vector import scaled
@@ -51,14 +49,6 @@ def migrate(team, now, physics, fluid):
     if not shares(fluid):
         return lambda team, now, physics, fluid: True
     return lambda team, now, physics, fluid: _migrate(team, now, physics, fluid)
-
-
-@by_type
-def molecules_held(fluid):
-    """How many molecules there are now."""
-    if not shares(fluid):
-        return lambda fluid: fluid.particles.filling.molecules
-    return lambda fluid: fluid.cells.shared.noted[MOLECULES]
 
 
 @by_type
@@ -247,23 +237,12 @@ def arrive(fluid, physics, given, n):
     return n + 1
 
 
-@inner
-def holding(fluid, number):
-    """The same memory with so many molecules."""
-    p = fluid.particles
-    filling = filled(p.filling, number)
-    return Fluid(
-        Particles(p.data, p.cell, p.ident, p.image, filling, p.rows),
-        fluid.cells,
-        fluid.room,
-        fluid.scratch,
-        fluid.taken,
-    )
-
-
 @by_type
-def filled(filling, number):
-    """So many molecules, of as many beads as these."""
-    if filling.instance_class is Singles:
-        return lambda filling, number: Singles(number)
-    return lambda filling, number: Molecules(number, filling.beads)
+def hold_those_here(fluid):
+    """Count the molecules that there are now."""
+    if not shares(fluid):
+        return lambda fluid: None
+    return lambda fluid: hold(fluid.particles, fluid.cells.shared.noted[MOLECULES])
+
+
+hold = writer("filling")  # particles, number of molecules

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from mesokit.kernels.kernel import kernel
 from mesokit.method.event_driven.machine.ahead import ask_for_lists, ask_for_next
 from mesokit.method.event_driven.machine.collide import collide_pair, collide_wall
 from mesokit.method.event_driven.machine.groups import (
@@ -27,7 +28,6 @@ from mesokit.method.event_driven.machine.motion import (
 )
 from mesokit.method.event_driven.machine.predict import predict
 from mesokit.method.event_driven.machine.queue import CURRENT, SIZE, insert, next_event, remove
-from mesokit.scalar.cache import kernel
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import scalar
 

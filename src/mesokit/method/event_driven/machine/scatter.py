@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import CaseError
+from mesokit.kernels.kernel import kernel
 from mesokit.method.event_driven.machine.groups import World
 from mesokit.method.event_driven.machine.motion import entries, nearest_image, put_entries
 from mesokit.method.event_driven.machine.walls import outward
-from mesokit.scalar.cache import kernel
 from mesokit.scalar.intrinsics import with_item
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.random import METHOD, Counter, unit, words

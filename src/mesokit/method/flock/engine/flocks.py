@@ -49,7 +49,7 @@ class Flocks:
             cohesion,
             Nothing() if self.solids is None else self.solids.kernel,
         )
-        self.groups = make(self.n, self.threads, axes, bool(cohesion))
+        self.flock = make(self.n, self.threads, axes, bool(cohesion))
         self.seed, self.step, self.side = case.run.seed, 0, 0
         self.team = Threads(self.threads)
         self.seconds = {"steps": 0.0}
@@ -63,7 +63,7 @@ class Flocks:
         self._fill(np.where(over, 0.0, places), headings, images)
 
     def _fill(self, places: Array, headings: Array, images: NDArray[Any]) -> None:
-        birds = self.groups[0]
+        birds = self.flock.birds
         birds.places[0], birds.headings[0] = places.T, headings.T
         birds.images[0], birds.numbers[0] = images.T, np.arange(self.n)
         self.side = 0
@@ -72,7 +72,7 @@ class Flocks:
         """Run some steps."""
         began = perf_counter()
         counter = Counter(np.uint64(self.seed), np.uint64(self.step))
-        self.team.run(step, counter, steps, self.side, self.physics, self.groups)
+        self.team.run(step, counter, steps, self.side, self.physics, self.flock)
         self.step, self.side = self.step + steps, (self.side + steps) % 2
         self.seconds["steps"] += perf_counter() - began
 
@@ -89,19 +89,19 @@ class Flocks:
 
     def positions(self, ids: Integers | None = None, unwrapped: bool = False) -> Array:
         """Places (n, d), in the box or where the birds have gone to."""
-        places = self._by_number(self.groups[0].places)
+        places = self._by_number(self.flock.birds.places)
         if unwrapped:
-            places += self._by_number(self.groups[0].images) * self.box
+            places += self._by_number(self.flock.birds.images) * self.box
         return places if ids is None else places[ids]
 
     def images(self, ids: Integers | None = None) -> NDArray[np.int32]:
         """How many boxes away the birds are, (n, d)."""
-        images = self._by_number(self.groups[0].images)
+        images = self._by_number(self.flock.birds.images)
         return images if ids is None else images[ids]
 
     def headings(self, ids: Integers | None = None) -> Array:
         """Unit vectors (n, d) along which the birds head."""
-        headings = self._by_number(self.groups[0].headings)
+        headings = self._by_number(self.flock.birds.headings)
         return headings if ids is None else headings[ids]
 
     def velocities(self, ids: Integers | None = None) -> Array:
@@ -120,7 +120,7 @@ class Flocks:
     def state(self) -> State:
         """Places, boxes and headings by number, and the step."""
         names = ("places", "headings", "images")
-        found = {name: self._by_number(getattr(self.groups[0], name)) for name in names}
+        found = {name: self._by_number(getattr(self.flock.birds, name)) for name in names}
         return found | {"step": np.array(self.step)}
 
     def restore(self, state: State) -> None:
@@ -130,5 +130,5 @@ class Flocks:
 
     def _by_number(self, arrays: NDArray[Any]) -> NDArray[Any]:
         found = np.empty(arrays.shape[:0:-1], arrays.dtype)
-        found[self.groups[0].numbers[self.side]] = arrays[self.side].T
+        found[self.flock.birds.numbers[self.side]] = arrays[self.side].T
         return found

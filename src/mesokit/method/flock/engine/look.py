@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from mesokit.kernels.kernel import inner
 from mesokit.method.flock.cohesion import pull
 from mesokit.method.flock.engine.memory import CHUNK, LANES, PULL, has_cohesion, past, sum_rows
 from mesokit.method.flock.noise.protocol import counted
-from mesokit.scalar.cache import inner
 from mesokit.scalar.jit import by_type, elementwise, for_each, scalar
 
 _NONE = np.int32(0)
@@ -172,9 +172,8 @@ def list_runs(axes, starts, place, runs):
 
 
 @inner
-def look(physics, seen, starts, scratch, cell, place, like):
+def look(physics, seen, starts, near, runs, cell, place, like):
     """The sums of all birds of a cell, which is at this place among the cells."""
-    near, runs = scratch
     begin, end = starts[cell], starts[cell + 1]
     for k in range(sum_rows(physics)):
         for i in range(begin, end):

@@ -115,6 +115,15 @@ class Scratch(NamedTuple):
     runs: NDArray[np.int64]
 
 
+class Flock(NamedTuple):
+    """All arrays of a flock."""
+
+    birds: Birds
+    seen: Seen
+    cells: Cells
+    scratch: Scratch
+
+
 def axes_of(size: Sequence[float], closed: Sequence[bool], side: float, most: int) -> Axes:
     """The axes of a box with cells of at least this side, about as many as `most` at most."""
     d = len(size)
@@ -144,7 +153,7 @@ def sum_rows(physics):
     return lambda physics: rows
 
 
-def make(n: int, threads: int, axes: Axes, cohesion: bool) -> tuple[Birds, Seen, Cells, Scratch]:
+def make(n: int, threads: int, axes: Axes, cohesion: bool) -> Flock:
     """Arrays for so many birds; fill the first of `Birds` before a step."""
     d, cells = len(axes.size), math.prod(axes.cells)
     birds = Birds(
@@ -170,4 +179,4 @@ def make(n: int, threads: int, axes: Axes, cohesion: bool) -> tuple[Birds, Seen,
         np.zeros((threads, (rows_of(d, cohesion) + 3 * d + 1) * STRIP)),
         np.zeros((threads, 2, MOST_RUNS + 1), np.int64),
     )
-    return birds, seen, found, scratch
+    return Flock(birds, seen, found, scratch)

@@ -7,10 +7,10 @@ overlap, and does several birds at once.
 from __future__ import annotations
 
 from mesokit.geometry.protocol import exposed
+from mesokit.kernels.kernel import inner
 from mesokit.method.flock.engine.memory import HEADING, PULL, STRIP, has_cohesion, past, sum_rows
 from mesokit.method.flock.engine.walls import flown
 from mesokit.method.flock.noise.protocol import turned
-from mesokit.scalar.cache import inner
 from mesokit.scalar.fixed_point import ROUNDER, ROUNDER_BITS, bits
 from mesokit.scalar.intrinsics import floor  # noqa: F401  in the text of `boxes_away`
 from mesokit.scalar.jit import by_type, elementwise, for_each, scalar

@@ -5,33 +5,33 @@ from __future__ import annotations
 import numpy as np
 
 from mesokit.execute.cpu.threads import meet
+from mesokit.kernels.kernel import inner, kernel
 from mesokit.method.flock.engine.look import look, next_place, place_of_cell
 from mesokit.method.flock.engine.memory import STRIP
 from mesokit.method.flock.engine.move import move
 from mesokit.method.flock.engine.sort import cells_of, sort
 from mesokit.method.flock.noise.protocol import FIRST_HEADING, unit_vector
-from mesokit.scalar.cache import inner, kernel
 from mesokit.scalar.random import METHOD, Counter, unit, words
 
 START = METHOD + np.uint64(2)  # purpose of random numbers
 
 
 @kernel
-def step(team, counter, steps, side, physics, groups):
+def step(team, counter, steps, side, physics, flock):
     """So many steps; birds lie on `side` before and, if they are even in number, after them."""
-    birds, seen, cells, _ = groups
+    birds, seen, cells = flock.birds, flock.seen, flock.cells
     for done in range(steps):
         now = Counter(counter.seed, counter.step + np.uint64(done))
         sort(team, physics.axes, birds, seen, cells, side)  # places, headings at t
         side = 1 - side
-        look_and_move(team, now, physics, groups, side)  # headings, then places: t -> t + dt
+        look_and_move(team, now, physics, flock, side)  # headings, then places: t -> t + dt
         meet(team)
 
 
 @inner
-def look_and_move(team, now, physics, groups, side):
+def look_and_move(team, now, physics, flock, side):
     """What the birds of this thread see, and where they turn and go to: a strip at a time."""
-    birds, seen, cells, scratch = groups
+    birds, seen, cells, scratch = flock.birds, flock.seen, flock.cells, flock.scratch
     near, runs = scratch.near[team.thread], scratch.runs[team.thread]
     strip, like = scratch.strip[team.thread], physics.axes.size
     begin, end = cells_of(team, cells)
@@ -39,7 +39,7 @@ def look_and_move(team, now, physics, groups, side):
     for cell in range(begin, end):
         looked = cells.starts[cell + 1]
         if looked > cells.starts[cell]:
-            look(physics, seen, cells.starts, (near, runs), cell, place, like)
+            look(physics, seen, cells.starts, near, runs, cell, place, like)
         place = next_place(physics.axes, place)
         while looked - done >= STRIP or (cell == end - 1 and looked > done):
             count = min(looked - done, STRIP)

@@ -54,7 +54,7 @@ def _(law, mine, time, step, world, noted, room):
 @scalar
 def push_from_list(law, i, world):
     """The force on sphere i from others; bits of the square of the least distance."""
-    bodies, box, lists, _ = world
+    bodies, box, lists = world.bodies, world.box, world.lists
     r = row(bodies.place, i)
     a, b, c, low = np.int64(0), np.int64(0), np.int64(0), FAR
     for s in range(lists.count[i]):
@@ -77,7 +77,7 @@ def push_from_list(law, i, world):
 @scalar
 def push_from_walls(law, i, time, world, room):
     """Add the force of walls on sphere i; bits of the square of the least distance."""
-    bodies, box, _, walls = world
+    bodies, box, walls = world.bodies, world.box, world.walls
     low, r = FAR, row(bodies.place, i)
     for w in range(len(walls.rows)):
         distance, out, _ = from_wall(walls.rows, w, box, r, time)
@@ -104,7 +104,7 @@ def apart(square):
 
 @tell.register(Central)
 def _(law, i, time, world, told):
-    bodies, box, lists, walls = world
+    bodies, box, lists, walls = world.bodies, world.box, world.lists, world.walls
     r = row(bodies.place, i)
     for s in range(lists.count[i]):
         j = lists.near[i, s]

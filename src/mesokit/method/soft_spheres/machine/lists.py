@@ -4,8 +4,8 @@ import numpy as np
 
 from mesokit.execute.cells import cell_after, cell_along, cell_of
 from mesokit.execute.cpu.strips.layout import share
+from mesokit.kernels.kernel import kernel
 from mesokit.method.soft_spheres.machine.geometry import nearest, row
-from mesokit.scalar.cache import kernel
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import dot
 

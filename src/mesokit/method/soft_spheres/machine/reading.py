@@ -1,8 +1,8 @@
 """What readers ask of all spheres."""
 
 from mesokit.execute.cpu.strips.layout import share
+from mesokit.kernels.kernel import kernel
 from mesokit.method.soft_spheres.machine.acting import tell
-from mesokit.scalar.cache import kernel
 
 
 @kernel

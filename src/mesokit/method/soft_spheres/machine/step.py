@@ -13,10 +13,10 @@ import numpy as np
 from mesokit.execute.cells import worn
 from mesokit.execute.cpu.strips.layout import share
 from mesokit.execute.cpu.threads import meet
+from mesokit.kernels.kernel import kernel
 from mesokit.method.soft_spheres.machine.acting import act, ahead, quantum, turns
 from mesokit.method.soft_spheres.machine.contact.room import Room
 from mesokit.method.soft_spheres.machine.groups import DONE, FARTHEST, INVERSE, PENDING
-from mesokit.scalar.cache import kernel
 from mesokit.scalar.elementary import rint
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.random import METHOD, Counter, normals, words

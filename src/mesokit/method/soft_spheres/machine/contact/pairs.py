@@ -83,7 +83,7 @@ def push_pairs(law, mine, step, world, room):
 @scalar
 def find_near(law, i, begin, end, world, room, n):
     """Add those that sphere i touches, or soon will, in a part of its list; how many there are."""
-    bodies, box, lists, _ = world
+    bodies, box, lists = world.bodies, world.box, world.lists
     r, far, kept_at = row(bodies.place, i), reach(bodies, i), lists.begin[i]
     for s in range(begin, end):
         j = np.uint64(lists.near[i, s])
@@ -146,7 +146,7 @@ def add_up(law, mine, world, room, n):
 @scalar
 def tell_pairs(law, i, world, told):
     """Add what the spheres that sphere i touches tell."""
-    bodies, box, lists, _ = world
+    bodies, box, lists = world.bodies, world.box, world.lists
     r, one = row(bodies.place, i), body(bodies, bodies.velocity, i)
     for s in range(lists.count[i]):
         j = lists.near[i, s]

@@ -1,8 +1,8 @@
 """What contacts remember, in memory: rows of no, three or six numbers, one for each contact."""
 
 from mesokit.execute.cpu.strips.layout import share
+from mesokit.kernels.kernel import kernel
 from mesokit.method.soft_spheres.machine.contact.spring import Springs
-from mesokit.scalar.cache import kernel
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.vector import scaled
 

@@ -21,7 +21,7 @@ from mesokit.scalar.jit import scalar
 @scalar
 def push_from_walls(law, i, time, step, world, room):
     """Add what walls do to sphere i; a bound of it."""
-    bodies, box, _, walls = world
+    bodies, box, walls = world.bodies, world.box, world.walls
     r, largest = row(bodies.place, i), 0.0
     for w in range(len(walls.rows)):
         distance, out, moves = from_wall(walls.rows, w, box, r, time)
@@ -54,7 +54,7 @@ def push(law, i, there, springs, c, step, bodies):
 @scalar
 def tell_walls(law, i, time, world, told):
     """Add what the walls that sphere i touches tell."""
-    bodies, box, _, walls = world
+    bodies, box, walls = world.bodies, world.box, world.walls
     r, one = row(bodies.place, i), body(bodies, bodies.velocity, i)
     for w in range(len(walls.rows)):
         distance, out, moves = from_wall(walls.rows, w, box, r, time)

@@ -1,0 +1,289 @@
+"""Groups by address: a NamedTuple of arrays is one machine word in compiled code, not hundreds.
+
+Python packs the numbers of a group, and addresses and shapes of its arrays, into one stretch of
+memory; kernels take its address, and `group.field` is loaded from there. A group within a group is
+an address again; numbers and small tuples are taken by value. Nothing is counted: the arrays live
+as long as the packed group. Loads are marked as of memory that does not change, so that LLVM takes
+them out of loops, but for the fields that a class declares as changing.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import struct
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from llvmlite import ir
+from numba import typeof, types
+from numba.core import cgutils
+from numba.core.typing.templates import AttributeTemplate
+from numba.extending import (
+    NativeValue,
+    infer_getattr,
+    intrinsic,
+    lower_getattr_generic,
+    models,
+    register_model,
+    typeof_impl,
+    unbox,
+)
+from numba.np.arrayobj import populate_array
+
+_WORD = ir.IntType(64)
+_CHANGING: dict[type, tuple[str, ...]] = {}  # classes that are always packed, and what changes
+
+
+def by_address(*changing: str) -> Callable[[type], type]:
+    """Declare a class of groups that are packed even if they hold no arrays.
+
+    `changing` are fields that kernels write anew (see `writer`).
+    """
+
+    def declare(kind: type) -> type:
+        _CHANGING[kind] = changing
+        return kind
+
+    return declare
+
+
+class Group(types.Type):
+    """The type of a packed group: its class, and names and types of its fields."""
+
+    def __init__(self, kind: type, fields: tuple[str, ...], inner: tuple[Any, ...]) -> None:
+        self.instance_class, self.fields, self.types = kind, fields, inner
+        self.changing = _CHANGING.get(kind, ())
+        self.offsets, self.words = {}, 0
+        for name, one in zip(fields, inner, strict=True):
+            self.offsets[name] = self.words
+            self.words += _words_of(one)
+        text = f"{kind.__module__}.{kind.__qualname__} {fields} {inner} {self.changing}"
+        word = hashlib.sha256(text.encode()).hexdigest()[:12]
+        super().__init__(name=f"{kind.__name__}.{word}")
+
+    @property
+    def key(self) -> str:
+        """What tells types apart."""
+        return self.name
+
+    def __len__(self) -> int:
+        return len(self.types)
+
+
+register_model(Group)(models.OpaqueModel)
+
+
+def _items(kind: Any) -> Sequence[Any]:
+    """Types of the elements of a tuple."""
+    uniform = isinstance(kind, (types.UniTuple, types.NamedUniTuple))
+    return [kind.dtype] * kind.count if uniform else kind.types
+
+
+def _words_of(kind: Any) -> int:
+    """How many words of 64 bits a value takes."""
+    if isinstance(kind, Group):
+        return kind.words
+    if isinstance(kind, types.BaseTuple):
+        return sum(map(_words_of, _items(kind)))
+    if isinstance(kind, types.Array):
+        return 1 + kind.ndim * (1 if kind.layout == "C" else 2)
+    if isinstance(kind, (types.Integer, types.Float, types.Boolean)):
+        return 1
+    raise TypeError(f"a group cannot hold {kind}")
+
+
+# --- packing --------------------------------------------------------------------------------------
+
+
+def _is_packed(value: Any) -> bool:
+    """Whether a value holds arrays, or is of a class that is always packed."""
+    if isinstance(value, np.ndarray) or type(value) in _CHANGING:
+        return True
+    return isinstance(value, tuple) and any(map(_is_packed, value))
+
+
+def kind_of(value: Any) -> Any:
+    """The numba type of a value as kernels take it."""
+    if isinstance(value, tuple) and _is_packed(value):
+        inner = tuple(map(kind_of, value))
+        if hasattr(value, "_fields"):
+            return _group(type(value), inner)
+        return types.Tuple(inner)
+    return typeof(value)
+
+
+_known: dict[tuple[type, tuple[Any, ...]], Group] = {}
+
+
+def _group(kind: type, inner: tuple[Any, ...]) -> Group:
+    if (kind, inner) not in _known:
+        _known[kind, inner] = Group(kind, kind._fields, inner)  # type: ignore[attr-defined]
+    return _known[kind, inner]
+
+
+class Packed:
+    """A group in memory, with the fields of the group that it was made of.
+
+    Examples
+    --------
+    >>> from typing import NamedTuple
+    >>> class Row(NamedTuple):
+    ...     scale: float
+    ...     values: np.ndarray
+    >>> row = packed(Row(2.0, np.ones(3)))
+    >>> row.scale, len(row.memory)  # the scale; address and length of the array
+    (2.0, 3)
+    """
+
+    def __init__(self, value: Any) -> None:
+        self.value, self._numba_type_ = value, kind_of(value)
+        numbers: list[Any] = []
+        formats: list[str] = []
+        _flatten(value, self._numba_type_, numbers, formats)
+        words = struct.pack("=" + "".join(formats), *numbers)
+        self.memory = np.frombuffer(bytearray(words or bytes(8)), np.int64)
+        self.address = self.memory.ctypes.data
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.value, name)
+
+
+def _flatten(value: Any, kind: Any, numbers: list[Any], formats: list[str]) -> None:
+    """Add the words of a value, and the letters of `struct` for them."""
+    if isinstance(kind, Group):
+        for one, inner in zip(value, kind.types, strict=True):
+            _flatten(one, inner, numbers, formats)
+    elif isinstance(kind, types.BaseTuple):
+        for one, inner in zip(value, _items(kind), strict=True):
+            _flatten(one, inner, numbers, formats)
+    elif isinstance(kind, types.Array):
+        words = (value.ctypes.data, *value.shape, *(value.strides if kind.layout != "C" else ()))
+        numbers.extend(words)
+        formats.append("q" * len(words))
+    else:
+        numbers.append(value)
+        formats.append("d" if isinstance(kind, types.Float) else "q")
+
+
+def packed(value: Any) -> Any:
+    """A group as kernels take it; other values stay as they are."""
+    return Packed(value) if hasattr(value, "_fields") and _is_packed(value) else value
+
+
+def all_packed(values: Iterable[Any]) -> tuple[Any, ...]:
+    """Arguments of a kernel, their groups packed."""
+    return tuple(packed(value) for value in values)
+
+
+@typeof_impl.register(Packed)
+def _(value: Packed, context: Any) -> Any:
+    return value._numba_type_
+
+
+@unbox(Group)
+def _unbox(kind: Group, thing: Any, context: Any) -> NativeValue:
+    word = context.pyapi.object_getattr_string(thing, "address")
+    value = context.pyapi.long_as_longlong(word)
+    context.pyapi.decref(word)
+    return NativeValue(context.builder.inttoptr(value, ir.IntType(8).as_pointer()))
+
+
+# --- reading and writing in compiled code ---------------------------------------------------------
+
+
+@infer_getattr
+class _Field(AttributeTemplate):
+    key = Group
+
+    def generic_resolve(self, kind: Group, name: str) -> Any:
+        return kind.types[kind.fields.index(name)] if name in kind.fields else None
+
+
+@lower_getattr_generic(Group)
+def _load_field(context: Any, builder: Any, kind: Group, value: Any, name: str) -> Any:
+    inner, fixed = kind.types[kind.fields.index(name)], name not in kind.changing
+    return _load(context, builder, value, kind.offsets[name], inner, fixed)
+
+
+def _place(builder: Any, base: Any, at: int, element: Any) -> Any:
+    """A pointer to a word of a group."""
+    place = builder.gep(base, [ir.Constant(_WORD, 8 * at)])
+    return builder.bitcast(place, element.as_pointer())
+
+
+def _load_word(builder: Any, base: Any, at: int, element: Any, fixed: bool) -> Any:
+    found = builder.load(_place(builder, base, at, element), align=8)
+    if fixed:
+        found.set_metadata("invariant.load", builder.module.add_metadata([]))
+    return found
+
+
+def _load(context: Any, builder: Any, base: Any, at: int, kind: Any, fixed: bool) -> Any:
+    """The value of a field that begins at a word."""
+    if isinstance(kind, Group):
+        return builder.gep(base, [ir.Constant(_WORD, 8 * at)])
+    if isinstance(kind, types.BaseTuple):
+        items = []
+        for item in _items(kind):
+            items.append(_load(context, builder, base, at, item, fixed))
+            at += _words_of(item)
+        return context.make_tuple(builder, kind, items)
+    if isinstance(kind, types.Array):
+        return _load_array(context, builder, base, at, kind)
+    if isinstance(kind, types.Float):
+        found = _load_word(builder, base, at, ir.DoubleType(), fixed)
+        return context.cast(builder, found, types.float64, kind)
+    found = _load_word(builder, base, at, _WORD, fixed)
+    if isinstance(kind, types.Boolean):
+        return builder.icmp_unsigned("!=", found, ir.Constant(_WORD, 0))
+    return builder.trunc(found, ir.IntType(kind.bitwidth)) if kind.bitwidth < 64 else found
+
+
+def _load_array(context: Any, builder: Any, base: Any, at: int, kind: Any) -> Any:
+    """An array, made of its address and shape; nothing counts its users."""
+    element = context.get_data_type(kind.dtype)
+    size = ir.Constant(_WORD, context.get_abi_sizeof(element))
+    data = _load_word(builder, base, at, element.as_pointer(), True)
+    shape = [_load_word(builder, base, at + 1 + k, _WORD, True) for k in range(kind.ndim)]
+    if kind.layout == "C":
+        strides: list[Any] = []
+        step = size
+        for k in range(kind.ndim - 1, -1, -1):
+            strides.insert(0, step)
+            step = builder.mul(step, shape[k]) if k else step
+    else:
+        first = at + 1 + kind.ndim
+        strides = [_load_word(builder, base, first + k, _WORD, True) for k in range(kind.ndim)]
+    array = context.make_array(kind)(context, builder)
+    populate_array(
+        array,
+        data=data,
+        shape=cgutils.pack_array(builder, shape, _WORD),
+        strides=cgutils.pack_array(builder, strides, _WORD),
+        itemsize=size,
+        meminfo=None,
+    )
+    return array._getvalue()
+
+
+def writer(name: str) -> Any:
+    """The function (group, number) that writes a field anew, which the class declares as changing.
+
+    The field is a whole number, or a tuple whose first element is.
+    """
+
+    def write(typing_context: Any, group: Any, number: Any) -> Any:
+        if not isinstance(group, Group) or name not in group.changing:
+            return None
+
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            kind = signature.args[0]
+            builder.store(
+                arguments[1], _place(builder, arguments[0], kind.offsets[name], _WORD), align=8
+            )
+            return context.get_dummy_value()
+
+        return types.void(group, types.int64), generate
+
+    return intrinsic(write)

@@ -1,0 +1,142 @@
+"""The stores that a process uses: the user's own, and the one that came with the package.
+
+Nothing that is wrong with a store ends a run: what is not found is compiled.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import os
+import platform
+import sqlite3
+import sys
+import sysconfig
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import llvmlite
+import numba
+from numba import config
+
+from mesokit.kernels.made_of import digest, still_holds
+from mesokit.kernels.store import Code, Entry, Store, store_file
+
+HERE = Path(__file__).parent
+SHIPPED = HERE / "shipped"
+
+
+class Counts:
+    """What this process has made and found: `mesokit cache` and benchmarks show it."""
+
+    parts_made = parts_found = kernels_made = kernels_found = 0
+
+
+counts = Counts()
+
+
+@functools.cache
+def versions() -> str:
+    """What else machine code depends on: a word that is part of every key."""
+    names = "made_of.py", "part.py", "group.py", "kernel.py", "../scalar/jit.py"
+    sources = "".join((HERE / name).read_text(encoding="utf-8") for name in names)
+    options = [str(getattr(config, name)) for name in
+               ("OPT", "LOOP_VECTORIZE", "SLP_VECTORIZE", "BOUNDSCHECK", "DEBUGINFO_DEFAULT",
+                "LLVM_REFPRUNE_PASS")]  # fmt: skip
+    return digest(" ".join([era(), sources, *options]))
+
+
+def era() -> str:
+    """Versions of what compiles, and the architecture, for the name of a file of parts."""
+    python = f"{sys.implementation.name}{sys.version_info.major}{sys.version_info.minor}"
+    system = f"{sysconfig.get_platform().split('-')[0]}-{platform.machine()}"
+    return f"numba{numba.__version__}-llvmlite{llvmlite.__version__}-{python}-{system}"
+
+
+class Kept:
+    """The stores of one process: the user's own, and the one that came with the package."""
+
+    def __init__(self) -> None:
+        self.process = os.getpid()
+        self.trouble = ""  # why the user's own store is not used
+        self.own: Store | None = None
+        with self._without_own():
+            self.own = self._opened()
+        self.stores = [self.own] if self.own else []
+        shipped = SHIPPED / f"{era()}.sqlite"
+        with contextlib.suppress(sqlite3.Error, OSError):
+            if shipped.exists():
+                self.stores.append(Store(shipped, writes=False))
+
+    def _opened(self) -> Store:
+        file = store_file()
+        try:
+            return _sound(file)
+        except sqlite3.DatabaseError as error:
+            if isinstance(error, sqlite3.OperationalError):
+                raise
+        for end in ("", "-wal", "-shm"):  # what lies there is no store, or was damaged
+            file.with_name(file.name + end).unlink(missing_ok=True)
+        return _sound(file)
+
+    @contextlib.contextmanager
+    def _without_own(self) -> Iterator[None]:
+        """Go on without the user's own store if something is wrong with it."""
+        try:
+            yield
+        except (sqlite3.Error, OSError, RuntimeError) as error:
+            self.trouble = str(error) or type(error).__name__
+            self.own = None
+
+    def find(self, key: str) -> tuple[Entry, Store] | None:
+        """A valid entry of a key."""
+        for store in self.stores:
+            with contextlib.suppress(sqlite3.Error, ValueError):
+                for entry in store.find(key):
+                    if all(map(still_holds, entry.needs)):
+                        return entry, store
+        return None
+
+    def code(self, hash: str) -> Code | None:
+        """Code by its hash, of any store."""
+        for store in self.stores:
+            with contextlib.suppress(sqlite3.Error, ValueError):
+                found = store.code(hash)
+                if found is not None:
+                    return found
+        return None
+
+    def keep(self, key: str, made: Callable[[Store], tuple[Entry, list[Code]]]) -> None:
+        """Add an entry to the user's own store, with the code that is missing there."""
+        if self.own is None or not self.own.writes:
+            return
+        with self._without_own():
+            self.own.keep(key, *made(self.own))
+
+    def note_used(self) -> None:
+        """Write down what was used, once compiling is done."""
+        if self.own is not None:
+            with self._without_own():
+                self.own.note_used()
+
+
+def _sound(file: Path) -> Store:
+    """An opened store. Raises sqlite3.Error where it is none."""
+    store = Store(file)
+    store.counts()
+    return store
+
+
+_now: list[Kept] = []
+
+
+def kept() -> Kept:
+    """The stores of this process; a child of it opens its own."""
+    if not _now or _now[0].process != os.getpid():
+        _now[:] = [Kept()]
+    return _now[0]
+
+
+def forget() -> None:
+    """Open the stores anew when they are next needed."""
+    _now.clear()

@@ -1,0 +1,175 @@
+"""Kernels: loops over particles or cells, which Python calls, made of parts.
+
+A kernel is a function that calls one part, so that its own code is found in the store like all
+other. Machine code of kernels is kept too, for one processor: a second start compiles nothing.
+"""
+
+from __future__ import annotations
+
+import gc
+import inspect
+import pickle
+from collections.abc import Callable
+from typing import Any
+
+from numba import njit
+from numba.core.compiler import CompileResult
+from numba.core.registry import CPUDispatcher, cpu_target
+from numba.core.serialize import dumps
+
+from mesokit.kernels.group import all_packed
+from mesokit.kernels.kept import counts, kept, versions
+from mesokit.kernels.made_of import Unknown, describe_type, digest
+from mesokit.kernels.one_compiles import released, taken
+from mesokit.kernels.part import needs_below, part
+from mesokit.kernels.store import Code, Entry, folder
+
+_used: set[str] | None = set()  # lines of all kernels of this process
+
+
+def needs_of_all() -> frozenset[str] | None:
+    """Lines of all kernels that this process has found or made (see `made_of`); None where one of
+    them cannot be kept."""
+    return None if _used is None else frozenset(_used)
+
+
+def _note_used(needs: frozenset[str] | None) -> None:
+    global _used
+    _used = None if needs is None or _used is None else _used | needs
+
+
+def processor() -> str:
+    """What machine code is made for."""
+    return digest(str(cpu_target.target_context.codegen().magic_tuple()))
+
+
+def inner(function: Callable) -> Any:
+    """A part of a kernel, compiled with it."""
+    return part(function, nogil=True)
+
+
+def kernel(function: Callable) -> Any:
+    """Compile a loop over particles or cells, and keep the result on disk.
+
+    Those that take a `Team` first are run by all its threads at once.
+    """
+    names = ", ".join(inspect.signature(function).parameters)
+    space = {"body": inner(function), "__name__": function.__module__}
+    exec(f"def {function.__name__}({names}):\n    return body({names})", space)
+    made = njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True)(space[function.__name__])
+    made.py_func = function
+    made.__class__, made._cache = _Kernel, _MachineCode(function)
+    return made
+
+
+class _Kernel(CPUDispatcher):
+    """A kernel. While it is compiled, Python looks for garbage less often: numba makes little of it
+    and much that stays, which would be looked through again and again."""
+
+    def __call__(self, *arguments: Any) -> Any:
+        return super().__call__(*all_packed(arguments))
+
+    def compile(self, sig: Any) -> Any:
+        usual = gc.get_threshold()
+        gc.set_threshold(20_000, 10, 1000)
+        try:
+            return super().compile(sig)
+        finally:
+            gc.set_threshold(*usual)
+            self._cache.end_turn()
+
+
+class _MachineCode:
+    """What numba calls a cache: machine code of one kernel, for each signature."""
+
+    cache_path = ""
+
+    def __init__(self, function: Callable) -> None:
+        self.function = function
+        self._turn: Any = None
+
+    def load_overload(self, signature: Any, target: Any) -> Any:
+        """The kernel for these types; None if there is none, and this process is to compile it."""
+        key = self._key(signature)
+        if key is None:
+            return None
+        found = self._found(key)
+        if found is None:
+            self._turn = taken(str(folder()), key)
+            found = self._found(key)
+        if found is not None:
+            counts.kernels_found += 1
+        return found
+
+    def end_turn(self) -> None:
+        """Let other processes look for what was compiled here."""
+        if self._turn is not None:
+            released(self._turn)
+            self._turn = None
+            kept().note_used()
+
+    def save_overload(self, signature: Any, compiled: Any) -> None:
+        """Keep a compiled kernel."""
+        counts.kernels_made += 1
+        key, below, library = self._key(signature), needs_below(compiled.library), compiled.library
+        _note_used(below)
+        if key is None or below is None or compiled.reload_init:
+            return
+        compiled.fndesc.typemap = compiled.fndesc.calltypes = None
+        names = [one.name for one in library._final_module.functions if not one.is_declaration]
+        globals_ = library._final_module.global_variables
+        names += [one.name for one in globals_ if not one.is_declaration]
+        others = compiled._find_referenced_environments()
+        told = compiled.fndesc, compiled.environment, compiled.signature, names, others
+        code = Code(library.name, (), library._get_compiled_object())
+        name = f"kernel {self.function.__module__}:{self.function.__qualname__}"
+        entry = Entry(name, below, dumps(told), code.hash)
+        kept().keep(key, lambda store: (entry, [code]))
+
+    def flush(self) -> None:
+        """Nothing is to be forgotten: what is no longer valid is not found."""
+
+    def _key(self, signature: Any) -> str | None:
+        place = f"{self.function.__module__}:{self.function.__qualname__}"
+        try:
+            given = [describe_type(kind) for kind in getattr(signature, "args", signature)]
+        except Unknown:
+            return None
+        return digest(repr(("kernel", place, given, processor(), versions())))
+
+    def _found(self, key: str) -> Any:
+        hit = kept().find(key)
+        code = None if hit is None else kept().code(hit[0].code)
+        if hit is None or code is None:
+            return None
+        try:
+            fndesc, environment, signature, names, others = pickle.loads(hit[0].about)
+        except Exception:  # what was kept does not fit, in any way: it is made anew
+            return None
+        context = cpu_target.target_context
+        context.refresh()  # what machine code finds by name: numba does this before it compiles
+        library = context.codegen().create_library(code.name)
+        library.enable_object_caching()
+        library._set_compiled_object(code.body)
+        library._finalize_final_module()
+        context.codegen()._engine._defined_symbols.update(names)
+        _note_used(hit[0].needs)
+        for one in others:
+            library.codegen.set_env(one.env_name, one)
+        return CompileResult(
+            typing_context=cpu_target.typing_context,
+            target_context=context,
+            entry_point=context.get_executable(library, fndesc, environment),
+            typing_error=None,
+            type_annotation=None,
+            signature=signature,
+            library=library,
+            call_helper=None,
+            environment=environment,
+            lifted=(),
+            fndesc=fndesc,
+            objectmode=False,
+            reload_init=(),
+            referenced_envs=others,
+            metadata=None,
+        )

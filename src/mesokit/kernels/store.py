@@ -1,0 +1,303 @@
+"""The store of compiled code on disk: one SQLite file for all processes of a user.
+
+An entry is found by a key, and says what else must hold for it to be used (see `made_of`). Code
+lies beside the entries, by its own hash: bitcode of parts, which does not depend on the processor,
+and object code of kernels. What is loaded is run: so the folder must be the user's own and closed
+to others, and each row must have the right digest. A store that is missing, damaged, full, locked
+or read-only costs time, never a run.
+
+Packages may bring a second file, which is only read.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import sqlite3
+import stat
+import sys
+import tempfile
+import time
+import zlib
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from numba import config
+
+FORMAT = 1  # of the tables
+BOUND = 512 * 2**20  # bytes; what has not been used for longest goes first
+PATIENCE = 5.0  # seconds that a process waits for one that writes
+MOST_ENTRIES = 4  # of one key: states of what it needs, such as two versions of the sources
+NETWORK = ("nfs", "nfs4", "cifs", "smb3", "smbfs", "9p", "afs", "fuse.sshfs", "lustre", "gpfs",
+           "beegfs", "ceph", "glusterfs", "fuse.glusterfs")  # fmt: skip
+TABLES = """
+CREATE TABLE IF NOT EXISTS needs (id INTEGER PRIMARY KEY, line TEXT UNIQUE);
+CREATE TABLE IF NOT EXISTS entries (id INTEGER PRIMARY KEY, key TEXT, name TEXT, needs BLOB,
+    about BLOB, code TEXT, digest BLOB, used INTEGER);
+CREATE INDEX IF NOT EXISTS keys ON entries (key);
+CREATE TABLE IF NOT EXISTS code (hash TEXT PRIMARY KEY, name TEXT, called TEXT, body BLOB,
+    used INTEGER) WITHOUT ROWID;
+"""
+
+
+class Entry(NamedTuple):
+    """What is known of one compiled function."""
+
+    name: str
+    needs: frozenset[str]
+    about: bytes  # what numba must be told of it
+    code: str  # hash of its code
+
+
+class Code(NamedTuple):
+    """Code of one function, and hashes of what it calls."""
+
+    name: str
+    called: tuple[str, ...]
+    body: bytes
+
+    @property
+    def hash(self) -> str:
+        """The name of this code."""
+        text = "\0".join((self.name, *self.called)).encode()
+        return hashlib.sha256(text + b"\0" + self.body).hexdigest()[:32]
+
+
+def folder() -> Path:
+    """The user's folder of compiled code, in NUMBA_CACHE_DIR or the user's cache."""
+    named = config.CACHE_DIR or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    place = Path(named) / "mesokit"
+    if not _is_ours(place) and hasattr(os, "getuid"):  # several users share NUMBA_CACHE_DIR
+        return place.with_name(f"mesokit-{os.getuid()}")
+    return place
+
+
+def _is_ours(place: Path) -> bool:
+    """Whether a folder is not there yet, or is the user's own."""
+    try:
+        return not hasattr(os, "getuid") or place.stat().st_uid == os.getuid()
+    except OSError:
+        return True
+
+
+def _private(place: Path) -> Path:
+    """The folder, which only its user may open. Raises OSError."""
+    place.mkdir(mode=0o700, parents=True, exist_ok=True)
+    if hasattr(os, "getuid"):
+        about = place.lstat()
+        if not stat.S_ISDIR(about.st_mode) or about.st_uid != os.getuid():
+            raise PermissionError(f"{place} is not the user's own folder")
+        if stat.S_IMODE(about.st_mode) != 0o700:
+            place.chmod(0o700)
+    return place
+
+
+def on_network(place: Path, mounts: Path = Path("/proc/mounts")) -> bool:
+    """Whether a folder is on a file system of the network, whose locks are not to be relied on."""
+    try:
+        rows = [line.split() for line in mounts.read_text().splitlines()]
+    except OSError:
+        return False
+    within = [row for row in rows if Path(os.path.abspath(place)).is_relative_to(row[1])]
+    return bool(within) and max(within, key=lambda row: len(row[1]))[2] in NETWORK
+
+
+class Store:
+    """A file of compiled code.
+
+    Parameters
+    ----------
+    file : Path
+        Where it lies; made if it is not there.
+    writes : bool
+        Whether entries may be added.
+    """
+
+    def __init__(self, file: Path, writes: bool = True) -> None:
+        self.file, self.writes = file, writes
+        self._lines: dict[int, str] = {}
+        self._used: dict[str, set[Any]] = {"entries": set(), "code": set()}
+        self._disk = self._opened()
+
+    def _opened(self) -> sqlite3.Connection:
+        if not self.writes:
+            uri = f"{self.file.as_uri()}?mode=ro&immutable=1"
+            return sqlite3.connect(uri, uri=True, check_same_thread=False)
+        try:
+            disk = sqlite3.connect(self.file, PATIENCE, check_same_thread=False)
+            disk.isolation_level = None
+            disk.execute("PRAGMA journal_mode = WAL")
+            disk.execute("PRAGMA synchronous = NORMAL")
+            disk.executescript(TABLES)
+        except sqlite3.OperationalError:  # read-only or full: what is there can be read
+            uri = f"{self.file.as_uri()}?mode=ro"
+            self.writes = False
+            return sqlite3.connect(uri, PATIENCE, uri=True, check_same_thread=False)
+        return disk
+
+    def find(self, key: str) -> Iterator[Entry]:
+        """Entries of a key, the newest first. Raises sqlite3.Error."""
+        rows = self._disk.execute(
+            "SELECT id, name, needs, about, code, digest FROM entries WHERE key = ?"
+            " ORDER BY id DESC",
+            (key,),
+        ).fetchall()
+        for number, name, needs, about, code, digest in rows:
+            if hashlib.sha256(f"{key} {name} {code}".encode() + needs + about).digest() == digest:
+                self._used["entries"].add(number)
+                yield Entry(name, self._read_needs(needs), about, code)
+
+    def _read_needs(self, numbers: bytes) -> frozenset[str]:
+        asked = memoryview(numbers).cast("I")
+        unknown = [number for number in asked if number not in self._lines]
+        for start in range(0, len(unknown), 500):
+            some = unknown[start : start + 500]
+            rows = f"SELECT id, line FROM needs WHERE id IN ({','.join('?' * len(some))})"
+            self._lines.update(self._disk.execute(rows, some).fetchall())
+        return frozenset(self._lines.get(number, "function lost:lost lost") for number in asked)
+
+    def code(self, hash: str) -> Code | None:
+        """The code of this hash; None if it is not here or damaged. Raises sqlite3.Error."""
+        row = self._disk.execute(
+            "SELECT name, called, body FROM code WHERE hash = ?", (hash,)
+        ).fetchone()
+        if row is None:
+            return None
+        try:
+            found = Code(row[0], tuple(row[1].split()), zlib.decompress(row[2]))
+        except zlib.error:
+            return None
+        self._used["code"].add(hash)
+        return found if found.hash == hash else None
+
+    def has_code(self, hash: str) -> bool:
+        """Whether code of this hash is here. Raises sqlite3.Error."""
+        return (
+            self._disk.execute("SELECT 1 FROM code WHERE hash = ?", (hash,)).fetchone() is not None
+        )
+
+    def keep(self, key: str, entry: Entry, codes: Sequence[Code]) -> None:
+        """Add an entry and the code that it needs, or nothing. Raises sqlite3.Error."""
+        today = _today()
+        with self._written():
+            for code in codes:
+                body = zlib.compress(code.body, 6)
+                self._disk.execute(
+                    "INSERT OR REPLACE INTO code VALUES (?, ?, ?, ?, ?)",
+                    (code.hash, code.name, " ".join(code.called), body, today),
+                )
+            needs = self._write_needs(entry.needs)
+            text = f"{key} {entry.name} {entry.code}".encode()
+            digest = hashlib.sha256(text + needs + entry.about).digest()
+            row = key, entry.name, needs, entry.about, entry.code, digest, today
+            self._disk.execute("DELETE FROM entries WHERE key = ? AND needs = ?", (key, needs))
+            self._disk.execute(
+                "INSERT INTO entries (key, name, needs, about, code, digest, used)"
+                " VALUES (?, ?, ?, ?, ?, ?, ?)", row,
+            )  # fmt: skip
+            self._disk.execute(
+                "DELETE FROM entries WHERE key = ? AND id NOT IN"
+                " (SELECT id FROM entries WHERE key = ? ORDER BY id DESC LIMIT ?)",
+                (key, key, MOST_ENTRIES),
+            )
+
+    def _write_needs(self, needs: frozenset[str]) -> bytes:
+        lines = [(line,) for line in sorted(needs)]
+        self._disk.executemany("INSERT OR IGNORE INTO needs (line) VALUES (?)", lines)
+        numbers = [
+            self._disk.execute("SELECT id FROM needs WHERE line = ?", line).fetchone()[0]
+            for line in lines
+        ]
+        return b"".join(number.to_bytes(4, sys.byteorder) for number in sorted(numbers))
+
+    @contextlib.contextmanager
+    def _written(self) -> Iterator[None]:
+        """A change that other processes see as a whole, or not at all."""
+        self._disk.execute("BEGIN IMMEDIATE")
+        try:
+            yield
+        except BaseException:
+            with contextlib.suppress(sqlite3.Error):
+                self._disk.execute("ROLLBACK")
+            raise
+        self._disk.execute("COMMIT")
+
+    def note_used(self) -> None:
+        """Write down what was used since this was opened, by the day, and keep to the bound.
+
+        Raises sqlite3.Error.
+        """
+        if not self.writes:
+            return
+        today = _today()
+        with self._written():
+            for table, name in (("entries", "id"), ("code", "hash")):
+                rows = [(today, one, today) for one in self._used[table]]
+                change = f"UPDATE {table} SET used = ? WHERE {name} = ? AND used < ?"
+                self._disk.executemany(change, rows)
+                self._used[table].clear()
+        if self.size > BOUND:
+            self.shrink(BOUND * 3 // 4)
+
+    def shrink(self, most: int) -> None:
+        """Leave out what was not used for longest, until the rest has so many bytes.
+
+        Raises sqlite3.Error.
+        """
+        ages = self._disk.execute(
+            "SELECT used, SUM(bytes) FROM"
+            " (SELECT used, length(about) + length(needs) + 200 AS bytes FROM entries"
+            " UNION ALL SELECT used, length(body) + 200 FROM code)"
+            " GROUP BY used ORDER BY used DESC"
+        ).fetchall()
+        total, last = 0, None
+        for day, size in ages:
+            total += size
+            if total > most:
+                last = day
+                break
+        if last is not None:
+            with self._written():
+                self._disk.execute("DELETE FROM entries WHERE used <= ?", (last,))
+                self._disk.execute("DELETE FROM code WHERE used <= ?", (last,))
+        self._disk.execute("VACUUM")
+        self._disk.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+
+    @property
+    def size(self) -> int:
+        """Bytes on disk."""
+        files = [self.file.with_name(self.file.name + end) for end in ("", "-wal", "-shm")]
+        return sum(file.stat().st_size for file in files if file.exists())
+
+    def counts(self) -> dict[str, int]:
+        """Number of entries of kernels and of parts. Raises sqlite3.Error."""
+        rows = self._disk.execute(
+            "SELECT name LIKE 'kernel %', name LIKE 'kind %', COUNT(*) FROM entries GROUP BY 1, 2"
+        )
+        found = {"parts": 0, "kernels": 0, "kinds": 0}
+        for kernel, kind, number in rows:
+            found["kernels" if kernel else "kinds" if kind else "parts"] = number
+        return found
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._disk.close()
+
+
+def _today() -> int:
+    return int(time.time() // 86400)
+
+
+def store_file() -> Path:
+    """The user's file, made ready for use. Raises OSError.
+
+    On a file system of the network it lies in the machine's own folder of temporary files, unless
+    NUMBA_CACHE_DIR says where it is to be.
+    """
+    place = folder()
+    if not config.CACHE_DIR and on_network(place):
+        user = os.getuid() if hasattr(os, "getuid") else "user"
+        place = Path(tempfile.gettempdir()) / f"mesokit-{user}"
+    return _private(place) / f"compiled-{FORMAT}.sqlite"

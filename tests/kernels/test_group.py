@@ -1,0 +1,115 @@
+"""Groups by address: compiled code finds in a packed group what Python put there."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numba import njit, typeof
+
+from mesokit.kernels.group import Group, by_address, kind_of, packed, writer
+from mesokit.kernels.kernel import kernel
+
+
+class Pair(NamedTuple):
+    first: float
+    second: int
+
+
+class Inner(NamedTuple):
+    values: Any
+    pair: Pair
+
+
+@by_address("count")
+class Whole(NamedTuple):
+    number: int
+    count: tuple
+    flag: bool
+    small: Any
+    inner: Inner
+    table: Any
+    nothing: tuple
+
+
+NUMBERS = st.integers(-(2**62), 2**62)
+FLOATS = st.floats(allow_nan=False)
+
+
+@njit
+def everything(whole):
+    pair, inner = whole.inner.pair, whole.inner
+    return (
+        whole.number,
+        whole.count[0],
+        whole.flag,
+        whole.small,
+        inner.values[1],
+        len(inner.values),
+        pair.first,
+        pair.second,
+        whole.table[1, 2],
+        whole.table.shape,
+        whole.table[:, 1].sum(),
+        len(whole.nothing),
+    )
+
+
+@settings(deadline=None)  # the first compiles
+@given(NUMBERS, NUMBERS, st.booleans(), st.integers(-(2**31), 2**31 - 1), FLOATS, NUMBERS)
+def test_fields_are_what_python_packed(
+    number: int, count: int, flag: bool, small: int, first: float, second: int
+) -> None:
+    values, table = np.array([1.0, first]), np.arange(12).reshape(3, 4)[:, ::-1]
+    inner = Inner(values, Pair(first, second))
+    group = packed(Whole(number, (count,), flag, np.int32(small), inner, table, ()))
+    column = int(table[:, 1].sum())
+    expected = (
+        number, count, flag, small, first, 2, first, second, table[1, 2], (3, 4), column, 0,
+    )  # fmt: skip
+    assert everything(group) == expected
+
+
+def test_what_a_kernel_writes_python_reads() -> None:
+    @kernel
+    def fill(whole):
+        for i in range(len(whole.inner.values)):
+            whole.inner.values[i] = i * whole.inner.pair.first
+
+    values = np.zeros(3)
+    fill(Whole(0, (0,), False, 0, Inner(values, Pair(0.5, 1)), np.zeros((1, 1)), ()))
+    assert values.tolist() == [0.0, 0.5, 1.0]
+
+
+set_count, set_number = writer("count"), writer("number")
+
+
+def test_fields_that_change() -> None:
+    @njit
+    def counted(whole, n):
+        before = whole.count[0]
+        set_count(whole, n)
+        return before, whole.count[0]
+
+    group = packed(Whole(7, (5,), True, 0, Inner(np.ones(1), Pair(1.0, 1)), np.ones((1, 1)), ()))
+    assert counted(group, 9) == (5, 9) and counted(group, 1) == (9, 1)
+    with pytest.raises(Exception, match="set_number|writer|write"):
+        njit(lambda whole: set_number(whole, 1))(group)
+
+
+def test_a_group_is_one_word_and_a_type_of_its_own() -> None:
+    group = Whole(7, (5,), True, 0, Inner(np.ones(1), Pair(1.0, 1)), np.ones((1, 1)), ())
+    kind = kind_of(group)
+    assert isinstance(kind, Group) and typeof(packed(group)) is kind
+    assert kind_of(group._replace(number=8)) is kind
+    assert kind_of(group._replace(number=8.0)) != kind
+    assert kind_of(Pair(1.0, 1)) == typeof(Pair(1.0, 1))  # no arrays: as before
+    assert packed(Pair(1.0, 1)) == Pair(1.0, 1)
+
+
+def test_what_cannot_be_packed_is_named() -> None:
+    with pytest.raises(TypeError, match="a group cannot hold"):
+        packed(Inner(np.ones(1), Pair("a", 1)))  # type: ignore[arg-type]

@@ -1,0 +1,353 @@
+"""The store of compiled code: whatever is wrong with it costs time, never a run."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from mesokit.kernels.store import Code, Entry, Store, folder, on_network
+
+LAW = """
+import numpy as np
+from mesokit.kernels.kernel import kernel
+from mesokit.scalar.jit import by_type, generic, scalar
+from typing import NamedTuple
+
+FACTOR = 3.0
+
+
+class Line(NamedTuple):
+    slope: float
+
+
+class Curve(NamedTuple):
+    power: float
+
+
+@generic
+def height(shape, x):
+    '''Height of a shape at x.'''
+
+
+@height.register(Line)
+def _(shape, x):
+    return shape.slope * x
+
+
+@height.register(Curve)
+def _(shape, x):
+    return x**shape.power
+
+
+@scalar
+def twice(x):
+    return 2.0 * x
+
+
+@scalar
+def scaled(x):
+    return FACTOR * x
+
+
+@scalar
+def unused(x):
+    return x + 1.0
+
+
+def is_long(rows):
+    return len(rows) > 1
+
+
+@by_type
+def reduced(rows, x):
+    return (lambda rows, x: twice(x)) if is_long(rows) else (lambda rows, x: x)
+
+
+@kernel
+def add(shape, rows, out):
+    for i in range(len(out)):
+        out[i] = scaled(reduced(rows, height(shape, float(i))))
+
+
+@kernel
+def double(out):
+    for i in range(len(out)):
+        out[i] = twice(out[i])
+"""
+PROGRAM = """
+import json, sys
+import numpy as np
+import law
+from mesokit.kernels.kept import counts, kept
+
+out = np.zeros(4)
+law.add(law.Line(1.0), (1.0, 2.0), out)
+law.double(out)
+names = "parts_made", "parts_found", "kernels_made", "kernels_found"
+print(json.dumps({"sum": float(out.sum()), "trouble": kept().trouble}
+                 | {name: getattr(counts, name) for name in names}))
+"""
+
+
+class Place:
+    """A module with two kernels, and a store for it."""
+
+    def __init__(self, root: Path) -> None:
+        self.root, self.law = root, root / "law.py"
+        self.law.write_text(LAW)
+        self.store = root / "cache" / "mesokit" / "compiled-1.sqlite"
+
+    def run(self, **more: str) -> dict:
+        """What a process that calls both kernels says."""
+        done = subprocess.run(
+            [sys.executable, "-c", PROGRAM], env=self.environment | more, cwd=self.root,
+            capture_output=True, text=True, timeout=300,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        assert "Traceback" not in done.stderr
+        return json.loads(done.stdout)
+
+    @property
+    def environment(self) -> dict[str, str]:
+        """Variables of the process."""
+        return os.environ | {"NUMBA_CACHE_DIR": str(self.root / "cache")}
+
+    def edit(self, before: str, after: str) -> None:
+        """Change the module."""
+        text = self.law.read_text()
+        assert text.count(before) == 1
+        self.law.write_text(text.replace(before, after))
+        shutil.rmtree(self.root / "__pycache__", ignore_errors=True)
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Place:
+    """A store with both kernels in it."""
+    place = Place(tmp_path_factory.mktemp("made"))
+    first = place.run()
+    assert first["sum"] == 2 * 3 * 2 * (0 + 1 + 2 + 3)
+    assert first["kernels_made"] == 2 and first["parts_made"] > 4
+    return place
+
+
+@pytest.fixture
+def place(made: Place, tmp_path: Path) -> Place:
+    """A copy of it."""
+    mine = Place(tmp_path)
+    shutil.copytree(made.root / "cache", tmp_path / "cache")
+    return mine
+
+
+NOTHING_MADE = {"kernels_made": 0, "kernels_found": 2, "parts_made": 0}
+
+
+def test_a_second_process_makes_nothing(place: Place) -> None:
+    assert place.run().items() >= NOTHING_MADE.items()
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "kernels", "parts", "factor"),
+    [
+        # twice, what was chosen for reduced, and the bodies of both kernels; 2 is there twice
+        ("return 2.0 * x", "return 4.0 * x", 2, 4, 4.0),
+        ("return FACTOR * x", "return x * FACTOR * 2.0", 1, 2, 2.0),
+        ("FACTOR = 3.0", "FACTOR = 6.0", 1, 2, 2.0),
+        ("return shape.slope * x", "return shape.slope * x * 2.0", 1, 2, 2.0),
+        ("len(rows) > 1", "len(rows) > 2", 1, 2, 0.5),  # only what chooses has changed
+        ("return x + 1.0", "return x + 2.0", 0, 0, 1.0),
+        ("return x**shape.power", "return x**shape.power + 1.0", 0, 0, 1.0),
+        ("'''Height of a shape at x.'''", "'''Height.'''\n    # of what", 0, 0, 1.0),
+    ],
+)
+def test_an_edit_remakes_what_contains_it_and_nothing_else(
+    place: Place, before: str, after: str, kernels: int, parts: int, factor: float
+) -> None:
+    place.edit(before, after)
+    found = place.run()
+    assert found["kernels_made"] == kernels and found["parts_made"] == parts
+    assert found["sum"] == 72.0 * factor
+    assert place.run().items() >= NOTHING_MADE.items()
+
+
+def test_both_states_of_a_source_are_kept(place: Place) -> None:
+    """As when somebody goes from one branch to another and back."""
+    place.edit("FACTOR = 3.0", "FACTOR = 6.0")
+    assert place.run()["kernels_made"] == 1
+    place.edit("FACTOR = 6.0", "FACTOR = 3.0")
+    assert place.run().items() >= NOTHING_MADE.items()
+
+
+def damage(file: Path, how: str) -> None:
+    """What happens to files."""
+    data = bytearray(file.read_bytes())
+    if how == "empty":
+        data = bytearray()
+    elif how == "cut":
+        data = data[: len(data) // 2]
+    elif how == "foreign":
+        data = bytearray(b"these are my notes\n" * 1000)
+    elif how == "garbage":
+        data[4096:] = os.urandom(len(data) - 4096)
+    else:  # bits that flip in rows of code
+        for at in range(5000, len(data), 997):
+            data[at] ^= 16
+    file.write_bytes(data)
+    for end in ("-wal", "-shm"):
+        file.with_name(file.name + end).unlink(missing_ok=True)
+
+
+@pytest.mark.parametrize("how", ["empty", "cut", "foreign", "garbage", "flipped"])
+def test_a_damaged_store_is_made_anew(place: Place, how: str) -> None:
+    damage(place.store, how)
+    first = place.run()
+    assert first["sum"] == 72.0 and first["kernels_made"] > 0
+    second = place.run()
+    assert second["sum"] == 72.0 and second["kernels_made"] in (0, first["kernels_made"])
+
+
+def test_code_that_was_changed_is_not_run(place: Place) -> None:
+    with sqlite3.connect(place.store) as disk:
+        disk.execute("UPDATE code SET body = zeroblob(length(body))")
+    assert place.run()["sum"] == 72.0
+    assert place.run().items() >= NOTHING_MADE.items()
+
+
+def test_code_that_is_gone_is_made_anew(place: Place) -> None:
+    with sqlite3.connect(place.store) as disk:
+        disk.execute("DELETE FROM code WHERE hash IN (SELECT hash FROM code LIMIT 4)")
+        disk.execute("DELETE FROM entries WHERE name LIKE 'kernel %'")
+    found = place.run()
+    assert found["sum"] == 72.0 and found["kernels_made"] == 2
+
+
+def test_entries_of_another_version_are_not_found(place: Place) -> None:
+    """Each version has keys of its own; what is changed here is an option of numba."""
+    assert place.run(NUMBA_OPT="1")["kernels_made"] == 2
+    assert place.run().items() >= NOTHING_MADE.items()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="folders of Windows have no mode")
+def test_a_folder_is_closed_to_others(place: Place) -> None:
+    assert place.store.parent.stat().st_mode & 0o777 == 0o700
+    place.store.parent.chmod(0o755)
+    assert place.run().items() >= NOTHING_MADE.items()
+    assert place.store.parent.stat().st_mode & 0o777 == 0o700
+
+
+@pytest.mark.skipif(not hasattr(os, "chown") or os.geteuid() != 0, reason="only root gives away")
+def test_a_folder_of_another_user_is_not_used(place: Place) -> None:
+    os.chown(place.store.parent, 12345, -1)
+    found = place.run()
+    assert found["sum"] == 72.0 and found["kernels_made"] == 2
+    own = place.root / "cache" / f"mesokit-{os.getuid()}" / place.store.name
+    assert own.exists() and place.run().items() >= NOTHING_MADE.items()
+
+
+def test_a_place_that_cannot_be_written(place: Place) -> None:
+    shutil.rmtree(place.root / "cache")
+    (place.root / "cache").write_text("a file where a folder should be")
+    found = place.run()
+    assert found["sum"] == 72.0 and found["kernels_made"] == 2 and found["trouble"]
+
+
+def test_a_store_that_can_only_be_read_is_read(place: Place) -> None:
+    """Root may write everywhere, but not in a file that is open as read-only."""
+    store = Store(place.store, writes=False)
+    with pytest.raises(sqlite3.OperationalError, match="readonly"):
+        store.keep("key", Entry("name", frozenset(), b"", ""), [])
+    assert sum(store.counts().values()) > 6
+
+
+def test_a_full_disk_ends_writing_not_the_run(place: Place) -> None:
+    """SQLite says so itself where a file may not grow."""
+    place.edit("FACTOR = 3.0", "FACTOR = 6.0")
+    program = PROGRAM.replace(
+        "out = np.zeros(4)",
+        "kept().own._disk.execute('PRAGMA max_page_count = 1')\nout = np.zeros(4)",
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], env=place.environment, cwd=place.root,
+        capture_output=True, text=True, timeout=300,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert found["sum"] == 144.0 and "full" in found["trouble"]
+    assert place.run()["kernels_made"] == 1
+
+
+def test_two_processes_at_once(tmp_path: Path) -> None:
+    """Of two that need the same kernels, one makes each."""
+    place = Place(tmp_path)
+    some = [
+        subprocess.Popen(
+            [sys.executable, "-c", PROGRAM], env=place.environment, cwd=place.root,
+            stdout=subprocess.PIPE, text=True,
+        )
+        for _ in range(3)
+    ]  # fmt: skip
+    found = [json.loads(one.communicate(timeout=300)[0]) for one in some]
+    assert [one["sum"] for one in found] == [72.0] * 3
+    assert sum(one["kernels_made"] for one in found) == 2
+    assert not [file for file in tmp_path.rglob("locks/*") if file.is_file()]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no such signal")
+def test_killed_in_the_middle(tmp_path: Path) -> None:
+    """What was whole is kept; the next process makes the rest."""
+    place = Place(tmp_path)
+    one = subprocess.Popen([sys.executable, "-c", PROGRAM], env=place.environment, cwd=place.root)
+    for _ in range(3000):
+        if place.store.exists() and _parts(place.store) >= 3:
+            break
+        time.sleep(0.01)
+    one.send_signal(signal.SIGKILL)
+    one.wait()
+    found = place.run()
+    assert found["sum"] == 72.0
+    assert place.run().items() >= NOTHING_MADE.items()
+
+
+def _parts(file: Path) -> int:
+    try:
+        with sqlite3.connect(file) as disk:
+            return disk.execute("SELECT COUNT(*) FROM entries").fetchone()[0]
+    except sqlite3.Error:
+        return 0
+
+
+def test_what_was_not_used_for_longest_goes_first(tmp_path: Path) -> None:
+    store = Store(tmp_path / "store.sqlite")
+    for number in range(10):
+        code = Code(f"code {number}", (), os.urandom(1000))
+        store.keep(f"key {number}", Entry("name", frozenset({"a b c"}), b"", code.hash), [code])
+        store._disk.execute("UPDATE entries SET used = ? WHERE key = ?", (number, f"key {number}"))
+        store._disk.execute("UPDATE code SET used = ? WHERE hash = ?", (number, code.hash))
+    before = store.size
+    store.shrink(5 * 1400)
+    left = [number for number in range(10) if list(store.find(f"key {number}"))]
+    assert left == [6, 7, 8, 9] or left == [5, 6, 7, 8, 9]
+    assert store.size < before
+
+
+def test_a_home_on_the_network(tmp_path: Path) -> None:
+    mounts = tmp_path / "mounts"
+    mounts.write_text("disk / ext4 rw 0 0\nserver:/home /home nfs4 rw 0 0\n")
+    assert on_network(Path("/home/physicist/.cache"), mounts)
+    assert not on_network(Path("/homeland"), mounts)
+    assert not on_network(Path("/tmp"), tmp_path / "no such file")
+
+
+def test_a_folder_that_jobs_share(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import numba
+
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    assert folder() == tmp_path / "mesokit"
