@@ -41,7 +41,6 @@ def flying(monkeypatch):
     """The method `flying-spheres`, whose name is answered."""
     import fake_spheres
 
-    import mesokit.cli.end  # noqa: F401  commands look for templates, of which it has none
     from mesokit import method as methods
     from mesokit.case.case import case_class
 

@@ -8,7 +8,6 @@ from typing import Any
 import click
 from mkdocs.structure.files import File, Files
 
-from mesokit.cli import end  # noqa: F401  it has all commands registered
 from mesokit.cli.commands import cli
 
 HEAD = """# Commands

@@ -8,12 +8,9 @@ import pytest
 from click.shell_completion import ShellComplete
 
 from mesokit import Case
-from mesokit.cli import (
-    end,  # noqa: F401  it registers the commands
-    main,
-)
-from mesokit.cli.cases import EXAMPLES, KNOWN
+from mesokit.cli import main
 from mesokit.cli.commands import cli
+from mesokit.cli.new import EXAMPLES, KNOWN
 
 ROOT = Path(__file__).parents[2]
 CASE = """

@@ -1,23 +1,27 @@
 """Families of parts, such as collision rules, and which parts there are of each.
 
 A part is registered by being defined: a component that is a subclass of its family's base. Those of
-mesokit are files in one folder; others are defined by a script before it builds a case, or brought
-by an installed package whose entry point says where. Entry points are looked up and loaded only
-where a case names a part that is not known yet.
+mesokit are files in one folder: a case imports those that it names, a list of parts all of them.
+Others are defined by a script before it builds a case, or brought by an installed package whose
+entry point says where. Entry points are looked up and loaded only where a case names a part that is
+not known yet.
 """
 
 from __future__ import annotations
 
+import functools
 import importlib
 import pkgutil
 from collections.abc import Callable, Iterable, Mapping
-from importlib import metadata
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationError, ValidationInfo
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
 
 from mesokit.errors import CaseError
+
+if TYPE_CHECKING:
+    from importlib import metadata
 
 T = TypeVar("T", bound=type)
 
@@ -33,18 +37,34 @@ class Family:
     def __init__(self, base: type, title: str, tag: str, group: str, functions: str = "") -> None:
         self.base, self.title, self.tag, self.group = base, title, tag, group
         self.functions = functions
-        self.parts: dict[str, type[Any]] = {}
+        self.packages: list[str] = []  # the folders of mesokit that have its parts
+        self._known: dict[str, type[Any]] = {}  # the parts that are imported
         self._described = False  # while its schema is made
+
+    @property
+    def parts(self) -> dict[str, type[Any]]:
+        """All parts by name: those of mesokit's folders in alphabetical order, then others."""
+        for package in self.packages:
+            _import_all(package)
+        self._known = dict(sorted(self._known.items(), key=self._place))
+        return self._known
+
+    def _place(self, item: tuple[str, type[Any]]) -> tuple[int, str]:
+        name, part = item
+        package = part.__module__.rpartition(".")[0]
+        if package in self.packages:
+            return self.packages.index(package), name
+        return len(self.packages), ""
 
     def add(self, name: str, part: type) -> None:
         """Register a part. Raises CaseError if another has its name."""
-        known = self.parts.get(name)
+        known = self._known.get(name)
         if known is not None and address(known) != address(part):
             raise CaseError(
                 f"{address(part)}: {self.title} {name!r} is {address(known)} already; choose "
                 f"another {self.tag}"
             )
-        self.parts[name] = part
+        self._known[name] = part
 
     def names(self) -> list[str]:
         """The names that a case file can say, those that packages bring included."""
@@ -53,19 +73,30 @@ class Family:
 
     def find(self, name: str) -> type | None:
         """The part of that name, None if there is none. Raises CaseError if it cannot be loaded."""
-        if name not in self.parts:
+        if name not in self._known:
+            self._import(name)
+        if name not in self._known and name not in self.parts:
             self._load(name)
-        return self.parts.get(name)
+        return self._known.get(name)
+
+    def _import(self, name: str) -> None:
+        """Import the file that is named after a part; a file may have parts of other names too."""
+        module = name.replace("-", "_").replace("+", "_plus_")
+        for package in self.packages:
+            if name not in self._known and module in _modules(package):
+                importlib.import_module(f"{package}.{module}")
 
     def brought_by(self, name: str) -> Mapping[str, str]:
         """Distribution and version that have an entry point for a part; {} for a script's."""
-        place = address(self.parts[name])
+        place = address(self._known[name])
         for entry in self._entries():
             if entry.name == name and entry.value.replace(" ", "") == place and entry.dist:
                 return {"distribution": entry.dist.name, "version": entry.dist.version}
         return {}
 
     def _entries(self) -> Iterable[metadata.EntryPoint]:
+        from importlib import metadata
+
         return metadata.entry_points(group=self.group)
 
     def _load(self, name: str) -> None:
@@ -86,9 +117,9 @@ class Family:
             raise CaseError(
                 f"{self.title} {name!r} of {sources[0]} cannot be loaded: {reason}"
             ) from error
-        part = self.parts.get(name)
+        part = self._known.get(name)
         if part is not None and (missing := sorted(getattr(part, "__abstractmethods__", ()))):
-            del self.parts[name]
+            del self._known[name]
             raise CaseError(
                 f"{self.title} {name!r} of {sources[0]}: {address(part)} lacks {', '.join(missing)}"
             )
@@ -137,7 +168,7 @@ class Family:
     def _validated(self, value: Any, info: ValidationInfo) -> Any:
         """A part as it is, or built from a table that names it."""
         if isinstance(value, self.base):
-            if type(value) not in self.parts.values():
+            if type(value) not in self._known.values():
                 raise PydanticCustomError(
                     "part", f"{address(type(value))} lacks @component, or was defined anew"
                 )
@@ -196,12 +227,36 @@ def family_of(part: Any) -> Family:
     return next(found for base, found in FAMILIES.items() if isinstance(part, base))
 
 
-def parts_in(path: Iterable[str], package: str, base: type[Any]) -> tuple[type[Any], ...]:
-    """The parts that the files of a folder define, in the order of their names."""
-    for module in pkgutil.iter_modules(path, f"{package}."):
-        importlib.import_module(module.name)
-    found = FAMILIES[base].parts.values()
-    return tuple(part for part in found if part.__module__.startswith(f"{package}."))
+def parts_in(package: str, **lists: type[Any]) -> Callable[[str], tuple[type[Any], ...]]:
+    """Let families look for parts in the files of a package, by the bases of the families.
+
+    Returns the `__getattr__` of the package: each list, by its name, has all parts of a family that
+    the files define. All of them are imported when a list is first used.
+    """
+    for base, found in FAMILIES.items():
+        if not set(base.__mro__).isdisjoint(lists.values()):
+            found.packages.append(package)
+
+    def listed(name: str) -> tuple[type[Any], ...]:
+        if name not in lists:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        found = FAMILIES[lists[name]].parts.values()
+        return tuple(part for part in found if part.__module__.startswith(f"{package}."))
+
+    return listed
+
+
+@functools.cache
+def _modules(package: str) -> frozenset[str]:
+    """The names of the files and folders in a package."""
+    path = importlib.import_module(package).__path__
+    return frozenset(module.name for module in pkgutil.iter_modules(path))
+
+
+@functools.cache
+def _import_all(package: str) -> None:
+    for module in sorted(_modules(package)):
+        importlib.import_module(f"{package}.{module}")
 
 
 def address(part: type) -> str:

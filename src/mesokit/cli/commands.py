@@ -21,7 +21,36 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 
+MODULES = {  # what is here, and the commands that each has
+    "new": ("new",),
+    "check": ("check",),
+    "runs": ("run", "resume", "info", "export"),
+    "studies": ("study", "merge"),
+    "pictures": ("plot", "animate"),
+    "documents": ("report", "table"),
+    "reference": ("schema", "explain"),
+    "theory": ("theory",),
+}
+COMMANDS = {command: module for module, commands in MODULES.items() for command in commands}
+
+
+class Commands(click.Group):
+    """The commands of COMMANDS: each registers itself when its module is imported, on its first use
+    or for a list of all."""
+
+    def list_commands(self, context: click.Context) -> list[str]:
+        """All names, in alphabetical order."""
+        return sorted(COMMANDS)
+
+    def get_command(self, context: click.Context, name: str) -> click.Command | None:
+        """The command of that name, None if there is none."""
+        if name in COMMANDS:
+            importlib.import_module(f"{__package__}.{COMMANDS[name]}")
+        return super().get_command(context, name)
+
+
 @click.group(
+    cls=Commands,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     epilog="Completion of commands and options: put "
     'eval "$(_MESOKIT_COMPLETE=bash_source mesokit)" into ~/.bashrc (or zsh_source, fish_source).',

@@ -8,15 +8,6 @@ from collections.abc import Sequence
 
 import click
 
-from mesokit.cli import (  # noqa: F401  they register their commands
-    cases,
-    documents,
-    pictures,
-    reference,
-    runs,
-    studies,
-    theory,
-)
 from mesokit.cli.commands import cli
 from mesokit.cli.words import reason, say
 from mesokit.errors import MesokitError, RunError

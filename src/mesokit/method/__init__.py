@@ -7,9 +7,8 @@ A package brings a method by an entry point of the group `mesokit.methods`, whos
 from __future__ import annotations
 
 import importlib
-import importlib.metadata
-import importlib.resources
 import pathlib
+from collections.abc import Iterable
 from typing import Any
 
 METHODS = {  # what `run.method` says: the module that holds the METHOD
@@ -24,6 +23,8 @@ DEFAULT = next(iter(METHODS))
 
 def modules() -> dict[str, str]:
     """The module of each method by its name, those of installed packages included."""
+    import importlib.metadata
+
     installed = importlib.metadata.entry_points(group="mesokit.methods")
     return {point.name: point.value for point in installed} | METHODS
 
@@ -36,10 +37,21 @@ def load(name: str) -> Any:
 
 def templates() -> dict[str, Any]:
     """The files that `mesokit new` starts from, by name: those in `templates/` of each method."""
-    packages = [importlib.resources.files(place.rpartition(".")[0]) for place in modules().values()]
-    folders = [package / "templates" for package in packages if (package / "templates").is_dir()]
-    files = [file for folder in folders for file in folder.iterdir()]
+    files = [file for place in modules().values() for file in _templates_beside(place)]
     return {file.name.removesuffix(".toml"): file for file in sorted(files, key=lambda f: f.name)}
+
+
+def _templates_beside(module: str) -> Iterable[Any]:
+    """The files in the folder `templates` beside a module, whose package is not imported."""
+    import importlib.resources
+    import importlib.util
+
+    package = module.rpartition(".")[0]
+    spec = importlib.util.find_spec(package) if package else None
+    if spec is None:
+        return ()
+    folder = importlib.resources.files(importlib.util.module_from_spec(spec)) / "templates"
+    return folder.iterdir() if folder.is_dir() else ()
 
 
 def examples() -> dict[str, Any]:
@@ -47,6 +59,8 @@ def examples() -> dict[str, Any]:
 
     Wheels carry them inside the package; in a clone they lie beside `src`.
     """
+    import importlib.resources
+
     package = importlib.resources.files("mesokit")
     folder = package / "examples"
     if not folder.is_dir():

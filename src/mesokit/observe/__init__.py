@@ -6,6 +6,6 @@ from mesokit.case.registry import parts_in
 from mesokit.observe.shared.protocol import Accumulator, Observable
 from mesokit.observe.shared.result import Comparison, Result
 
-OBSERVABLES = parts_in(__path__, __name__, Observable)
+__getattr__ = parts_in(__name__, OBSERVABLES=Observable)
 
 __all__ = ["OBSERVABLES", "Accumulator", "Comparison", "Observable", "Result"]

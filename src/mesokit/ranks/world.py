@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import sys
+from typing import TYPE_CHECKING, TypeAlias
 
 from mesokit import __version__
 from mesokit.errors import RunError
 from mesokit.ranks import launcher
 from mesokit.ranks.alone import Alone
-from mesokit.ranks.several import Several
 
-World = Alone | Several
+if TYPE_CHECKING:
+    from mesokit.ranks.several import Several
+
+World: TypeAlias = "Alone | Several"
 _known: World | None = None
 
 
@@ -47,4 +50,8 @@ def _of_mpi() -> World:
         if not launcher.first():  # one says it for all
             raise SystemExit(1) from None
         raise RunError(f"several ranks need mpi4py ({error}): pip install 'mesokit[mpi]'") from None
-    return Alone() if MPI.COMM_WORLD.size == 1 else Several(MPI.COMM_WORLD)
+    if MPI.COMM_WORLD.size == 1:
+        return Alone()
+    from mesokit.ranks.several import Several
+
+    return Several(MPI.COMM_WORLD)

@@ -5,6 +5,6 @@ from __future__ import annotations
 from mesokit.case.registry import parts_in
 from mesokit.case.shear.protocol import ShearHistory
 
-HISTORIES = parts_in(__path__, __name__, ShearHistory)
+__getattr__ = parts_in(__name__, HISTORIES=ShearHistory)
 
 __all__ = ["HISTORIES", "ShearHistory"]

@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from mesokit.case.component import show
 from mesokit.geometry import region
@@ -89,6 +88,8 @@ def _require_fluid(values: Floats, axis: int) -> None:
 
 def smoothed(values: Floats, spacing: float, repeats: list[bool]) -> Floats:
     """The samples, averaged with their neighbours where the gradient is too steep."""
+    from scipy import ndimage
+
     modes = ["grid-wrap" if again else "nearest" for again in repeats]
     for _ in range(PASSES):
         steep = region.steepness(values, repeats) > STEEPEST * spacing

@@ -5,6 +5,6 @@ from __future__ import annotations
 from mesokit.case.registry import parts_in
 from mesokit.geometry.shape_protocol import Wall
 
-SHAPES = parts_in(__path__, __name__, Wall)
+__getattr__ = parts_in(__name__, SHAPES=Wall)
 
 __all__ = ["SHAPES", "Wall"]

@@ -15,7 +15,7 @@ from mesokit.geometry.solids.solids import Solids, solids_of
 from mesokit.method.flock.checks import check, room_in_memory
 from mesokit.method.flock.displacement import Displacement
 from mesokit.method.flock.engine.flocks import Flocks
-from mesokit.method.flock.observe import OBSERVABLES
+from mesokit.method.flock.observe import FlockObservable
 from mesokit.method.flock.section import KEYS, Sections
 from mesokit.method.flock.start import FirstState, first_state
 from mesokit.method.flock.summary import summary
@@ -82,7 +82,7 @@ METHOD = Method(
     whole_cells=False,
     headings=True,
     picture="flock",
-    observables=(MeanSquareDisplacement, *OBSERVABLES),
+    observables=(MeanSquareDisplacement, FlockObservable),
     expected={"mean-square-displacement": Displacement},
     check=check,
     groups=groups,

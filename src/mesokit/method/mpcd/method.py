@@ -22,8 +22,6 @@ from mesokit.method.mpcd.expected.velocities import Velocities
 from mesokit.method.mpcd.expected.velocity_memory import VelocityMemory
 from mesokit.method.mpcd.groups import bonds, groups
 from mesokit.method.mpcd.sections import KEYS, Sections
-from mesokit.method.mpcd.start.fluid import start
-from mesokit.method.mpcd.summary import summary
 from mesokit.method.protocol import Method
 from mesokit.observe import Observable
 from mesokit.ranks.world import world
@@ -35,6 +33,13 @@ if TYPE_CHECKING:
     from mesokit.method.mpcd.si import SI
     from mesokit.method.mpcd.solutes import Solutes
     from mesokit.method.mpcd.start.first_state import FirstState
+    from mesokit.method.protocol import Summary
+
+
+def _summary(case: Case, threads: int | None) -> Summary:
+    from mesokit.method.mpcd.summary import summary
+
+    return summary(case, threads)
 
 
 def _first_state(case: Case, arrays: Mapping[str, Any]) -> FirstState:
@@ -74,6 +79,8 @@ def _check_ranks(case: Case, ranks: int) -> None:
 
 
 def _start(engine: Any, state: FirstState) -> None:
+    from mesokit.method.mpcd.start.fluid import start
+
     start(engine, *state)
 
 
@@ -149,7 +156,7 @@ METHOD = Method(
     solids=_solids,
     timestep=lambda case: float(case.fluid.timestep),
     kT=lambda case: float(case.fluid.kT),
-    summary=summary,
+    summary=_summary,
     starts=_starts,
     missing_files=_missing_files,
     arrays=("positions", "velocities", "beads", "bead_velocities"),

@@ -5,6 +5,6 @@ from __future__ import annotations
 from mesokit.case.registry import parts_in
 from mesokit.spheres.start.protocol import Placed, SphereStart
 
-STARTS = parts_in(__path__, __name__, SphereStart)
+__getattr__ = parts_in(__name__, STARTS=SphereStart)
 
 __all__ = ["STARTS", "Placed", "SphereStart"]

@@ -5,6 +5,6 @@ from __future__ import annotations
 from mesokit.case.registry import parts_in
 from mesokit.method.event_driven.collision.protocol import SphereCollision
 
-RULES = parts_in(__path__, __name__, SphereCollision)
+__getattr__ = parts_in(__name__, RULES=SphereCollision)
 
 __all__ = ["RULES", "SphereCollision"]

@@ -5,6 +5,6 @@ from __future__ import annotations
 from mesokit.case.registry import parts_in
 from mesokit.method.event_driven.heating.protocol import Heating
 
-HEATINGS = parts_in(__path__, __name__, Heating)
+__getattr__ = parts_in(__name__, HEATINGS=Heating)
 
 __all__ = ["HEATINGS", "Heating"]

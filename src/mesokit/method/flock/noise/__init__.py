@@ -5,6 +5,6 @@ from __future__ import annotations
 from mesokit.case.registry import parts_in
 from mesokit.method.flock.noise.protocol import Noise
 
-RULES = parts_in(__path__, __name__, Noise)
+__getattr__ = parts_in(__name__, RULES=Noise)
 
 __all__ = ["RULES", "Noise"]

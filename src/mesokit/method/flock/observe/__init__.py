@@ -6,6 +6,6 @@ from mesokit.case.registry import parts_in
 from mesokit.method.flock.observe.protocol import FlockObservable
 from mesokit.observe.shared.protocol import Observable
 
-OBSERVABLES = parts_in(__path__, __name__, Observable)
+__getattr__ = parts_in(__name__, OBSERVABLES=Observable)
 
 __all__ = ["OBSERVABLES", "FlockObservable"]

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 from mesokit.case.box import AXES
 from mesokit.case.component import name_of, one_of, show, tag_of
-from mesokit.geometry.shape import SHAPES
 from mesokit.geometry.shape.intersection import Intersection
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import labels, solids_of
@@ -24,6 +23,8 @@ def walls(case: Case) -> Iterator[str]:
     for i, wall in enumerate(case.walls):
         key = f"wall[#{i + 1}]"
         if d not in wall.dimensions:
+            from mesokit.geometry.shape import SHAPES
+
             known = [_shape(s) for s in SHAPES if d in getattr(s, "dimensions", ())]
             yield f"{key}.shape = {show(name_of(wall))}: not in {d}D; expected {one_of(known)}"
         for axis in wall.closed_axes:

@@ -5,6 +5,6 @@ from __future__ import annotations
 from mesokit.case.registry import parts_in
 from mesokit.method.mpcd.collision.protocol import CollisionRule, Gas
 
-RULES = parts_in(__path__, __name__, CollisionRule)
+__getattr__ = parts_in(__name__, RULES=CollisionRule)
 
 __all__ = ["RULES", "CollisionRule", "Gas"]

@@ -5,6 +5,6 @@ from __future__ import annotations
 from mesokit.case.registry import parts_in
 from mesokit.method.mpcd.field.protocol import Force
 
-RULES = parts_in(__path__, __name__, Force)
+__getattr__ = parts_in(__name__, RULES=Force)
 
 __all__ = ["RULES", "Force"]

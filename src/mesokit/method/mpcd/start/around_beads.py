@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from mesokit.errors import RunError
 from mesokit.geometry.solids.contact import MARGIN
@@ -53,6 +52,8 @@ def out_of_beads(numbers: Numbers, who: NDArray[np.int64], places: Floats, beads
 
 def _energy(numbers: Numbers, places: Floats, beads: Floats, pair: Pair) -> Floats:
     """Of each place, by all beads near it."""
+    from scipy.spatial import cKDTree
+
     period = periods(numbers)
     boxes = np.where(np.isfinite(period), period, 0.0)
     inside = [

@@ -5,6 +5,6 @@ from __future__ import annotations
 from mesokit.case.registry import parts_in
 from mesokit.method.mpcd.thermostat.protocol import Thermostat
 
-RULES = parts_in(__path__, __name__, Thermostat)
+__getattr__ = parts_in(__name__, RULES=Thermostat)
 
 __all__ = ["RULES", "Thermostat"]

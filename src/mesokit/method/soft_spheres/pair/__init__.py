@@ -7,7 +7,7 @@ from mesokit.case.registry import FAMILIES, parts_in
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw, PairLaw
 from mesokit.potential import Pair
 
-CONTACT_LAWS = parts_in(__path__, __name__, PairLaw)
+__getattr__ = parts_in(__name__, CONTACT_LAWS=PairLaw)
 for _rule, _potential in FAMILIES[Pair].parts.items():
     FAMILIES[PairLaw].add(_rule, _potential)
 

@@ -5,6 +5,6 @@ from __future__ import annotations
 from mesokit.case.registry import parts_in
 from mesokit.method.soft_spheres.thermostat.protocol import SoftThermostat
 
-THERMOSTATS = parts_in(__path__, __name__, SoftThermostat)
+__getattr__ = parts_in(__name__, THERMOSTATS=SoftThermostat)
 
 __all__ = ["THERMOSTATS", "SoftThermostat"]

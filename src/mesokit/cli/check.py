@@ -1,0 +1,77 @@
+"""The command check, which looks at a case without running it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from mesokit.cli.commands import CASE, JSON, SET, THREADS, axes_of, cli, naming, read
+from mesokit.cli.words import READING, in_json, patience, show_table
+from mesokit.errors import CaseError
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+
+@cli.command()
+@click.argument("case", type=CASE)
+@SET
+@THREADS
+@JSON
+@click.option(
+    "--picture",
+    is_flag=False,
+    flag_value="",
+    metavar="[FILE]",
+    help="Draw solids, molecules and particles as they start (CASE-start.png unless said).",
+)
+@click.option("--axes", callback=axes_of, metavar="A,B", help="Of the picture in 3D.  [x,y]")
+def check(
+    case: Path,
+    settings: dict[str, str],
+    threads: int | None,
+    as_json: bool,
+    picture: str | None,
+    axes: tuple[str, ...] | None,
+) -> None:
+    """Check CASE, show it with all defaults, what follows from it, and what to mind."""
+    from mesokit.case.kind import has_run
+    from mesokit.method.protocol import method_of, summary_of
+
+    with patience(READING):
+        full = read(case, settings)
+        method = method_of(full)
+        with naming(case):
+            method.first_state(full, {})
+        summary = summary_of(full, threads)
+    if axes is not None and picture is None:
+        raise CaseError("--axes: only for a picture; add --picture")
+    drawn = None if picture is None else _draw(full, case, picture, axes)
+    if as_json:
+        from mesokit.case import toml
+
+        record = {"case": toml.parse(full.to_toml())} | summary.record()
+        click.echo(in_json(record | ({"picture": str(drawn)} if drawn else {})))
+        return
+    click.echo(full.to_toml())
+    ahead = [("first start", "up to a minute", "compiling, once for each kind of case")]
+    show_table([*summary.rows, *([] if has_run(full) else ahead)])
+    if full.units is not None and method.si is not None:
+        click.echo(method.si(full))
+    for warning in summary.warnings:
+        click.echo(f"warning: {warning}")
+    if drawn:
+        click.echo(f"picture: {drawn}")
+
+
+def _draw(full: Case, case: Path, picture: str, axes: tuple[str, ...] | None) -> Path:
+    """Draw what a case starts from, without a step."""
+    from mesokit.method.protocol import method_of
+    from mesokit.report import save_figure
+    from mesokit.simulation import Simulation
+
+    with naming(case):
+        figure = Simulation(full).flow(method_of(full).picture or "particles", axes=axes)
+    return save_figure(figure, picture or f"{case.stem}-start.png")
