@@ -66,22 +66,16 @@ pair = { rule = "wca" }
 def cases() -> Iterator[tuple[str, Any]]:
     """Name and case, cut to some steps with every observable looking at each fourth."""
     from mesokit import Case
+    from mesokit.running.warm import shortened
 
     folders = [ROOT / "examples", ROOT / "src" / "mesokit"]
     files = sorted(f for folder in folders for f in folder.rglob("*.toml"))
-    short = {"run.steps": STEPS, "run.warmup": 0}
     for file in files:
         if file.parent.name == "studies":  # several cases each
             continue
-        plain = Case.from_toml(file)
-        every = {  # where steps are named, these are what is looked at
-            f"observe.{i + 1}.every": 4
-            for i, one in enumerate(plain.observe)
-            if not getattr(one, "steps", ())
-        }
         name = file.relative_to(ROOT).as_posix().removeprefix("src/mesokit/").split("/")
         name = "/".join(part for part in name if part not in ("method", "mpcd"))
-        yield name, Case.from_toml(file, short | every)
+        yield name, shortened(file, {}, STEPS)
     for name, text in COMBINATIONS.items():
         yield name, Case.from_toml(_written(f"run = {{ steps = {STEPS} }}\n{text}"))
 

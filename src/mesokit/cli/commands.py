@@ -30,6 +30,7 @@ MODULES = {  # what is here, and the commands that each has
     "documents": ("report", "table"),
     "reference": ("schema", "explain"),
     "theory": ("theory",),
+    "compiled": ("warm", "cache"),
 }
 COMMANDS = {command: module for module, commands in MODULES.items() for command in commands}
 

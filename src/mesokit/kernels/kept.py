@@ -27,9 +27,11 @@ SHIPPED = HERE / "shipped"
 
 
 class Counts:
-    """What this process has made and found: `mesokit cache` and benchmarks show it."""
+    """What this process has made and found, and why it was made."""
 
-    parts_made = parts_found = kernels_made = kernels_found = 0
+    def __init__(self) -> None:
+        self.parts_made = self.parts_found = self.kernels_made = self.kernels_found = 0
+        self.reasons: dict[str, str] = {}  # by the name of what was made
 
 
 counts = Counts()
@@ -64,9 +66,11 @@ class Kept:
             self.own = self._opened()
         self.stores = [self.own] if self.own else []
         shipped = SHIPPED / f"{era()}.sqlite"
+        self.shipped: Store | None = None
         with contextlib.suppress(sqlite3.Error, OSError):
             if shipped.exists():
-                self.stores.append(Store(shipped, writes=False))
+                self.shipped = Store(shipped, writes=False)
+                self.stores.append(self.shipped)
 
     def _opened(self) -> Store:
         file = store_file()
@@ -96,6 +100,20 @@ class Kept:
                     if all(map(still_holds, entry.needs)):
                         return entry, store
         return None
+
+    def reason(self, key: str, name: str) -> str:
+        """Why there is no valid entry of a key, in a line."""
+        known = False
+        for store in self.stores:
+            with contextlib.suppress(sqlite3.Error, ValueError):
+                for entry in store.find(key):
+                    for need in sorted(entry.needs):
+                        if not still_holds(need):
+                            return f"{need.split(' ')[1]} has changed"
+                known |= store.has_name(name)
+        if known:
+            return "its code, the types of its arguments, or a version is another than before"
+        return "it was not made before"
 
     def code(self, hash: str) -> Code | None:
         """Code by its hash, of any store."""

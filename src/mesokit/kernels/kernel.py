@@ -111,10 +111,13 @@ class _MachineCode:
     def save_overload(self, signature: Any, compiled: Any) -> None:
         """Keep a compiled kernel."""
         counts.kernels_made += 1
+        name = f"kernel {self.function.__module__}:{self.function.__qualname__}"
         key, below, library = self._key(signature), needs_below(compiled.library), compiled.library
         _note_used(below)
         if key is None or below is None or compiled.reload_init:
+            counts.reasons[name] = "no other process would know a part of it again"
             return
+        counts.reasons[name] = kept().reason(key, name)
         compiled.fndesc.typemap = compiled.fndesc.calltypes = None
         names = [one.name for one in library._final_module.functions if not one.is_declaration]
         globals_ = library._final_module.global_variables
@@ -122,7 +125,6 @@ class _MachineCode:
         others = compiled._find_referenced_environments()
         told = compiled.fndesc, compiled.environment, compiled.signature, names, others
         code = Code(library.name, (), library._get_compiled_object())
-        name = f"kernel {self.function.__module__}:{self.function.__qualname__}"
         entry = Entry(name, below, dumps(told), code.hash)
         kept().keep(key, lambda store: (entry, [code]))
 

@@ -231,6 +231,9 @@ class PartCompiler(Compiler):
             counts.parts_found += 1
             return found
         counts.parts_made += 1
+        if key is not None:
+            name = f"{func.__module__}:{func.__qualname__}"
+            counts.reasons[f"part {name}"] = kept().reason(key, name)
         global _numbers
         outer, _numbers = _numbers, itertools.count()
         _compiling.append(key or f"{_compiling[0]} {next(_unknown)}")

@@ -178,6 +178,20 @@ class Store:
             self._disk.execute("SELECT 1 FROM code WHERE hash = ?", (hash,)).fetchone() is not None
         )
 
+    def has_name(self, name: str) -> bool:
+        """Whether there is any entry of this name. Raises sqlite3.Error."""
+        found = self._disk.execute("SELECT 1 FROM entries WHERE name = ? LIMIT 1", (name,))
+        return found.fetchone() is not None
+
+    def parts(self) -> Iterator[tuple[str, Entry]]:
+        """Keys and entries of all parts. Raises sqlite3.Error."""
+        keys = self._disk.execute(
+            "SELECT DISTINCT key FROM entries"
+            " WHERE name NOT LIKE 'kernel %' AND name NOT LIKE 'kind %'"
+        ).fetchall()
+        for (key,) in keys:
+            yield from ((key, entry) for entry in self.find(key))
+
     def keep(self, key: str, entry: Entry, codes: Sequence[Code]) -> None:
         """Add an entry and the code that it needs, or nothing. Raises sqlite3.Error."""
         today = _today()
@@ -281,6 +295,12 @@ class Store:
             found["kernels" if kernel else "kinds" if kind else "parts"] = number
         return found
 
+    def finish(self) -> None:
+        """Bring all into the one file, which then is only read. Raises sqlite3.Error."""
+        self._disk.execute("VACUUM")
+        self._disk.execute("PRAGMA journal_mode = DELETE")
+        self._disk.close()
+
     def close(self) -> None:
         """Let go of the file."""
         self._disk.close()
@@ -288,6 +308,13 @@ class Store:
 
 def _today() -> int:
     return int(time.time() // 86400)
+
+
+def clear() -> None:
+    """Delete the user's store. Raises OSError."""
+    file = store_file()
+    for one in file.parent.glob(f"{file.name}*"):
+        one.unlink(missing_ok=True)
 
 
 def store_file() -> Path:

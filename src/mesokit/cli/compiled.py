@@ -1,0 +1,103 @@
+"""Commands on compiled code: warm, cache."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from mesokit.cli.commands import CASE, SET, cli
+from mesokit.cli.together import on_ranks
+from mesokit.cli.words import say, show_table
+from mesokit.errors import CaseError, MesokitError, RunError
+
+
+@cli.command()
+@click.argument("cases", type=CASE, nargs=-1, metavar="[CASE]...")
+@SET
+@click.option("--all", "every", is_flag=True, help="All templates and examples of all methods.")
+@click.option("--why", is_flag=True, help="Say why each kernel was compiled.")
+@click.option("--quiet", is_flag=True, help="Errors only.")
+@on_ranks(lambda given: Path("warm"))
+def warm(
+    cases: Sequence[Path], settings: dict[str, str], every: bool, why: bool, quiet: bool
+) -> None:
+    """Compile what each CASE runs and keep it, so that the first run starts at once.
+
+    A few steps of each case are run, and nothing is written but compiled code. Use it once in a
+    container, or before many jobs of a cluster start; with --ranks for runs on several ranks.
+    """
+    if bool(cases) == every:
+        raise CaseError("warm: expected cases, or --all")
+    from mesokit.method import examples, templates
+    from mesokit.ranks.world import world
+    from mesokit.running.warm import warm as compile_all
+
+    known = {**templates(), **examples()} if every else {str(case): case for case in cases}
+    for name, case in known.items():
+        try:
+            made = compile_all(Path(str(case)), settings)
+        except MesokitError as error:
+            if not every:
+                raise
+            say(f"{name}: left out: {error}")
+            continue
+        if quiet or world().rank != 0:
+            continue
+        click.echo(f"{name}: {made.kernels} kernels, {made.parts} parts, {made.seconds:.1f} s")
+        for what, because in made.reasons.items() if why else ():
+            if what.startswith("kernel"):
+                click.echo(f"  {what}: {because}")
+
+
+@cli.command()
+@click.option("--clear", is_flag=True, help="Delete all compiled code of this user.")
+@click.option(
+    "--export",
+    "file",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Write all parts to a file, for a package (see docs: releasing).",
+)
+def cache(clear: bool, file: Path | None) -> None:
+    """Show where compiled code is kept and how much there is, clear or export it.
+
+    It lies in the user's cache, or in NUMBA_CACHE_DIR where that is set.
+    """
+    import sqlite3
+
+    from mesokit.case.amounts import size_text
+    from mesokit.kernels import store
+    from mesokit.kernels.kept import era, forget, kept
+    from mesokit.kernels.ship import export, shipped_file
+
+    if clear:
+        place = store.store_file()
+        before = sum(one.stat().st_size for one in place.parent.glob(f"{place.name}*"))
+        store.clear()
+        forget()
+        click.echo(f"cleared {size_text(before)} in {place.parent}")
+        return
+    if file is not None:
+        try:
+            number = export(file)
+        except (OSError, sqlite3.Error) as error:
+            raise RunError(f"--export {file}: {error}") from None
+        click.echo(f"{number} parts, {size_text(file.stat().st_size)}: {file}")
+        return
+    here, came = kept(), shipped_file()
+    own = here.own
+    if own is None:
+        rows = [("store", "none", here.trouble)]
+    else:
+        counted = own.counts()
+        rows = [
+            ("store", str(own.file), "" if own.writes else "can only be read"),
+            ("size", size_text(own.size), f"at most {size_text(store.BOUND)}"),
+            ("kernels", str(counted["kernels"]), "machine code for this processor"),
+            ("parts", str(counted["parts"]), "for all kernels to be made of"),
+            ("kinds of case", str(counted["kinds"]), "that have run here"),
+        ]
+    parts = "" if here.shipped is None else f"{here.shipped.counts()['parts']} parts"
+    rows.append(("shipped", str(came) if came.exists() else "none", parts or f"for {era()}"))
+    show_table(rows)

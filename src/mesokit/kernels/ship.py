@@ -1,0 +1,49 @@
+"""A file of parts that comes with the package, for a first run without compiling most of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from mesokit.kernels.kept import SHIPPED, era, kept
+from mesokit.kernels.made_of import still_holds
+from mesokit.kernels.store import Code, Store
+
+
+def shipped_file() -> Path:
+    """Where the package has its file of parts for these versions, if it brings one."""
+    return SHIPPED / f"{era()}.sqlite"
+
+
+def export(file: Path) -> int:
+    """Write all valid parts of the user's store to a file; how many there are.
+
+    Machine code of kernels is left out: it is for one processor. Raises OSError, sqlite3.Error.
+    """
+    own = kept().own
+    if own is None:
+        raise OSError(f"there is no store of compiled code: {kept().trouble}")
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.unlink(missing_ok=True)
+    made, number = Store(file), 0
+    for key, entry in own.parts():
+        codes = _with_called(own, entry.code)
+        if codes and all(map(still_holds, entry.needs)):
+            made.keep(key, entry, [code for code in codes if not made.has_code(code.hash)])
+            number += 1
+    made.finish()
+    return number
+
+
+def _with_called(store: Store, hash: str) -> list[Code]:
+    """Code and all that it calls; nothing if any is missing."""
+    found: dict[str, Code] = {}
+    open_ = [hash]
+    while open_:
+        one = open_.pop()
+        if one not in found:
+            code = store.code(one)
+            if code is None:
+                return []
+            found[one] = code
+            open_ += code.called
+    return list(found.values())
