@@ -67,12 +67,12 @@ def balance(fluid, steps, pull):
     return fluid.totals()[1] - before, taken[:, :d].sum(axis=0), given, taken[:, d:]
 
 
-# every rule and dimension, every kind of virtual particles: each combination compiles a step. SRD
-# with the default in two dimensions has the test of every surface
-COMBINATIONS = [
-    (AT(), 2, "extrapolate"), (SRDPlusA(), 2, "extrapolate"), (SRD(), 3, "extrapolate"),
-    (ATPlusA(), 3, "extrapolate"), (ATPlusA(), 2, "top-up"), (SRD(), 2, "fill"), (SRD(), 2, "none"),
-]  # fmt: skip
+# every rule with the default, every kind of virtual particles with one rule: each compiles a step;
+# SRD with the default in two dimensions has the test of every surface
+COMBINATIONS = [(rule, 2, "extrapolate") for rule in RULES[1:]]
+COMBINATIONS += [(rule, 3, "extrapolate") for rule in (SRD(), ATPlusA())]
+COMBINATIONS += [(SRD(), 2, virtual) for virtual in ("fill", "top-up", "none")]
+COMBINATIONS += [(ATPlusA(), 2, "top-up")]
 
 
 @pytest.mark.parametrize(("rule", "dimension", "virtual"), COMBINATIONS, ids=str)
