@@ -9,11 +9,13 @@ BIN := .venv/bin
 endif
 READY := .venv/ready
 
-.PHONY: help demo test test-long test-all quick lint check site tutorials sketches bench validate clean
+.PHONY: help demo test test-long test-all durations quick lint check site tutorials sketches bench \
+  validate clean
 help:
 	@echo "make demo      run a channel flow and draw it with the theory"
 	@echo "make test      run the tests but the long ones: some minutes"
 	@echo "make test-long run the long ones; make test-all runs all"
+	@echo "make durations print the slowest tests of the last time, and what each folder takes"
 	@echo "make quick     run the tests that simulate nothing: cases, theory, statistics, documents"
 	@echo "make lint      lint and types"
 	@echo "make check     the same, import rules, and that the physics compiles for a GPU"
@@ -38,12 +40,16 @@ demo: $(READY)
 	@echo "look at demo/velocity-profile.png"
 
 TEST := $(BIN)/python -m pytest -n 2 --dist worksteal
+# What each test takes: tables that CI prints and keeps
+DURATIONS := -p tests.durations --durations-file build/durations
 test: $(READY)
-	@$(TEST) -m "not long"
+	@$(TEST) $(DURATIONS)/test.csv -m "not long"
 test-long: $(READY)
-	@$(TEST) -m long
+	@$(TEST) $(DURATIONS)/test-long.csv -m long
 test-all: $(READY)
-	@$(TEST)
+	@$(TEST) $(DURATIONS)/test-all.csv
+durations:  # no $(READY): CI prints them also when something failed
+	@$(BIN)/python tests/durations.py build/durations/*.csv
 
 QUICK := tests/architecture tests/case tests/theory tests/statistics tests/docs/test_documents.py
 quick: $(READY)

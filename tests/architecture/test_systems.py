@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
-from pathlib import Path
+from collections.abc import Iterable, Iterator
 
-SOURCE = Path(__file__).parents[2] / "src" / "mesokit"
-FILES = sorted(SOURCE.rglob("*.py"))
 # The files that may use some of it: what they use
 HOMES = {
     "running/cores.py": {"os.sched_getaffinity"},
     "case/warnings.py": {"os.sysconf"},
+    "kernels/made_of.py": {"ExternalFunction"},
+    "kernels/store.py": {"/proc", "os.getuid"},
     "scalar/system.py": {"time.CLOCK_MONOTONIC", "ctypes", "ExternalFunction"},
     "execute/ranks/messages/mpi.py": {"ctypes", "ExternalFunction"},
     "io/run_directory.py": {"/proc"},
@@ -32,9 +31,9 @@ OF_TIME = {"clock_gettime", "clock_gettime_ns", "tzset", "CLOCK_MONOTONIC", "CLO
 NAMES = {"os": OF_OS, "signal": OF_SIGNAL, "time": OF_TIME}
 
 
-def special(text: str) -> Iterator[str]:
+def special(nodes: Iterable[ast.AST]) -> Iterator[str]:
     """What a source uses that not every system has."""
-    for node in ast.walk(ast.parse(text)):
+    for node in nodes:
         if isinstance(node, ast.Import):
             yield from {alias.name for alias in node.names} & MODULES
         elif isinstance(node, ast.ImportFrom):
@@ -50,17 +49,14 @@ def special(text: str) -> Iterator[str]:
             yield from (start for start in ("/proc", "/dev/") if node.value.startswith(start))
 
 
-TEXTS = {path.relative_to(SOURCE).as_posix(): path.read_text("utf-8") for path in FILES}
-
-
-def test_only_what_every_system_has() -> None:
-    found = {name: set(special(text)) for name, text in TEXTS.items()}
+def test_only_what_every_system_has(nodes: dict[str, list[ast.AST]]) -> None:
+    found = {name: set(special(of_file)) for name, of_file in nodes.items()}
     assert {name: used for name, used in found.items() if used} == HOMES
 
 
-def texts_without_encoding(text: str) -> Iterator[int]:
+def texts_without_encoding(nodes: Iterable[ast.AST]) -> Iterator[int]:
     """Lines that open a text in whatever the system thinks texts are written in."""
-    for node in ast.walk(ast.parse(text)):
+    for node in nodes:
         if isinstance(node, ast.Call):
             name = getattr(node.func, "attr", getattr(node.func, "id", ""))
             given = {word.arg for word in node.keywords}
@@ -74,17 +70,19 @@ def texts_without_encoding(text: str) -> Iterator[int]:
                 yield node.lineno
 
 
-def test_texts_have_an_encoding() -> None:
-    found = {name: list(texts_without_encoding(text)) for name, text in TEXTS.items()}
+def test_texts_have_an_encoding(nodes: dict[str, list[ast.AST]]) -> None:
+    found = {name: list(texts_without_encoding(of_file)) for name, of_file in nodes.items()}
     assert not {name: lines for name, lines in found.items() if lines}
 
 
 def test_the_rules_see_what_they_should() -> None:
-    used = "import os, fcntl\nfrom signal import SIGHUP\nos.fork()\nopen('/proc/cpuinfo')"
+    used = parsed("import os, fcntl\nfrom signal import SIGHUP\nos.fork()\nopen('/proc/cpuinfo')")
     assert set(special(used)) == {"fcntl", "signal.SIGHUP", "os.fork", "/proc"}
-    assert list(texts_without_encoding("path.read_text()\npath.open('w')\nopen(p, 'x')")) == [
-        1,
-        2,
-        3,
-    ]
-    assert not list(texts_without_encoding("p.read_text('utf-8')\np.open('wb')\nmesokit.open(p)"))
+    bad = parsed("path.read_text()\npath.open('w')\nopen(p, 'x')")
+    assert list(texts_without_encoding(bad)) == [1, 2, 3]
+    good = parsed("p.read_text('utf-8')\np.open('wb')\nmesokit.open(p)")
+    assert not list(texts_without_encoding(good))
+
+
+def parsed(text: str) -> list[ast.AST]:
+    return list(ast.walk(ast.parse(text)))

@@ -1,14 +1,12 @@
 """Wrong cases of flocks: one line, which names key and value and says what was expected."""
 
-import contextlib
-import io
 from pathlib import Path
 
 import numpy as np
 import pytest
+from refusal import changed, has_words, refused
 
 from mesokit import Box, Case, CaseError, Run, Simulation
-from mesokit.cli import main
 from mesokit.method.flock import Flock
 
 GOOD = """
@@ -186,20 +184,13 @@ WRONG = {
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_wrong_cases_get_one_line(name: str, tmp_path: Path) -> None:
+def test_wrong_cases_get_one_line(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     changes, words = WRONG[name]
-    text = GOOD
-    for old, new in changes.items():
-        assert old in text
-        text = text.replace(old, new) if old else f"{text}\n{new}\n"
     file = tmp_path / "case.toml"
-    file.write_text(text)
-    out = io.StringIO()
-    with pytest.raises(SystemExit) as end, contextlib.redirect_stderr(out):
-        main(["check", str(file)])
-    (line,) = out.getvalue().strip().splitlines()
-    assert end.value.code
-    assert not [word for word in words if word not in line], line
+    file.write_text(changed(GOOD, changes))
+    has_words(refused(capsys, "check", file), words)
 
 
 def test_more_than_the_memory_is_refused_where_a_run_begins():
@@ -254,15 +245,12 @@ STARTS = {
 
 
 @pytest.mark.parametrize("name", STARTS)
-def test_wrong_starts_get_one_line(name: str, tmp_path: Path) -> None:
+def test_wrong_starts_get_one_line(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     given, *words = STARTS[name]
     np.save(tmp_path / "v.npy", np.ones((288, 2)))
     start = ", ".join(f'{key} = "{value}"' for key, value in given.items())
     file = tmp_path / "case.toml"
     file.write_text(GOOD + f"start = {{ {start} }}\n")
-    out = io.StringIO()
-    with pytest.raises(SystemExit) as end, contextlib.redirect_stderr(out):
-        main(["check", str(file)])
-    (line,) = out.getvalue().strip().splitlines()
-    assert end.value.code
-    assert not [word for word in words if word not in line], line
+    has_words(refused(capsys, "check", file), words)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from refusal import changed, has_words
 
 from mesokit import Case
 from mesokit.errors import CaseError
@@ -124,20 +125,14 @@ def test_a_wrong_observable_is_refused(
     expected: tuple[str, ...],
     tmp_path: Path,
 ) -> None:
-    text = good
-    for old, new in changes.items():
-        assert old in text
-        text = text.replace(old, new)
+    text = changed(good, changes)
     file = tmp_path / "bad.toml"
     file.write_text(text + walls)
     Case.from_toml(file)
     file.write_text(f'{text}{walls}[[observe]]\nquantity = "{quantity}"\n{keys}\n')
     with pytest.raises(CaseError) as refused:
         Case.from_toml(file)
-    message = str(refused.value)
-    assert "\n" not in message
-    for words in expected:
-        assert words in message, message
+    has_words(str(refused.value), expected)
 
 
 @pytest.mark.parametrize("good", [HARD, SOFT, BIRDS])

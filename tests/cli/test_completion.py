@@ -10,7 +10,7 @@ from click.shell_completion import ShellComplete
 from mesokit import Case
 from mesokit.cli import main
 from mesokit.cli.commands import cli
-from mesokit.cli.new import EXAMPLES, KNOWN
+from mesokit.cli.reference import EXAMPLES, KNOWN
 
 ROOT = Path(__file__).parents[2]
 CASE = """

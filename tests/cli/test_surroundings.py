@@ -15,6 +15,7 @@ SOURCE = str(Path(__file__).parents[2] / "src")
 SMALL = """
 run = { steps = 20 }
 box = { size = [8, 8] }
+fluid = { force = { rule = "uniform", acceleration = [0, 0] } }
 [[observe]]
 quantity = "conservation"
 every = 2
@@ -55,7 +56,7 @@ def test_a_terminal_with_few_letters(folder: Path, command: str) -> None:
 def test_nobody_listens(folder: Path, streams: str) -> None:
     """The run goes on, and the folder knows why one failed."""
     assert process(folder, f"mesokit run case.toml {streams}").returncode == 0
-    hot = "--set fluid.force='{rule=\"uniform\",acceleration=[1e5,0]}' --set run.steps=500"
+    hot = "--set fluid.force.acceleration=[1e5,0] --set run.steps=500"
     ended = process(folder, f"mesokit run case.toml --output hot {hot} {streams}")
     assert ended.returncode == 1
     assert "heats up" in json.loads((folder / "hot" / "provenance.json").read_text())["failed"]

@@ -1,4 +1,4 @@
-"""The same case gives the same bits: for any threads, and however the steps are divided."""
+"""The same case gives the same bits: for any threads, any division of the steps, and any stops."""
 
 import os
 import subprocess
@@ -6,74 +6,99 @@ import sys
 
 import numpy as np
 import pytest
-from laboratory import assert_same, fingerprint, make_case, make_fluid
+from kinds import (
+    AMONG_MOLECULES,
+    DISSOLVED,
+    EMBEDDED,
+    MOLECULES,
+    PARTICLES,
+    SEVERAL_KINDS,
+    everything,
+)
+from laboratory import assert_same, make_case, make_fluid
 
-from mesokit import SRD, MaxwellBoltzmann, Plates, Surface, Uniform
+from mesokit import Harmonic, MaxwellBoltzmann, Molecule, StartUp
 from mesokit.execute.cpu.engine import CPU
-from mesokit.method.mpcd.species import Species
 
-CASES = {
-    "slit with an odd number of particles": {
-        "size": (13, 7), "density": 9.527, "collision": SRD(angle=90),
-        "thermostat": MaxwellBoltzmann(), "force": Uniform(acceleration=(0.05, -0.02)),
-        "walls": [Plates(axis="y", upper=Surface(velocity=(0.3, 0.0)))], "measures": ("walls",),
+STEPS = 110  # more than one re-sorting
+FEWER = 40  # of many sub-steps
+OF_SOLUTES = {
+    "solutes of several kinds": {"size": (12, 12), "density": 4, "solutes": SEVERAL_KINDS},
+    "solutes that act by a potential": {"size": (20, 20), "density": 5, "solutes": EMBEDDED},
+}
+IN_TIME = {
+    "a simple fluid whose shear oscillates": {
+        "size": (8, 8, 8), "thermostat": MaxwellBoltzmann(), "shear_rate": 0.2,
+        "shear_frequency": 0.5,
     },
-    "sheared box": {
-        "size": (5, 11, 6), "density": 7.01, "thermostat": MaxwellBoltzmann(), "shear_rate": 0.2,
-    },
-    "mixture": {
-        "size": (11, 6), "species": (Species(mass=1, density=4), Species(mass=5, density=3)),
+    "dimers in a shear that starts": {
+        "size": (8, 8), "shear": StartUp(rate=0.3, start=5.0, period=24.0),
+        "thermostat": MaxwellBoltzmann(), "molecule": Molecule(bond=Harmonic(K=4.0)),
     },
 }  # fmt: skip
-STEPS = 130  # more than one re-sorting
+LONG = OF_SOLUTES | IN_TIME | {f"among molecules: {k}": v for k, v in AMONG_MOLECULES.items()}
+CASES = [
+    *(pytest.param(case, STEPS, id=name) for name, case in (PARTICLES | MOLECULES).items()),
+    *(pytest.param(case, FEWER, id=name) for name, case in DISSOLVED.items()),
+    *(pytest.param(case, STEPS, id=k, marks=pytest.mark.long) for k, case in LONG.items()),
+]
 
 
-@pytest.fixture(scope="module", params=CASES.values(), ids=CASES.keys())
-def case(request):
-    return request.param
+def unmeasured(case):
+    """What the case itself has."""
+    return {key: value for key, value in case.items() if key != "measures"}
 
 
 @pytest.fixture(scope="module")
-def reference(case):
-    fluid = make_fluid(**case, threads=1)
-    assert fluid.n % 2 == 1 or "species" in case
-    fluid.advance(STEPS)
-    return fingerprint(fluid)
+def references():
+    """The end of each case on one thread, in one go."""
+    return {}
 
 
-@pytest.mark.parametrize("threads", [1, 2, 3, 5])
-def test_for_any_number_of_threads(case, reference, threads):
+@pytest.fixture
+def reference(case, steps, references):
+    if id(case) not in references:
+        fluid = make_fluid(**case)
+        fluid.advance(steps)
+        references[id(case)] = everything(fluid)
+    return references[id(case)]
+
+
+def go(fluid, steps, cut):
+    """Advance to that step, so many steps at a time; looks in between change nothing."""
+    while fluid.step < steps:
+        fluid.advance(min(cut, steps - fluid.step))
+        everything(fluid)
+
+
+@pytest.mark.parametrize(("threads", "cut"), [(2, 1), (3, 7), (7, 100)])
+@pytest.mark.parametrize(("case", "steps"), CASES)
+def test_for_any_threads_and_division_of_the_steps(case, steps, reference, threads, cut):
     fluid = make_fluid(**case, threads=threads)
-    fluid.advance(STEPS)
-    assert_same(fingerprint(fluid), reference)
+    go(fluid, steps, cut)
+    assert_same(everything(fluid), reference)
 
 
-@pytest.mark.parametrize("cut", [1, 7, 49, 100, 101])
-def test_however_the_steps_are_divided(case, reference, cut):
-    fluid = make_fluid(**case)
-    while fluid.step < STEPS:
-        fluid.advance(min(cut, STEPS - fluid.step))
-        fluid.totals()  # looking changes nothing
-    assert_same(fingerprint(fluid), reference)
-
-
-@pytest.mark.parametrize("step", [0, 33, 100, 129])
-def test_from_a_state(case, reference, step):
-    fluid = make_fluid(**case)
-    fluid.advance(step)
-    parts = {key: value for key, value in case.items() if key not in ("size", "measures")}
-    other = CPU(make_case(case["size"], **parts), 3, case.get("measures", ()))
+@pytest.mark.parametrize("stop", [0, 33, 100])
+@pytest.mark.parametrize(("case", "steps"), CASES)
+def test_from_a_state(case, steps, reference, stop):
+    fluid = make_fluid(**case, threads=2)
+    fluid.advance(min(stop, steps - 1))
+    other = CPU(make_case(**unmeasured(case)), 3, case.get("measures", ()))
     other.restore(fluid.state())
-    other.advance(STEPS - step)
-    assert_same(fingerprint(other), reference)
+    other.advance(steps - other.step)
+    assert_same(everything(other), reference)
 
 
-def test_another_seed_gives_another_run(case, reference):
-    fluid = make_fluid(**case, seed=2)
-    fluid.advance(STEPS)
-    assert not np.array_equal(fluid.positions(), reference[0])
+@pytest.mark.parametrize("case", PARTICLES.values(), ids=PARTICLES)
+def test_another_seed_gives_another_run(case):
+    one, other = (make_fluid(**case, seed=seed) for seed in (1, 2))
+    for fluid in (one, other):
+        fluid.advance(STEPS)
+    assert not np.array_equal(one.positions(), other.positions())
 
 
+@pytest.mark.parametrize("case", PARTICLES.values(), ids=PARTICLES)
 def test_nothing_is_ever_outside(case):
     closed = [axis == "y" and "walls" in case for axis in "xyz"]
     fluid = make_fluid(**case)
@@ -83,6 +108,14 @@ def test_nothing_is_ever_outside(case):
         assert (r >= 0).all() and (r <= fluid.box).all()
         for k, shut in enumerate(closed[: fluid.dimension]):
             assert not shut or (fluid.images()[:, k] == 0).all()
+
+
+def test_numbers_fill_no_whole_strips():
+    """An odd number of particles, and of molecules, in some of the cases."""
+    odd = {name for name, case in PARTICLES.items() if make_case(**unmeasured(case)).particles % 2}
+    assert odd >= {"slit with an odd number of particles", "sheared box"}
+    for case in MOLECULES.values():
+        assert make_fluid(**case).numbers.filling.molecules % 256
 
 
 def test_the_start_does_not_depend_on_the_threads_of_blas():

@@ -1,67 +1,10 @@
-"""Solutes have the same bits for any threads and any stops, and leave the fluid's loops alone."""
+"""Beads of solutes leave the fluid's loops alone."""
 
 import numpy as np
-import pytest
-from laboratory import assert_same, fingerprint, make_case, make_fluid
+from laboratory import make_fluid
 
-from mesokit import FENE, WCA, ATPlusA, Bending, MaxwellBoltzmann
-from mesokit.execute.cpu.engine import CPU
+from mesokit import ATPlusA
 from mesokit.method.mpcd.solutes import Polymer, Solutes
-
-CASES = {
-    "sheared": {
-        "size": (12, 12, 12), "density": 2, "shear_rate": 0.2, "thermostat": MaxwellBoltzmann(),
-        "solutes": Solutes((Polymer(600), Polymer(20, length=9)), mass=3.0, bond=FENE(),
-                           bending=Bending(kappa=2.0), pair=WCA(), substeps=30),
-    },
-    "by a rule that draws": {
-        "size": (30, 30), "density": 2, "collision": ATPlusA(),
-        "solutes": Solutes((Polymer(800),), mass=4.0),
-    },
-}  # fmt: skip
-STEPS = 40
-
-
-def everything(fluid):
-    return [*fingerprint(fluid), fluid.solutes.places, fluid.solutes.velocities]
-
-
-@pytest.fixture(scope="module", params=CASES.values(), ids=CASES.keys())
-def case(request):
-    return request.param
-
-
-@pytest.fixture(scope="module")
-def reference(case):
-    fluid = make_fluid(**case, threads=1)
-    fluid.advance(STEPS)
-    return everything(fluid)
-
-
-@pytest.mark.parametrize("threads", [2, 3])
-def test_for_any_number_of_threads(case, reference, threads):
-    fluid = make_fluid(**case, threads=threads)
-    fluid.advance(STEPS)
-    assert_same(everything(fluid), reference)
-
-
-@pytest.mark.parametrize("cut", [1, 7])
-def test_however_the_steps_are_divided(case, reference, cut):
-    fluid = make_fluid(**case)
-    while fluid.step < STEPS:
-        fluid.advance(min(cut, STEPS - fluid.step))
-        fluid.potential_energy()  # looking changes nothing
-    assert_same(everything(fluid), reference)
-
-
-@pytest.mark.parametrize("step", [0, 13])
-def test_from_a_state(case, reference, step):
-    fluid = make_fluid(**case)
-    fluid.advance(step)
-    other = CPU(make_case(**case), 3)
-    other.restore(fluid.state())
-    other.advance(STEPS - step)
-    assert_same(everything(other), reference)
 
 
 def test_beads_far_from_the_fluid_change_nothing():

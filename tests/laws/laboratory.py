@@ -56,8 +56,8 @@ def file_of_a_wave(dimension: int) -> str:
 
 
 def make_case(
-    size=(8, 8), observe=(), walls=(), trajectory=None, shear_rate=0.0, shear_frequency=0.0, seed=1,
-    solutes=None, **fluid,
+    size=(8, 8), observe=(), walls=(), trajectory=None, seed=1, solutes=None, shear=None,
+    shear_rate=0.0, shear_frequency=0.0, **fluid,
 ) -> Case:  # fmt: skip
     """A case with one step to run; of rules for two species with two that are alike."""
     kinds = fluid["collision"].kinds if "collision" in fluid else None
@@ -66,7 +66,7 @@ def make_case(
         fluid["species"] = (Species(mass=1, density=each),) * kinds
     return Case(
         run=Run(steps=1, seed=seed),
-        box=Box(size, shear_rate=shear_rate, shear_frequency=shear_frequency),
+        box=Box(size, shear_rate=shear_rate, shear_frequency=shear_frequency, shear=shear),
         fluid=Fluid(**fluid),
         solutes=solutes,
         walls=walls,

@@ -4,7 +4,8 @@ import dataclasses
 
 import numpy as np
 import pytest
-from laboratory import fingerprint, make_fluid, mean
+from kinds import EMBEDDED as SEVERAL
+from laboratory import make_fluid, mean
 
 from mesokit import WCA
 from mesokit.errors import RunError
@@ -14,9 +15,6 @@ from mesokit.potential.thermal import energies, excluded_volume
 pytestmark = pytest.mark.long
 
 SIZE, DENSITY = (20, 20), 5.0
-SEVERAL = Solutes(
-    (Polymer(8),), mass=20.0, coupling="potential", solvent_pair=WCA(sigma=1.5), substeps=8
-)
 HEAVY = Solutes((Polymer(1),), mass=1e6, coupling="potential", solvent_pair=WCA(sigma=3.0))
 
 
@@ -61,20 +59,6 @@ def test_who_is_moved_in_substeps_does_not_matter():
     apart = found[0] - found[1]
     apart -= np.rint(apart / SIZE) * SIZE  # those at an edge may be on either side
     assert abs(apart).max() < 1e-9
-
-
-def test_same_bits_on_any_number_of_threads_and_after_a_restart():
-    found = []
-    for threads in (1, 2, 3):
-        fluid = with_beads(SEVERAL, threads=threads)
-        fluid.advance(30)
-        if threads == 2:
-            state, fluid = fluid.state(), with_beads(SEVERAL)
-            fluid.restore(state)
-        fluid.advance(30)
-        found.append([*fingerprint(fluid), fluid.solutes.places, total_energy(fluid)])
-    for other in found[1:]:
-        assert all(np.array_equal(a, b) for a, b in zip(found[0], other, strict=True))
 
 
 def test_beads_have_the_temperature_of_the_fluid():

@@ -4,25 +4,12 @@ import dataclasses
 
 import numpy as np
 import pytest
+from kinds import SEVERAL_KINDS as MIXTURE
 from laboratory import make_fluid, mean
-
-from mesokit import WCA, Bending, Harmonic, Polymer, Solutes, Spring
-from mesokit.method.mpcd.solute.polymer import Between
 
 pytestmark = pytest.mark.long
 
 SIZE = (12, 12)
-MIXTURE = Solutes(
-    (
-        Polymer(4, length=5, name="chain", mass=2.0, bond=Harmonic(K=2.0),
-                bending=Bending(kappa=3.0)),
-        Polymer(3, length=4, topology="ring", mass=5.0, pair=WCA(sigma=0.5),
-                bond=Spring(k=30.0, length=0.7)),
-        Polymer(8, name="ball", mass=20.0, pair=WCA(sigma=1.3, epsilon=2.0)),
-    ),
-    between=[Between(["chain", "ball"], WCA(sigma=0.8))],
-    substeps=20,
-)  # fmt: skip
 
 
 def mixture(refine=1, **parts):
@@ -102,14 +89,3 @@ def test_every_kind_has_the_temperature(settled):
     for values in np.transpose(found):
         blocks = mean(values.reshape(30, -1).mean(axis=1))
         assert blocks.agrees(1.0) and blocks.error < 0.04
-
-
-def test_any_threads_and_a_restart_give_the_same_bits(settled):
-    state = settled.state()
-    places = []
-    for threads in (1, 2):
-        other = mixture(threads=threads)
-        other.restore(state)
-        other.advance(15)
-        places.append(other.solutes.places.copy())
-    np.testing.assert_array_equal(*places)

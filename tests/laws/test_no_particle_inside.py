@@ -16,11 +16,26 @@ STEPS = {2: 200, 3: 75}
 LOOK = 25  # steps between looks
 
 
-@pytest.fixture(scope="module", params=EVERY, ids=lambda case: "-".join(map(str, case)))
-def walled(request, tmp_path_factory):
-    """Dimension and walls of every shape, on both sides."""
-    name, d, side = request.param
-    return d, walls_of(example(name, d, side, tmp_path_factory.getbasetemp()), d)
+def runs():
+    """Every shape, side and dimension with two rules or three, such that its two sides have all.
+
+    Both timesteps come with each of them and with every rule.
+    """
+    for k, (name, d, side) in enumerate(EVERY):
+        alone = (name, d, "inside") not in EVERY
+        for j in range(3 if alone else 2):
+            yield (name, d, side), RULES[(k + j) % 3], (0.1, 1.0)[(k + j) % 2]
+
+
+def name_of(value):
+    """A shape by its name, dimension and side."""
+    return "-".join(map(str, value)) if isinstance(value, tuple) else str(value)
+
+
+def walls_in(case, folder):
+    """Walls of the example of a shape."""
+    name, d, side = case
+    return walls_of(example(name, d, side, folder), d)
 
 
 def fluid_between(walls, d, rule, timestep, threads=1, seed=1):
@@ -33,11 +48,10 @@ def fluid_between(walls, d, rule, timestep, threads=1, seed=1):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("timestep", [0.1, 1.0])
-@pytest.mark.parametrize("rule", RULES)
-def test_nobody_is_inside(walled, rule, timestep):
-    d, walls = walled
-    fluid = fluid_between(walls, d, rule, timestep)
+@pytest.mark.parametrize(("case", "rule", "timestep"), list(runs()), ids=name_of)
+def test_no_particle_is_inside(case, rule, timestep, tmp_path):
+    d = case[1]
+    fluid = fluid_between(walls_in(case, tmp_path), d, rule, timestep)
     while fluid.step < STEPS[d]:
         assert fluid.numbers.solids.distance(fluid.positions()).min() >= 0
         fluid.advance(LOOK)
@@ -52,9 +66,11 @@ def fingerprint(fluid):
     return fluid.positions(), fluid.velocities(), fluid.images(), momentum, fluid.memory.wall_rates
 
 
-@pytest.mark.parametrize("rule", RULES)
-def test_the_same_bits_for_any_threads_and_division_of_the_steps(walled, rule):
-    d, walls = walled
+@pytest.mark.parametrize(
+    ("case", "rule"), [(case, RULES[k % 3]) for k, case in enumerate(EVERY)], ids=name_of
+)
+def test_the_same_bits_for_any_threads_and_division_of_the_steps(case, rule, tmp_path):
+    d, walls = case[1], walls_in(case, tmp_path)
     steps = STEPS[d] // 5
     reference = fluid_between(walls, d, rule, 0.3)
     reference.advance(steps)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from compared import comparisons
 from hard_spheres import gas, same
 from soft_spheres import soft
 
@@ -220,7 +221,7 @@ class TestVelocities:
         run = gas([30, 30], 300, (), [VelocityDistribution()], packing_fraction=0.3, timestep=1.0)
         (result,) = observed(run, 3000)
         assert result.theory == "Maxwell"
-        for found in result.comparisons:
+        for found in comparisons(result):
             assert abs(found.deviation) < 3.5 and found.error < 0.03 * found.expected
 
     def test_soft_spheres_of_two_masses_have_them_too(self):
@@ -229,7 +230,7 @@ class TestVelocities:
         law = SpringDashpot(restitution=1.0, contact_time=0.05)
         run = soft_run([20, 20], 10_000, 2000, observe, kinds=kinds, pair=law, number=200)
         for result in observed(run):
-            for found in result.comparisons:
+            for found in comparisons(result):
                 assert abs(found.deviation) < 3.5 and found.error < 0.08 * found.expected
 
     def test_kicked_spheres_have_the_tails_of_the_sonine_polynomial(self):
@@ -297,7 +298,7 @@ class TestFreeTimes:
         run = gas([12, 12], 20, (), [FreeTimes(), RadialDistribution(every=5)],
                   packing_fraction=0.75)  # fmt: skip
         times, around = observed(run)
-        (contact,) = [c for c in around.comparisons if c.what == "g at contact"]
+        (contact,) = comparisons(around, "g at contact")
         for found in (times.comparisons[0], contact):
             assert "far from freezing" in found.note and not np.isfinite(found.deviation)
 

@@ -1,4 +1,4 @@
-"""Dimers in a shear that starts, ceases and grows: stress in time beside Rouse's; the same bits."""
+"""Dimers in a shear that starts, ceases and grows: stress in time beside Rouse's."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ CESSATION = Cessation(rate=0.3, stop=TIME / 2, period=TIME)
 RAMP = ShearRamp(rate=0.4, start=TIME / 4, duration=TIME / 2, period=TIME)
 
 
-def dimers(periods, threads=1, shear=START_UP):
+def dimers(periods, shear=START_UP):
     return Simulation(
         Case(
             run=Run(steps=periods * PERIOD, warmup=PERIOD, seed=4),
@@ -43,7 +43,6 @@ def dimers(periods, threads=1, shear=START_UP):
             ),
             observe=[StressInTime(window=10)],
         ),
-        threads=threads,
     )  # fmt: skip
 
 
@@ -105,12 +104,3 @@ def test_stress_lags_behind_a_shear_that_grows():
     spread = 4.5 * np.sqrt(np.mean(error[grows] ** 2) / (np.var(time[grows]) * (quarter - 3)))
     assert abs(slope - expected[0]) < spread + CHAOS * expected[0], (slope, expected)
     assert -at / slope > quarter - 1  # begins after the shear has
-
-
-def test_same_bits():
-    one, two = dimers(1), dimers(1, threads=2)
-    one.engine.advance(150)
-    for _ in range(30):
-        two.engine.advance(5)
-    np.testing.assert_array_equal(one.engine.positions(), two.engine.positions())
-    np.testing.assert_array_equal(one.engine.velocities(), two.engine.velocities())

@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from laboratory import assert_same, fingerprint, make_case, make_fluid
+from laboratory import make_case, make_fluid
 from numba import njit
 from scipy import special
 
@@ -123,17 +123,6 @@ def test_density_is_that_of_boltzmann(trap):
     assert error < 0.02
     assert abs(each.real.mean() - expected) < 3.5 * error, (each, expected)
     assert abs(each.imag.mean()) < 3.5 * error
-
-
-def test_the_same_bits_for_any_threads_and_after_a_resume(trap):
-    _, size, force = trap
-    one, two = (make_fluid(size, collision=AT(), force=force, density=5, threads=n) for n in (1, 2))
-    one.advance(40)
-    two.advance(17)
-    later = make_fluid(size, collision=AT(), force=force, density=5, seed=1)
-    later.restore(two.state())
-    later.advance(23)
-    assert_same(fingerprint(one), fingerprint(later))
 
 
 def test_a_run_keeps_its_force(trap, tmp_path):

@@ -32,7 +32,6 @@ SURFACES = [
 ]
 STILL = Surface()
 REST = {d: Uniform([0.0] * d) for d in (2, 3)}  # no force, in the kernels of a force
-VIRTUAL = ["extrapolate", "fill", "top-up", "none"]
 
 
 def obstacles(dimension, surface=STILL, virtual="extrapolate"):
@@ -68,10 +67,12 @@ def balance(fluid, steps, pull):
     return fluid.totals()[1] - before, taken[:, :d].sum(axis=0), given, taken[:, d:]
 
 
-# every rule with the default, every kind of virtual particles with one rule: each compiles a step
-COMBINATIONS = [(rule, 2, "extrapolate") for rule in RULES]
+# every rule with the default, every kind of virtual particles with one rule: each compiles a step;
+# SRD with the default in two dimensions has the test of every surface
+COMBINATIONS = [(rule, 2, "extrapolate") for rule in RULES[1:]]
 COMBINATIONS += [(rule, 3, "extrapolate") for rule in (SRD(), ATPlusA())]
-COMBINATIONS += [(SRD(), 2, virtual) for virtual in VIRTUAL[1:]] + [(ATPlusA(), 2, "top-up")]
+COMBINATIONS += [(SRD(), 2, virtual) for virtual in ("fill", "top-up", "none")]
+COMBINATIONS += [(ATPlusA(), 2, "top-up")]
 
 
 @pytest.mark.parametrize(("rule", "dimension", "virtual"), COMBINATIONS, ids=str)

@@ -4,39 +4,19 @@ import dataclasses
 
 import numpy as np
 import pytest
-from laboratory import assert_same, fingerprint, make_case, make_fluid, mean
+from kinds import AMONG_MOLECULES, DIMERS
+from kinds import OF_MANY_MASSES as DISSOLVED
+from laboratory import make_case, make_fluid, mean
 
-from mesokit import Harmonic, MaxwellBoltzmann, Plates, Surface
 from mesokit.execute.cpu.engine import CPU
-from mesokit.method.mpcd.molecule import Molecule
-from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.method.mpcd.start.fluid import start
 
 pytestmark = pytest.mark.long
 
-DIMERS = Molecule(bond=Harmonic(K=1.0), substeps=4)
-# of other masses than the fluid, and their own
-DISSOLVED = Solutes(
-    (Polymer(60, length=4), Polymer(8, length=3, topology="ring"), Polymer(12, mass=12.0)),
-    mass=3.0, bond=Harmonic(K=1.0), substeps=8,
-)  # fmt: skip
 CHAINS, RINGS, BALLS = slice(0, 240), slice(240, 264), slice(264, 276)
-BULK = {"size": (8, 8, 8), "density": 10, "molecule": DIMERS, "solutes": DISSOLVED}
-FEW = Solutes((Polymer(20, length=4),), mass=3.0, bond=Harmonic(K=1.0), substeps=8)
-EXACT = {
-    "size": (7, 6, 8), "density": 10, "thermostat": MaxwellBoltzmann(), "solutes": FEW,
-    "molecule": Molecule(bond=Harmonic(K=1.0), propagation="exact"),
-}  # fmt: skip
-SLIT = {
-    "size": (13, 7), "density": 1764 / 91, "thermostat": MaxwellBoltzmann(),
-    "molecule": Molecule(length=3, bond=Harmonic(K=1.0), substeps=3), "measures": ("walls",),
-    "walls": [Plates(axis="y", upper=Surface(velocity=(0.3, 0.0)))], "solutes": FEW,
-}  # fmt: skip
-SHEARED = {
-    "size": (12, 20), "density": 9, "shear_rate": 0.1, "thermostat": MaxwellBoltzmann(),
-    "molecule": Molecule(length=3, bond=Harmonic(K=1.0), substeps=3), "solutes": FEW,
-}  # fmt: skip
-CASES = {"bulk": BULK, "exact dimers": EXACT, "slit": SLIT, "sheared": SHEARED}
+BULK, EXACT, SLIT, SHEARED = (
+    AMONG_MOLECULES[k] for k in ("bulk", "exact dimers", "slit", "sheared")
+)
 
 
 @pytest.fixture(scope="module")
@@ -169,27 +149,6 @@ def test_no_bond_notices_the_sliding_boundary():
     trimers, chains = mean(trimers), mean(np.reshape(chains, (10, 10)).mean(axis=1))
     assert trimers.agrees(0.5, systematic=0.02), trimers
     assert chains.agrees(0.5, systematic=0.02) and chains.error < 0.05, chains
-
-
-def everything(fluid):
-    return [*fingerprint(fluid), fluid.solutes.places, fluid.solutes.velocities]
-
-
-@pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
-def test_same_bits_for_any_threads_and_stops(case):
-    case = {key: value for key, value in case.items() if key != "measures"}
-    one, two = make_fluid(**case), make_fluid(**case, threads=2)
-    one.advance(110)  # more than one re-sorting
-    two.advance(33)
-    two.potential_energy()  # looking changes nothing
-    two.advance(110 - 33)
-    assert_same(everything(two), everything(one))
-    half = make_fluid(**case, threads=2)
-    half.advance(33)
-    other = CPU(make_case(**case), 1)
-    other.restore(half.state())
-    other.advance(110 - 33)
-    assert_same(everything(other), everything(one))
 
 
 def test_given_places_of_both():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from compared import comparisons
 
 from mesokit import (
     FENE,
@@ -51,7 +52,7 @@ def dimers(observe, steps, length=2, bond=SPRING, size=(8, 8, 8), substeps=None,
 
 def of(result, what):
     """One comparison."""
-    return next(c for c in result.comparisons if what in c.what)
+    return comparisons(result, what)[0]
 
 
 @pytest.mark.parametrize("length", [2, 5])
@@ -60,7 +61,7 @@ def test_at_rest(length):
     observe = [NormalModes(every=5, max_lag=1500), MoleculeSize(every=20)]
     simulation = dimers(observe, 8000, length)
     modes, size = simulation["normal-modes"], simulation["molecule-size"]
-    for c in (*size.comparisons, *(c for c in modes.comparisons if "square" in c.what)):
+    for c in (*comparisons(size), *comparisons(modes, "square")):
         assert abs(c.measured - c.expected) < 4.5 * c.error, c
     slowest = of(modes, "time 1")
     assert slowest.error < 0.1 * slowest.expected
@@ -117,7 +118,7 @@ def test_springs_carry_most_of_the_stress(sheared):
 def test_bonds_turn_towards_the_flow(sheared):
     """Each component of their correlation in time is that of theory; xy and yx differ."""
     result = sheared["bond-correlation"]
-    for c in result.comparisons:
+    for c in comparisons(result):
         assert c.error < 0.1 and abs(c.measured - 1) < 4.5 * c.error + CHAOS, c
     xy, yx = result.value[:, 3], result.value[:, 4]
     later = 6

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from at_once import AtOnce
+from compared import comparisons
 
 from mesokit import CellOccupancy, Disk, MaxwellBoltzmann, Plates, Uniform, VelocityDistribution
 
@@ -49,7 +50,7 @@ def gas_case(make_case):
 def test_velocities_of_a_gas_at_rest_have_the_chi_square_that_is_expected(gas_case):
     result = watched(VelocityDistribution(), gas_case)
     assert result.x["of"][0] == "v_x"
-    for found in result.comparisons:
+    for found in comparisons(result):
         assert abs(off(found)) < 3.5, found
     width = np.diff(result.extra["edges"], axis=1)
     assert (result.value * width).sum(axis=1) == pytest.approx([1, 1])
@@ -68,7 +69,7 @@ def test_it_tells_a_moving_gas_and_a_warm_one(gas_case):
 
 
 def test_numbers_in_cells_have_the_chi_square_that_is_expected(gas_case):
-    for found in watched(CellOccupancy(), gas_case).comparisons:
+    for found in comparisons(watched(CellOccupancy(), gas_case)):
         assert abs(off(found)) < 3.5, found
     uneven = watched(CellOccupancy(), gas_case, crowded=1.3)
     assert min(map(off, uneven.comparisons)) > 5

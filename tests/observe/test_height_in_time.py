@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from compared import comparisons
 
 from mesokit import (
     Box,
@@ -50,7 +51,7 @@ def bounced(contact_time, steps=1200, warmup=0, lower=None, gravity=-1.0, **sphe
 def test_a_ball_is_where_theory_has_it(contact_time, warmup):
     result = bounced(contact_time, 1200 - warmup, warmup)
     np.testing.assert_allclose(result.value, result.expected, atol=1e-9)
-    for comparison in result.comparisons:
+    for comparison in comparisons(result):
         assert comparison.measured == pytest.approx(comparison.expected, rel=1e-6)
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from compared import comparisons
 from spheres_observed import FakeSpheres, hard, hard_case_for
 
 from mesokit import (
@@ -109,7 +110,7 @@ def test_kinds_of_one_temperature_have_a_ratio_of_one():
     case = hard([KindTemperature()], number=20, kinds=kinds, size=(20, 20))
     accumulator, spheres = KindTemperature().accumulator(case), FakeSpheres(case)
     sampled(accumulator, spheres, 4000)
-    for found in accumulator.result().comparisons:
+    for found in comparisons(accumulator.result()):
         assert found.expected == 1.0 and found.error < 0.01
         assert abs(found.measured - 1) < 4 * found.error
     spheres.v = np.where(spheres.made.kinds[:, None] == 0, [1.0, 0.0], [-1.0, 0.0])

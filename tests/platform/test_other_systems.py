@@ -102,7 +102,7 @@ def switch():
 @ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_int64))
 def counter(answer):
     calls["clock"] += 1
-    answer[0] = time.perf_counter_ns() // 100
+    answer[0] = 10_000_000 * calls["clock"]  # a second later at each call
     return 1
 @ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_int64))
 def frequency(answer):
@@ -130,12 +130,12 @@ def work(team, most, sums):
 
 threads, sums = Threads(2), np.zeros(1, np.int64)
 threads.run(work, 0, sums)
-before, began = threads.clock[FIRST + CELLS], time.perf_counter()
+before = threads.clock[FIRST + CELLS]
 threads.run(work, 100_000, sums)
-took, told = time.perf_counter() - began, TICK * (threads.clock[FIRST + CELLS] - before)
+told = TICK * (threads.clock[FIRST + CELLS] - before)
 assert sums[0] >= 10_000_000, sums
 assert calls["clock"] == 4 and calls["yield"] > 0, calls
-assert 0.3 * took < told <= took, (told, took)
+assert told == 1.0, told
 """
 
 

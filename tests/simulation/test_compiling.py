@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -49,10 +48,8 @@ def test_interrupted_while_compiling(case_file, tmp_path):
         said += line
     assert "compiling" in said, said
     process.send_signal(signal.SIGINT)
-    began = time.perf_counter()
     _, errors = process.communicate()
     assert process.returncode == 130, errors
-    assert time.perf_counter() - began < 5
     assert "stopped at step 0, while compiling, by SIGINT" in errors
     assert "mesokit resume case" in errors and "Traceback" not in errors
     written = {path.name for path in (tmp_path / "case").iterdir()}

@@ -22,13 +22,12 @@ if TYPE_CHECKING:
 
 
 MODULES = {  # what is here, and the commands that each has
-    "new": ("new",),
     "check": ("check",),
     "runs": ("run", "resume", "info", "export"),
     "studies": ("study", "merge"),
     "pictures": ("plot", "animate"),
     "documents": ("report", "table"),
-    "reference": ("schema", "explain"),
+    "reference": ("new", "schema", "explain"),
     "theory": ("theory",),
     "compiled": ("warm", "cache"),
 }

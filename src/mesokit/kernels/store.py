@@ -30,8 +30,22 @@ FORMAT = 1  # of the tables
 BOUND = 512 * 2**20  # bytes; what has not been used for longest goes first
 PATIENCE = 5.0  # seconds that a process waits for one that writes
 MOST_ENTRIES = 4  # of one key: states of what it needs, such as two versions of the sources
-NETWORK = ("nfs", "nfs4", "cifs", "smb3", "smbfs", "9p", "afs", "fuse.sshfs", "lustre", "gpfs",
-           "beegfs", "ceph", "glusterfs", "fuse.glusterfs")  # fmt: skip
+NETWORK = (
+    "nfs",
+    "nfs4",
+    "cifs",
+    "smb3",
+    "smbfs",
+    "9p",
+    "afs",
+    "fuse.sshfs",
+    "lustre",
+    "gpfs",
+    "beegfs",
+    "ceph",
+    "glusterfs",
+    "fuse.glusterfs",
+)
 TABLES = """
 CREATE TABLE IF NOT EXISTS needs (id INTEGER PRIMARY KEY, line TEXT UNIQUE);
 CREATE TABLE IF NOT EXISTS entries (id INTEGER PRIMARY KEY, key TEXT, name TEXT, needs BLOB,
@@ -97,7 +111,10 @@ def _private(place: Path) -> Path:
 def on_network(place: Path, mounts: Path = Path("/proc/mounts")) -> bool:
     """Whether a folder is on a file system of the network, whose locks are not to be relied on."""
     try:
-        rows = [line.split() for line in mounts.read_text().splitlines()]
+        rows = [
+            line.split()
+            for line in mounts.read_text(encoding="utf-8", errors="replace").splitlines()
+        ]
     except OSError:
         return False
     within = [row for row in rows if Path(os.path.abspath(place)).is_relative_to(row[1])]
@@ -209,8 +226,9 @@ class Store:
             self._disk.execute("DELETE FROM entries WHERE key = ? AND needs = ?", (key, needs))
             self._disk.execute(
                 "INSERT INTO entries (key, name, needs, about, code, digest, used)"
-                " VALUES (?, ?, ?, ?, ?, ?, ?)", row,
-            )  # fmt: skip
+                " VALUES (?, ?, ?, ?, ?, ?, ?)",
+                row,
+            )
             self._disk.execute(
                 "DELETE FROM entries WHERE key = ? AND id NOT IN"
                 " (SELECT id FROM entries WHERE key = ? ORDER BY id DESC LIMIT ?)",

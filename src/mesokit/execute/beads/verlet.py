@@ -51,4 +51,4 @@ def flown(physics, time, counter, number, m, r, v, impulse):
     rest = scaled(0.0, physics.zero)
     if free(physics.solid, r, v, rest, time):
         return fall(r, v, rest, time)
-    return bounce(physics, time, counter, number, m, r, v, rest, impulse)
+    return bounce(physics, time, counter, (number, m), r, v, rest, impulse)

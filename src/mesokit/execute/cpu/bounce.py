@@ -35,14 +35,16 @@ def take_sum(impulse, surface, given, scale):
 
 
 @seldom
-def bounce(physics, timestep, counter, number, m, r, v, a, impulse):
+def bounce(physics, timestep, counter, particle, r, v, a, impulse):
     """Position and velocity a timestep later, with reflections; surfaces take the momentum lost.
+
+    `particle` is its number and its mass.
 
     A particle that rounding leaves in a solid, or that still flies after MOST_HITS, stays where it
     was, with the velocity that its hits left it: no particle is ever in a solid. Between surfaces
     that touch and move they may have driven it to any speed: then it turns back with its own.
     """
-    solid, time = physics.solid, timestep
+    solid, time, (number, m) = physics.solid, timestep, particle
     start = homed(solid, r)
     away = added_scaled(r, -1.0, start)
     x, u, flying, touched = start, v, True, False
