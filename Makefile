@@ -9,7 +9,7 @@ BIN := .venv/bin
 endif
 READY := .venv/ready
 
-.PHONY: help demo test test-long test-all durations quick lint check site tutorials sketches bench \
+.PHONY: parts help demo test test-long test-all durations quick lint check site tutorials sketches bench \
   validate clean
 help:
 	@echo "make demo      run a channel flow and draw it with the theory"
@@ -24,6 +24,7 @@ help:
 	@echo "make sketches  draw the sketches of the guide"
 	@echo "make bench     measure the speed, side by side with LAMMPS"
 	@echo "make validate  write docs/validation: measured against theory, law by law"
+	@echo "make parts     compile the parts that a wheel brings, for this Python and system"
 	@echo "make clean     remove what these made"
 
 $(READY): pyproject.toml
@@ -79,6 +80,13 @@ bench: $(READY)
 
 validate: $(READY)
 	@$(BIN)/python validation/all.py
+
+# What a wheel for this Python and system brings, so that a first run compiles little of its own.
+PARTS := src/mesokit/kernels/shipped
+parts: export NUMBA_CACHE_DIR := build/parts
+parts: $(READY)
+	@$(BIN)/mesokit warm --all --quiet
+	@$(BIN)/mesokit cache --export "$(PARTS)/$$($(BIN)/python -c 'from mesokit.kernels.kept import era; print(era())').sqlite"
 
 clean:
 	@rm -rf .venv demo build/validation

@@ -34,7 +34,8 @@ class Step(NamedTuple):
 
 @njit
 def flown(solid, r, v, a, time, impulse):
-    return bounce(Step(solid, time, 1.0, (SCALE,)), Counter(1, 1), 0, 1.0, r, v, a, impulse)
+    step = Step(solid, time, 1.0, (SCALE,))
+    return bounce(step, time, Counter(1, 1), (0, 1.0), r, v, a, impulse)
 
 
 def flies(solid, r, v, a, time):

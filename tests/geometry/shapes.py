@@ -163,7 +163,7 @@ def meets(solids: Solids, r: Any, v: Any, a: Any, time: float) -> float:
 
 @njit
 def _bounced(physics, number, r, v, a, impulse):
-    return bounce(physics, Counter(1, 1), number, 1.0, r, v, a, impulse)
+    return bounce(physics, physics.timestep, Counter(1, 1), (number, 1.0), r, v, a, impulse)
 
 
 class Step(NamedTuple):

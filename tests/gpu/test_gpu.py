@@ -17,7 +17,7 @@ import pytest
 
 import examples
 import mesokit
-from mesokit.scalar import cache
+from mesokit.kernels.store import folder
 from mesokit.scalar.intrinsics import mul_add
 from mesokit.scalar.jit import scalar, seldom
 
@@ -31,9 +31,10 @@ READ_ONLY = {"Finite": ["log"]}  # the energy of FENE bonds: no motion depends o
 def library_functions(name: str) -> list[str]:
     """Functions of that library in what is compiled under a name; kept beside the kernels."""
     key = hashlib.sha256(name.encode() + version("numba-cuda").encode())
-    for path in (Path(examples.__file__), Path(ptx.__file__)):
+    sources = sorted(Path(mesokit.__file__).parent.rglob("*.py"))
+    for path in (Path(examples.__file__), Path(ptx.__file__), *sources):
         key.update(path.read_bytes())
-    kept = Path(cache.folder()) / "ptx" / key.hexdigest()
+    kept = folder() / "ptx" / key.hexdigest()
     if not kept.exists():
         ir = ptx.compile_for_gpu(examples.CALLS[name]).ir
         found = [f for f in LIBRARY if f"@__nv_{f}(" in ir or f'@"__nv_{f}"(' in ir]

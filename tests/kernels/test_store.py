@@ -210,8 +210,8 @@ def test_a_damaged_store_is_made_anew(place: Place, how: str) -> None:
     damage(place.store, how)
     first = place.run()
     assert first["sum"] == 72.0 and first["kernels_made"] > 0
-    second = place.run()
-    assert second["sum"] == 72.0 and second["kernels_made"] in (0, first["kernels_made"])
+    assert place.run()["sum"] == 72.0  # where damage was seen late, the store is new only now
+    assert place.run().items() >= NOTHING_MADE.items()
 
 
 def test_code_that_was_changed_is_not_run(place: Place) -> None:

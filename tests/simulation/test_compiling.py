@@ -8,11 +8,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numba
 import pytest
 
 import mesokit
 from mesokit import AT, Box, Case, Conservation, Fluid, Plates, Run, Simulation
 from mesokit.case import kind
+from mesokit.kernels.store import Store
 from mesokit.method import templates
 from mesokit.running.signals import Stopped
 
@@ -78,12 +80,15 @@ def test_a_case_without_solids_is_checked_without_compiling(tmp_path):
         process = command(tmp_path, "check", f"{template}.toml")
         _, errors = process.communicate()
         assert process.returncode == 0, errors
-        assert not list((tmp_path / "cache").rglob("*.nbi")), template
+        [store] = (tmp_path / "cache").rglob("*.sqlite")
+        assert sum(Store(store).counts().values()) == 0, template
 
 
 def test_kinds_of_cases(monkeypatch, tmp_path):
     """Those that differ in numbers alone, or in what is measured, run the same kernels."""
-    monkeypatch.setattr(kind, "folder", lambda: str(tmp_path))
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr("mesokit.kernels.kernel._used", set())
+    monkeypatch.setattr("mesokit.kernels.kept._now", [])
     case = Case(run=Run(steps=5), box=Box([6, 6]), fluid=Fluid())
     assert not kind.has_run(case)
     kind.note_run(case)

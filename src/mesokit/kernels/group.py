@@ -163,7 +163,8 @@ def _flatten(value: Any, kind: Any, numbers: list[Any], formats: list[str]) -> N
         formats.append("q" * len(words))
     else:
         numbers.append(value)
-        formats.append("d" if isinstance(kind, types.Float) else "q")
+        signed = getattr(kind, "signed", True)
+        formats.append("d" if isinstance(kind, types.Float) else "q" if signed else "Q")
 
 
 def packed(value: Any) -> Any:

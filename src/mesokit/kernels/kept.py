@@ -20,7 +20,7 @@ import numba
 from numba import config
 
 from mesokit.kernels.made_of import digest, still_holds
-from mesokit.kernels.store import Code, Entry, Store, store_file
+from mesokit.kernels.store import Code, Entry, Store, clear, store_file
 
 HERE = Path(__file__).parent
 SHIPPED = HERE / "shipped"
@@ -91,6 +91,9 @@ class Kept:
         except (sqlite3.Error, OSError, RuntimeError) as error:
             self.trouble = str(error) or type(error).__name__
             self.own = None
+            if type(error) is sqlite3.DatabaseError:  # damaged: the next process begins anew
+                with contextlib.suppress(OSError):
+                    clear()
 
     def find(self, key: str) -> tuple[Entry, Store] | None:
         """A valid entry of a key."""

@@ -14,7 +14,7 @@ from mesokit.kernels.kernel import inner
 from mesokit.method.mpcd.collision.protocol import Cell, freedom
 from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.method.mpcd.thermostat.protocol import draw, guess
-from mesokit.scalar.jit import by_type, scalar
+from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.random import CELL, words
 from mesokit.scalar.vector import added
 
@@ -100,6 +100,13 @@ def needs_of_cell(physics, counter, cell, found, gradient, certain):
     return as_many(answer, physics.coefficients), sure
 
 
+@seldom
+def sure_needs(physics, counter, cell, found, gradient):
+    """What the particles of a cell need where a guess was not sure; for few cells."""
+    answer, _ = needs_of_cell(physics, counter, cell, found, gradient, True)
+    return answer
+
+
 class InRow(NamedTuple):
     """Cells that follow one another, from the first."""
 
@@ -140,8 +147,7 @@ def settle_batch(team, now, physics, fluid, which, count):
         if doubtful[i] != 0:
             found, cell = load_scratch(totals, i, none), cell_at(which, i)
             gradient, key = gradient_at(cells.field, cell), key_of(cells.shared, cell)
-            answer, _ = needs_of_cell(physics, now.counter, key, found, gradient, True)
-            store_scratch(rows, i, answer)
+            store_scratch(rows, i, sure_needs(physics, now.counter, key, found, gradient))
 
 
 @by_type
