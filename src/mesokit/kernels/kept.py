@@ -62,9 +62,10 @@ class Kept:
         self.process = os.getpid()
         self.trouble = ""  # why the user's own store is not used
         self.own: Store | None = None
+        self.stores: list[Store] = []
         with self._without_own():
             self.own = self._opened()
-        self.stores = [self.own] if self.own else []
+            self.stores = [self.own]
         shipped = SHIPPED / f"{era()}.sqlite"
         self.shipped: Store | None = None
         with contextlib.suppress(sqlite3.Error, OSError):
@@ -90,15 +91,28 @@ class Kept:
             yield
         except (sqlite3.Error, OSError, RuntimeError) as error:
             self.trouble = str(error) or type(error).__name__
+            self.stores = [store for store in self.stores if store is not self.own]
             self.own = None
-            if type(error) is sqlite3.DatabaseError:  # damaged: the next process begins anew
-                with contextlib.suppress(OSError):
+            if type(error) is sqlite3.DatabaseError:  # damaged: it is begun anew
+                with contextlib.suppress(OSError, sqlite3.Error):
                     clear()
+                    self.own = _sound(store_file())
+                    self.stores.insert(0, self.own)
+
+    @contextlib.contextmanager
+    def _reading(self, store: Store) -> Iterator[None]:
+        """What is wrong in a store is as if it were not there."""
+        if store is self.own:
+            with self._without_own():
+                yield
+        else:
+            with contextlib.suppress(sqlite3.Error):
+                yield
 
     def find(self, key: str) -> tuple[Entry, Store] | None:
         """A valid entry of a key."""
-        for store in self.stores:
-            with contextlib.suppress(sqlite3.Error, ValueError):
+        for store in tuple(self.stores):
+            with self._reading(store):
                 for entry in store.find(key):
                     if all(map(still_holds, entry.needs)):
                         return entry, store
@@ -120,8 +134,8 @@ class Kept:
 
     def code(self, hash: str) -> Code | None:
         """Code by its hash, of any store."""
-        for store in self.stores:
-            with contextlib.suppress(sqlite3.Error, ValueError):
+        for store in tuple(self.stores):
+            with self._reading(store):
                 found = store.code(hash)
                 if found is not None:
                     return found

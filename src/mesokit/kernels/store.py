@@ -162,9 +162,10 @@ class Store:
             (key,),
         ).fetchall()
         for number, name, needs, about, code, digest in rows:
-            if hashlib.sha256(f"{key} {name} {code}".encode() + needs + about).digest() == digest:
-                self._used["entries"].add(number)
-                yield Entry(name, self._read_needs(needs), about, code)
+            if hashlib.sha256(f"{key} {name} {code}".encode() + needs + about).digest() != digest:
+                raise sqlite3.DatabaseError("an entry is damaged")
+            self._used["entries"].add(number)
+            yield Entry(name, self._read_needs(needs), about, code)
 
     def _read_needs(self, numbers: bytes) -> frozenset[str]:
         asked = memoryview(numbers).cast("I")
@@ -176,7 +177,7 @@ class Store:
         return frozenset(self._lines.get(number, "function lost:lost lost") for number in asked)
 
     def code(self, hash: str) -> Code | None:
-        """The code of this hash; None if it is not here or damaged. Raises sqlite3.Error."""
+        """The code of this hash; None if it is not here. Raises sqlite3.Error."""
         row = self._disk.execute(
             "SELECT name, called, body FROM code WHERE hash = ?", (hash,)
         ).fetchone()
@@ -185,9 +186,11 @@ class Store:
         try:
             found = Code(row[0], tuple(row[1].split()), zlib.decompress(row[2]))
         except zlib.error:
-            return None
+            raise sqlite3.DatabaseError("code is damaged") from None
+        if found.hash != hash:
+            raise sqlite3.DatabaseError("code is damaged")
         self._used["code"].add(hash)
-        return found if found.hash == hash else None
+        return found
 
     def has_code(self, hash: str) -> bool:
         """Whether code of this hash is here. Raises sqlite3.Error."""
