@@ -1,0 +1,34 @@
+"""The commands warm and cache."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+CASE = "run = { steps = 1000 }\nbox = { size = [6, 6] }\n"
+
+
+def mesokit(folder: Path, *words: str) -> str:
+    """What a command says, with a store of its own."""
+    done = subprocess.run(
+        [sys.executable, "-m", "mesokit", *words], cwd=folder, capture_output=True, text=True,
+        env=os.environ | {"NUMBA_CACHE_DIR": str(folder / "kernels")}, timeout=300,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_what_was_warmed_is_there_until_it_is_cleared(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(CASE)
+    first = mesokit(tmp_path, "warm", "case.toml", "--why")
+    assert "it was not made before" in first and "case.toml: 0 kernels" not in first
+    assert "case.toml: 0 kernels, 0 parts" in mesokit(tmp_path, "warm", "case.toml")
+    assert {path.name for path in tmp_path.iterdir()} == {"case.toml", "kernels"}
+    shown = " ".join(mesokit(tmp_path, "cache").split())
+    assert "kinds of case 1" in shown and "kernels 0" not in shown
+    exported = mesokit(tmp_path, "cache", "--export", "parts.sqlite")
+    assert not exported.startswith("0 parts") and (tmp_path / "parts.sqlite").exists()
+    assert mesokit(tmp_path, "cache", "--clear").startswith("cleared")
+    assert "kernels 0" in " ".join(mesokit(tmp_path, "cache").split())
