@@ -9,8 +9,8 @@ BIN := .venv/bin
 endif
 READY := .venv/ready
 
-.PHONY: parts help demo test test-long test-all durations quick lint check site tutorials sketches bench \
-  validate clean
+.PHONY: help demo test test-long test-all durations quick lint check site tutorials sketches bench \
+  validate parts clean
 help:
 	@echo "make demo      run a channel flow and draw it with the theory"
 	@echo "make test      run the tests but the long ones: some minutes"

@@ -163,6 +163,7 @@ def test_a_second_process_makes_nothing(place: Place) -> None:
         ("FACTOR = 3.0", "FACTOR = 6.0", 1, 2, 2.0),
         ("return shape.slope * x", "return shape.slope * x * 2.0", 1, 2, 2.0),
         ("len(rows) > 1", "len(rows) > 2", 1, 2, 0.5),  # only what chooses has changed
+        ("out[i] = twice(out[i])", "out[i] = twice(twice(out[i]))", 1, 1, 2.0),  # a kernel itself
         ("return x + 1.0", "return x + 2.0", 0, 0, 1.0),
         ("return x**shape.power", "return x**shape.power + 1.0", 0, 0, 1.0),
         ("'''Height of a shape at x.'''", "'''Height.'''\n    # of what", 0, 0, 1.0),
@@ -179,7 +180,7 @@ def test_an_edit_remakes_what_contains_it_and_nothing_else(
 
 
 def test_both_states_of_a_source_are_kept(place: Place) -> None:
-    """As when somebody goes from one branch to another and back."""
+    """As when branches of a repository are changed back and forth."""
     place.edit("FACTOR = 3.0", "FACTOR = 6.0")
     assert place.run()["kernels_made"] == 1
     place.edit("FACTOR = 6.0", "FACTOR = 3.0")
@@ -328,13 +329,19 @@ def test_what_was_not_used_for_longest_goes_first(tmp_path: Path) -> None:
     store = Store(tmp_path / "store.sqlite")
     for number in range(10):
         code = Code(f"code {number}", (), os.urandom(1000))
-        store.keep(f"key {number}", Entry("name", frozenset({"a b c"}), b"", code.hash), [code])
+        store.keep(
+            f"key {number}",
+            Entry("name", frozenset({f"function m:f{number} word"}), b"", code.hash),
+            [code],
+        )
         store._disk.execute("UPDATE entries SET used = ? WHERE key = ?", (number, f"key {number}"))
         store._disk.execute("UPDATE code SET used = ? WHERE hash = ?", (number, code.hash))
     before = store.size
     store.shrink(5 * 1400)
     left = [number for number in range(10) if list(store.find(f"key {number}"))]
     assert left == [6, 7, 8, 9] or left == [5, 6, 7, 8, 9]
+    lines = store._disk.execute("SELECT line FROM needs ORDER BY line").fetchall()
+    assert lines == [(f"function m:f{number} word",) for number in left]
     assert store.size < before
 
 

@@ -37,7 +37,7 @@ def warm(
     known = {**templates(), **examples()} if every else {str(case): case for case in cases}
     for name, case in known.items():
         try:
-            made = compile_all(Path(str(case)), settings)
+            made = compile_all(Path(str(case)), settings, why)
         except MesokitError as error:
             if not every:
                 raise
@@ -68,8 +68,8 @@ def cache(clear: bool, file: Path | None) -> None:
 
     from mesokit.case.amounts import size_text
     from mesokit.kernels import store
-    from mesokit.kernels.kept import era, forget, kept
-    from mesokit.kernels.ship import export, shipped_file
+    from mesokit.kernels.kept import era, forget, kept, shipped_file
+    from mesokit.kernels.ship import export
 
     if clear:
         place = store.store_file()

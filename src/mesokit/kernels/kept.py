@@ -23,7 +23,6 @@ from mesokit.kernels.made_of import digest, still_holds
 from mesokit.kernels.store import Code, Entry, Store, clear, store_file
 
 HERE = Path(__file__).parent
-SHIPPED = HERE / "shipped"
 
 
 class Counts:
@@ -31,6 +30,7 @@ class Counts:
 
     def __init__(self) -> None:
         self.parts_made = self.parts_found = self.kernels_made = self.kernels_found = 0
+        self.explains = False  # whether reasons are looked for, which takes time
         self.reasons: dict[str, str] = {}  # by the name of what was made
 
 
@@ -55,6 +55,11 @@ def era() -> str:
     return f"numba{numba.__version__}-llvmlite{llvmlite.__version__}-{python}-{system}"
 
 
+def shipped_file() -> Path:
+    """Where the package has its file of parts for these versions, if it brings one."""
+    return HERE / "shipped" / f"{era()}.sqlite"
+
+
 class Kept:
     """The stores of one process: the user's own, and the one that came with the package."""
 
@@ -64,25 +69,13 @@ class Kept:
         self.own: Store | None = None
         self.stores: list[Store] = []
         with self._without_own():
-            self.own = self._opened()
+            self.own = _sound(store_file())
             self.stores = [self.own]
-        shipped = SHIPPED / f"{era()}.sqlite"
         self.shipped: Store | None = None
         with contextlib.suppress(sqlite3.Error, OSError):
-            if shipped.exists():
-                self.shipped = Store(shipped, writes=False)
+            if shipped_file().exists():
+                self.shipped = Store(shipped_file(), writes=False)
                 self.stores.append(self.shipped)
-
-    def _opened(self) -> Store:
-        file = store_file()
-        try:
-            return _sound(file)
-        except sqlite3.DatabaseError as error:
-            if isinstance(error, sqlite3.OperationalError):
-                raise
-        for end in ("", "-wal", "-shm"):  # what lies there is no store, or was damaged
-            file.with_name(file.name + end).unlink(missing_ok=True)
-        return _sound(file)
 
     @contextlib.contextmanager
     def _without_own(self) -> Iterator[None]:

@@ -13,16 +13,15 @@ from collections.abc import Callable
 from typing import Any
 
 from numba import njit
-from numba.core.compiler import CompileResult
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.serialize import dumps
 
 from mesokit.kernels.group import all_packed
 from mesokit.kernels.kept import counts, kept, versions
-from mesokit.kernels.made_of import Unknown, describe_type, digest
+from mesokit.kernels.made_of import Unknown, code_of, describe_type, digest
 from mesokit.kernels.one_compiles import released, taken
-from mesokit.kernels.part import needs_below, part
-from mesokit.kernels.store import Code, Entry, folder
+from mesokit.kernels.part import needs_below, part, result_of
+from mesokit.kernels.store import Code, Entry
 
 _used: set[str] | None = set()  # lines of all kernels of this process
 
@@ -57,7 +56,7 @@ def kernel(function: Callable) -> Any:
     space = {"body": inner(function), "__name__": function.__module__}
     exec(f"def {function.__name__}({names}):\n    return body({names})", space)
     made = njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True)(space[function.__name__])
-    made.py_func = function
+    made.py_func = made.source = function
     made.__class__, made._cache = _Kernel, _MachineCode(function)
     return made
 
@@ -95,7 +94,8 @@ class _MachineCode:
             return None
         found = self._found(key)
         if found is None:
-            self._turn = taken(str(folder()), key)
+            own = kept().own
+            self._turn = taken(str(own.file.parent), key) if own is not None else None
             found = self._found(key)
         if found is not None:
             counts.kernels_found += 1
@@ -117,7 +117,8 @@ class _MachineCode:
         if key is None or below is None or compiled.reload_init:
             counts.reasons[name] = "no other process would know a part of it again"
             return
-        counts.reasons[name] = kept().reason(key, name)
+        if counts.explains:
+            counts.reasons[name] = kept().reason(key, name)
         compiled.fndesc.typemap = compiled.fndesc.calltypes = None
         names = [one.name for one in library._final_module.functions if not one.is_declaration]
         globals_ = library._final_module.global_variables
@@ -135,9 +136,10 @@ class _MachineCode:
         place = f"{self.function.__module__}:{self.function.__qualname__}"
         try:
             given = [describe_type(kind) for kind in getattr(signature, "args", signature)]
+            told = code_of(self.function), place, given, processor(), versions()
         except Unknown:
             return None
-        return digest(repr(("kernel", place, given, processor(), versions())))
+        return digest(repr(("kernel", *told)))
 
     def _found(self, key: str) -> Any:
         hit = kept().find(key)
@@ -158,20 +160,7 @@ class _MachineCode:
         _note_used(hit[0].needs)
         for one in others:
             library.codegen.set_env(one.env_name, one)
-        return CompileResult(
-            typing_context=cpu_target.typing_context,
-            target_context=context,
-            entry_point=context.get_executable(library, fndesc, environment),
-            typing_error=None,
-            type_annotation=None,
-            signature=signature,
-            library=library,
-            call_helper=None,
-            environment=environment,
-            lifted=(),
-            fndesc=fndesc,
-            objectmode=False,
-            reload_init=(),
-            referenced_envs=others,
-            metadata=None,
+        entry = context.get_executable(library, fndesc, environment)
+        return result_of(library, fndesc, signature, entry, environment)._replace(
+            referenced_envs=others
         )

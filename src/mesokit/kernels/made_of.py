@@ -96,7 +96,12 @@ def _find(module: str, name: str) -> Any:
             found = getattr(found, part)
     except (ImportError, AttributeError, ValueError):
         return None
-    return found._compiler.py_func if isinstance(found, CPUDispatcher) else found
+    return source_of(found) if isinstance(found, CPUDispatcher) else found
+
+
+def source_of(compiled: Any) -> Any:
+    """The Python function that a compiled one was made of."""
+    return getattr(compiled, "source", compiled._compiler.py_func)
 
 
 def code_of(function: Any) -> str:
@@ -168,7 +173,7 @@ def _class(kind: type) -> str:
 
 def _callable(value: Any, within: tuple) -> str:
     if isinstance(value, CPUDispatcher):
-        function = value._compiler.py_func
+        function = source_of(value)
         options = sorted((name, str(option)) for name, option in value.targetoptions.items())
         try:
             return f"compiled {place_of(function)} {options}"

@@ -8,14 +8,14 @@ from pathlib import Path
 
 from filelock import BaseFileLock, FileLock
 
-PATIENCE = 300.0  # seconds: one that was stopped meanwhile holds nobody up for ever
+PATIENCE = 300.0  # seconds: a process that was stopped holds no other up for ever
 
 
 def taken(folder: str, name: str) -> BaseFileLock | None:
-    """The lock of what has this name, once nobody else has it.
+    """The lock of what has this name, once no other process has it.
 
-    None where the file system knows no locks, and for one who has waited too long: then all
-    compile. The system takes the lock from a process that ends.
+    None where the file system knows no locks, and after too long a wait: then all compile. The
+    system takes the lock from a process that ends.
     """
     place = Path(folder) / "locks" / hashlib.sha256(name.encode()).hexdigest()[:32]
     try:
@@ -28,8 +28,8 @@ def taken(folder: str, name: str) -> BaseFileLock | None:
 
 
 def released(lock: BaseFileLock | None) -> None:
-    """Let the others go on."""
+    """Let other processes go on."""
     if lock is not None:
         lock.release()
-        with contextlib.suppress(OSError):  # one who waits has it open
+        with contextlib.suppress(OSError):  # a process that waits has it open
             Path(lock.lock_file).unlink()

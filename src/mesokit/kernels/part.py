@@ -231,7 +231,7 @@ class PartCompiler(Compiler):
             counts.parts_found += 1
             return found
         counts.parts_made += 1
-        if key is not None:
+        if key is not None and counts.explains:
             name = f"{func.__module__}:{func.__qualname__}"
             counts.reasons[f"part {name}"] = kept().reason(key, name)
         global _numbers
@@ -269,11 +269,17 @@ def _found(key: str) -> CompileResult | None:
     except Exception:  # what was kept does not fit, in any way: it is made anew
         return None
     library.needs = hit[0].needs
-    context, environment = cpu_target.target_context, Environment.from_fndesc(fndesc)
+    environment = Environment.from_fndesc(fndesc)
+    entry = _known_to_numba(library, fndesc, environment)
+    return result_of(library, fndesc, signature, entry, environment)
+
+
+def result_of(library: Any, fndesc: Any, signature: Any, entry: Any, environment: Any) -> Any:
+    """What numba would say had it compiled what was kept."""
     return CompileResult(
         typing_context=cpu_target.typing_context,
-        target_context=context,
-        entry_point=_known_to_numba(library, fndesc, environment),
+        target_context=cpu_target.target_context,
+        entry_point=entry,
         typing_error=None,
         type_annotation=None,
         signature=signature,

@@ -4,14 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from mesokit.kernels.kept import SHIPPED, era, kept
+from mesokit.kernels.kept import kept
 from mesokit.kernels.made_of import still_holds
 from mesokit.kernels.store import Code, Store
-
-
-def shipped_file() -> Path:
-    """Where the package has its file of parts for these versions, if it brings one."""
-    return SHIPPED / f"{era()}.sqlite"
 
 
 def export(file: Path) -> int:

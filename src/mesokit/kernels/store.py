@@ -47,7 +47,7 @@ NETWORK = (
     "fuse.glusterfs",
 )
 TABLES = """
-CREATE TABLE IF NOT EXISTS needs (id INTEGER PRIMARY KEY, line TEXT UNIQUE);
+CREATE TABLE IF NOT EXISTS needs (id INTEGER PRIMARY KEY AUTOINCREMENT, line TEXT UNIQUE);
 CREATE TABLE IF NOT EXISTS entries (id INTEGER PRIMARY KEY, key TEXT, name TEXT, needs BLOB,
     about BLOB, code TEXT, digest BLOB, used INTEGER);
 CREATE INDEX IF NOT EXISTS keys ON entries (key);
@@ -297,8 +297,19 @@ class Store:
             with self._written():
                 self._disk.execute("DELETE FROM entries WHERE used <= ?", (last,))
                 self._disk.execute("DELETE FROM code WHERE used <= ?", (last,))
+                self._forget_needs()
         self._disk.execute("VACUUM")
         self._disk.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+
+    def _forget_needs(self) -> None:
+        """Leave out lines that no entry has; their numbers are not given again, since other
+        processes remember them."""
+        left: set[int] = set()
+        for (blob,) in self._disk.execute("SELECT needs FROM entries").fetchall():
+            left.update(memoryview(blob).cast("I"))
+        known = [number for (number,) in self._disk.execute("SELECT id FROM needs").fetchall()]
+        gone = [(number,) for number in known if number not in left]
+        self._disk.executemany("DELETE FROM needs WHERE id = ?", gone)
 
     @property
     def size(self) -> int:
@@ -320,10 +331,6 @@ class Store:
         """Bring all into the one file, which then is only read. Raises sqlite3.Error."""
         self._disk.execute("VACUUM")
         self._disk.execute("PRAGMA journal_mode = DELETE")
-        self._disk.close()
-
-    def close(self) -> None:
-        """Let go of the file."""
         self._disk.close()
 
 

@@ -36,13 +36,14 @@ def shortened(path: Path, settings: dict[str, str], steps: int = STEPS) -> Case:
     return Case.from_toml(path, settings | {"run.steps": steps, "run.warmup": 0} | every)
 
 
-def warm(path: Path, settings: dict[str, str]) -> Warmed:
-    """Run a few steps of the case in a file, so that all it compiles is kept.
+def warm(path: Path, settings: dict[str, str], why: bool = False) -> Warmed:
+    """Run a few steps of the case in a file, so that all it compiles is kept; `why` finds reasons.
 
     Raises MesokitError.
     """
     began, kernels, parts = time.perf_counter(), counts.kernels_made, counts.parts_made
     counts.reasons.clear()
+    counts.explains = why
     Simulation(shortened(path, settings), threads=1).run(progress=False)
     made = counts.kernels_made - kernels, counts.parts_made - parts
     return Warmed(*made, time.perf_counter() - began, dict(counts.reasons))

@@ -174,8 +174,8 @@ def _bounce_strip(physics, counter, strip, count, behind, ident, hits, impulse):
                 end, v = fall(r, v, a, physics.timestep)
             else:
                 m = mass_of(physics.masses, strip, i, 2 * d)
-                who = ident[i], m
-                end, v = bounce(physics, physics.timestep, counter, who, r, v, a, impulse)
+                particle = ident[i], m
+                end, v = bounce(physics, physics.timestep, counter, particle, r, v, a, impulse)
             store_particle(strip, i, 0, end + v)
             if leaps(physics.solid, added_scaled(end, -1.0, r)):
                 far |= 1 << part
