@@ -177,6 +177,51 @@ def all_packed(values: Iterable[Any]) -> tuple[Any, ...]:
     return tuple(packed(value) for value in values)
 
 
+class Packing:
+    """Groups of one owner, as kernels take them: packed anew only where one is made of others.
+
+    The owner keeps it, so that no array outlives its owner.
+
+    Examples
+    --------
+    >>> from typing import NamedTuple
+    >>> class Row(NamedTuple):
+    ...     scale: float
+    ...     values: np.ndarray
+    >>> packing, values = Packing(), np.ones(3)
+    >>> [first] = packing(Row(2.0, values))
+    >>> packing(Row(2.0, values))[0] is first, packing(Row(3.0, values))[0] is first
+    (True, False)
+    """
+
+    def __init__(self) -> None:
+        self._known: dict[type, Packed] = {}
+
+    def __call__(self, *values: Any) -> tuple[Any, ...]:
+        return tuple(map(self._one, values))
+
+    def _one(self, value: Any) -> Any:
+        known = self._known.get(type(value))
+        if known is not None and _is_same(known.value, value):
+            return known
+        made = packed(value)
+        if isinstance(made, Packed):
+            self._known[type(value)] = made
+        return made
+
+
+def _is_same(one: Any, other: Any) -> bool:
+    """Whether two values hold the same arrays and equal numbers; of groups that kernels change,
+    whether they are one."""
+    if one is other:
+        return True
+    if type(one) is not type(other) or isinstance(one, np.ndarray) or _CHANGING.get(type(one)):
+        return False
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(map(_is_same, one, other))
+    return bool(one == other)
+
+
 @typeof_impl.register(Packed)
 def _(value: Packed, context: Any) -> Any:
     return value._numba_type_

@@ -32,7 +32,7 @@ from mesokit.execute.embedded.allocate import embedded_of
 from mesokit.execute.neighbours.gradient import Field
 from mesokit.execute.virtual.allocate import virtual_particles, with_clearance
 from mesokit.geometry.solids.none import Nothing
-from mesokit.kernels.group import all_packed
+from mesokit.kernels.group import Packing
 
 if TYPE_CHECKING:
     from mesokit.execute.cpu.numbers import Numbers
@@ -58,7 +58,7 @@ class Memory:
         case, d = numbers.case, numbers.dimension
         self.numbers, self.threads, self.step = numbers, threads, 0
         self.measures, self.domain = frozenset(measures), domain
-        self._parts: tuple[Any, ...] = (None,) * 4  # those that are packed
+        self._packing = Packing()
         self._tables: list[Any] = []  # which compiled code knows by address
         self._places, self._placed = np.zeros(0, np.int64), (0, numbers.beads)
         if earlier is None or (numbers.solids and earlier.domain.block != domain.block):
@@ -82,11 +82,8 @@ class Memory:
         return numbers.case.box.kernel(numbers.closed, self.step * numbers.timestep)
 
     def groups(self) -> tuple[Any, ...]:
-        """Physics, fluid, solutes and walls as the step takes them; packed when one is another."""
-        parts = self.physics, self.fluid, self.solutes, self.walls
-        if any(one is not other for one, other in zip(parts, self._parts, strict=True)):
-            self._parts, self._groups = parts, all_packed(parts)
-        return self._groups
+        """Physics, fluid, solutes and walls as the step takes them."""
+        return self._packing(self.physics, self.fluid, self.solutes, self.walls)
 
     def _physics(self) -> Physics:
         numbers, fluid, d = self.numbers, self.numbers.case.fluid, self.numbers.dimension

@@ -76,6 +76,7 @@ class Threads:
         self.size = size
         self.clock = np.zeros(CLOCK_SIZE, np.int64)
         self._gate = np.zeros(GATE_SIZE, np.int64)
+        self._own = self._team(0)  # of the caller
         self._inboxes: list[SimpleQueue] = [SimpleQueue() for _ in range(size - 1)]
         self._done: SimpleQueue = SimpleQueue()
         for thread, inbox in enumerate(self._inboxes, start=1):
@@ -89,10 +90,10 @@ class Threads:
         """
         arguments = all_packed(arguments)
         if self.size > 1 and hasattr(kernel, "signatures"):
-            kernel.compile(tuple(map(typeof, (self._team(0), *arguments))))
+            kernel.compile(tuple(map(typeof, (self._own, *arguments))))
         for inbox in self._inboxes:
             inbox.put((kernel, arguments))
-        kernel(self._team(0), *arguments)
+        kernel(self._own, *arguments)
         errors = [self._done.get() for _ in self._inboxes]
         for error in errors:
             if error is not None:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
+from mesokit.kernels.group import Packing
 from mesokit.method.event_driven.machine import groups
 from mesokit.method.event_driven.machine.collide import Rules
 from mesokit.method.event_driven.machine.flights import no_flights
@@ -62,6 +63,7 @@ class System:
     """Hard spheres in a box, and what happens next to each of them."""
 
     def __init__(self, given: Given) -> None:
+        self._packing = Packing()
         self.given = given
         self.n, self.d = len(given.diameters), len(given.size)
         self.window, self.windows = given.window, 0
@@ -228,9 +230,8 @@ class System:
     def _run(self, end: float) -> None:
         began = self.now
         while True:
-            ended = advance(
-                self.world, self.given.rules, self.spheres, self.lists, self.queue, self.tally, end
-            )
+            groups_now = self.world, self.given.rules, self.spheres, self.lists, self.queue
+            ended = advance(*self._packing(*groups_now, self.tally), end)
             if ended == groups.DONE:
                 return
             if ended == groups.COLLAPSED:

@@ -12,6 +12,7 @@ from mesokit.execute.cpu.threads import Threads
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.none import Nothing
 from mesokit.geometry.solids.solids import Solids, solids_of
+from mesokit.kernels.group import Packing
 from mesokit.method.flock.engine.memory import Physics, axes_of, make
 from mesokit.method.flock.engine.step import step
 from mesokit.scalar.random import Counter
@@ -51,7 +52,7 @@ class Flocks:
         )
         self.flock = make(self.n, self.threads, axes, bool(cohesion))
         self.seed, self.step, self.side = case.run.seed, 0, 0
-        self.team = Threads(self.threads)
+        self.team, self._packing = Threads(self.threads), Packing()
         self.seconds = {"steps": 0.0}
 
     def start(self, positions: Array, headings: Array) -> None:
@@ -72,7 +73,8 @@ class Flocks:
         """Run some steps."""
         began = perf_counter()
         counter = Counter(np.uint64(self.seed), np.uint64(self.step))
-        self.team.run(step, counter, steps, self.side, self.physics, self.flock)
+        groups = self._packing(self.physics, self.flock)
+        self.team.run(step, counter, steps, self.side, *groups)
         self.step, self.side = self.step + steps, (self.side + steps) % 2
         self.seconds["steps"] += perf_counter() - began
 

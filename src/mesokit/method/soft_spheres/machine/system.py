@@ -11,6 +11,7 @@ from mesokit.errors import RunError
 from mesokit.execute.cpu.threads import Threads
 from mesokit.geometry.solids.bodies import NOBODY
 from mesokit.geometry.solids.none import Nothing
+from mesokit.kernels.group import Packing
 from mesokit.method.soft_spheres.machine import groups
 from mesokit.method.soft_spheres.machine.contact.by_number import pairs_of, remember
 from mesokit.method.soft_spheres.machine.contact.remembered import carry_springs
@@ -88,7 +89,7 @@ class System:
     def __init__(self, given: Given, threads: int) -> None:
         n, self.given, self.team = len(given.reach), given, Threads(threads)
         self.n, self.dimension = n, len(given.size)
-        self.box = _box(given)
+        self.box, self._packing = _box(given), Packing()
         self.grid = _grid(given, self.box)
         self.bodies = _bodies(n)
         self.spare = _bodies(n)
@@ -185,8 +186,8 @@ class System:
         self.noted[:, groups.PENDING] = 0.0
         while done < steps or steps == 0:
             counter = Counter(np.uint64(self.given.seed), np.uint64(step + done))
-            given = counter, steps - done, law, motion, self.world, self.noted, self.rooms
-            self.team.run(advance, *given)
+            law, motion, world, rooms = self._packing(law, motion, self.world, self.rooms)
+            self.team.run(advance, counter, steps - done, law, motion, world, self.noted, rooms)
             done += int(self.noted[0, groups.DONE])
             self._look()
             if self.noted[0, groups.PENDING]:
