@@ -222,6 +222,26 @@ def test_code_that_was_changed_is_not_run(place: Place) -> None:
     assert place.run().items() >= NOTHING_MADE.items()
 
 
+@pytest.mark.parametrize("column", ["body", "about"])
+def test_whole_code_in_the_wrong_place_is_not_run(place: Place, column: str) -> None:
+    """Rows that are sound in themselves, but not where they belong: only digests tell."""
+    with sqlite3.connect(place.store) as disk:
+        kernels = disk.execute(
+            "SELECT code, id FROM entries WHERE name LIKE 'kernel %' ORDER BY name"
+        ).fetchall()
+        (add, first), (double, second) = kernels
+        if column == "body":
+            row = disk.execute("SELECT body FROM code WHERE hash = ?", (add,)).fetchone()
+            disk.execute("UPDATE code SET body = ? WHERE hash = ?", (*row, double))
+        else:
+            row = disk.execute("SELECT about FROM entries WHERE id = ?", (first,)).fetchone()
+            disk.execute("UPDATE entries SET about = ? WHERE id = ?", (*row, second))
+    found = place.run()
+    assert found["sum"] == 72.0 and found["kernels_made"] > 0
+    place.run()
+    assert place.run().items() >= NOTHING_MADE.items()
+
+
 def test_code_that_is_gone_is_made_anew(place: Place) -> None:
     with sqlite3.connect(place.store) as disk:
         disk.execute("DELETE FROM code WHERE hash IN (SELECT hash FROM code LIMIT 4)")
