@@ -286,7 +286,7 @@ def others(d: int) -> dict[str, Calls]:
             calls.append((read_sums, (p, (WHOLE,) * (1 + terms))))
     impulse = np.zeros(1, np.int64)
     for solid in (Plates("x").kernel((8,) * d), bodies(d)):
-        given = (physics(d, solid=solid), COUNTER, WHOLE, 1.0, r, r, r, impulse)
+        given = (physics(d, solid=solid), 0.1, COUNTER, (WHOLE, 1.0), r, r, r, impulse)
         found[f"bounce at {type(solid).__name__}"] = [(bounce, given)]
     return {f"{name} in {d}D": calls for name, calls in found.items()}
 

@@ -55,6 +55,7 @@ def everything(whole):
         whole.table.shape,
         whole.table[:, 1].sum(),
         len(whole.nothing),
+        len(whole.inner),
     )
 
 
@@ -68,7 +69,7 @@ def test_fields_are_what_python_packed(
     group = packed(Whole(number, (count,), flag, np.int32(small), inner, table, ()))
     column = int(table[:, 1].sum())
     expected = (
-        number, count, flag, small, first, 2, first, second, table[1, 2], (3, 4), column, 0,
+        number, count, flag, small, first, 2, first, second, table[1, 2], (3, 4), column, 0, 2,
     )  # fmt: skip
     assert everything(group) == expected
 

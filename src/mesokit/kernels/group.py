@@ -18,11 +18,13 @@ import numpy as np
 from llvmlite import ir
 from numba import typeof, types
 from numba.core import cgutils
-from numba.core.typing.templates import AttributeTemplate
+from numba.core.typing import signature
+from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_global
 from numba.extending import (
     NativeValue,
     infer_getattr,
     intrinsic,
+    lower_builtin,
     lower_getattr_generic,
     models,
     register_model,
@@ -244,6 +246,19 @@ class _Field(AttributeTemplate):
 
     def generic_resolve(self, kind: Group, name: str) -> Any:
         return kind.types[kind.fields.index(name)] if name in kind.fields else None
+
+
+@infer_global(len)
+class _Length(AbstractTemplate):
+    """The number of fields, as of the NamedTuple: `len(beads) > 0` asks whether there are any."""
+
+    def generic(self, given: Any, named: Any) -> Any:
+        return signature(types.intp, *given) if isinstance(given[0], Group) else None
+
+
+@lower_builtin(len, Group)
+def _length(context: Any, builder: Any, kinds: Any, given: Any) -> Any:
+    return context.get_constant(types.intp, len(kinds.args[0]))
 
 
 @lower_getattr_generic(Group)
