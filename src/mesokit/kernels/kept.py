@@ -30,6 +30,7 @@ class Counts:
 
     def __init__(self) -> None:
         self.parts_made = self.parts_found = self.kernels_made = self.kernels_found = 0
+        self.stages_made = self.stages_found = 0
         self.explains = False  # whether reasons are looked for, which takes time
         self.reasons: dict[str, str] = {}  # by the name of what was made
 

@@ -20,7 +20,15 @@ from mesokit.kernels.group import all_packed
 from mesokit.kernels.kept import counts, kept, versions
 from mesokit.kernels.made_of import Unknown, code_of, describe_type, digest
 from mesokit.kernels.one_compiles import released, taken
-from mesokit.kernels.part import needs_below, part, result_of
+from mesokit.kernels.part import (
+    machine_code,
+    make_ready,
+    needs_below,
+    part,
+    processor,
+    result_of,
+    stages_of,
+)
 from mesokit.kernels.store import Code, Entry
 
 _used: set[str] | None = set()  # lines of all kernels of this process
@@ -35,11 +43,6 @@ def needs_of_all() -> frozenset[str] | None:
 def _note_used(needs: frozenset[str] | None) -> None:
     global _used
     _used = None if needs is None or _used is None else _used | needs
-
-
-def processor() -> str:
-    """What machine code is made for."""
-    return digest(str(cpu_target.target_context.codegen().magic_tuple()))
 
 
 def inner(function: Callable) -> Any:
@@ -114,7 +117,8 @@ class _MachineCode:
         name = f"kernel {self.function.__module__}:{self.function.__qualname__}"
         key, below, library = self._key(signature), needs_below(compiled.library), compiled.library
         _note_used(below)
-        if key is None or below is None or compiled.reload_init:
+        stages = [stage.hash for stage in stages_of(library)]
+        if key is None or below is None or compiled.reload_init or None in stages:
             counts.reasons[name] = "no other process would know a part of it again"
             return
         if counts.explains:
@@ -124,7 +128,7 @@ class _MachineCode:
         globals_ = library._final_module.global_variables
         names += [one.name for one in globals_ if not one.is_declaration]
         others = compiled._find_referenced_environments()
-        told = compiled.fndesc, compiled.environment, compiled.signature, names, others
+        told = compiled.fndesc, compiled.environment, compiled.signature, names, others, stages
         code = Code(library.name, (), library._get_compiled_object())
         entry = Entry(name, below, dumps(told), code.hash)
         kept().keep(key, lambda store: (entry, [code]))
@@ -147,16 +151,16 @@ class _MachineCode:
         if hit is None or code is None:
             return None
         try:
-            fndesc, environment, signature, names, others = pickle.loads(hit[0].about)
+            fndesc, environment, signature, names, others, stages = pickle.loads(hit[0].about)
         except Exception:  # what was kept does not fit, in any way: it is made anew
             return None
         context = cpu_target.target_context
         context.refresh()  # what machine code finds by name: numba does this before it compiles
-        library = context.codegen().create_library(code.name)
-        library.enable_object_caching()
-        library._set_compiled_object(code.body)
-        library._finalize_final_module()
-        context.codegen()._engine._defined_symbols.update(names)
+        try:
+            make_ready(stages)
+        except LookupError:
+            return None
+        library = machine_code(code, names)
         _note_used(hit[0].needs)
         for one in others:
             library.codegen.set_env(one.env_name, one)

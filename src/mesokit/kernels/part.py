@@ -5,6 +5,9 @@ Here most functions are small and are inlined into the loop that calls them, so 
 thrown away. A part is translated as any other function, and kept for linking alone: in this
 process, and in the store, where every process and every kernel finds it again. No processor matters
 to it, since loops are made fit for one after linking.
+
+A stage is a part that is not put together with what calls it: it has machine code of its own, made
+and kept once for all kernels that call it, which find it by its name.
 """
 
 from __future__ import annotations
@@ -13,7 +16,7 @@ import itertools
 import os
 import pickle
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import llvmlite.binding as llvm
@@ -79,6 +82,11 @@ FunctionIdentity.from_function = classmethod(_identified)
 # --- libraries ------------------------------------------------------------------------------------
 
 
+def processor() -> str:
+    """What machine code is made for."""
+    return digest(str(cpu_target.target_context.codegen().magic_tuple()))
+
+
 class PartLibrary(JITCodeLibrary):
     """The code of one part, which is put together with that of others in the kernel, once.
 
@@ -103,10 +111,114 @@ class PartLibrary(JITCodeLibrary):
 
     def _get_module_for_linking(self) -> Any:
         if self._together is None:
-            self._together = _own_module(self).clone()
-            for library in _called_by(self):
-                self._together.link_in(_own_module(library), preserve=True)
+            for stage in stages_of(self):
+                stage.make_ready()
+            self._together = _linked(self)
         return self._together
+
+
+STAGE = "stage "  # how names of their libraries begin
+
+
+class StageLibrary(PartLibrary):
+    """The code of a stage, and its machine code."""
+
+    _ready: Any = None  # what numba knows its machine code by
+
+    def make_ready(self) -> None:
+        """Have its machine code in this process."""
+        if self._ready is None:
+            if self.hash is not None:
+                self._ready = _ready.get(self.hash) or _found_ready(self.hash)
+            self._ready = self._ready or self._compiled()
+
+    def _compiled(self) -> Any:
+        below = stages_of(self)
+        for stage in below:
+            stage.make_ready()
+        made = self._codegen.create_library(self.name)
+        made.enable_object_caching()
+        made._final_module = _linked(self)
+        for name in _defined(_own_module(self)):
+            made._final_module.get_function(name).linkage = "external"
+        made.finalize()
+        counts.stages_made += 1
+        hashes = [stage.hash for stage in below]
+        if self.hash is not None and None not in hashes:
+            _ready[self.hash] = made
+            told = pickle.dumps((_defined(made._final_module), hashes))
+            code = Code(self.name, (), made._get_compiled_object())
+            entry = Entry(f"kernel {self.name}", frozenset(), told, code.hash)
+            kept().keep(_key_of_stage(self.hash), lambda store: (entry, [code]))
+        return made
+
+
+_ready: dict[str, Any] = {}  # machine code of stages in this process, by the hash of their code
+
+
+def _key_of_stage(hash: str) -> str:
+    return digest(f"stage {hash} {processor()} {versions()}")
+
+
+def _found_ready(hash: str) -> Any:
+    """The machine code of a stage that is kept, with that of all that it calls; else None."""
+    hit = kept().find(_key_of_stage(hash))
+    code = None if hit is None else kept().code(hit[0].code)
+    if hit is None or code is None:
+        return None
+    names, below = pickle.loads(hit[0].about)
+    make_ready(below)
+    counts.stages_found += 1
+    _ready[hash] = machine_code(code, names)
+    return _ready[hash]
+
+
+def make_ready(hashes: Iterable[str]) -> None:
+    """Have the machine code of stages in this process. Raises LookupError where one is missing."""
+    for hash in hashes:
+        if hash not in _ready and _found_ready(hash) is None:
+            _loaded(hash).make_ready()
+
+
+def machine_code(code: Code, names: Iterable[str]) -> Any:
+    """Kept machine code, and the names in it, brought into this process."""
+    codegen = cpu_target.target_context.codegen()
+    library = codegen.create_library(code.name)
+    library.enable_object_caching()
+    library._set_compiled_object(code.body)
+    library._finalize_final_module()
+    codegen._engine._defined_symbols.update(names)
+    return library
+
+
+def _defined(module: Any) -> list[str]:
+    """Names of the functions that are in a module."""
+    return [function.name for function in module.functions if not function.is_declaration]
+
+
+def _linked(library: Any) -> Any:
+    """The code of a part with that of all that it calls, but stages."""
+    together = _own_module(library).clone()
+    for called in _called_by(library):
+        together.link_in(_own_module(called), preserve=True)
+    return together
+
+
+def stages_of(library: Any) -> list[Any]:
+    """The stages that a library calls, itself or in its parts."""
+    found: dict[Any, None] = {}
+    seen: set[Any] = set()
+
+    def visit(library: Any) -> None:
+        for called in library._linking_libraries:
+            if isinstance(called, StageLibrary):
+                found[called] = None
+            elif isinstance(called, PartLibrary) and called not in seen:
+                seen.add(called)
+                visit(called)
+
+    visit(library)
+    return list(found)
 
 
 def _called_by(library: Any) -> list[Any]:
@@ -116,7 +228,7 @@ def _called_by(library: Any) -> list[Any]:
 
     def visit(library: Any) -> None:
         for called in library._linking_libraries if isinstance(library, PartLibrary) else ():
-            if called not in order:
+            if called not in order and not isinstance(called, StageLibrary):
                 visit(called)
         order[library] = None
 
@@ -170,7 +282,8 @@ def _loaded(hash: str) -> Any:
     code = kept().code(hash)
     if code is None:
         raise LookupError(hash)
-    library = PartLibrary(cpu_target.target_context.codegen(), code.name)
+    kind = StageLibrary if code.name.startswith(STAGE) else PartLibrary
+    library = kind(cpu_target.target_context.codegen(), code.name)
     library._linking_libraries = [_loaded(one) for one in code.called]
     library._body, library._finalized, library.hash = code.body, True, hash
     _libraries[hash] = library
@@ -183,9 +296,10 @@ def _loaded(hash: str) -> Any:
 @register_pass(mutates_CFG=True, analysis_only=False)
 class _Lowering(typed_passes.NativeLowering):
     _name = "lowering of a part"
+    kind, begins = PartLibrary, ""
 
     def run_pass(self, state: Any) -> bool:
-        library = PartLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        library = self.kind(state.targetctx.codegen(), self.begins + state.func_id.func_qualname)
         flags, state.library, state.flags = state.flags, library, state.flags.copy()
         state.flags.no_compile = True
         super().run_pass(state)
@@ -195,6 +309,12 @@ class _Lowering(typed_passes.NativeLowering):
         state.reload_init.extend(library._reload_init)
         state["cr"] = made._replace(cfunc=entry)
         return True
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _LoweringOfStage(_Lowering):
+    _name = "lowering of a stage"
+    kind, begins = StageLibrary, STAGE
 
 
 def _known_to_numba(library: Any, about: Any, environment: Any) -> Any:
@@ -207,21 +327,23 @@ def _known_to_numba(library: Any, about: Any, environment: Any) -> Any:
 
 
 class PartCompiler(Compiler):
-    """Numba's stages without those that parts have no use for; what is kept needs none of them."""
+    """Numba's passes without those that parts have no use for; what is kept needs none of them."""
+
+    lowering: type = _Lowering
 
     def define_pipelines(self) -> list:
-        """The stages in order."""
-        [stages] = super().define_pipelines()
+        """The passes in order."""
+        [passes] = super().define_pipelines()
         kept, pruned = [], False
-        for stage, why in stages.passes:
-            if stage in SKIPPED or (stage is untyped_passes.DeadBranchPrune and pruned):
+        for one, why in passes.passes:
+            if one in SKIPPED or (one is untyped_passes.DeadBranchPrune and pruned):
                 continue
-            pruned |= stage is untyped_passes.DeadBranchPrune
-            kept.append((_Lowering if stage is typed_passes.NativeLowering else stage, why))
-        stages.passes[:] = kept
-        stages._finalized = False
-        stages.finalize()
-        return [stages]
+            pruned |= one is untyped_passes.DeadBranchPrune
+            kept.append((self.lowering if one is typed_passes.NativeLowering else one, why))
+        passes.passes[:] = kept
+        passes._finalized = False
+        passes.finalize()
+        return [passes]
 
     def compile_extra(self, func: Any) -> Any:
         """Find the part, or compile and keep it."""
@@ -255,7 +377,13 @@ class PartCompiler(Compiler):
             told = code_of(function), given, answer, str(state.flags), str(state.locals), versions()
         except Unknown:
             return None
-        return digest(repr(("part", *told)))
+        return digest(repr((self.lowering._name, *told)))
+
+
+class StageCompiler(PartCompiler):
+    """The same for stages."""
+
+    lowering = _LoweringOfStage
 
 
 def _found(key: str) -> CompileResult | None:
@@ -339,5 +467,12 @@ OPTIONS = {
 def part(function: Callable, **options: bool) -> Any:
     """Compile a function that compiled code calls; from Python it can be called too."""
     made = njit(**OPTIONS, **options)(function)
+    made.__class__ = _Part
+    return made
+
+
+def stage(function: Callable) -> Any:
+    """Compile a part with machine code of its own, which all kernels that call it share."""
+    made = njit(**OPTIONS | {"pipeline_class": StageCompiler}, nogil=True, _nrt=False)(function)
     made.__class__ = _Part
     return made

@@ -17,7 +17,7 @@ from mesokit.execute.cpu.strips.rows import load_values, store_values
 from mesokit.execute.cpu.strips.terms import read_sums, sums_of_cell
 from mesokit.execute.embedded.state import collides
 from mesokit.execute.ranks.messages.shared import key_of
-from mesokit.kernels.kernel import inner
+from mesokit.kernels.part import stage
 from mesokit.method.mpcd.collision.protocol import Cell, contribute, freedom
 from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.method.mpcd.thermostat.protocol import guess
@@ -45,7 +45,7 @@ def cells_of_thread(team, number):
     return first * LANES, min(last * LANES, number)
 
 
-@inner
+@stage
 def _join(team, now, physics, cells, beads):
     first, last = cells_of_thread(team, cells.number)
     present = number_of(beads.roster, len(beads.cell), PRESENT)

@@ -26,7 +26,7 @@ from mesokit.execute.cpu.strips.layout import record_length, share
 from mesokit.execute.cpu.strips.rows import load_values, store_values
 from mesokit.execute.cpu.threads import Team
 from mesokit.execute.ranks.beads.roster import call_roll
-from mesokit.kernels.kernel import inner
+from mesokit.kernels.part import stage
 from mesokit.method.mpcd.collision.protocol import collide, contribute
 from mesokit.scalar.fixed_point import add_quanta
 from mesokit.scalar.jit import by_type, scalar
@@ -44,7 +44,7 @@ def move_beads(team, now, physics, fluid, beads):
     return lambda team, now, physics, fluid, beads: _move(team, now, physics, fluid, beads)
 
 
-@inner
+@stage
 def _move(team, now, physics, fluid, beads):
     together = threads_for(team, beads)
     first, last = beads_of_thread(team, together, beads)

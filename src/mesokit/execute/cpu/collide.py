@@ -10,7 +10,7 @@ from mesokit.execute.cpu.strips.rows import load_scratch, load_values, store_scr
 from mesokit.execute.cpu.strips.terms import nothing_found, read_sums
 from mesokit.execute.neighbours.gradient import gradient_at
 from mesokit.execute.ranks.messages.shared import any_own, key_of, shares
-from mesokit.kernels.kernel import inner
+from mesokit.kernels.part import stage
 from mesokit.method.mpcd.collision.protocol import Cell, freedom
 from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.method.mpcd.thermostat.protocol import draw, guess
@@ -160,7 +160,7 @@ def _nobody(fluid):
     return fluid.particles.filling.molecules == 0
 
 
-@inner
+@stage
 def collide(team, now, physics, fluid):
     """Coefficients of every cell from its sums, which are cleared for the next step."""
     cells, scratch = fluid.cells, fluid.scratch

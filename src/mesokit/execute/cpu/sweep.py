@@ -36,6 +36,7 @@ from mesokit.execute.cpu.strips.layout import (
 from mesokit.execute.cpu.strips.rows import load_particle, mass_of
 from mesokit.execute.ranks.messages.guests import note_guests
 from mesokit.execute.ranks.messages.migrate import note_strays
+from mesokit.kernels.part import stage
 from mesokit.scalar.fixed_point import add_fixed, added_fixed, integers
 from mesokit.scalar.jit import by_type, seldom
 from mesokit.scalar.vector import added, products
@@ -53,7 +54,7 @@ def stream(team, now, physics, fluid):
     return lambda team, now, physics, fluid: _stream_molecules(team, now, physics, fluid)
 
 
-@seldom  # two places call it, and one copy is to be compiled
+@stage  # two places call it
 def _stream_singles(team, now, physics, fluid):
     particles, scratch, zero = fluid.particles, fluid.scratch, physics.zero
     gathered, terms = scratch.coefficients[team.thread], scratch.terms[team.thread]
@@ -93,7 +94,7 @@ def _stream_singles(team, now, physics, fluid):
             note_strays(team, now, physics, fluid, strip, s)
 
 
-@seldom  # as above
+@stage
 def _stream_molecules(team, now, physics, fluid):
     particles, scratch, zero = fluid.particles, fluid.scratch, physics.zero
     gathered, terms = scratch.coefficients[team.thread], scratch.terms[team.thread]

@@ -33,7 +33,7 @@ from mesokit.execute.embedded.state import (
     Embedded,
 )
 from mesokit.geometry.solids.none import Nothing
-from mesokit.kernels.kernel import inner
+from mesokit.kernels.part import stage
 from mesokit.potential.protocol import central
 from mesokit.scalar.fixed_point import add_integers, added_quanta, integers
 from mesokit.scalar.jit import by_type, elementwise, scalar
@@ -50,7 +50,7 @@ class Together(NamedTuple):
     particles: Any
 
 
-@inner
+@stage
 def move_in_fluid(team, now, physics, fluid, beads):
     """r, v of beads and of the particles near them: t -> t + dt."""
     if now.flags & STREAM:

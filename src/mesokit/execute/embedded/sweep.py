@@ -37,13 +37,13 @@ from mesokit.execute.embedded.near import choose_near, find_beads
 from mesokit.execute.embedded.state import COUNT
 from mesokit.geometry.protocol import leaps
 from mesokit.geometry.solids.none import Nothing
-from mesokit.kernels.kernel import inner
+from mesokit.kernels.part import stage
 from mesokit.method.mpcd.collision.protocol import contribute
 from mesokit.scalar.jit import by_type, optional, scalar
 from mesokit.scalar.vector import added_scaled
 
 
-@inner
+@stage
 def stream_around(team, now, physics, fluid, beads):
     """Do what the flags ask (see `cpu.sweep.stream`) for all that cannot come near a bead.
 
@@ -81,7 +81,7 @@ def stream_around(team, now, physics, fluid, beads):
             add_strip(cell, terms, sums, lanes, physics.terms, tally(physics.energy, 0.0, zero))
 
 
-@inner
+@stage
 def put_back(team, now, physics, fluid, beads):
     """Bring the particles that were near beads back to their strips, and into their cells."""
     if now.flags & STREAM:

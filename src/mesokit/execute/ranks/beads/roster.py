@@ -23,7 +23,7 @@ from mesokit.execute.cpu.threads import meet
 from mesokit.execute.ranks.messages.guests import NOBODY, owner_of
 from mesokit.execute.ranks.messages.mpi import Post, finish, receive, send
 from mesokit.execute.ranks.messages.shared import BEAD_WORDS, FAULTS, MESSAGES, STRETCHED
-from mesokit.kernels.kernel import inner
+from mesokit.kernels.part import stage
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.vector import scaled
 
@@ -77,7 +77,7 @@ def call_roll(team, now, physics, box, fluid, beads):
     )
 
 
-@inner
+@stage
 def _call(team, now, physics, box, fluid, beads):
     meet(team)
     if team.thread == 0:
@@ -278,7 +278,7 @@ def tell_places(team, beads):
     return lambda team, beads: _tell(team, beads)
 
 
-@inner
+@stage
 def _tell(team, beads):
     if team.thread == 0:
         roster = beads.roster

@@ -33,7 +33,7 @@ from mesokit.execute.ranks.messages.shared import (
     SUM_WORDS,
     shares,
 )
-from mesokit.kernels.kernel import inner
+from mesokit.kernels.part import stage
 from mesokit.scalar.jit import by_type, elementwise, for_each, scalar
 
 SUMS, ANSWERS = 1, 2  # tags of messages
@@ -59,7 +59,7 @@ def give_sums(team, now, physics, fluid, beads):
     return lambda team, now, physics, fluid, beads: _give(team, now, physics, fluid, beads)
 
 
-@inner
+@stage
 def _give(team, now, physics, fluid, beads):
     shared = fluid.cells.shared
     partners = len(shared.ranks)
@@ -200,7 +200,7 @@ def answer_others(team, now, physics, fluid, beads, walls):
     )
 
 
-@inner
+@stage
 def _answer(team, now, physics, fluid, beads, walls):
     shared = fluid.cells.shared
     if len(beads) > 0:
@@ -258,7 +258,7 @@ def take_answers(team, now, physics, fluid, walls):
     return lambda team, now, physics, fluid, walls: _take(team, now, physics, fluid, walls)
 
 
-@inner
+@stage
 def _take(team, now, physics, fluid, walls):
     shared = fluid.cells.shared
     partners = len(shared.ranks)

@@ -5,7 +5,7 @@ import numpy as np
 from mesokit.execute.cpu.threads import meet
 from mesokit.execute.ranks.messages.mpi import finish, receive, send
 from mesokit.execute.ranks.messages.shared import FIELD_WORDS, MESSAGES, shares
-from mesokit.kernels.kernel import inner
+from mesokit.kernels.part import stage
 from mesokit.scalar.jit import by_type
 
 FIELDS = 3  # tag of messages
@@ -19,7 +19,7 @@ def share_field(team, fluid):
     return lambda team, fluid: _share_field(team, fluid)
 
 
-@inner
+@stage
 def _share_field(team, fluid):
     meet(team)
     if team.thread == 0:

@@ -35,7 +35,7 @@ from mesokit.execute.ranks.messages.shared import (
     shares,
 )
 from mesokit.kernels.group import writer
-from mesokit.kernels.kernel import inner
+from mesokit.kernels.part import stage
 from mesokit.scalar.fixed_point import bits, from_bits
 from mesokit.scalar.jit import by_type, scalar, seldom
 from mesokit.scalar.vector import scaled
@@ -77,7 +77,7 @@ def _note_done(team, fluid, steps):
         fluid.cells.shared.noted[DONE] = steps
 
 
-@inner
+@stage
 def _migrate(team, now, physics, fluid):
     shared = fluid.cells.shared
     if np.int64(now.counter.step) % shared.every != 0:
