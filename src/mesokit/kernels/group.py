@@ -9,6 +9,7 @@ them out of loops, but for the fields that a class declares as changing.
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import struct
 from collections.abc import Callable, Iterable, Sequence
@@ -18,6 +19,7 @@ import numpy as np
 from llvmlite import ir
 from numba import typeof, types
 from numba.core import cgutils
+from numba.core.errors import TypingError
 from numba.core.typing import signature
 from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_global
 from numba.extending import (
@@ -35,16 +37,20 @@ from numba.np.arrayobj import populate_array
 
 _WORD = ir.IntType(64)
 _CHANGING: dict[type, tuple[str, ...]] = {}  # classes that are always packed, and what changes
+_IN_WORDS: set[type] = set()  # classes of which each field takes one word
 
 
-def by_address(*changing: str) -> Callable[[type], type]:
+def by_address(*changing: str, in_words: bool = False) -> Callable[[type], type]:
     """Declare a class of groups that are packed even if they hold no arrays.
 
-    `changing` are fields that kernels write anew (see `writer`).
+    `changing` are fields that kernels write anew (see `writer`). With `in_words` each field takes
+    one word, a number or the address of what is longer: fields can then be hidden (see `without`).
     """
 
     def declare(kind: type) -> type:
         _CHANGING[kind] = changing
+        if in_words:
+            _IN_WORDS.add(kind)
         return kind
 
     return declare
@@ -55,11 +61,11 @@ class Group(types.Type):
 
     def __init__(self, kind: type, fields: tuple[str, ...], inner: tuple[Any, ...]) -> None:
         self.instance_class, self.fields, self.types = kind, fields, inner
-        self.changing = _CHANGING.get(kind, ())
+        self.changing, self.in_words = _CHANGING.get(kind, ()), kind in _IN_WORDS
         self.offsets, self.words = {}, 0
         for name, one in zip(fields, inner, strict=True):
             self.offsets[name] = self.words
-            self.words += _words_of(one)
+            self.words += 1 if self.in_words else _words_of(one)
         text = f"{kind.__module__}.{kind.__qualname__} {fields} {inner} {self.changing}"
         word = hashlib.sha256(text.encode()).hexdigest()[:12]
         super().__init__(name=f"{kind.__name__}.{word}")
@@ -74,6 +80,13 @@ class Group(types.Type):
 
 
 register_model(Group)(models.OpaqueModel)
+
+
+class Hidden(types.Type):
+    """The type of a field that a stage does not look at."""
+
+
+_HIDDEN = Hidden("hidden")
 
 
 def _items(kind: Any) -> Sequence[Any]:
@@ -115,13 +128,9 @@ def kind_of(value: Any) -> Any:
     return typeof(value)
 
 
-_known: dict[tuple[type, tuple[Any, ...]], Group] = {}
-
-
+@functools.cache
 def _group(kind: type, inner: tuple[Any, ...]) -> Group:
-    if (kind, inner) not in _known:
-        _known[kind, inner] = Group(kind, kind._fields, inner)  # type: ignore[attr-defined]
-    return _known[kind, inner]
+    return Group(kind, kind._fields, inner)  # type: ignore[attr-defined]
 
 
 class Packed:
@@ -140,25 +149,37 @@ class Packed:
 
     def __init__(self, value: Any) -> None:
         self.value, self._numba_type_ = value, kind_of(value)
-        numbers: list[Any] = []
-        formats: list[str] = []
-        _flatten(value, self._numba_type_, numbers, formats)
-        words = struct.pack("=" + "".join(formats), *numbers)
-        self.memory = np.frombuffer(bytearray(words or bytes(8)), np.int64)
+        self._apart: list[Any] = []  # what fields of one word are addresses of
+        self.memory = _in_memory(value, self._numba_type_, self._apart)
         self.address = self.memory.ctypes.data
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.value, name)
 
 
-def _flatten(value: Any, kind: Any, numbers: list[Any], formats: list[str]) -> None:
+def _in_memory(value: Any, kind: Any, apart: list[Any]) -> Any:
+    numbers: list[Any] = []
+    formats: list[str] = []
+    _flatten(value, kind, numbers, formats, apart)
+    words = struct.pack("=" + "".join(formats), *numbers)
+    return np.frombuffer(bytearray(words or bytes(8)), np.int64)
+
+
+def _flatten(
+    value: Any, kind: Any, numbers: list[Any], formats: list[str], apart: list[Any]
+) -> None:
     """Add the words of a value, and the letters of `struct` for them."""
     if isinstance(kind, Group):
         for one, inner in zip(value, kind.types, strict=True):
-            _flatten(one, inner, numbers, formats)
+            if kind.in_words and not isinstance(inner, types.Number):
+                apart.append(_in_memory(one, inner, apart))
+                numbers.append(apart[-1].ctypes.data)
+                formats.append("q")
+            else:
+                _flatten(one, inner, numbers, formats, apart)
     elif isinstance(kind, types.BaseTuple):
         for one, inner in zip(value, _items(kind), strict=True):
-            _flatten(one, inner, numbers, formats)
+            _flatten(one, inner, numbers, formats, apart)
     elif isinstance(kind, types.Array):
         words = (value.ctypes.data, *value.shape, *(value.strides if kind.layout != "C" else ()))
         numbers.extend(words)
@@ -245,7 +266,10 @@ class _Field(AttributeTemplate):
     key = Group
 
     def generic_resolve(self, kind: Group, name: str) -> Any:
-        return kind.types[kind.fields.index(name)] if name in kind.fields else None
+        found = kind.types[kind.fields.index(name)] if name in kind.fields else None
+        if found is _HIDDEN:
+            raise TypingError(f"{kind.instance_class.__name__}.{name} is hidden from this stage")
+        return found
 
 
 @infer_global(len)
@@ -264,7 +288,10 @@ def _length(context: Any, builder: Any, kinds: Any, given: Any) -> Any:
 @lower_getattr_generic(Group)
 def _load_field(context: Any, builder: Any, kind: Group, value: Any, name: str) -> Any:
     inner, fixed = kind.types[kind.fields.index(name)], name not in kind.changing
-    return _load(context, builder, value, kind.offsets[name], inner, fixed)
+    at = kind.offsets[name]
+    if kind.in_words and not isinstance(inner, types.Number):
+        value, at = _load_word(builder, value, at, ir.IntType(8).as_pointer(), True), 0
+    return _load(context, builder, value, at, inner, fixed)
 
 
 def _place(builder: Any, base: Any, at: int, element: Any) -> Any:
@@ -326,6 +353,24 @@ def _load_array(context: Any, builder: Any, base: Any, at: int, kind: Any) -> An
         meminfo=None,
     )
     return array._getvalue()
+
+
+def without(*names: str) -> Any:
+    """The function that gives a group with some of its fields hidden.
+
+    What is compiled for it serves all groups that differ in these fields alone. A group that is
+    there by value stays as it is.
+    """
+
+    def hide(typing_context: Any, group: Any) -> Any:
+        kind = group
+        if isinstance(group, Group):
+            pairs = zip(group.fields, group.types, strict=True)
+            inner = tuple(_HIDDEN if name in names else one for name, one in pairs)
+            kind = _group(group.instance_class, inner)
+        return kind(group), lambda context, builder, signature, arguments: arguments[0]
+
+    return intrinsic(hide)
 
 
 def writer(name: str) -> Any:

@@ -224,8 +224,8 @@ def _describe_type(kind: Any) -> str:
     else:
         inner = list(getattr(kind, "types", ()))
     if hasattr(kind, "instance_class"):
-        changing = getattr(kind, "changing", "")  # fields of a group
-        named = f"{type(kind).__name__} {_class(kind.instance_class)} {changing}"
+        laid_out = getattr(kind, "changing", ""), getattr(kind, "in_words", "")  # of a group
+        named = f"{type(kind).__name__} {_class(kind.instance_class)} {laid_out}"
         return f"{named} {[describe_type(one) for one in inner]}"
     if isinstance(kind, types.BaseTuple):
         return f"tuple {[describe_type(one) for one in inner]}"

@@ -4,12 +4,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mesokit.execute.cpu.physics import of_cells
 from mesokit.execute.cpu.strips.layout import LANES, QUAD, record_length, share, sums_length
 from mesokit.execute.cpu.strips.records import spread, take
 from mesokit.execute.cpu.strips.rows import load_scratch, load_values, store_scratch, store_values
 from mesokit.execute.cpu.strips.terms import nothing_found, read_sums
 from mesokit.execute.neighbours.gradient import gradient_at
 from mesokit.execute.ranks.messages.shared import any_own, key_of, shares
+from mesokit.kernels.kernel import inner
 from mesokit.kernels.part import stage
 from mesokit.method.mpcd.collision.protocol import Cell, freedom
 from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
@@ -130,7 +132,7 @@ def cell_at(which, i):
 
 
 @scalar
-def settle_batch(team, now, physics, fluid, which, count):
+def settle_batch(team, counter, physics, fluid, which, count):
     """What the cells of a batch need to collide: rows of coefficients from rows of sums."""
     cells, scratch = fluid.cells, fluid.scratch
     rows, totals = scratch.coefficients[team.thread], scratch.terms[team.thread]
@@ -139,7 +141,7 @@ def settle_batch(team, now, physics, fluid, which, count):
     for i in range(LANES):
         found, cell = load_scratch(totals, i, none), cell_at(which, i)
         gradient, key = gradient_at(cells.field, cell), key_of(cells.shared, cell)
-        answer, sure = needs_of_cell(physics, now.counter, key, found, gradient, False)
+        answer, sure = needs_of_cell(physics, counter, key, found, gradient, False)
         doubtful[i] = 1 - np.int64(sure)
         in_doubt |= doubtful[i]
         store_scratch(rows, i, answer)
@@ -147,7 +149,7 @@ def settle_batch(team, now, physics, fluid, which, count):
         if doubtful[i] != 0:
             found, cell = load_scratch(totals, i, none), cell_at(which, i)
             gradient, key = gradient_at(cells.field, cell), key_of(cells.shared, cell)
-            store_scratch(rows, i, sure_needs(physics, now.counter, key, found, gradient))
+            store_scratch(rows, i, sure_needs(physics, counter, key, found, gradient))
 
 
 @by_type
@@ -160,9 +162,14 @@ def _nobody(fluid):
     return fluid.particles.filling.molecules == 0
 
 
-@stage
+@inner
 def collide(team, now, physics, fluid):
     """Coefficients of every cell from its sums, which are cleared for the next step."""
+    _collide(team, now.counter, of_cells(physics), fluid)
+
+
+@stage
+def _collide(team, counter, physics, fluid):
     cells, scratch = fluid.cells, fluid.scratch
     rows, totals = scratch.coefficients[team.thread], scratch.terms[team.thread]
     batches = (cells.number + LANES - 1) // LANES
@@ -175,5 +182,5 @@ def collide(team, now, physics, fluid):
         start = b * LANES
         count = min(LANES, cells.number - start)
         total_block(cells.sums, start, count, totals, physics.terms)
-        settle_batch(team, now, physics, fluid, InRow(start), count)
+        settle_batch(team, counter, physics, fluid, InRow(start), count)
         put_block(cells.coefficients, start, count, rows, physics.coefficients)

@@ -2,12 +2,12 @@
 
 from typing import Any, NamedTuple
 
-from mesokit.kernels.group import by_address
+from mesokit.kernels.group import by_address, without
 from mesokit.method.mpcd.field.protocol import field_at
 from mesokit.scalar.jit import by_type, scalar
 
 
-@by_address()
+@by_address(in_words=True)
 class Physics(NamedTuple):
     """Parameters of the parts, and tuples as long as what is kept for particles and cells."""
 
@@ -25,6 +25,12 @@ class Physics(NamedTuple):
     terms: tuple  # as long as what it adds to the sums of its cell
     scales: tuple  # whole numbers per unit of each of these terms; momentum comes first
     stress_scale: float  # whole numbers per unit of m v^2 in the stress
+
+
+# What stages do not look at, so that kinds of case that differ in it have the same stage.
+of_particles = without("thermostat")
+of_cells = without("field", "solid", "molecule")
+of_walls = without("thermostat", "field", "molecule")
 
 
 @scalar

@@ -11,7 +11,7 @@ from mesokit.execute.beads.molecules import Batch, fly_molecules
 from mesokit.execute.beads.registers import WIDTH, bead_at, bead_to_strip, strip_to_bead
 from mesokit.execute.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
 from mesokit.execute.cpu.near_solids import forget, look_around_strip
-from mesokit.execute.cpu.physics import field_of
+from mesokit.execute.cpu.physics import field_of, of_particles
 from mesokit.execute.cpu.stages import (
     add_strip,
     bin_strip,
@@ -50,8 +50,12 @@ def stream(team, now, physics, fluid):
     step n + 1 after STREAM, with their cells and cell sums.
     """
     if len(field_of(physics, "molecule")) == 0:
-        return lambda team, now, physics, fluid: _stream_singles(team, now, physics, fluid)
-    return lambda team, now, physics, fluid: _stream_molecules(team, now, physics, fluid)
+        return lambda team, now, physics, fluid: _stream_singles(
+            team, now, of_particles(physics), fluid
+        )
+    return lambda team, now, physics, fluid: _stream_molecules(
+        team, now, of_particles(physics), fluid
+    )
 
 
 @stage  # two places call it

@@ -15,7 +15,7 @@ import numpy as np
 
 from mesokit.execute.cpu.grid import in_cell
 from mesokit.execute.cpu.groups import MEASURE_WALLS
-from mesokit.execute.cpu.physics import momentum_scale
+from mesokit.execute.cpu.physics import momentum_scale, of_walls
 from mesokit.execute.cpu.strips.cell_energy import asks, many_energy_term, many_tally
 from mesokit.execute.cpu.strips.layout import LANES, SCRATCH_ROW, record_length, share, sums_length
 from mesokit.execute.cpu.strips.rows import load_scratch, load_values, store_scratch
@@ -25,11 +25,12 @@ from mesokit.execute.virtual.particles import MOST
 from mesokit.geometry.cut import surface_flow
 from mesokit.geometry.solids.clearance import offset_of, offsets_along
 from mesokit.geometry.solids.cut_cube import share_and_depth
+from mesokit.kernels.part import stage
 from mesokit.method.mpcd.collision.protocol import collide, contribute
 from mesokit.scalar.fixed_point import ROUNDER_BITS, rounded
 from mesokit.scalar.gamma import gamma_number, likely
 from mesokit.scalar.intrinsics import floor, with_item
-from mesokit.scalar.jit import scalar, seldom
+from mesokit.scalar.jit import scalar
 from mesokit.scalar.poisson import MOST_MEAN, MOST_NUMBER, none_found, one_more
 from mesokit.scalar.random import (
     FIRST_VIRTUAL,
@@ -133,10 +134,10 @@ def draw_batch(physics, numbers, counter, work):
 
 def fill_cells(team, now, physics, fluid, walls):
     """Virtual particles in every cut cell, from batches of cells."""
-    _fill(team, now, physics, fluid.cells.sums[team.thread], walls.virtual)
+    _fill(team, now, of_walls(physics), fluid.cells.sums[team.thread], walls.virtual)
 
 
-@seldom
+@stage
 def _fill(team, now, physics, sums, virtual):
     cells, offset = virtual.per_cell, offset_of(physics.solid, now.grid)
     work, zero = cells.work[team.thread], physics.zero
@@ -220,10 +221,10 @@ def add_many(sums, start, number, tallied, terms):
 def recoil_per_cell(team, now, physics, fluid, walls):
     """What walls take by the collision of the cells that they cut."""
     if now.flags & MEASURE_WALLS:
-        _recoil(team, now, physics, fluid, walls.virtual)
+        _recoil(team, now, of_walls(physics), fluid, walls.virtual)
 
 
-@seldom
+@stage
 def _recoil(team, now, physics, fluid, virtual):
     solid, cells, zero = physics.solid, virtual.per_cell, physics.zero
     d, thread, scale = len(zero), team.thread, momentum_scale(physics)

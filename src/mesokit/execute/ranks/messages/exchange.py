@@ -229,7 +229,7 @@ def answer_batch(team, now, physics, fluid, beads, start, count):
     for i in range(count):
         found = sums_of_cell(cells.sums, rows[start + i, 0], physics.terms)
         store_scratch(totals, i, found)
-    settle_batch(team, now, physics, fluid, Asked(rows, start, count), count)
+    settle_batch(team, now.counter, physics, fluid, Asked(rows, start, count), count)
     for i in range(count):
         answer = load_scratch(out, i, physics.coefficients)
         write_row(answers, start + i, joint_answer(beads, rows[start + i, 0], answer))
