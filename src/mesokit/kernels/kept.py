@@ -28,11 +28,18 @@ HERE = Path(__file__).parent
 class Counts:
     """What this process has made and found, and why it was made."""
 
-    def __init__(self) -> None:
-        self.parts_made = self.parts_found = self.kernels_made = self.kernels_found = 0
-        self.stages_made = self.stages_found = 0
-        self.explains = False  # whether reasons are looked for, which takes time
+    def __init__(self, explains: bool = False) -> None:
+        self.parts_made = self.stages_made = self.kernels_made = 0
+        self.parts_found = self.stages_found = self.kernels_found = 0
+        self.explains = explains  # whether reasons are looked for, which takes time
         self.reasons: dict[str, str] = {}  # by the name of what was made
+
+    def add_made(self, other: Counts) -> None:
+        """Count what another process made for this one."""
+        self.parts_made += other.parts_made
+        self.stages_made += other.stages_made
+        self.kernels_made += other.kernels_made
+        self.reasons.update(other.reasons)
 
 
 counts = Counts()

@@ -12,10 +12,11 @@ import pickle
 from collections.abc import Callable
 from typing import Any
 
-from numba import njit
+from numba import njit, typeof
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.serialize import dumps
 
+from mesokit.kernels import ahead
 from mesokit.kernels.group import all_packed
 from mesokit.kernels.kept import counts, kept, versions
 from mesokit.kernels.made_of import Unknown, code_of, describe_type, digest
@@ -71,7 +72,14 @@ class _Kernel(CPUDispatcher):
     def __call__(self, *arguments: Any) -> Any:
         return super().__call__(*all_packed(arguments))
 
+    def compile_ahead(self, *arguments: Any) -> None:
+        """Compile for arguments like these on another core, if that is needed and can be done."""
+        given = tuple(map(typeof, all_packed(arguments)))
+        if given not in self.overloads and not self._cache.knows(given):
+            ahead.begin(self, lambda: self.compile(given))
+
     def compile(self, sig: Any) -> Any:
+        ahead.end(self)
         usual = gc.get_threshold()
         gc.set_threshold(20_000, 10, 1000)
         try:
@@ -103,6 +111,11 @@ class _MachineCode:
         if found is not None:
             counts.kernels_found += 1
         return found
+
+    def knows(self, signature: Any) -> bool:
+        """Whether the kernel for these types is kept."""
+        key = self._key(signature)
+        return key is not None and kept().find(key) is not None
 
     def end_turn(self) -> None:
         """Let other processes look for what was compiled here."""

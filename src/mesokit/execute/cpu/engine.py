@@ -57,6 +57,7 @@ class CPU:
         self.readings = Readings(self.memory, self.threads)
         self.solutes = self.readings.solutes
         self.n, self.dimension, self.box = self.numbers.n, self.numbers.dimension, self.numbers.box
+        self.threads.compile_ahead(advance, self._course(0, 0), *self.memory.groups())
 
     @property
     def step(self) -> int:
@@ -118,8 +119,13 @@ class CPU:
 
     def _steps(self, steps: int, what: int) -> None:
         """Let the threads do so many steps."""
+        course = self._course(steps, what)
+        self.threads.run(advance, course, *self.memory.groups())
+        self.memory.step += steps
+
+    def _course(self, steps: int, what: int) -> Course:
         memory, case = self.memory, self.case
-        course = Course(
+        return Course(
             steps=steps,
             done=self.step,
             seed=case.run.seed,
@@ -129,8 +135,6 @@ class CPU:
             box=memory.box,
             grid=memory.grid,
         )
-        self.threads.run(advance, course, *memory.groups())
-        memory.step += steps
 
     def _check_bonds(self) -> None:
         """That no bond was torn in the last steps."""

@@ -99,6 +99,10 @@ class Threads:
             if error is not None:
                 raise error
 
+    def compile_ahead(self, kernel: Any, *arguments: Any) -> None:
+        """Have another core compile what `run` will call, if there is one."""
+        kernel.compile_ahead(self._own, *arguments)
+
     def _team(self, thread: int) -> Any:
         return packed(Team(thread, self.size, self._gate, self.clock))
 

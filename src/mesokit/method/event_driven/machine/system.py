@@ -99,6 +99,8 @@ class System:
         body[:, groups.LAST] = -np.inf
         spins = np.asarray(spins).reshape(self.n, -1)
         body[:, groups.SPIN : groups.SPIN + spins.shape[1]] = spins
+        self.lists, self.queue = self._lists(), self._queue()
+        advance.compile_ahead(*self._arguments(0.0))
         synchronise(self.world, self.spheres, 0.0)
         self.begin_window(0)
 
@@ -230,8 +232,7 @@ class System:
     def _run(self, end: float) -> None:
         began = self.now
         while True:
-            groups_now = self.world, self.given.rules, self.spheres, self.lists, self.queue
-            ended = advance(*self._packing(*groups_now, self.tally), end)
+            ended = advance(*self._arguments(end))
             if ended == groups.DONE:
                 return
             if ended == groups.COLLAPSED:
@@ -242,6 +243,10 @@ class System:
             self.room *= 2
             self.now = float(self.queue.time[self.queue.heap[0]])
             self.prepare()
+
+    def _arguments(self, end: float) -> tuple[Any, ...]:
+        moving = self.spheres, self.lists, self.queue, self.tally
+        return *self._packing(self.world, self.given.rules, *moving), end
 
     def _paused(self, began: float) -> float:
         """The time now. Raises RunError where too many events have come since it began."""

@@ -54,6 +54,7 @@ class Flocks:
         self.seed, self.step, self.side = case.run.seed, 0, 0
         self.team, self._packing = Threads(self.threads), Packing()
         self.seconds = {"steps": 0.0}
+        self.team.compile_ahead(step, *self._arguments(0))
 
     def start(self, positions: Array, headings: Array) -> None:
         """Put birds at places (n, d), in or out of the box, with headings (n, d)."""
@@ -72,11 +73,13 @@ class Flocks:
     def advance(self, steps: int, measure_stress: bool = False) -> None:
         """Run some steps."""
         began = perf_counter()
-        counter = Counter(np.uint64(self.seed), np.uint64(self.step))
-        groups = self._packing(self.physics, self.flock)
-        self.team.run(step, counter, steps, self.side, *groups)
+        self.team.run(step, *self._arguments(steps))
         self.step, self.side = self.step + steps, (self.side + steps) % 2
         self.seconds["steps"] += perf_counter() - began
+
+    def _arguments(self, steps: int) -> tuple[Any, ...]:
+        counter = Counter(np.uint64(self.seed), np.uint64(self.step))
+        return counter, steps, self.side, *self._packing(self.physics, self.flock)
 
     def check(self) -> None:
         """Nothing can break down: speeds are given."""

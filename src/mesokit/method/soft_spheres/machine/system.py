@@ -103,6 +103,7 @@ class System:
         surfaces = len(given.rows) + (0 if given.others is None else len(given.others.own))
         self.rooms = rooms(threads, surfaces)
         self.noted_forces()
+        self.team.compile_ahead(advance, *self._arguments(0, 0))
 
     def noted_forces(self) -> None:
         """Forget how near spheres came."""
@@ -182,18 +183,21 @@ class System:
 
     def run(self, step: int, steps: int) -> None:
         """So many steps from a step on. Raises RunError where forces are beyond all bounds."""
-        law, motion, done = self.given.law, self.given.motion, 0
+        done = 0
         self.noted[:, groups.PENDING] = 0.0
         while done < steps or steps == 0:
-            counter = Counter(np.uint64(self.given.seed), np.uint64(step + done))
-            law, motion, world, rooms = self._packing(law, motion, self.world, self.rooms)
-            self.team.run(advance, counter, steps - done, law, motion, world, self.noted, rooms)
+            self.team.run(advance, *self._arguments(step + done, steps - done))
             done += int(self.noted[0, groups.DONE])
             self._look()
             if self.noted[0, groups.PENDING]:
                 self.renew()
             if steps == 0:
                 return
+
+    def _arguments(self, step: int, steps: int) -> tuple[Any, ...]:
+        given, counter = self.given, Counter(np.uint64(self.given.seed), np.uint64(step))
+        law, motion, world, rooms = self._packing(given.law, given.motion, self.world, self.rooms)
+        return counter, steps, law, motion, world, self.noted, rooms
 
     def _look(self) -> None:
         law, given = self.noted, self.given
