@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator
 HOMES = {
     "running/cores.py": {"os.sched_getaffinity"},
     "case/warnings.py": {"os.sysconf"},
+    "kernels/ahead.py": {"os.fork", "os.sched_getaffinity", "signal.SIGKILL"},
     "kernels/made_of.py": {"ExternalFunction"},
     "kernels/store.py": {"/proc", "os.getuid"},
     "scalar/system.py": {"time.CLOCK_MONOTONIC", "ctypes", "ExternalFunction"},
