@@ -154,7 +154,7 @@ def test_an_edit_below_a_stage_reaches_the_kernels(place: Place) -> None:
 def test_what_is_hidden_cannot_be_read(place: Place) -> None:
     text = place.law.read_text()
     place.law.write_text(text.replace("+ physics.rule[0]", "+ physics.field[0]"))
-    with pytest.raises(AssertionError, match="Physics.field is hidden from this stage"):
+    with pytest.raises(AssertionError, match=r"Physics\.field is hidden from this stage"):
         place.run()
     place.law.write_text(text)
 

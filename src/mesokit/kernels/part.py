@@ -337,7 +337,7 @@ def _known_to_numba(library: Any, about: Any, environment: Any) -> Any:
 class PartCompiler(Compiler):
     """Numba's passes without those that parts have no use for; what is kept needs none of them."""
 
-    lowering: type = _Lowering
+    lowering: Any = _Lowering
 
     def define_pipelines(self) -> list:
         """The passes in order."""
