@@ -2,15 +2,13 @@
 
 from typing import Any
 
-from numba import types
-from numba.core import cgutils
-from numba.extending import intrinsic
+from mesokit.kernels.later import intrinsic
 
 
 @intrinsic
 def mul_add(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
     """a * b + c, rounded once: one instruction, and the same bits wherever it is compiled."""
-    double = types.float64
+    from numba.types import float64 as double
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         given = zip(arguments, signature.args, strict=True)
@@ -23,7 +21,7 @@ def mul_add(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
 @intrinsic
 def floor(typing_context: Any, x: Any) -> Any:
     """The largest whole number that is not above x, as a float."""
-    double = types.float64
+    from numba.types import float64 as double
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         value = context.cast(builder, arguments[0], signature.args[0], double)
@@ -36,6 +34,9 @@ def floor(typing_context: Any, x: Any) -> Any:
 @intrinsic
 def with_item(typing_context: Any, values: Any, k: Any, x: Any) -> Any:
     """The tuple of numbers with element k replaced by x."""
+    from numba import types
+    from numba.core import cgutils
+
     if not (isinstance(values, types.UniTuple) and isinstance(k, types.Integer)):
         return None
 
@@ -55,9 +56,10 @@ def with_item(typing_context: Any, values: Any, k: Any, x: Any) -> Any:
 @intrinsic
 def not_inlined(typing_context: Any) -> Any:
     """The function that says this is called, on every target, wherever it is used."""
+    from numba.types import void
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         builder.function.attributes.add("noinline")
         return context.get_dummy_value()
 
-    return types.void(), generate
+    return void(), generate
