@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -44,8 +45,19 @@ class Later:
         """Run it."""
         return self.made(*arguments)
 
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        """By its place, as functions are pickled; what has none, as what was made."""
+        found: Any = sys.modules.get(self.__module__)
+        for part in self.__qualname__.split("."):
+            found = getattr(found, part, None)
+        return self.__qualname__ if found is self else (_itself, (self.made,))
+
     def __getattr__(self, name: str) -> Any:
         return getattr(self.made, name)
+
+
+def _itself(made: Any) -> Any:
+    return made
 
 
 def intrinsic(function: Callable) -> Any:
