@@ -40,6 +40,7 @@ ROWS = {
     "ranks/": ("errors", "ranks"),
     "ranks/mpiexec.py": ("errors", "ranks", "running.signals"),
     "running/cores.py": (),
+    "running/compiling.py": ("kernels.kept",),
     "running/warm.py": ("case", "kernels", "simulation"),
     "running/signals.py": (),
     "running/": (
