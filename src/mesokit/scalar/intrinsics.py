@@ -8,7 +8,9 @@ from mesokit.kernels.later import intrinsic
 @intrinsic
 def mul_add(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
     """a * b + c, rounded once: one instruction, and the same bits wherever it is compiled."""
-    from numba.types import float64 as double
+    from numba import types
+
+    double = types.float64
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         given = zip(arguments, signature.args, strict=True)
@@ -21,7 +23,9 @@ def mul_add(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
 @intrinsic
 def floor(typing_context: Any, x: Any) -> Any:
     """The largest whole number that is not above x, as a float."""
-    from numba.types import float64 as double
+    from numba import types
+
+    double = types.float64
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         value = context.cast(builder, arguments[0], signature.args[0], double)
@@ -56,10 +60,10 @@ def with_item(typing_context: Any, values: Any, k: Any, x: Any) -> Any:
 @intrinsic
 def not_inlined(typing_context: Any) -> Any:
     """The function that says this is called, on every target, wherever it is used."""
-    from numba.types import void
+    from numba import types
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         builder.function.attributes.add("noinline")
         return context.get_dummy_value()
 
-    return void(), generate
+    return types.void(), generate
