@@ -92,11 +92,12 @@ def cache(clear: bool, file: Path | None) -> None:
     else:
         click.echo(f"store: {own.file}{'' if own.writes else ' (can only be read)'}")
         counted = own.counts()
-        show_table([
+        rows = [
             ("size", size_text(own.size), f"at most {size_text(store.BOUND)}"),
             ("kernels", str(counted["kernels"]), "machine code for this processor"),
             ("parts", str(counted["parts"]), "for all kernels to be made of"),
             ("kinds of case", str(counted["kinds"]), "that have run here"),
-        ])  # fmt: skip
+        ]
+        show_table(rows)
     holds = f"{shipped.counts()['parts']} parts in" if shipped else "none; they would be in"
     click.echo(f"with the package: {holds} {came}")
