@@ -114,7 +114,7 @@ def test_check_says_that_compiling_is_ahead(case_file, tmp_path):
     told = " ".join(told.split())
     assert "first start some seconds compiling, once for each kind of case" in told
     assert "up to a minute where nothing is kept yet" in told
-    assert "280 MB while it compiles, the first time" in told
+    assert "290 MB while it compiles, the first time" in told
 
 
 def test_what_is_done_before_the_first_step_is_said_when_it_changes(monkeypatch):

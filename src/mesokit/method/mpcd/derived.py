@@ -39,7 +39,7 @@ BYTES = {
     "bead": 500,
 }
 
-COMPILING = {"fluid": 280e6, "walls": 50e6, "solids": 10e6, "beads": 40e6}
+COMPILING = {"fluid": 290e6, "walls": 40e6, "solids": 20e6, "beads": 50e6}
 
 
 def derive(case: Case, threads: int | None = None) -> Derived:
