@@ -40,6 +40,7 @@ ROWS = {
     "ranks/": ("errors", "ranks"),
     "ranks/mpiexec.py": ("errors", "ranks", "running.signals"),
     "running/cores.py": (),
+    "running/compiling.py": ("kernels.kept",),
     "running/warm.py": ("case", "kernels", "simulation"),
     "running/signals.py": (),
     "running/": (
@@ -204,6 +205,15 @@ def test_imports_that_are_forbidden_are_seen() -> None:
 def test_every_rule_is_about_a_file() -> None:
     for key in ROWS:
         assert (SOURCE / key).exists(), key
+
+
+def test_the_types_of_numba_stay_the_same_module(nodes: dict[str, list[ast.AST]]) -> None:
+    """`import numba.types` gives that name another module: kernels would not be known again."""
+    for name, of_file in nodes.items():
+        for node in of_file:
+            named = [node.module] if isinstance(node, ast.ImportFrom) else []
+            named += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            assert "numba.types" not in named, name
 
 
 def test_no_circle_of_imports(imported: dict[str, set[str]]) -> None:

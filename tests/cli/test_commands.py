@@ -355,13 +355,13 @@ class TestProgress:
         stream = io.StringIO()
         reporter = progress.Reporter(stream=stream)
         reporter.start(1000, particles=500)
-        reporter.compiling()
+        reporter.compiling("compiling (once)")
         for step in range(10, 1001, 10):  # 100 steps a second
             reporter.update(step)
         reporter.finish()
         lines = stream.getvalue().splitlines()
         assert lines[0] == "running: 1000 steps of 500 particles"
-        assert "compiling" in lines[1]
+        assert lines[1] == "compiling (once)"
         assert "%, 100 steps/s, 0.05 M particle-steps/s, 8.9 s left" in lines[2]
         assert lines[-1].startswith("running: step 1000 of 1000 after")
         assert len(lines) == 5
@@ -409,7 +409,7 @@ class TestProgress:
         stream = Terminal()
         reporter = Reporter(stream=stream)
         reporter.start(10, particles=5)
-        reporter.compiling()
+        reporter.compiling("compiling (once)")
         reporter.update(10)
         reporter.finish()
         assert "%" in stream.getvalue()
@@ -419,7 +419,7 @@ class TestProgress:
 
         reporter = Reporter(quiet=True)
         reporter.start(10, particles=5)
-        reporter.compiling()
+        reporter.compiling("compiling (once)")
         reporter.update(10)
         reporter.finish()
         captured = capsys.readouterr()

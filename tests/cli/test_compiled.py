@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from mesokit.kernels.kept import shipped_file
+
 CASE = "run = { steps = 1000 }\nbox = { size = [6, 6] }\n"
 
 
@@ -27,6 +29,8 @@ def test_what_was_warmed_is_there_until_it_is_cleared(tmp_path: Path) -> None:
     assert "case.toml: 0 kernels, 0 parts" in mesokit(tmp_path, "warm", "case.toml")
     assert {path.name for path in tmp_path.iterdir()} == {"case.toml", "kernels"}
     shown = " ".join(mesokit(tmp_path, "cache").split())
+    place = tmp_path / "kernels" / "mesokit" / "compiled-1.sqlite"
+    assert shown.startswith(f"store: {place} ") and shown.endswith(f" {shipped_file()}")
     assert "kinds of case 1" in shown and "kernels 0" not in shown
     exported = mesokit(tmp_path, "cache", "--export", "parts.sqlite")
     assert not exported.startswith("0 parts") and (tmp_path / "parts.sqlite").exists()

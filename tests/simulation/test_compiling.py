@@ -3,6 +3,7 @@
 import ctypes
 import dataclasses
 import os
+import queue
 import signal
 import subprocess
 import sys
@@ -14,8 +15,10 @@ import pytest
 import mesokit
 from mesokit import AT, Box, Case, Conservation, Fluid, Plates, Run, Simulation
 from mesokit.case import kind
+from mesokit.kernels.kept import Counts
 from mesokit.kernels.store import Store
 from mesokit.method import templates
+from mesokit.running import compiling
 from mesokit.running.signals import Stopped
 
 SOURCE = str(Path(mesokit.__file__).parent.parent)
@@ -108,5 +111,23 @@ def test_kinds_of_cases(monkeypatch, tmp_path):
 
 def test_check_says_that_compiling_is_ahead(case_file, tmp_path):
     told, _ = command(tmp_path, "check", case_file).communicate()
-    assert "first start" in told and "once for each kind of case" in told
-    assert "280 MB while it compiles, the first time" in " ".join(told.split())
+    told = " ".join(told.split())
+    assert "first start some seconds compiling, once for each kind of case" in told
+    assert "up to a minute where nothing is kept yet" in told
+    assert "290 MB while it compiles, the first time" in told
+
+
+def test_what_is_done_before_the_first_step_is_said_when_it_changes(monkeypatch):
+    """A start that only loads kernels is never said to compile."""
+    counts, said = Counts(), queue.SimpleQueue()
+    monkeypatch.setattr(compiling, "counts", counts)
+    monkeypatch.setattr(compiling, "SILENT", 0.001)
+    with compiling.telling(said.put):
+        assert said.get() == "loading kernels, or waiting for another process that compiles them"
+        counts.kernels_found = 1
+        assert said.get() == "loading kernels"
+        counts.parts_found = 7
+        assert said.get() == "compiling from parts that are kept (once)"
+        counts.parts_made = 1
+        assert said.get() == "compiling (once; kept for the next runs)"
+    assert said.empty()

@@ -56,7 +56,8 @@ def check(
         click.echo(in_json(record | ({"picture": str(drawn)} if drawn else {})))
         return
     click.echo(full.to_toml())
-    ahead = [("first start", "up to a minute", "compiling, once for each kind of case")]
+    once = "compiling, once for each kind of case; up to a minute where nothing is kept yet"
+    ahead = [("first start", "some seconds", once)]
     show_table([*summary.rows, *([] if has_run(full) else ahead)])
     if full.units is not None and method.si is not None:
         click.echo(method.si(full))

@@ -68,7 +68,7 @@ def cache(clear: bool, file: Path | None) -> None:
 
     from mesokit.case.amounts import size_text
     from mesokit.kernels import store
-    from mesokit.kernels.kept import era, forget, kept, shipped_file
+    from mesokit.kernels.kept import forget, kept, shipped_file
     from mesokit.kernels.ship import export
 
     if clear:
@@ -86,18 +86,18 @@ def cache(clear: bool, file: Path | None) -> None:
         click.echo(f"{number} parts, {size_text(file.stat().st_size)}: {file}")
         return
     here, came = kept(), shipped_file()
-    own = here.own
+    own, shipped = here.own, here.shipped
     if own is None:
-        rows = [("store", "none", here.trouble)]
+        click.echo(f"store: none: {here.trouble}")
     else:
+        click.echo(f"store: {own.file}{'' if own.writes else ' (can only be read)'}")
         counted = own.counts()
         rows = [
-            ("store", str(own.file), "" if own.writes else "can only be read"),
             ("size", size_text(own.size), f"at most {size_text(store.BOUND)}"),
             ("kernels", str(counted["kernels"]), "machine code for this processor"),
             ("parts", str(counted["parts"]), "for all kernels to be made of"),
             ("kinds of case", str(counted["kinds"]), "that have run here"),
         ]
-    parts = "" if here.shipped is None else f"{here.shipped.counts()['parts']} parts"
-    rows.append(("shipped", str(came) if came.exists() else "none", parts or f"for {era()}"))
-    show_table(rows)
+        show_table(rows)
+    holds = f"{shipped.counts()['parts']} parts in" if shipped else "none; they would be in"
+    click.echo(f"with the package: {holds} {came}")

@@ -14,7 +14,7 @@ import hashlib
 import importlib
 import sys
 import types as python_types
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -24,10 +24,6 @@ from numba.core.registry import CPUDispatcher
 
 # Packages whose versions are part of every key: their functions are known by name alone.
 KNOWN = ("numpy", "numba", "llvmlite", "builtins", "math", "operator", "typing", "functools")
-
-# Functions whose code is chosen by the types of their arguments: what chooses it, by the function
-# that compiled code names. `generic` functions are not here: their needs say what was chosen.
-CHOOSERS: dict[Callable, Callable] = {}
 
 
 class Unknown(Exception):
@@ -185,9 +181,9 @@ def _callable(value: Any, within: tuple) -> str:
         return f"external {value.symbol} {value.sig}"
     if hasattr(value, "implementation"):  # of a generic function
         return f"generic {place_of(value)}"
-    if value in CHOOSERS:  # below another one it is a name: what it gives is compiled, and a need
-        chooser = CHOOSERS[value]
-        if not _choosers().isdisjoint(within):
+    chooser = getattr(value, "chooser", None)
+    if chooser is not None:  # code is chosen by types: what it gives is compiled, and a need
+        if any(hasattr(function, "chooser") for function in within):
             return f"overloaded {place_of(value)}"
         return f"overloaded {_function(chooser, within)}"
     function = getattr(value, "__wrapped__", value)
@@ -199,10 +195,6 @@ def _callable(value: Any, within: tuple) -> str:
             f"built in {getattr(value, '__name__', None) or describe_type(types.unliteral(value))}"
         )
     raise Unknown(repr(value))
-
-
-def _choosers() -> set[Callable]:
-    return set(CHOOSERS.values())
 
 
 # --- types ----------------------------------------------------------------------------------------

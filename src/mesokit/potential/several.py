@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import types
 from numpy.typing import NDArray
 
 from mesokit.errors import CaseError
@@ -87,6 +86,8 @@ def row_of(group, number):
 @by_type
 def potential_at(group, row):
     """The potential of a row."""
+    from numba import types
+
     fields = group.types[group.fields.index("example")]
     reads = [
         f"{'word' if isinstance(kind, types.Integer) else 'real'}"

@@ -98,12 +98,11 @@ class Reporter:
         if self.bar is not None and self.task is not None:
             self.bar.update(self.task, total=total_steps)
 
-    def compiling(self) -> None:
-        """The first step of a new version takes long: say why, and leave it out of the rates."""
+    def compiling(self, words: str) -> None:
+        """Kernels are compiled or loaded: say so, and leave it out of the rates."""
         if self.quiet:
             return
         self.fresh = True
-        words = "compiling (once; kept for the next runs)"
         if self.bar is not None and self.task is not None:
             self.bar.update(self.task, words=words)
         else:

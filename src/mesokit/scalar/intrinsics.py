@@ -2,14 +2,14 @@
 
 from typing import Any
 
-from numba import types
-from numba.core import cgutils
-from numba.extending import intrinsic
+from mesokit.kernels.later import intrinsic
 
 
 @intrinsic
 def mul_add(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
     """a * b + c, rounded once: one instruction, and the same bits wherever it is compiled."""
+    from numba import types
+
     double = types.float64
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -23,6 +23,8 @@ def mul_add(typing_context: Any, a: Any, b: Any, c: Any) -> Any:
 @intrinsic
 def floor(typing_context: Any, x: Any) -> Any:
     """The largest whole number that is not above x, as a float."""
+    from numba import types
+
     double = types.float64
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -36,6 +38,9 @@ def floor(typing_context: Any, x: Any) -> Any:
 @intrinsic
 def with_item(typing_context: Any, values: Any, k: Any, x: Any) -> Any:
     """The tuple of numbers with element k replaced by x."""
+    from numba import types
+    from numba.core import cgutils
+
     if not (isinstance(values, types.UniTuple) and isinstance(k, types.Integer)):
         return None
 
@@ -55,6 +60,7 @@ def with_item(typing_context: Any, values: Any, k: Any, x: Any) -> Any:
 @intrinsic
 def not_inlined(typing_context: Any) -> Any:
     """The function that says this is called, on every target, wherever it is used."""
+    from numba import types
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         builder.function.attributes.add("noinline")

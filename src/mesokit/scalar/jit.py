@@ -5,11 +5,7 @@ import inspect
 from collections.abc import Callable
 from typing import Any
 
-from numba import njit
-from numba.extending import overload
-
-from mesokit.kernels.made_of import CHOOSERS
-from mesokit.kernels.part import OPTIONS, part
+from mesokit.kernels.later import Later
 from mesokit.scalar.intrinsics import not_inlined
 
 
@@ -27,7 +23,13 @@ def scalar(function: Callable) -> Any:
     >>> kinetic_energy(1.0, 2.0)
     2.0
     """
-    return part(function, forceinline=True, _nrt=False)
+    return Later(function, lambda: _part(function, forceinline=True, _nrt=False))
+
+
+def _part(function: Callable, **options: bool) -> Any:
+    from mesokit.kernels.part import part
+
+    return part(function, **options)
 
 
 def seldom(function: Callable) -> Any:
@@ -37,13 +39,19 @@ def seldom(function: Callable) -> Any:
     to those that it calls. What CUDA is given as the function is one that says of itself that it
     is not to be inlined, and then does the work.
     """
-    made = part(function, forceinline=False, nogil=True, _nrt=False)
-    names = ", ".join(inspect.signature(function).parameters)
-    space = {"not_inlined": not_inlined, "work": njit(inline="always", _nrt=False)(function)}
-    exec(f"def called({names}):\n    not_inlined()\n    return work({names})", space)
-    made.py_func = functools.update_wrapper(space["called"], function)
-    del made.py_func.__wrapped__  # numba would take its lines for those of this one
-    return made
+
+    def make() -> Any:
+        from numba import njit
+
+        made = _part(function, forceinline=False, nogil=True, _nrt=False)
+        names = ", ".join(inspect.signature(function).parameters)
+        space = {"not_inlined": not_inlined, "work": njit(inline="always", _nrt=False)(function)}
+        exec(f"def called({names}):\n    not_inlined()\n    return work({names})", space)
+        made.py_func = functools.update_wrapper(space["called"], function)
+        del made.py_func.__wrapped__  # numba would take its lines for those of this one
+        return made
+
+    return Later(function, make)
 
 
 def by_type(choose: Callable) -> Any:
@@ -52,11 +60,17 @@ def by_type(choose: Callable) -> Any:
 
 
 def _overloaded(name: Callable, choose: Callable) -> Any:
-    options = OPTIONS | {"forceinline": True, "_nrt": False}
-    overload(name, strict=False, jit_options=options)(choose)
-    if not hasattr(name, "implementation"):
-        CHOOSERS[name] = choose
-    return name
+    def make() -> Any:
+        from numba.extending import overload
+
+        from mesokit.kernels.part import OPTIONS
+
+        options = OPTIONS | {"forceinline": True, "_nrt": False}
+        overload(name, strict=False, jit_options=options)(choose)
+        return name
+
+    choose.chooser = choose  # type: ignore[attr-defined]
+    return Later(name, make, choose)
 
 
 def generic(stub: Callable) -> Any:
@@ -96,7 +110,7 @@ def generic(stub: Callable) -> Any:
         kind = getattr(arguments[0], "instance_class", None)
         chosen = found(kind)
         if chosen is not None:  # what is compiled depends on this choice
-            vars(chosen).setdefault("chosen_for", {})[dispatch, kind] = None
+            vars(chosen).setdefault("chosen_for", {})[made, kind] = None
         return chosen
 
     @functools.wraps(stub)
@@ -133,7 +147,8 @@ def generic(stub: Callable) -> Any:
     dispatch.register = register  # type: ignore[attr-defined]
     dispatch.otherwise = otherwise  # type: ignore[attr-defined]
     dispatch.plain = lambda *given: table[type(given[0])](*given)  # type: ignore[attr-defined]
-    return _overloaded(dispatch, choose)
+    made = _overloaded(dispatch, choose)
+    return made
 
 
 _compiled = functools.cache(scalar)

@@ -6,14 +6,12 @@ its time on handing them over. An address is one word. Whoever makes a table kee
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from llvmlite import ir
-from numba import types
-from numba.extending import intrinsic
 from numpy.typing import NDArray
+
+from mesokit.kernels.later import intrinsic
 
 
 def address(array: NDArray[Any]) -> int:
@@ -22,30 +20,30 @@ def address(array: NDArray[Any]) -> int:
     return int(array.ctypes.data)
 
 
-def _reader(kind: Any, element: Any, widen: Callable | None, doc: str) -> Any:
-    """The function (address, index) -> element."""
+def _reader(kind: str, element: str, doc: str) -> Any:
+    """The function (address, index) -> number of a kind, of elements of another that may be
+    shorter."""
 
     def read(typing_context: Any, start: Any, index: Any) -> Any:
-        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            base = builder.inttoptr(arguments[0], element.as_pointer())
-            value = builder.load(builder.gep(base, [arguments[1]]))
-            return widen(builder, value) if widen else value
+        from numba import types
 
-        return kind(types.int64, types.int64), generate
+        given, answer = getattr(types, element), getattr(types, kind)
+
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            pointer = context.get_value_type(given).as_pointer()
+            base = builder.inttoptr(arguments[0], pointer)
+            value = builder.load(builder.gep(base, [arguments[1]]))
+            return context.cast(builder, value, given, answer)
+
+        return answer(types.int64, types.int64), generate
 
     read.__doc__ = doc
     return intrinsic(read)
 
 
-real = _reader(types.float64, ir.DoubleType(), None, "float64 number `index` from an address.")
-short = _reader(types.float32, ir.FloatType(), None, "float32 number `index` from an address.")
-whole = _reader(
-    types.int64,
-    ir.IntType(32),
-    lambda builder, value: builder.sext(value, ir.IntType(64)),
-    "int32 number `index` from an address, as int64.",
-)
-
-word = _reader(types.int64, ir.IntType(64), None, "int64 number `index` from an address.")
+real = _reader("float64", "float64", "float64 number `index` from an address.")
+short = _reader("float32", "float32", "float32 number `index` from an address.")
+whole = _reader("int64", "int32", "int32 number `index` from an address, as int64.")
+word = _reader("int64", "int64", "int64 number `index` from an address.")
 
 assert np.dtype(np.intp).itemsize == 8

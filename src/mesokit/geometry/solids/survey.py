@@ -15,7 +15,7 @@ from mesokit.geometry.solids.bodies import (
     term_clearance,
 )
 from mesokit.geometry.solids.cut_cube import share_beyond
-from mesokit.kernels.kernel import kernel
+from mesokit.kernels.later import kernel
 from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import scalar, seldom
 from mesokit.scalar.vector import dot, row, scaled

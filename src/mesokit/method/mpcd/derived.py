@@ -39,7 +39,7 @@ BYTES = {
     "bead": 500,
 }
 
-COMPILING = {"fluid": 280e6, "walls": 130e6, "solids": 30e6, "beads": 60e6}
+COMPILING = {"fluid": 290e6, "walls": 40e6, "solids": 20e6, "beads": 50e6}
 
 
 def derive(case: Case, threads: int | None = None) -> Derived:
@@ -118,7 +118,7 @@ def compiling_memory(case: Case) -> int:
     >>> from mesokit import Box, Case, Fluid, Plates, Run
     >>> slit = Case(run=Run(steps=1), box=Box([9, 9]), fluid=Fluid(), walls=[Plates("y")])
     >>> compiling_memory(slit)
-    410000000
+    330000000
     """
     more = {
         "walls": bool(case.walls),
