@@ -82,11 +82,13 @@ validate: $(READY)
 	@$(BIN)/python validation/all.py
 
 # What a wheel for this Python and system brings, so that a first run compiles little of its own.
+# Begun from nothing: what an older file has would not be made again, and old parts would be shipped.
 PARTS := src/mesokit/kernels/shipped
 parts: export NUMBA_CACHE_DIR := build/parts
 parts: $(READY)
+	@rm -rf build/parts $(PARTS)
 	@$(BIN)/mesokit warm --all --quiet
 	@$(BIN)/mesokit cache --export "$(PARTS)/$$($(BIN)/python -c 'from mesokit.kernels.kept import era; print(era())').sqlite"
 
 clean:
-	@rm -rf .venv demo build/validation
+	@rm -rf .venv demo build/validation build/parts $(PARTS)
