@@ -366,6 +366,21 @@ def test_what_was_not_used_for_longest_goes_first(tmp_path: Path) -> None:
     assert store.size < before
 
 
+def test_a_store_keeps_to_its_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mesokit.kernels.store.BOUND", 10**6)
+    store = Store(tmp_path / "store.sqlite")
+    for day in range(30):
+        monkeypatch.setattr("mesokit.kernels.store._today", lambda day=day: day)
+        code = Code(f"code {day}", (), os.urandom(100_000))
+        store.keep(f"key {day}", Entry("name", frozenset(), b"", code.hash), [code])
+        assert list(store.find("key 0"))  # what is used again and again stays
+        [first] = store.find("key 0")
+        assert store.code(first.code)
+        store.note_used()
+        assert store.size <= 10**6 and list(store.find(f"key {day}"))
+    assert not list(store.find("key 1"))
+
+
 def test_a_home_on_the_network(tmp_path: Path) -> None:
     mounts = tmp_path / "mounts"
     mounts.write_text("disk / ext4 rw 0 0\nserver:/home /home nfs4 rw 0 0\n")
