@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 import zlib
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -107,11 +108,16 @@ class Place:
         self.law.write_text(LAW)
         self.store = root / "cache" / "mesokit" / "compiled-1.sqlite"
 
-    def run(self, before: str = "", program: str = PROGRAM, **more: str) -> dict:
-        """What a process that calls both kernels says; `before`: lines that come first."""
+    def run(
+        self, before: str = "", program: str = PROGRAM, within: Sequence[str] = (), **more: str
+    ) -> dict:
+        """What a process that calls both kernels says.
+
+        `before`: lines that come first; `within`: a command that runs it.
+        """
         done = subprocess.run(
-            [sys.executable, "-c", before + program], env=self.environment | more, cwd=self.root,
-            capture_output=True, text=True, timeout=300,
+            [*within, sys.executable, "-c", before + program], env=self.environment | more,
+            cwd=self.root, capture_output=True, text=True, timeout=300,
         )  # fmt: skip
         assert done.returncode == 0, done.stderr
         assert not done.stderr
@@ -304,6 +310,36 @@ def test_a_full_disk_ends_writing_not_the_run(place: Place) -> None:
     found = json.loads(done.stdout)
     assert found["sum"] == 144.0 and "full" in found["trouble"]
     assert place.run()["kernels_made"] == 1
+
+
+IN_OWN_MOUNTS = ["unshare", "--map-root-user", "--mount"]
+mounts = pytest.mark.skipif(
+    shutil.which("unshare") is None or subprocess.run([*IN_OWN_MOUNTS, "true"]).returncode != 0,
+    reason="users may not mount here",
+)
+
+
+@mounts
+def test_a_store_on_a_disk_that_is_read_only(place: Place) -> None:
+    """As in the image of a container."""
+    cache = place.root / "cache"
+    mount = f"mount --bind {cache} {cache} && mount -o remount,bind,ro {cache}"
+    found = place.run(within=[*IN_OWN_MOUNTS, "sh", "-c", f'{mount} && exec "$@"', "sh"])
+    assert found.items() >= NOTHING_MADE.items() and not found["trouble"]
+    place.edit("FACTOR = 3.0", "FACTOR = 6.0")
+    found = place.run(within=[*IN_OWN_MOUNTS, "sh", "-c", f'{mount} && exec "$@"', "sh"])
+    assert found["sum"] == 144.0 and found["kernels_made"] == found["kernels_found"] == 1
+
+
+@mounts
+@pytest.mark.parametrize("kilobytes", [4, 40, 120])
+def test_a_disk_that_is_full(tmp_path: Path, kilobytes: int) -> None:
+    place = Place(tmp_path)
+    cache = place.root / "cache"
+    cache.mkdir()
+    mount = f"mount -t tmpfs -o size={kilobytes}k none {cache}"
+    found = place.run(within=[*IN_OWN_MOUNTS, "sh", "-c", f'{mount} && exec "$@"', "sh"])
+    assert found["sum"] == 72.0 and found["kernels_made"] == 2 and found["trouble"]
 
 
 def test_two_processes_at_once(tmp_path: Path) -> None:

@@ -151,7 +151,9 @@ class Store:
             disk.execute("PRAGMA synchronous = NORMAL")
             disk.executescript(TABLES)
         except sqlite3.OperationalError:  # read-only or full: what is there can be read
-            uri = f"{self.file.as_uri()}?mode=ro"
+            # where nothing can be written SQLite has no place for its locks, nor need of any
+            locks = "" if os.access(self.file.parent, os.W_OK) else "&immutable=1"
+            uri = f"{self.file.as_uri()}?mode=ro{locks}"
             self.writes = False
             return sqlite3.connect(uri, PATIENCE, uri=True, check_same_thread=False)
         return disk
