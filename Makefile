@@ -35,10 +35,16 @@ $(READY): pyproject.toml
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev]'
 	@touch $(READY)
 
+# A clone makes the parts of all templates and examples once its first run has ended, at the lowest
+# priority: beside it, two processes would want the same cores and the same kernels.
+WARM := build/warm.log
 demo: $(READY)
 	@$(BIN)/python -c 'import shutil; shutil.rmtree("demo", ignore_errors=True)'
 	@$(BIN)/mesokit run src/mesokit/method/mpcd/templates/poiseuille.toml --output demo
 	@echo "look at demo/velocity-profile.png"
+	@mkdir -p build
+	@[ -e $(WARM) ] || echo "compiling other kinds of case in the background, once; see $(WARM)"
+	@[ -e $(WARM) ] || nohup nice -n 19 $(BIN)/mesokit warm --all </dev/null >$(WARM) 2>&1 &
 
 TEST := $(BIN)/python -m pytest -n 2 --dist worksteal
 # What each test takes: tables that CI prints and keeps
@@ -82,11 +88,16 @@ validate: $(READY)
 	@$(BIN)/python validation/all.py
 
 # What a wheel for this Python and system brings, so that a first run compiles little of its own.
+# Begun from nothing: what an older file has would not be made again, and old parts would be shipped.
 PARTS := src/mesokit/kernels/shipped
 parts: export NUMBA_CACHE_DIR := build/parts
 parts: $(READY)
+	@rm -rf build/parts $(PARTS)
 	@$(BIN)/mesokit warm --all --quiet
+ifneq ($(OS),Windows_NT)  # which has no MPI
+	@$(BIN)/mesokit warm --all --quiet --ranks 2
+endif
 	@$(BIN)/mesokit cache --export "$(PARTS)/$$($(BIN)/python -c 'from mesokit.kernels.kept import era; print(era())').sqlite"
 
 clean:
-	@rm -rf .venv demo build/validation
+	@rm -rf .venv demo build/validation build/parts $(WARM) $(PARTS)

@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tarfile
 import zipfile
 from pathlib import Path
 
@@ -17,6 +18,7 @@ pytest.importorskip("hatchling")
 pytestmark = pytest.mark.long
 
 ROOT = Path(__file__).resolve().parents[2]
+PARTS = "mesokit/kernels/shipped/"  # where `make parts` has been called
 
 
 def python(*words: str | Path, cwd: Path, **environment: str) -> str:
@@ -73,4 +75,20 @@ def test_a_source_distribution_has_all_and_makes_the_same_wheel(built: Path) -> 
     assert not [name for name in there if name.endswith(left) or "__pycache__" in name]
     python("-m", "hatchling", "build", "-t", "wheel", "-d", built / "again", cwd=folder)
     (wheel,) = (built / "again").glob("*.whl")
-    assert set(zipfile.ZipFile(wheel).namelist()) == files(built / "wheel")
+    again = set(zipfile.ZipFile(wheel).namelist())
+    assert again == {name for name in files(built / "wheel") if not name.startswith(PARTS)}
+
+
+def test_a_wheel_has_the_parts_that_were_made_and_a_source_distribution_has_not(
+    built: Path, tmp_path: Path
+) -> None:
+    (folder,) = (built / "source").iterdir()
+    shutil.copytree(folder, tmp_path / "clone")
+    file = tmp_path / "clone" / "src" / f"{PARTS}of-a-system.sqlite"
+    file.parent.mkdir(exist_ok=True)
+    file.touch()
+    python("-m", "hatchling", "build", "-d", tmp_path, cwd=tmp_path / "clone")
+    (wheel,), (source,) = tmp_path.glob("*.whl"), tmp_path.glob("*.tar.gz")
+    assert f"{PARTS}of-a-system.sqlite" in zipfile.ZipFile(wheel).namelist()
+    with tarfile.open(source) as packed:
+        assert not [name for name in packed.getnames() if PARTS in name]

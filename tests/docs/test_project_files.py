@@ -26,6 +26,12 @@ def test_oldest_python_is_tested() -> None:
     assert f'python: ["{oldest}", ' in text(".github/workflows/ci.yml")
 
 
+def test_every_python_gets_wheels_with_its_parts() -> None:
+    project = tomllib.loads(text("pyproject.toml"))["project"]
+    pythons = re.findall(r"Python :: (3\.\d+)", " ".join(project["classifiers"]))
+    assert f"python: {pythons}".replace("'", '"') in text(".github/workflows/release.yml")
+
+
 def test_every_folder_of_tests_is_described() -> None:
     described = set(re.findall(r"`tests/(\w+)`", text("CONTRIBUTING.md").split("## Tests")[1]))
     there = {folder.name for folder in (ROOT / "tests").iterdir() if any(folder.glob("test_*.py"))}

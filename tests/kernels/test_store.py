@@ -10,6 +10,8 @@ import sqlite3
 import subprocess
 import sys
 import time
+import zlib
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -106,14 +108,19 @@ class Place:
         self.law.write_text(LAW)
         self.store = root / "cache" / "mesokit" / "compiled-1.sqlite"
 
-    def run(self, **more: str) -> dict:
-        """What a process that calls both kernels says."""
+    def run(
+        self, before: str = "", program: str = PROGRAM, within: Sequence[str] = (), **more: str
+    ) -> dict:
+        """What a process that calls both kernels says.
+
+        `before`: lines that come first; `within`: a command that runs it.
+        """
         done = subprocess.run(
-            [sys.executable, "-c", PROGRAM], env=self.environment | more, cwd=self.root,
-            capture_output=True, text=True, timeout=300,
+            [*within, sys.executable, "-c", before + program], env=self.environment | more,
+            cwd=self.root, capture_output=True, text=True, timeout=300,
         )  # fmt: skip
         assert done.returncode == 0, done.stderr
-        assert "Traceback" not in done.stderr
+        assert not done.stderr
         return json.loads(done.stdout)
 
     @property
@@ -305,6 +312,36 @@ def test_a_full_disk_ends_writing_not_the_run(place: Place) -> None:
     assert place.run()["kernels_made"] == 1
 
 
+IN_OWN_MOUNTS = ["unshare", "--map-root-user", "--mount"]
+mounts = pytest.mark.skipif(
+    shutil.which("unshare") is None or subprocess.run([*IN_OWN_MOUNTS, "true"]).returncode != 0,
+    reason="users may not mount here",
+)
+
+
+@mounts
+def test_a_store_on_a_disk_that_is_read_only(place: Place) -> None:
+    """As in the image of a container."""
+    cache = place.root / "cache"
+    mount = f"mount --bind {cache} {cache} && mount -o remount,bind,ro {cache}"
+    found = place.run(within=[*IN_OWN_MOUNTS, "sh", "-c", f'{mount} && exec "$@"', "sh"])
+    assert found.items() >= NOTHING_MADE.items() and not found["trouble"]
+    place.edit("FACTOR = 3.0", "FACTOR = 6.0")
+    found = place.run(within=[*IN_OWN_MOUNTS, "sh", "-c", f'{mount} && exec "$@"', "sh"])
+    assert found["sum"] == 144.0 and found["kernels_made"] == found["kernels_found"] == 1
+
+
+@mounts
+@pytest.mark.parametrize("kilobytes", [4, 40, 120])
+def test_a_disk_that_is_full(tmp_path: Path, kilobytes: int) -> None:
+    place = Place(tmp_path)
+    cache = place.root / "cache"
+    cache.mkdir()
+    mount = f"mount -t tmpfs -o size={kilobytes}k none {cache}"
+    found = place.run(within=[*IN_OWN_MOUNTS, "sh", "-c", f'{mount} && exec "$@"', "sh"])
+    assert found["sum"] == 72.0 and found["kernels_made"] == 2 and found["trouble"]
+
+
 def test_two_processes_at_once(tmp_path: Path) -> None:
     """Of two that need the same kernels, one makes each."""
     place = Place(tmp_path)
@@ -365,6 +402,21 @@ def test_what_was_not_used_for_longest_goes_first(tmp_path: Path) -> None:
     assert store.size < before
 
 
+def test_a_store_keeps_to_its_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mesokit.kernels.store.BOUND", 10**6)
+    store = Store(tmp_path / "store.sqlite")
+    for day in range(30):
+        monkeypatch.setattr("mesokit.kernels.store._today", lambda day=day: day)
+        code = Code(f"code {day}", (), os.urandom(100_000))
+        store.keep(f"key {day}", Entry("name", frozenset(), b"", code.hash), [code])
+        assert list(store.find("key 0"))  # what is used again and again stays
+        [first] = store.find("key 0")
+        assert store.code(first.code)
+        store.note_used()
+        assert store.size <= 10**6 and list(store.find(f"key {day}"))
+    assert not list(store.find("key 1"))
+
+
 def test_a_home_on_the_network(tmp_path: Path) -> None:
     mounts = tmp_path / "mounts"
     mounts.write_text("disk / ext4 rw 0 0\nserver:/home /home nfs4 rw 0 0\n")
@@ -378,3 +430,116 @@ def test_a_folder_that_jobs_share(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
     assert folder() == tmp_path / "mesokit"
+
+
+# --- parts that a package brings ------------------------------------------------------------------
+
+BRINGS = """
+from pathlib import Path
+import mesokit.kernels.kept as stores
+brought = Path("brought", stores.era() + ".sqlite").absolute()
+stores.shipped_file = lambda: brought
+"""
+EXPORT = """
+from mesokit.kernels.ship import export
+from mesokit.kernels.kept import kept
+print([export(brought), kept().own.counts()["parts"]])
+"""
+
+
+@pytest.fixture(scope="module")
+def exported(made: Place) -> Path:
+    """A folder with the file of parts."""
+    number, parts = made.run(BRINGS, EXPORT)
+    assert number == parts > 4
+    return made.root / "brought"
+
+
+@pytest.fixture
+def shipped(exported: Path, tmp_path: Path) -> Place:
+    """An empty store, and the parts that a package brings."""
+    shutil.copytree(exported, tmp_path / "brought")
+    return Place(tmp_path)
+
+
+ONLY_LINKED = {"sum": 72.0, "trouble": "", "parts_made": 0, "kernels_made": 2}
+
+
+def test_a_package_brings_parts_and_no_machine_code(exported: Path) -> None:
+    (file,) = exported.iterdir()
+    with sqlite3.connect(file) as disk:
+        names = [name for (name,) in disk.execute("SELECT name FROM entries")]
+        code = [zlib.decompress(body) for (body,) in disk.execute("SELECT body FROM code")]
+    assert not [name for name in names if name.startswith(("kernel ", "kind "))]
+    assert {one[:4] for one in code} == {b"BC\xc0\xde"}  # bitcode
+
+
+def test_with_parts_that_a_package_brings_none_is_made(shipped: Place) -> None:
+    assert shipped.run(BRINGS).items() >= ONLY_LINKED.items()
+    assert shipped.run(BRINGS).items() >= NOTHING_MADE.items()
+
+
+def test_parts_that_a_package_brings_are_for_every_processor(shipped: Place) -> None:
+    found = shipped.run(BRINGS, NUMBA_CPU_NAME="generic", NUMBA_CPU_FEATURES="")
+    assert found.items() >= ONLY_LINKED.items()
+    assert shipped.run(BRINGS)["kernels_made"] == 2  # machine code is for one
+
+
+def test_parts_that_a_package_brings_serve_where_nothing_can_be_written(shipped: Place) -> None:
+    (shipped.root / "cache").write_text("a file where a folder should be")
+    found = shipped.run(BRINGS)
+    assert (
+        found["trouble"] and found.items() >= (ONLY_LINKED | {"trouble": found["trouble"]}).items()
+    )
+
+
+def test_an_edit_remakes_what_a_package_brings(shipped: Place) -> None:
+    shipped.edit("return FACTOR * x", "return x * FACTOR * 2.0")
+    found = shipped.run(BRINGS)
+    assert found["sum"] == 144.0 and found["parts_made"] == 2
+
+
+@pytest.mark.parametrize("renamed", [False, True])
+@pytest.mark.parametrize(
+    "another",
+    [
+        "numba.__version__ = '0.99.0'",
+        "llvmlite.__version__ = '0.99.0'",
+        "numpy.__version__ = '2.99.0'",
+        "sys.implementation.name = 'another'",
+        "platform.machine = lambda: 'another'",
+        "sysconfig.get_platform = lambda: 'another'",
+    ],
+)
+def test_parts_of_another_version_are_passed_over_in_silence(
+    shipped: Place, another: str, renamed: bool
+) -> None:
+    """Also where the file has the name of this version: keys tell."""
+    this = f"import llvmlite, numba, numpy, platform, sys, sysconfig\n{another}\n{BRINGS}"
+    if renamed:
+        (file,) = (shipped.root / "brought").iterdir()
+        this += f"\nbrought.parent.joinpath({file.name!r}).rename(brought)\n"
+    found = shipped.run(this)
+    assert found["sum"] == 72.0 and found["parts_made"] > 4 and not found["trouble"]
+    assert found["kernels_made"] == 2
+
+
+@pytest.mark.parametrize("how", ["empty", "cut", "foreign", "garbage", "flipped"])
+def test_damaged_parts_of_a_package_are_passed_over_in_silence(shipped: Place, how: str) -> None:
+    (file,) = (shipped.root / "brought").iterdir()
+    damage(file, how)
+    found = shipped.run(BRINGS)
+    assert found["sum"] == 72.0 and found["kernels_made"] == 2 and not found["trouble"]
+
+
+def test_parts_are_exported_whatever_was_imported(tmp_path: Path) -> None:
+    """What a generic function chooses may be registered in a module of its own."""
+    place = Place(tmp_path)
+    (tmp_path / "more.py").write_text(
+        "from law import Curve, height\n\n@height.register(Curve)\ndef _(shape, x):\n"
+        "    return shape.power\n"
+    )
+    chosen = PROGRAM.replace("import law", "import law, more").replace("law.Line", "law.Curve")
+    assert place.run(program=chosen)["sum"] == 4 * 2 * 3 * 2 * 1.0
+    number, parts = place.run(BRINGS, EXPORT)
+    assert number == parts

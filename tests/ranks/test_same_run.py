@@ -91,3 +91,13 @@ def test_one_process_does_what_is_not_for_ranks(folder, mpiexec):
     check = mpiexec(2, "check", "case.toml")
     assert check.end() == 0
     assert check.out.count("[run]") == 1
+
+
+def test_what_ranks_run_is_compiled_by_ranks(folder, mesokit):
+    for _ in range(2):
+        ranks = mesokit("warm", "case.toml", "--ranks", "2", NUMBA_CACHE_DIR=str(folder / "store"))
+        assert ranks.end() == 0, ranks.err
+        assert ranks.out.count("case.toml: ") == 1
+    assert ranks.out.startswith("case.toml: 0 kernels, 0 parts")
+    alone = mesokit("warm", "case.toml", NUMBA_CACHE_DIR=str(folder / "store"))
+    assert alone.end() == 0 and "case.toml: 0 kernels" not in alone.out  # its step is another

@@ -16,7 +16,7 @@ from mesokit.errors import CaseError, RunError
 from mesokit.ranks import launcher, parent
 from mesokit.ranks.world import stay_alone, world
 
-TOGETHER = ("run", "resume")  # all others are commands of one process
+TOGETHER = ("run", "resume", "warm")  # all others are commands of one process
 ALONE = ("study",)  # those that would start runs of their own
 MOST_OF_CORE = 16  # ranks: the machine would be busy with starting them
 RANKS = click.option(

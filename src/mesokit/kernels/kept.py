@@ -17,6 +17,7 @@ from pathlib import Path
 
 import llvmlite
 import numba
+import numpy
 from numba import config
 
 from mesokit.kernels.made_of import digest, still_holds
@@ -57,10 +58,16 @@ def versions() -> str:
 
 
 def era() -> str:
-    """Versions of what compiles, and the architecture, for the name of a file of parts."""
+    """Versions of what compiles, and the architecture, for the name of a file of parts.
+
+    Of NumPy the first two numbers: numba's functions of arrays are written for these.
+    """
     python = f"{sys.implementation.name}{sys.version_info.major}{sys.version_info.minor}"
     system = f"{sysconfig.get_platform().split('-')[0]}-{platform.machine()}"
-    return f"numba{numba.__version__}-llvmlite{llvmlite.__version__}-{python}-{system}"
+    arrays = ".".join(numpy.__version__.split(".")[:2])
+    return (
+        f"numba{numba.__version__}-llvmlite{llvmlite.__version__}-numpy{arrays}-{python}-{system}"
+    )
 
 
 def shipped_file() -> Path:

@@ -254,19 +254,22 @@ def needs_of(function: Any) -> Iterator[str]:
                 yield f"name {function.__module__}:{name} {digest(describe(value))}"
     for stub, kind in getattr(function, "chosen_for", ()):
         place = "builtins:None" if kind is None else place_of(kind)
-        yield f"choice {place_of(stub)} {code_of(function)} {place}"
+        yield f"choice {place_of(stub)} {code_of(function)} {place} {function.__module__}"
 
 
 def holds(need: str) -> bool:
     """Whether what a line names is still the same."""
-    what, place, word, *kind = need.split(" ")
+    what, place, word, *more = need.split(" ")
     module, name = place.split(":")
     found = _find(module, name)
     try:
         if what == "function":
             return found is not None and code_of(found) == word
         if what == "choice":
-            return code_of(found.implementation(_find(*kind[0].split(":")))) == word
+            kind, registered_in = more
+            if registered_in not in sys.modules:
+                importlib.import_module(registered_in)
+            return code_of(found.implementation(_find(*kind.split(":")))) == word
         return digest(describe(vars(importlib.import_module(module))[name])) == word
     except (Unknown, AttributeError, KeyError, ImportError):
         return False

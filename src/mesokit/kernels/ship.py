@@ -12,14 +12,15 @@ from mesokit.kernels.store import Code, Store
 def export(file: Path) -> int:
     """Write all valid parts of the user's store to a file; how many there are.
 
-    Machine code of kernels is left out: it is for one processor. Raises OSError, sqlite3.Error.
+    Machine code of kernels is left out: it is for one processor. Code is not compressed, as a
+    wheel compresses like parts together, to a third. Raises OSError, sqlite3.Error.
     """
     own = kept().own
     if own is None:
         raise OSError(f"there is no store of compiled code: {kept().trouble}")
     file.parent.mkdir(parents=True, exist_ok=True)
     file.unlink(missing_ok=True)
-    made, number = Store(file), 0
+    made, number = Store(file, level=0), 0
     for key, entry in own.parts():
         codes = _with_called(own, entry.code)
         if codes and all(map(still_holds, entry.needs)):

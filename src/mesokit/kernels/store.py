@@ -52,7 +52,7 @@ CREATE TABLE IF NOT EXISTS entries (id INTEGER PRIMARY KEY, key TEXT, name TEXT,
     about BLOB, code TEXT, digest BLOB, used INTEGER);
 CREATE INDEX IF NOT EXISTS keys ON entries (key);
 CREATE TABLE IF NOT EXISTS code (hash TEXT PRIMARY KEY, name TEXT, called TEXT, body BLOB,
-    used INTEGER) WITHOUT ROWID;
+    used INTEGER);
 """
 
 
@@ -130,10 +130,12 @@ class Store:
         Where it lies; made if it is not there.
     writes : bool
         Whether entries may be added.
+    level : int
+        How much code is compressed, 0 to 9.
     """
 
-    def __init__(self, file: Path, writes: bool = True) -> None:
-        self.file, self.writes = file, writes
+    def __init__(self, file: Path, writes: bool = True, level: int = 6) -> None:
+        self.file, self.writes, self.level = file, writes, level
         self._lines: dict[int, str] = {}
         self._used: dict[str, set[Any]] = {"entries": set(), "code": set()}
         self._disk = self._opened()
@@ -149,7 +151,9 @@ class Store:
             disk.execute("PRAGMA synchronous = NORMAL")
             disk.executescript(TABLES)
         except sqlite3.OperationalError:  # read-only or full: what is there can be read
-            uri = f"{self.file.as_uri()}?mode=ro"
+            # where nothing can be written SQLite has no place for its locks, nor need of any
+            locks = "" if os.access(self.file.parent, os.W_OK) else "&immutable=1"
+            uri = f"{self.file.as_uri()}?mode=ro{locks}"
             self.writes = False
             return sqlite3.connect(uri, PATIENCE, uri=True, check_same_thread=False)
         return disk
@@ -204,10 +208,10 @@ class Store:
         return found.fetchone() is not None
 
     def parts(self) -> Iterator[tuple[str, Entry]]:
-        """Keys and entries of all parts. Raises sqlite3.Error."""
+        """Keys and entries of all parts, by name. Raises sqlite3.Error."""
         keys = self._disk.execute(
-            "SELECT DISTINCT key FROM entries"
-            " WHERE name NOT LIKE 'kernel %' AND name NOT LIKE 'kind %'"
+            "SELECT key FROM entries WHERE name NOT LIKE 'kernel %' AND name NOT LIKE 'kind %'"
+            " GROUP BY key ORDER BY name, key"
         ).fetchall()
         for (key,) in keys:
             yield from ((key, entry) for entry in self.find(key))
@@ -217,7 +221,7 @@ class Store:
         today = _today()
         with self._written():
             for code in codes:
-                body = zlib.compress(code.body, 6)
+                body = zlib.compress(code.body, self.level)
                 self._disk.execute(
                     "INSERT OR REPLACE INTO code VALUES (?, ?, ?, ?, ?)",
                     (code.hash, code.name, " ".join(code.called), body, today),
@@ -329,8 +333,9 @@ class Store:
 
     def finish(self) -> None:
         """Bring all into the one file, which then is only read. Raises sqlite3.Error."""
-        self._disk.execute("VACUUM")
         self._disk.execute("PRAGMA journal_mode = DELETE")
+        self._disk.execute("PRAGMA page_size = 1024")  # parts are small
+        self._disk.execute("VACUUM")
         self._disk.close()
 
 
