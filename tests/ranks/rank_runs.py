@@ -10,7 +10,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-SOURCE = Path(__file__).parents[2] / "src"
+HERE = Path(__file__).parent
+SOURCE = HERE.parents[1] / "src"
 MPIEXEC = shutil.which("mpiexec", path=str(Path(sys.executable).parent)) or shutil.which("mpiexec")
 PATIENCE = 300.0  # seconds: kernels may have to be compiled, on a busy machine
 CASE = """
@@ -63,6 +64,16 @@ class Ranks:
         """The process of each rank, as each of them has written it."""
         files = sorted(self.folder.glob("pid-*"))
         return [int(file.read_text()) for file in files]
+
+
+def on_ranks(n, program, *words):
+    """What a program of this folder says on so many ranks; a failure of one ends all of them."""
+    command = [MPIEXEC, "-n", n, sys.executable, "-m", "mpi4py", HERE / program, *words]
+    done = subprocess.run(
+        [str(word) for word in command], capture_output=True, text=True, timeout=2 * PATIENCE
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
 
 
 MESOKIT = [sys.executable, "-m", "mesokit"]
