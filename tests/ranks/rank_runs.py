@@ -36,7 +36,8 @@ class Ranks:
     """A program on several ranks: how it ended, and what it said."""
 
     def __init__(self, command, folder, **environ):
-        known = {"PYTHONPATH": f"{SOURCE}{os.pathsep}{folder}", "OPENBLAS_NUM_THREADS": "1"}
+        path = [str(place) for place in (SOURCE, folder) if place is not None]
+        known = {"PYTHONPATH": os.pathsep.join(path), "OPENBLAS_NUM_THREADS": "1"}
         self.folder = folder
         self.process = subprocess.Popen(
             [str(word) for word in command],
@@ -66,16 +67,6 @@ class Ranks:
         return [int(file.read_text()) for file in files]
 
 
-def on_ranks(n, program, *words):
-    """What a program of this folder says on so many ranks; a failure of one ends all of them."""
-    command = [MPIEXEC, "-n", n, sys.executable, "-m", "mpi4py", HERE / program, *words]
-    done = subprocess.run(
-        [str(word) for word in command], capture_output=True, text=True, timeout=2 * PATIENCE
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
-
-
 MESOKIT = [sys.executable, "-m", "mesokit"]
 NOTES = """
 import os
@@ -83,6 +74,14 @@ rank = int(os.environ.get("PMI_RANK", os.environ.get("OMPI_COMM_WORLD_RANK", 0))
 with open(f"pid-{rank}", "w") as file:
     file.write(str(os.getpid()))
 """
+
+
+def on_ranks(n, program, *words, folder=None):
+    """What a program beside this says on so many ranks; a failure of one ends all of them."""
+    command = [MPIEXEC, "-n", n, sys.executable, "-m", "mpi4py", HERE / program, *words]
+    ranks = Ranks(command, folder)
+    assert ranks.end() == 0, ranks.out + ranks.err
+    return ranks.out
 
 
 def same_files(one, two):
