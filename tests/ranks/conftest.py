@@ -16,14 +16,25 @@ def an_mpi():
         pytest.skip("no mpiexec here")
 
 
+def filled(folder):
+    """A folder with the case, a longer one, and a module by which ranks note their processes."""
+    (folder / "case.toml").write_text(CASE.format(steps=400, checkpoints=100))
+    (folder / "long.toml").write_text(CASE.format(steps=6000, checkpoints=500))
+    (folder / "endless.toml").write_text(CASE.format(steps=10**9, checkpoints=200))
+    (folder / "notes.py").write_text(NOTES)
+    return folder
+
+
 @pytest.fixture
 def folder(tmp_path):
-    """With the case, a longer one, and a module by which ranks say who they are."""
-    (tmp_path / "case.toml").write_text(CASE.format(steps=400, checkpoints=100))
-    (tmp_path / "long.toml").write_text(CASE.format(steps=6000, checkpoints=500))
-    (tmp_path / "endless.toml").write_text(CASE.format(steps=10**9, checkpoints=200))
-    (tmp_path / "notes.py").write_text(NOTES)
-    return tmp_path
+    """A folder with cases, of this test."""
+    return filled(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def shared_folder(tmp_path_factory):
+    """A folder with cases, of all tests of a module."""
+    return filled(tmp_path_factory.mktemp("shared"))
 
 
 @pytest.fixture
