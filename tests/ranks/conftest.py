@@ -6,7 +6,14 @@ import pytest
 from rank_runs import CASE, MESOKIT, MPIEXEC, NOTES, Ranks
 
 # run under mpiexec: they begin MPI
-collect_ignore = ["program.py", "refused.py", "same_bits.py", "same_sums.py", "starts.py"]
+collect_ignore = [
+    "program.py",
+    "refused.py",
+    "same_bits.py",
+    "same_sums.py",
+    "starts.py",
+    "waits.py",
+]
 
 
 @pytest.fixture(scope="session", autouse=True)
