@@ -38,10 +38,10 @@ def folder(tmp_path):
     return filled(tmp_path)
 
 
-@pytest.fixture(scope="module")
-def shared_folder(tmp_path_factory):
-    """A folder with cases, of all tests of a module."""
-    return filled(tmp_path_factory.mktemp("shared"))
+@pytest.fixture(scope="session")
+def runs(once):
+    """Fill a folder with cases and what some ranks make of them, once for all tests."""
+    return lambda name, run: once(name, lambda folder: run(filled(folder)))
 
 
 @pytest.fixture

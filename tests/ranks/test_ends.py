@@ -77,11 +77,13 @@ def begun(ranks, folder):
 
 
 @pytest.fixture(scope="module")
-def long_run(shared_folder):
+def long_run(runs):
     """The long case on one process, to its end."""
-    folder = shared_folder / "one"
-    mk.Simulation(shared_folder / "long.toml", output=folder, threads=1).run()
-    return folder
+    return runs("long-on-one", run_long) / "out"
+
+
+def run_long(folder):
+    mk.Simulation(folder / "long.toml", output=folder / "out", threads=1).run()
 
 
 @pytest.mark.parametrize("seed", range(KILLS))
@@ -257,13 +259,16 @@ ENDS = {  # what is raised, how the run ends, whether it has failed
 
 
 @pytest.fixture(scope="module")
-def caught(shared_folder):
+def caught(runs):
     """The folder of runs, one after another, that a callback of rank 1 ends."""
+    return runs("caught", end_by_callback)
+
+
+def end_by_callback(folder):
     wrongs = ", ".join(f'"{name}": {wrong}' for name, (wrong, _, _) in ENDS.items())
-    (shared_folder / "script.py").write_text(CAUGHT.replace("WRONGS", f"{{{wrongs}}}"))
-    ranks = Ranks([MPIEXEC, "-n", "2", sys.executable, "script.py"], shared_folder)
+    (folder / "script.py").write_text(CAUGHT.replace("WRONGS", f"{{{wrongs}}}"))
+    ranks = Ranks([MPIEXEC, "-n", "2", sys.executable, "script.py"], folder)
     assert ranks.end() == 0, ranks.err
-    return shared_folder
 
 
 @pytest.mark.parametrize("name", ENDS)

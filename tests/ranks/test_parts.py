@@ -10,18 +10,16 @@ CASES = "bulk", "solid", "dimers"
 
 
 @pytest.fixture(scope="module")
-def carried(tmp_path_factory):
+def carried(once):
     """A folder in which every case was begun by one process and by four ranks; the run of the one
     process has gone on with these ranks."""
-    folder = tmp_path_factory.mktemp("parts")
-    on_ranks(4, "program.py", folder, "carry")
-    return folder
+    return once("carried", lambda folder: on_ranks(4, "program.py", folder, "carry"))
 
 
 @pytest.fixture(scope="module")
-def resumed(carried):
+def resumed(carried, once):
     """The same folder after the runs of four ranks have gone on with two, or with one process."""
-    on_ranks(2, "program.py", carried, "go_on")
+    once("resumed", lambda _: on_ranks(2, "program.py", carried, "go_on"))
     return carried
 
 

@@ -107,9 +107,13 @@ SCRIPTS = {
 
 
 @pytest.fixture(scope="module")
-def ended(tmp_path_factory):
-    """How each of three ranks ends, by command or script; no run has begun."""
-    folder = tmp_path_factory.mktemp("refused")
+def ended(once):
+    """How each of three ranks ends, by command or script."""
+    return json.loads((once("refused", end_all) / "said").read_text())
+
+
+def end_all(folder):
+    """Ranks note how they end; no run begins."""
     case = CASE.format(steps=400, checkpoints=100)
     files = {"case": case, "solutes": SOLUTES, "flock": FLOCK, "0/case": case}
     files |= {f"{rank}/case": case.replace("density = 5", "density = 6") for rank in (1, 2)}
@@ -127,7 +131,7 @@ def ended(tmp_path_factory):
         "words": {" ".join(words): words for words in COMMANDS},
         "scripts": {script: script for script in SCRIPTS},
     }
-    yield json.loads(on_ranks(3, "refused.py", json.dumps(given), folder=folder))
+    (folder / "said").write_text(on_ranks(3, "refused.py", json.dumps(given), folder=folder))
     assert not (folder / "out").exists()
 
 

@@ -10,15 +10,21 @@ OBSERVED = "past a post", "past a sphere", "two species", "molecules"
 
 
 @pytest.fixture(scope="module")
-def bits():
+def bits(once):
     """What differs in each run, and how much was compared."""
-    return json.loads(on_ranks(4, "same_bits.py", json.dumps(RUNS)))
+    return compared(once, "bits", 4, "same_bits.py", json.dumps(RUNS))
 
 
 @pytest.fixture(scope="module")
-def sums():
+def sums(once):
     """What differs for each case and number of ranks, and how much was compared."""
-    return json.loads(on_ranks(3, "same_sums.py"))
+    return compared(once, "sums", 3, "same_sums.py")
+
+
+def compared(once, name, *command):
+    """What ranks print, once for all tests."""
+    folder = once(name, lambda folder: (folder / "said").write_text(on_ranks(*command)))
+    return json.loads((folder / "said").read_text())
 
 
 @pytest.mark.long

@@ -27,20 +27,26 @@ print(simulation.step, calls == [(n, 600) for n in range(0, simulation.step + 1,
 
 
 @pytest.fixture(scope="module")
-def one(shared_folder):
+def one(runs):
     """The run on one rank."""
-    case, folder = shared_folder / "case.toml", shared_folder / "one"
-    mk.Simulation(case, output=folder, threads=1).run()
-    return folder
+    return runs("case-on-one", run_alone) / "out"
+
+
+def run_alone(folder):
+    mk.Simulation(folder / "case.toml", output=folder / "out", threads=1).run()
 
 
 @pytest.fixture(scope="module")
-def stopped(shared_folder):
-    """A script on two ranks that stops half way, and the folder of its run."""
-    (shared_folder / "script.py").write_text(SCRIPT.replace("STOP", "True"))
-    ranks = Ranks([MPIEXEC, "-n", "2", sys.executable, "script.py"], shared_folder)
+def stopped(runs):
+    """A folder with the run of a script on two ranks that stops half way, and what it has said."""
+    return runs("stopped-script", run_half)
+
+
+def run_half(folder):
+    (folder / "script.py").write_text(SCRIPT.replace("STOP", "True"))
+    ranks = Ranks([MPIEXEC, "-n", "2", sys.executable, "script.py"], folder)
     assert ranks.end() == 0, ranks.err
-    return ranks, shared_folder / "out"
+    (folder / "said").write_text(ranks.out)
 
 
 def test_the_same_files_by_mpiexec_and_by_an_option(folder, one, mpiexec, mesokit):
@@ -60,22 +66,22 @@ def test_the_same_files_by_mpiexec_and_by_an_option(folder, one, mpiexec, mesoki
     assert "ranks:" not in repr(mk.open(one))
 
 
-def all_have_seen(ranks, step):
+def all_have_seen(said, step):
     """Two ranks speak at once, and their words may mix."""
-    return ranks.out.count(f"{step}") == ranks.out.count("True") == 2
+    return said.count(f"{step}") == said.count("True") == 2
 
 
 def test_a_script_is_run_by_all_ranks(folder, one, mpiexec):
     (folder / "script.py").write_text(SCRIPT.replace("STOP", "False"))
     ranks = mpiexec(2, sys.executable, "script.py")
     assert ranks.end() == 0, ranks.err
-    assert all_have_seen(ranks, 400), ranks.out
+    assert all_have_seen(ranks.out, 400), ranks.out
     same_files(one, folder / "out")
 
 
 def test_a_script_is_stopped_on_all_ranks(stopped):
-    ranks, _ = stopped
-    assert all_have_seen(ranks, 200), ranks.out
+    said = (stopped / "said").read_text()
+    assert all_have_seen(said, 200), said
 
 
 def test_a_script_that_uses_mpi_alone(folder):
@@ -88,7 +94,7 @@ def test_a_script_that_uses_mpi_alone(folder):
 
 @pytest.mark.parametrize("ranks", [1, 3])
 def test_a_run_goes_on_with_another_number_of_ranks(folder, one, stopped, mesokit, ranks):
-    shutil.copytree(stopped[1], folder / "out")
+    shutil.copytree(stopped / "out", folder / "out")
     again = mesokit("resume", "out", "--ranks", ranks)
     assert again.end() == 0, again.err
     same_files(one, folder / "out")
@@ -98,7 +104,7 @@ def test_a_run_goes_on_with_another_number_of_ranks(folder, one, stopped, mesoki
 
 def test_a_run_becomes_longer(folder, one, mpiexec):
     (folder / "case.toml").write_text((folder / "case.toml").read_text().replace("400", "200"))
-    mk.Simulation(folder / "case.toml", output=folder / "out", threads=1).run()
+    run_alone(folder)
     again = mpiexec(2, "resume", "out", "--steps", "400")
     assert again.end() == 0, again.err
     same_files(one, folder / "out")

@@ -12,15 +12,18 @@ SLICED = {"bulk npy", "bulk half"}  # what each rank reads its share of
 
 
 @pytest.fixture(scope="module")
-def sources(tmp_path_factory):
+def sources(once):
     """A folder with files to start from, and what one process and ranks make of them."""
     pytest.importorskip("gsd.hoomd")
     pytest.importorskip("MDAnalysis")
-    folder = tmp_path_factory.mktemp("sources")
+    return once("sources", begin)
+
+
+def begin(folder):
+    """Make the files, and start from them."""
     starts.make_sources(folder)
     starts.main(folder)
     on_ranks(RANKS, "starts.py", folder)
-    return folder
 
 
 @pytest.mark.parametrize(("kind", "name"), SOURCES)
