@@ -1,10 +1,12 @@
 """What the tests of several folders share: laboratory, fake fluid and examples of shapes."""
 
 import os
+import shutil
 import sys
 from pathlib import Path
 
 import pytest
+from filelock import FileLock
 from hypothesis import settings
 
 # Workers are started after this: BLAS would take a thread for each core in each of them, and then
@@ -34,6 +36,25 @@ def machine_in_no_hurry():
     from mesokit.cli import words
 
     words.SILENT = 3600.0
+
+
+@pytest.fixture(scope="session")
+def once(tmp_path_factory):
+    """Fill a folder of some name once for all workers; those that come later wait for it."""
+    base = tmp_path_factory.getbasetemp()
+    base = base.parent if worker else base
+
+    def made(name, fill):
+        folder, done = base / name, base / f"{name}.done"
+        with FileLock(base / f"{name}.lock"):
+            if not done.exists():
+                shutil.rmtree(folder, ignore_errors=True)  # of a worker where that failed
+                folder.mkdir()
+                fill(folder)
+                done.touch()
+        return folder
+
+    return made
 
 
 @pytest.fixture

@@ -6,7 +6,14 @@ import pytest
 from rank_runs import CASE, MESOKIT, MPIEXEC, NOTES, Ranks
 
 # run under mpiexec: they begin MPI
-collect_ignore = ["program.py", "same_bits.py", "same_sums.py", "starts.py"]
+collect_ignore = [
+    "program.py",
+    "refused.py",
+    "same_bits.py",
+    "same_sums.py",
+    "starts.py",
+    "waits.py",
+]
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -16,14 +23,25 @@ def an_mpi():
         pytest.skip("no mpiexec here")
 
 
+def filled(folder):
+    """A folder with the case, a longer one, and a module by which ranks note their processes."""
+    (folder / "case.toml").write_text(CASE.format(steps=400, checkpoints=100))
+    (folder / "long.toml").write_text(CASE.format(steps=6000, checkpoints=500))
+    (folder / "endless.toml").write_text(CASE.format(steps=10**9, checkpoints=200))
+    (folder / "notes.py").write_text(NOTES)
+    return folder
+
+
 @pytest.fixture
 def folder(tmp_path):
-    """With the case, a longer one, and a module by which ranks say who they are."""
-    (tmp_path / "case.toml").write_text(CASE.format(steps=400, checkpoints=100))
-    (tmp_path / "long.toml").write_text(CASE.format(steps=6000, checkpoints=500))
-    (tmp_path / "endless.toml").write_text(CASE.format(steps=10**9, checkpoints=200))
-    (tmp_path / "notes.py").write_text(NOTES)
-    return tmp_path
+    """A folder with cases, of this test."""
+    return filled(tmp_path)
+
+
+@pytest.fixture(scope="session")
+def runs(once):
+    """Fill a folder with cases and what some ranks make of them, once for all tests."""
+    return lambda name, run: once(name, lambda folder: run(filled(folder)))
 
 
 @pytest.fixture

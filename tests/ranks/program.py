@@ -1,7 +1,11 @@
-"""What the ranks of a test do: run under mpiexec with a folder, a case and what to do."""
+"""The ranks of tests/ranks/test_parts.py: runs begun and continued on ranks and on one process.
+
+mpiexec -n 4 python -m mpi4py program.py FOLDER carry
+"""
 
 from __future__ import annotations
 
+import shutil
 import sys
 import tracemalloc
 from pathlib import Path
@@ -19,80 +23,105 @@ from mesokit.io.run_directory import RunDirectory
 from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.start.fluid import start
+from mesokit.ranks.several import wait
 
 COMM = MPI.COMM_WORLD
+SMALL, MIDDLE, WHOLE = 50, 2**14, 2**18  # particles of a piece
 FRAMES = Trajectory(every=2, fields=("position", "velocity", "image", "id"))
 DISK = Disk(centre=[5.3, 6.1], radius=2.5)
+RUN, SIZE = Run(steps=20), Box([14, 12])
 CASES = {
-    "bulk": lambda: Case(run=Run(steps=20), box=Box([12, 10]), fluid=Fluid(density=5)),
-    "large": lambda: Case(run=Run(steps=20), box=Box([400, 400]), fluid=Fluid(density=5)),
-    "solid": lambda: Case(
-        run=Run(steps=20), box=Box([14, 12]), fluid=Fluid(density=5), walls=[Plates("y"), DISK]
-    ),
-    "dimers": lambda: Case(
-        run=Run(steps=20),
-        box=Box([12, 10]),
-        fluid=Fluid(density=5, molecule=Molecule(bond=Harmonic(K=3.0))),
+    "bulk": Case(run=RUN, box=SIZE, fluid=Fluid(density=5)),
+    "solid": Case(run=RUN, box=SIZE, fluid=Fluid(density=5), walls=[Plates("y"), DISK]),
+    "dimers": Case(
+        run=RUN, box=SIZE, fluid=Fluid(density=5, molecule=Molecule(bond=Harmonic(K=3.0)))
     ),
 }
+LARGE = Case(run=RUN, box=Box([400, 400]), fluid=Fluid(density=5))
 
 
-def engine_of(case, ranks):
-    return Ranks(case, 1, (), COMM) if ranks else CPU(case, 1)
+def engine_of(case, comm):
+    """An engine on the ranks of a communicator, or on this process alone."""
+    return CPU(case, 1) if comm is None else Ranks(case, 1, (), comm)
 
 
-def kept(engine, folder, case):
+def kept(engine, folder, case, root):
     """A checkpoint of an engine."""
     replica = SimpleNamespace(engine=engine, accumulators={})
     arrays = {f"engine/{name}": v for name, v in engine.state().items()}
-    measured.keep(folder, case, {"step": engine.step}, arrays, COMM.rank == 0)
+    measured.keep(folder, case, {"step": engine.step}, arrays, root)
     return replica
 
 
-def carry(case, folder, ranks):
+def carry(case, folder, comm, piece):
     """Start, write, go on with frames, write again: all that a run leaves in its folder."""
-    engine = engine_of(case, ranks)
+    pieces.PIECE, root = piece, comm is None or comm.rank == 0
+    engine = engine_of(case, comm)
     start(engine)
     directory = RunDirectory(folder)
-    kept(engine, directory, case)
-    if COMM.rank == 0:
+    kept(engine, directory, case, root)
+    if root:
         directory.checkpoint_file.rename(folder / "start.npz")
-    writer = TrajectoryWriter(FRAMES, folder / "frames", case.particles, here=COMM.rank == 0)
+    writer = TrajectoryWriter(FRAMES, folder / "frames", case.particles, here=root)
     for _ in range(3):
         engine.advance(2)
         writer.record(engine)
     writer.flush()
-    kept(engine, directory, case)
+    kept(engine, directory, case, root)
+    if root:
+        shutil.copy(directory.checkpoint_file, folder / "carried.npz")
 
 
-def go_on(case, folder, ranks):
+def go_on(case, folder, comm):
     """From the checkpoint some steps further."""
-    engine = engine_of(case, ranks)
+    pieces.PIECE = SMALL
+    engine = engine_of(case, comm)
     replica = SimpleNamespace(engine=engine, accumulators={})
     directory = RunDirectory(folder)
-    meta = measured.take_up(directory, case, [("", replica)], COMM if ranks else None)
+    meta = measured.take_up(directory, case, [("", replica)], comm)
     assert meta["step"] == engine.step == 6
     engine.advance(5)
-    kept(engine, directory, case)
+    kept(engine, directory, case, comm is None or comm.rank == 0)
 
 
-def weigh(case, folder, ranks):
+def weigh(folder, comm):
     """The most memory that a rank has at once, in bytes for each particle of the box."""
-    start(engine_of(CASES["bulk"](), ranks))  # compiled before anybody counts
+    pieces.PIECE, root = MIDDLE, comm.rank == 0
     tracemalloc.start()
-    engine = engine_of(case, ranks)
+    engine = engine_of(LARGE, comm)
     start(engine)
     directory = RunDirectory(folder)
-    replica = kept(engine, directory, case)
-    measured.take_up(directory, case, [("", replica)], COMM if ranks else None)
-    most = COMM.allreduce(tracemalloc.get_traced_memory()[1], MPI.MAX)
-    if COMM.rank == 0:
-        np.savetxt(folder / "bytes", [most / case.particles])
+    replica = kept(engine, directory, LARGE, root)
+    measured.take_up(directory, LARGE, [("", replica)], comm)
+    most = comm.allreduce(tracemalloc.get_traced_memory()[1], MPI.MAX)
+    tracemalloc.stop()
+    if root:
+        np.savetxt(folder / f"bytes-{comm.size}", [most / LARGE.particles])
+
+
+def main(folder, does):
+    """What one process does here, rank 0 does while the others sleep."""
+    root = COMM.rank == 0
+    for name, case in CASES.items():
+        one, some = folder / f"{name}-one", folder / f"{name}-some"
+        if does == "carry":
+            if root:
+                one.mkdir()
+                some.mkdir()
+                carry(case, one, None, WHOLE)
+            wait(COMM.Ibarrier())
+            carry(case, some, COMM, SMALL)
+            go_on(case, one, COMM)
+        elif name != "dimers":
+            go_on(case, some, COMM)
+        elif root:
+            go_on(case, some, None)
+    if does == "carry":  # all is compiled: machine code is not counted
+        weigh(folder, COMM)
+        if root:
+            weigh(folder, MPI.COMM_SELF)
+    wait(COMM.Ibarrier())
 
 
 if __name__ == "__main__":
-    folder, name, does, piece = sys.argv[1:5]
-    pieces.PIECE = int(piece)
-    ranks = COMM.size > 1 or "ranks" in sys.argv[5:]
-    case = CASES[name]()
-    {"carry": carry, "go_on": go_on, "weigh": weigh}[does](case, Path(folder), ranks)
+    main(Path(sys.argv[1]), sys.argv[2])

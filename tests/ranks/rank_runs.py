@@ -10,7 +10,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-SOURCE = Path(__file__).parents[2] / "src"
+HERE = Path(__file__).parent
+SOURCE = HERE.parents[1] / "src"
 MPIEXEC = shutil.which("mpiexec", path=str(Path(sys.executable).parent)) or shutil.which("mpiexec")
 PATIENCE = 300.0  # seconds: kernels may have to be compiled, on a busy machine
 CASE = """
@@ -35,7 +36,8 @@ class Ranks:
     """A program on several ranks: how it ended, and what it said."""
 
     def __init__(self, command, folder, **environ):
-        known = {"PYTHONPATH": f"{SOURCE}{os.pathsep}{folder}", "OPENBLAS_NUM_THREADS": "1"}
+        path = [str(place) for place in (SOURCE, folder) if place is not None]
+        known = {"PYTHONPATH": os.pathsep.join(path), "OPENBLAS_NUM_THREADS": "1"}
         self.folder = folder
         self.process = subprocess.Popen(
             [str(word) for word in command],
@@ -72,6 +74,14 @@ rank = int(os.environ.get("PMI_RANK", os.environ.get("OMPI_COMM_WORLD_RANK", 0))
 with open(f"pid-{rank}", "w") as file:
     file.write(str(os.getpid()))
 """
+
+
+def on_ranks(n, program, *words, folder=None):
+    """What a program beside this says on so many ranks; a failure of one ends all of them."""
+    command = [MPIEXEC, "-n", n, sys.executable, "-m", "mpi4py", HERE / program, *words]
+    ranks = Ranks(command, folder)
+    assert ranks.end() == 0, ranks.out + ranks.err
+    return ranks.out
 
 
 def same_files(one, two):

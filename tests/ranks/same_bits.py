@@ -1,8 +1,9 @@
-"""The same steps on one process and on all ranks of mpiexec; says which arrays differ.
+"""The same steps on one process and on some ranks of mpiexec; says which arrays differ.
 
-mpiexec -n 3 python -m mpi4py same_bits.py channel 2
+mpiexec -n 4 python -m mpi4py same_bits.py '{"channel": [3, 1]}'
 """
 
+import json
 import sys
 
 import numpy as np
@@ -28,6 +29,7 @@ from mesokit.execute.cpu.engine import CPU
 from mesokit.execute.ranks.blocks.tree import divided
 from mesokit.execute.ranks.engine import Ranks
 from mesokit.method.mpcd.start.fluid import start
+from mesokit.ranks.several import wait
 
 COMM = MPI.COMM_WORLD
 RUN, HELD = Run(steps=100), MaxwellBoltzmann()
@@ -93,22 +95,44 @@ def anywhere(engine, k):
     def work(asked):
         return [random.random(block.lengths[axis]) ** 3 for block, axis in asked]
 
-    return divided(engine.numbers.cells, COMM.size, weights, work)
+    return divided(engine.numbers.cells, engine.comm.size, weights, work)
 
 
-def main(name, threads):
-    """Compare; rank 0 says what it finds."""
-    case = CASES[name]
-    some = Ranks(case, threads, MEASURES, COMM)
-    start(some)
-    there = course(some, case, moves=True)
+def first_ranks(n):
+    """A communicator of the first ranks, None on the others."""
+    comm = COMM.Split(0 if COMM.rank < n else MPI.UNDEFINED)
+    return None if comm == MPI.COMM_NULL else comm
+
+
+def compared(here, there):
+    """The names of arrays that differ, and how many there are."""
+    assert here.keys() == there.keys()
+    return [key for key in here if here[key].tobytes() != there[key].tobytes()], len(here)
+
+
+def compare(name, ranks, threads):
+    """Rank 0 says what differs."""
+    case, comm = CASES[name], first_ranks(ranks)
+    if comm is not None:
+        some = Ranks(case, threads, MEASURES, comm)
+        start(some)
+        there = course(some, case, moves=True)
     if COMM.rank == 0:
         one = CPU(case, 1, MEASURES)
         start(one)
-        here = course(one, case, moves=False)
-        print(*sorted(key for key in here if not np.array_equal(here[key], there[key])))
-        print("compared", len(here))
+        return compared(course(one, case, moves=False), there)
+
+
+def main(runs):
+    """What differs in each of these runs, by the name of the case; the ranks and threads of each
+    are given."""
+    found = {}
+    for name, (ranks, threads) in runs.items():
+        found[name] = compare(name, ranks, threads)
+        wait(COMM.Ibarrier())
+    if COMM.rank == 0:
+        print(json.dumps(found))
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], int(sys.argv[2]))
+    main(json.loads(sys.argv[1]))

@@ -5,10 +5,12 @@ mpiexec -n 3 python starts.py FOLDER
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import json
 import sys
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -37,6 +39,7 @@ SOURCES = {
     ("dimers", "gsd"): {"file": "dimers.gsd"},
     ("dimers", "data"): {"file": "dimers.data"},
 }
+FEW = 50  # particles of a piece
 BEADS = {"npy": {"positions": "beads.npy"}, "npz": {"positions": "beads.npz"}}
 
 
@@ -86,8 +89,9 @@ class Watched:
         return self.array[rows]
 
 
-def watch(seen):
-    """Note which rows are read of files."""
+@contextlib.contextmanager
+def watched(seen):
+    """Meanwhile note which rows are read of files."""
     load, snapshot, earlier = arrays._load, first_state.read_snapshot, EarlierRows._folded
 
     def read(path):
@@ -104,11 +108,20 @@ def watch(seen):
             seen[:] = True
         return Watched(found, seen)
 
-    arrays._load, first_state.read_snapshot, EarlierRows._folded = loaded, read, folded
+    with contextlib.ExitStack() as changed:
+        for where, name, value in (
+            (arrays, "_load", loaded),
+            (first_state, "read_snapshot", read),
+            (EarlierRows, "_folded", folded),
+        ):
+            changed.enter_context(mock.patch.object(where, name, value))
+        yield
 
 
+@mock.patch.object(pieces, "PIECE", FEW)
+@mock.patch.object(arrays, "PIECE", FEW)
 def main(folder):
-    pieces.PIECE = arrays.PIECE = 50
+    """Start from all sources; rank 0 notes in a file how many rows each rank has read."""
     here, seen, read = world(), np.zeros(600, bool), {}
     for name, start in BEADS.items():
         polymers = Solutes(
@@ -118,7 +131,6 @@ def main(folder):
         )
         state = first_state.first_state(make_case("bulk", solutes=polymers), here=here)
         assert np.array_equal(state.beads, np.load(folder / "beads.npy")), name
-    watch(seen)
     for (kind, name), start in SOURCES.items():
         seen[:] = False
         given = {}
@@ -128,9 +140,10 @@ def main(folder):
                 "velocities": np.load(folder / "v.npy"),
             }
         case = make_case(kind, {key: str(folder / file) for key, file in start.items()})
-        simulation = Simulation(case, output=folder / f"{kind}-{name}-{here.size}", **given)
-        simulation.engine.advance(5)
-        simulation.checkpoint()
+        with watched(seen):
+            simulation = Simulation(case, output=folder / f"{kind}-{name}-{here.size}", **given)
+            simulation.engine.advance(5)
+            simulation.checkpoint()
         read[f"{kind} {name}"] = here.gathered(int(seen.sum()))
     if here.root:
         (folder / f"read-{here.size}.json").write_text(json.dumps(read))

@@ -11,20 +11,23 @@ import time
 from pathlib import Path
 
 import pytest
-from rank_runs import MESOKIT, SOURCE, same_files
+from rank_runs import MESOKIT, MPIEXEC, SOURCE, Ranks, same_files
 
 import mesokit as mk
 from mesokit.io import checkpoint
+from mesokit.ranks import end
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="no signals can be sent to a process")
 SOON = 30.0  # seconds; on a quiet machine it is one
-KILLS = 3
+KILLS = 2  # of rank 1, and of rank 0
 
 # what goes wrong on one rank alone, as a module that is imported first
 FAULTS = """
 import notes
 from mesokit.errors import RunError
+from mesokit.ranks import end
 {imports}
+end.PATIENCE = {patience}
 
 def fail(original):
     def wrapped(*given, **named):
@@ -40,9 +43,10 @@ def fail(original):
 ENGINE = "from mesokit.execute.ranks.engine import Ranks", "Ranks.totals"
 
 
-def faulty(folder, rank, fault, imports, where):
+def faulty(folder, rank, fault, imports, where, patience=0.2):
+    """Where others fail as well, they are given the seconds that the product gives them."""
     (folder / "faulty.py").write_text(
-        FAULTS.format(rank=rank, fault=fault, imports=imports, where=where)
+        FAULTS.format(rank=rank, fault=fault, imports=imports, where=where, patience=patience)
     )
 
 
@@ -54,9 +58,9 @@ def one_message(ranks, pattern):
     return said[0]
 
 
-def failed(folder):
+def failed(folder, run="out"):
     """Why the run failed, as its record has it."""
-    return json.loads((folder / "out" / "provenance.json").read_text())["failed"]
+    return json.loads((folder / run / "provenance.json").read_text())["failed"]
 
 
 def ended_within(ranks, seconds):
@@ -72,10 +76,19 @@ def begun(ranks, folder):
     return ranks.pids()
 
 
+@pytest.fixture(scope="module")
+def long_run(runs):
+    """The long case on one process, to its end."""
+    return runs("long-on-one", run_long) / "out"
+
+
+def run_long(folder):
+    mk.Simulation(folder / "long.toml", output=folder / "out", threads=1).run()
+
+
 @pytest.mark.parametrize("seed", range(KILLS))
-def test_a_rank_is_killed(folder, mesokit, seed):
+def test_a_rank_is_killed(folder, mesokit, seed, long_run):
     draw = random.Random(seed)
-    mk.Simulation(folder / "long.toml", output=folder / "one", threads=1).run()
     ranks = mesokit("--import", "notes", "run", "long.toml", "--output", "out", "--ranks", "2")
     began = time.time_ns()
     victim = draw.randrange(2)
@@ -92,7 +105,7 @@ def test_a_rank_is_killed(folder, mesokit, seed):
         assert "BAD TERMINATION" not in ranks.out + ranks.err
     again = mesokit("resume", "out", "--quiet", "--ranks", "2")
     assert again.end() == 0, again.err
-    same_files(folder / "one", folder / "out")
+    same_files(long_run, folder / "out")
 
 
 def alive(pid):
@@ -118,8 +131,16 @@ def test_nobody_outlives_the_process_that_is_killed(folder, mesokit):
     checkpoint.read_meta(folder / "out" / "checkpoint.npz")
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("whom", ["mesokit", "mpiexec", "rank 0", "rank 1"])
+@pytest.mark.parametrize(  # Ctrl-C to mesokit: see test_the_bar_is_drawn_on_our_terminal
+    ("whom", "number"),
+    [
+        ("mesokit", signal.SIGTERM),
+        ("mpiexec", signal.SIGINT),
+        ("mpiexec", signal.SIGTERM),
+        ("rank 0", signal.SIGTERM),
+        ("rank 1", signal.SIGINT),
+    ],
+)
 def test_a_signal_stops_all_ranks(folder, mesokit, mpiexec, whom, number):
     words = "--import", "notes", "run", "endless.toml", "--output", "out"
     ranks = mpiexec(2, *words) if whom == "mpiexec" else mesokit(*words, "--ranks", "2")
@@ -133,8 +154,7 @@ def test_a_signal_stops_all_ranks(folder, mesokit, mpiexec, whom, number):
     one_message(ranks, f"mesokit: stopped at step {step} by {number.name}; go on with: {again}")
 
 
-@pytest.mark.parametrize("by_option", [False, True])
-@pytest.mark.parametrize("rank", [0, 1])
+@pytest.mark.parametrize(("rank", "by_option"), [(0, True), (1, False)])
 def test_the_physics_of_one_rank_fails(folder, mesokit, mpiexec, rank, by_option):
     faulty(folder, rank, "raise RunError('step 7: too fast')", *ENGINE)
     words = "--import", "faulty", "run", "endless.toml", "--output", "out"
@@ -145,7 +165,7 @@ def test_the_physics_of_one_rank_fails(folder, mesokit, mpiexec, rank, by_option
 
 
 def test_the_physics_of_all_ranks_fails(folder, mpiexec):
-    faulty(folder, "notes.rank", "raise RunError('step 7: too fast')", *ENGINE)
+    faulty(folder, "notes.rank", "raise RunError('step 7: too fast')", *ENGINE, end.PATIENCE)
     ranks = mpiexec(3, "--import", "faulty", "run", "endless.toml", "--output", "out")
     assert ranks.end() == 1
     one_message(ranks, "mesokit: error: step 7: too fast")
@@ -153,7 +173,8 @@ def test_the_physics_of_all_ranks_fails(folder, mpiexec):
 
 
 def test_two_of_three_ranks_fail(folder, mpiexec):
-    faulty(folder, "max(notes.rank, 1)", "raise RunError('step 7: too fast')", *ENGINE)
+    fault = "raise RunError('step 7: too fast')"
+    faulty(folder, "max(notes.rank, 1)", fault, *ENGINE, end.PATIENCE)
     ranks = mpiexec(3, "--import", "faulty", "run", "endless.toml", "--output", "out")
     assert ranks.end() == 1
     one_message(ranks, "mesokit: error: rank 1: step 7: too fast")
@@ -217,35 +238,45 @@ CAUGHT = """
 from pathlib import Path
 from mesokit import RunError, Simulation, StopRun, every
 
-def look(simulation):
-    if simulation.ranks.rank == 1 and simulation.step == 100:
-        WRONG
+for name, wrong in WRONGS.items():
+    def look(simulation):
+        if simulation.ranks.rank == 1 and simulation.step == 100:
+            raise wrong
 
-simulation = Simulation("endless.toml", output="out", callbacks=[every(50, look)])
-try:
-    simulation.run()
-    end = f"stopped: {simulation.callbacks.stopped}"
-except RunError as error:
-    end = str(error)
-Path(f"end-{simulation.ranks.rank}").write_text(f"{simulation.step} {end}")
+    simulation = Simulation("endless.toml", output=name, callbacks=[every(50, look)])
+    try:
+        simulation.run()
+        end = f"stopped: {simulation.callbacks.stopped}"
+    except RunError as error:
+        end = str(error)
+    Path(f"{name}-{simulation.ranks.rank}").write_text(f"{simulation.step} {end}")
 """
+ENDS = {  # what is raised, how the run ends, whether it has failed
+    "error": ('ValueError("x")', "rank 1: callback look at step 100: ValueError: x", True),
+    "exit": ("SystemExit(5)", "rank 1: sys.exit(5)", True),
+    "stop": ('StopRun("enough")', "stopped: enough", False),
+}
 
 
-@pytest.mark.parametrize(
-    ("wrong", "end", "fails"),
-    [
-        ('raise ValueError("x")', "rank 1: callback look at step 100: ValueError: x", True),
-        ("raise SystemExit(5)", "rank 1: sys.exit(5)", True),
-        ('raise StopRun("enough")', "stopped: enough", False),
-    ],
-)
-def test_what_a_callback_of_one_rank_does_all_do(folder, mpiexec, wrong, end, fails):
-    """Nobody waits for one that has gone on."""
-    (folder / "script.py").write_text(CAUGHT.replace("WRONG", wrong))
-    ranks = mpiexec(2, sys.executable, "script.py")
+@pytest.fixture(scope="module")
+def caught(runs):
+    """The folder of runs, one after another, that a callback of rank 1 ends."""
+    return runs("caught", end_by_callback)
+
+
+def end_by_callback(folder):
+    wrongs = ", ".join(f'"{name}": {wrong}' for name, (wrong, _, _) in ENDS.items())
+    (folder / "script.py").write_text(CAUGHT.replace("WRONGS", f"{{{wrongs}}}"))
+    ranks = Ranks([MPIEXEC, "-n", "2", sys.executable, "script.py"], folder)
     assert ranks.end() == 0, ranks.err
-    assert [(folder / f"end-{rank}").read_text() for rank in (0, 1)] == 2 * [f"100 {end}"]
-    assert failed(folder) == (end if fails else None)
+
+
+@pytest.mark.parametrize("name", ENDS)
+def test_what_a_callback_of_one_rank_does_all_do(caught, name):
+    """Nobody waits for one that has gone on."""
+    _, end, fails = ENDS[name]
+    assert [(caught / f"{name}-{rank}").read_text() for rank in (0, 1)] == 2 * [f"100 {end}"]
+    assert failed(caught, name) == (end if fails else None)
 
 
 ASKS = """

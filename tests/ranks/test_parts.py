@@ -2,48 +2,42 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
+from rank_runs import on_ranks
 
-pytest.importorskip("mpi4py")
-MPIEXEC = shutil.which("mpiexec", path=f"{Path(sys.executable).parent}:{os.environ['PATH']}")
-PROGRAM = Path(__file__).with_name("program.py")
-SMALL, WHOLE = 50, 2**18  # particles of a piece
-
-pytestmark = pytest.mark.skipif(MPIEXEC is None, reason="no mpiexec")
+CASES = "bulk", "solid", "dimers"
 
 
-def do(folder, case, what, ranks, piece=SMALL, *more):
-    """What the program does on so many ranks; on one it is a process alone."""
-    arguments = [sys.executable, PROGRAM, folder, case, what, str(piece), *more]
-    start = [MPIEXEC, "-n", str(ranks)] if ranks > 1 else []
-    done = subprocess.run([*start, *arguments], capture_output=True, text=True, timeout=600)
-    assert done.returncode == 0, done.stdout + done.stderr
+@pytest.fixture(scope="module")
+def carried(once):
+    """A folder in which every case was begun by one process and by four ranks; the run of the one
+    process has gone on with these ranks."""
+    return once("carried", lambda folder: on_ranks(4, "program.py", folder, "carry"))
 
 
-@pytest.mark.parametrize(("case", "ranks"), [("bulk", 3), ("solid", 2), ("dimers", 3)])
-def test_files_are_those_of_one_rank_byte_by_byte(case, ranks, tmp_path):
-    one, some = tmp_path / "one", tmp_path / "some"
-    for folder, number, piece in ((one, 1, WHOLE), (some, ranks, SMALL)):
-        folder.mkdir()
-        do(folder, case, "carry", number, piece)
-    names = sorted(p.relative_to(one) for p in one.rglob("*.npz"))
+@pytest.fixture(scope="module")
+def resumed(carried, once):
+    """The same folder after the runs of four ranks have gone on with two, or with one process."""
+    once("resumed", lambda _: on_ranks(2, "program.py", carried, "go_on"))
+    return carried
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_files_are_those_of_one_rank_byte_by_byte(case, carried):
+    one, some = carried / f"{case}-one", carried / f"{case}-some"
+    names = sorted(p.relative_to(one) for p in one.rglob("*.npz") if p.name != "checkpoint.npz")
     assert len(names) == 3
     for name in names:
         assert (one / name).read_bytes() == (some / name).read_bytes(), name
-    do(one, case, "go_on", ranks)
-    do(some, case, "go_on", 1 if case == "dimers" else 2)
-    assert (one / "checkpoint.npz").read_bytes() == (some / "checkpoint.npz").read_bytes()
 
 
-def test_memory_of_a_rank_is_that_of_its_share(tmp_path):
-    do(tmp_path, "large", "weigh", 1, 2**14, "ranks")
-    one = np.loadtxt(tmp_path / "bytes")
-    do(tmp_path, "large", "weigh", 4, 2**14)
-    assert np.loadtxt(tmp_path / "bytes") < 0.25 * 1.2 * one
+@pytest.mark.parametrize("case", CASES)
+def test_a_checkpoint_goes_on_with_any_number_of_ranks(case, resumed):
+    one, some = (resumed / f"{case}-{who}" / "checkpoint.npz" for who in ("one", "some"))
+    assert one.read_bytes() == some.read_bytes()
+
+
+def test_memory_of_a_rank_is_that_of_its_share(carried):
+    some, one = (np.loadtxt(carried / f"bytes-{ranks}") for ranks in (4, 1))
+    assert some < 0.25 * 1.2 * one

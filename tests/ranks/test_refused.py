@@ -1,9 +1,12 @@
 """What several ranks cannot do is refused before the run, in one line of one rank."""
 
+import json
+import re
 import sys
 
+import numpy as np
 import pytest
-from rank_runs import CASE, MESOKIT, MPIEXEC, Ranks
+from rank_runs import CASE, MESOKIT, MPIEXEC, Ranks, on_ranks
 
 from mesokit.running.cores import usable_cores
 
@@ -31,54 +34,130 @@ solvent_pair = { rule = "wca", sigma = 3 }
 """
 
 
-def refusal(ranks):
-    assert ranks.end() == 2, (ranks.out, ranks.err)
-    lines = ranks.err.splitlines()
-    besides = "warning: ", "mesokit: reading the case"  # the latter where that takes long
-    said = [line for line in lines if line.strip() and not line.startswith(besides)]
-    assert len(said) == 1, ranks.err
-    return said[0]
+def lines_of(err):
+    """What is said but warnings, and that reading takes long, where it does."""
+    besides = "warning: ", "mesokit: reading the case"
+    return [line for line in err.splitlines() if line.strip() and not line.startswith(besides)]
 
 
 def start(folder, *words, n=2):
     return Ranks([MPIEXEC, "-n", n, *MESOKIT, *words], folder)
 
 
-@pytest.mark.parametrize(
-    ("n", "setting", "said"),
-    [
-        (2, "run.replicas=2", "run.replicas = 2: not on 2 ranks; expected 1"),
-        (5, "box.size=[2, 2]", "5 ranks: too many for 2 x 2 cells"),
-    ],
-)
-def test_a_case_that_ranks_cannot_run(folder, n, setting, said):
-    ranks = start(folder, "run", "case.toml", "--output", "out", "--set", setting, n=n)
-    assert said in refusal(ranks)
+ROWS = 600  # particles of the case
+
+
+def write_rows(path, last=1.0, rows=ROWS):
+    array = np.ones((rows, 2))
+    array[-1] = last
+    (np.savez if path.suffix == ".npz" else np.save)(path, array)
+
+
+# what fluid.start names, and what is said of it
+SOURCES = {
+    ("positions", "nan.npy"): "row 599 is not finite",
+    ("positions", "far.npy"): "2^30 boxes away or more",
+    ("positions", "few.npy"): "shape (7, 2): expected",
+    ("positions", "nan.npz"): "row 599 is not finite",
+    ("positions", "text.npy"): "expected a .npy or .npz file",
+    ("file", "text.gsd"): "cannot be read as a GSD file",
+    ("run", "empty"): "empty': ",
+}
+RUN = "run", "case.toml", "--output", "out"
+COMMANDS = {  # status and message of each
+    RUN + ("--set", f"fluid.start.{key}={file}"): (
+        2,
+        rf"case\.toml: fluid\.start\.{key}.*{re.escape(said)}.*",
+    )
+    for (key, file), said in SOURCES.items()
+} | {
+    RUN + ("--set", "run.replicas=2"): (
+        2,
+        r"case\.toml: run\.replicas = 2: not on 3 ranks; expected 1",
+    ),
+    ("run", "solutes.toml"): (
+        2,
+        r".*solutes\.coupling = 'potential': not on 3 ranks; expected one rank, or "
+        "coupling = 'collision'",
+    ),
+    ("run", "flock.toml"): (
+        2,
+        r"flock\.toml: run\.method = 'flock': not on 3 ranks; expected one",
+    ),
+    ("study", "case.toml", "--seeds", "2"): (
+        2,
+        "study: starts runs of its own; expected one process, no mpiexec",
+    ),
+    ("run", "case.toml", "--seeds", "2"): (2, "--seeds: not on 3 ranks; expected one process"),
+    ("run", "case.toml", "--ranks", "2"): (
+        2,
+        "--ranks: this is one of the ranks of an mpiexec; leave it out",
+    ),
+    ("run", "{rank}/case.toml", "--output", "out"): (
+        1,
+        r"rank 1: case: density = 6\.0 where rank 0 has density = 5\.0",
+    ),
+}
+# a folder is given on all ranks; the first writes there
+MADE = "from mesokit import Simulation\n{}"
+SCRIPTS = {
+    MADE.format("Simulation('case.toml', output=None if rank else 'out')"): "None",
+    MADE.format("Simulation.resume('other' if rank else 'out')"): "other",
+}
+
+
+@pytest.fixture(scope="module")
+def ended(once):
+    """How each of three ranks ends, by command or script."""
+    return json.loads((once("refused", end_all) / "said").read_text())
+
+
+def end_all(folder):
+    """Ranks note how they end; no run begins."""
+    case = CASE.format(steps=400, checkpoints=100)
+    files = {"case": case, "solutes": SOLUTES, "flock": FLOCK, "0/case": case}
+    files |= {f"{rank}/case": case.replace("density = 5", "density = 6") for rank in (1, 2)}
+    for name, text in files.items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / f"{name}.toml").write_text(text)
+    write_rows(folder / "nan.npy", np.nan)
+    write_rows(folder / "nan.npz", np.nan)
+    write_rows(folder / "far.npy", 1e300)
+    write_rows(folder / "few.npy", rows=7)
+    (folder / "text.npy").write_text("a")
+    (folder / "text.gsd").write_text("a")
+    (folder / "empty").mkdir()
+    given = {
+        "words": {" ".join(words): words for words in COMMANDS},
+        "scripts": {script: script for script in SCRIPTS},
+    }
+    (folder / "said").write_text(on_ranks(3, "refused.py", json.dumps(given), folder=folder))
     assert not (folder / "out").exists()
 
 
-def test_solutes_that_act_by_a_potential(folder):
-    (folder / "case.toml").write_text(SOLUTES)
-    said = refusal(start(folder, "run", "case.toml"))
-    assert said.endswith(
-        "solutes.coupling = 'potential': not on 2 ranks; expected one rank, or "
-        "coupling = 'collision'"
-    )
+@pytest.mark.parametrize("words", COMMANDS, ids=" ".join)
+def test_a_command_is_refused_in_one_line(words, ended):
+    status, pattern = COMMANDS[words]
+    others = 0 if words[0] == "study" else status  # which is a command of one process
+    assert [end for end, _ in ended[" ".join(words)]] == [status, others, others]
+    [line] = lines_of("".join(said for _, said in ended[" ".join(words)]))
+    assert re.fullmatch(f"mesokit: error: {pattern}", line), line
 
 
-def test_a_method_for_one_rank(folder):
-    (folder / "flock.toml").write_text(FLOCK)
-    said = refusal(start(folder, "run", "flock.toml"))
-    assert said == "mesokit: error: flock.toml: run.method = 'flock': not on 2 ranks; expected one"
+@pytest.mark.parametrize("script", SCRIPTS, ids=["simulation", "resume"])
+def test_one_rank_alone_has_the_folder(script, ended):
+    error = f"RunError: rank 1: output: {SCRIPTS[script]} where rank 0 has out"
+    assert ended[script] == 3 * [error]
 
 
-def test_a_study(folder):
-    said = refusal(start(folder, "study", "case.toml", "--seeds", "2"))
-    assert said == (
-        "mesokit: error: study: starts runs of its own; expected one process, no mpiexec"
-    )
-    said = refusal(start(folder, "run", "case.toml", "--seeds", "2"))
-    assert said == "mesokit: error: --seeds: not on 2 ranks; expected one process"
+def test_more_ranks_than_cells(folder):
+    """All ranks end with the status, and mpiexec with them."""
+    setting = "box.size=[2, 2]"
+    ranks = start(folder, "run", "case.toml", "--output", "out", "--set", setting, n=5)
+    assert ranks.end() == 2, (ranks.out, ranks.err)
+    [line] = lines_of(ranks.err)
+    assert "5 ranks: too many for 2 x 2 cells" in line
+    assert not (folder / "out").exists()
 
 
 def test_a_study_of_a_script(folder):
@@ -88,39 +167,6 @@ def test_a_study_of_a_script(folder):
     ranks = Ranks([MPIEXEC, "-n", "2", sys.executable, "script.py"], folder)
     assert ranks.end() == 1
     assert ranks.err.count("CaseError: Study: not on 2 ranks; expected one process") == 1
-
-
-def test_ranks_of_ranks(folder):
-    said = refusal(start(folder, "run", "case.toml", "--ranks", "2"))
-    assert said == "mesokit: error: --ranks: this is one of the ranks of an mpiexec; leave it out"
-
-
-def test_other_ranks_have_another_case(folder):
-    (folder / "other").mkdir()
-    (folder / "other" / "case.toml").write_text(
-        CASE.format(steps=400, checkpoints=100).replace("density = 5", "density = 6")
-    )
-    one = [*MESOKIT, "run", "case.toml", "--output", folder / "out"]
-    two = [*MESOKIT, "run", "other/case.toml", "--output", folder / "out"]
-    ranks = Ranks([MPIEXEC, "-n", "1", *one, ":", "-n", "1", *two], folder)
-    assert ranks.end() == 1
-    [said] = ranks.err.splitlines()[-1:]
-    assert said == "mesokit: error: rank 1: case: density = 6.0 where rank 0 has density = 5.0"
-
-
-@pytest.mark.parametrize(
-    "made", ["Simulation('case.toml', output={})", "Simulation.resume({} or 'other')"]
-)
-def test_one_rank_alone_has_the_folder(folder, made):
-    """A folder is given on all ranks; the first writes there."""
-    program = "from mesokit import Simulation; from mpi4py import MPI\n" + made.format(
-        "(None if MPI.COMM_WORLD.rank else 'out')"
-    )
-    ranks = Ranks([MPIEXEC, "-n", "2", sys.executable, "-c", program], folder)
-    assert ranks.end() == 1
-    other = "None" if "resume" not in made else "other"
-    assert ranks.err.count(f"RunError: rank 1: output: {other} where rank 0 has out") == 1
-    assert not (folder / "out").exists()
 
 
 @pytest.mark.parametrize(
@@ -161,7 +207,9 @@ def test_more_ranks_than_cores(folder):
     """Some are slow, which is said; very many would keep the machine from anything else."""
     cores = usable_cores()
     many = Ranks([*MESOKIT, "run", "case.toml", "--ranks", 16 * cores + 1], folder)
-    assert f"expected at most {16 * cores}: 16 for each core" in refusal(many)
+    assert many.end() == 2, (many.out, many.err)
+    [line] = lines_of(many.err)
+    assert f"expected at most {16 * cores}: 16 for each core" in line
     words = "--ranks", cores + 1, "--threads", 1, "--output", "out", "--set", "run.steps=2"
     some = Ranks([*MESOKIT, "run", "case.toml", *words], folder)
     assert some.end() == 0, some.err

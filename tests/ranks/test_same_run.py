@@ -1,10 +1,11 @@
 """One run on several ranks writes what one on one rank does, however it is started."""
 
 import json
+import shutil
 import sys
 
 import pytest
-from rank_runs import MESOKIT, Ranks, same_files
+from rank_runs import MESOKIT, MPIEXEC, Ranks, same_files
 
 import mesokit as mk
 
@@ -25,11 +26,27 @@ print(simulation.step, calls == [(n, 600) for n in range(0, simulation.step + 1,
 """
 
 
-@pytest.fixture
-def one(folder):
+@pytest.fixture(scope="module")
+def one(runs):
     """The run on one rank."""
-    mk.Simulation(folder / "case.toml", output=folder / "one", threads=1).run()
-    return folder / "one"
+    return runs("case-on-one", run_alone) / "out"
+
+
+def run_alone(folder):
+    mk.Simulation(folder / "case.toml", output=folder / "out", threads=1).run()
+
+
+@pytest.fixture(scope="module")
+def stopped(runs):
+    """A folder with the run of a script on two ranks that stops half way, and what it has said."""
+    return runs("stopped-script", run_half)
+
+
+def run_half(folder):
+    (folder / "script.py").write_text(SCRIPT.replace("STOP", "True"))
+    ranks = Ranks([MPIEXEC, "-n", "2", sys.executable, "script.py"], folder)
+    assert ranks.end() == 0, ranks.err
+    (folder / "said").write_text(ranks.out)
 
 
 def test_the_same_files_by_mpiexec_and_by_an_option(folder, one, mpiexec, mesokit):
@@ -49,15 +66,22 @@ def test_the_same_files_by_mpiexec_and_by_an_option(folder, one, mpiexec, mesoki
     assert "ranks:" not in repr(mk.open(one))
 
 
-@pytest.mark.parametrize("stop", [False, True])
-def test_a_script_is_run_by_all_ranks(folder, one, mpiexec, stop):
-    (folder / "script.py").write_text(SCRIPT.replace("STOP", str(stop)))
+def all_have_seen(said, step):
+    """Two ranks speak at once, and their words may mix."""
+    return said.count(f"{step}") == said.count("True") == 2
+
+
+def test_a_script_is_run_by_all_ranks(folder, one, mpiexec):
+    (folder / "script.py").write_text(SCRIPT.replace("STOP", "False"))
     ranks = mpiexec(2, sys.executable, "script.py")
     assert ranks.end() == 0, ranks.err
-    # two ranks speak at once, and their words may mix
-    assert ranks.out.count(f"{200 if stop else 400}") == ranks.out.count("True") == 2
-    if not stop:
-        same_files(one, folder / "out")
+    assert all_have_seen(ranks.out, 400), ranks.out
+    same_files(one, folder / "out")
+
+
+def test_a_script_is_stopped_on_all_ranks(stopped):
+    said = (stopped / "said").read_text()
+    assert all_have_seen(said, 200), said
 
 
 def test_a_script_that_uses_mpi_alone(folder):
@@ -69,9 +93,8 @@ def test_a_script_that_uses_mpi_alone(folder):
 
 
 @pytest.mark.parametrize("ranks", [1, 3])
-def test_a_run_goes_on_with_another_number_of_ranks(folder, one, mpiexec, mesokit, ranks):
-    (folder / "script.py").write_text(SCRIPT.replace("STOP", "True"))
-    assert mpiexec(2, sys.executable, "script.py").end() == 0
+def test_a_run_goes_on_with_another_number_of_ranks(folder, one, stopped, mesokit, ranks):
+    shutil.copytree(stopped / "out", folder / "out")
     again = mesokit("resume", "out", "--ranks", ranks)
     assert again.end() == 0, again.err
     same_files(one, folder / "out")
@@ -81,7 +104,7 @@ def test_a_run_goes_on_with_another_number_of_ranks(folder, one, mpiexec, mesoki
 
 def test_a_run_becomes_longer(folder, one, mpiexec):
     (folder / "case.toml").write_text((folder / "case.toml").read_text().replace("400", "200"))
-    assert mpiexec(2, "run", "case.toml", "--output", "out").end() == 0
+    run_alone(folder)
     again = mpiexec(2, "resume", "out", "--steps", "400")
     assert again.end() == 0, again.err
     same_files(one, folder / "out")

@@ -28,6 +28,7 @@ if sys.platform == "win32":
     _library.QueryPerformanceFrequency(ctypes.byref(_frequency))
     TICK = 1.0 / _frequency.value  # seconds of one unit of `read_clock`
     yield_core = _named("mesokit_yield_core", _library.SwitchToThread)
+    nap = yield_core  # the shortest sleep there lasts milliseconds
     _counter = _named("mesokit_counter", _library.QueryPerformanceCounter, types.uintp)
 
     @scalar
@@ -43,7 +44,13 @@ else:
     TICK = 1e-9
     _MONOTONIC, _THREAD = np.int32(time.CLOCK_MONOTONIC), np.int32(time.CLOCK_THREAD_CPUTIME_ID)
     yield_core = _named("mesokit_yield_core", _library.sched_yield)
+    _sleep = _named("mesokit_sleep", _library.usleep, types.uint32)
     _clock = _named("mesokit_clock", _library.clock_gettime, types.int32, types.uintp)
+
+    @scalar
+    def nap():
+        """Sleep as briefly as the system can, some 50 microseconds."""
+        return _sleep(np.uint32(1))
 
     @scalar
     def read_clock(room):

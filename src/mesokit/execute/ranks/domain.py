@@ -68,11 +68,20 @@ class Domain:
         Of this rank.
     molecules : int
         How many it is to hold, about.
+    crowded : bool
+        Whether ranks share cores.
     """
 
     def __init__(
-        self, numbers: Numbers, comm: Any, tree: Tree, threads: int, molecules: int
+        self,
+        numbers: Numbers,
+        comm: Any,
+        tree: Tree,
+        threads: int,
+        molecules: int,
+        crowded: bool,
     ) -> None:
+        self.crowded = crowded
         self.numbers, self.comm, self.tree, self.threads = numbers, comm, tree, threads
         self.space, self.rank = space_of(numbers), comm.rank
         self.block = tree.blocks[self.rank]
@@ -162,7 +171,7 @@ class Domain:
         regions = [self.regions[p] for p in self.partners]
         asked = numbers.case.fluid.collision.gradient_of is not None
         return Shared(
-            post=post(self.comm, 4 * q),
+            post=post(self.comm, 4 * q, self.crowded),
             keys=np.pad(keys(self.region, self.space), (0, LANES)),
             mixed=self._batches_with_own(),
             cells=np.array(self.space.cells, np.int64),

@@ -22,6 +22,7 @@ from mesokit.execute.ranks.blocks.window import Window, waiting
 from mesokit.execute.ranks.deal import dealt
 from mesokit.execute.ranks.domain import Domain, axes_to_cut, owners
 from mesokit.execute.ranks.here import Here
+from mesokit.execute.ranks.messages.mpi import crowded
 from mesokit.execute.ranks.messages.shared import DONE, FAR, FAULTS, FULL, MOLECULES, STRETCHED
 from mesokit.execute.ranks.readings import SharedReadings, SharedSolutes
 from mesokit.execute.ranks.state import ROOT, SPREAD, Spread
@@ -65,6 +66,7 @@ class Ranks(CPU):
         self.threads, self.measures = Threads(threads), measures
         self.n, self.dimension, self.box = self.numbers.n, self.numbers.dimension, self.numbers.box
         self.balancing = Balance(comm, case.run.imbalance)
+        self._crowded = crowded(comm, threads)
         self._window = Window()
         tree = divided(self.numbers.cells, comm.size, axes_to_cut(self.numbers))
         self._live_in(tree, self.numbers.filling.molecules // comm.size)
@@ -73,7 +75,7 @@ class Ranks(CPU):
         """New memory, for this rank's block in a tree."""
         size = self.threads.size
         earlier = self.memory if hasattr(self, "memory") else None
-        self.domain = Domain(self.numbers, self.comm, tree, size, molecules)
+        self.domain = Domain(self.numbers, self.comm, tree, size, molecules, self._crowded)
         self.memory = Memory(self.numbers, size, self.measures, self.domain, earlier)
         before = self.readings if earlier is not None else None
         self.readings = SharedReadings(self.memory, self.threads, self.comm)

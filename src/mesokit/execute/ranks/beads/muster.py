@@ -50,7 +50,7 @@ def roster_of(domain: Any, given: Solutes, terms: int) -> Roster:
         return np.zeros(shape, np.int64)
 
     return Roster(
-        post=post(domain.comm, 2 * q),
+        post=post(domain.comm, 2 * q, domain.crowded),
         ranks=np.array(domain.partners, np.int64),
         count=whole(8),
         who=whole(3, beads),

@@ -7,14 +7,16 @@ by the kernel itself. Handles are whole numbers of 32 or 64 bits, as the library
 from __future__ import annotations
 
 import ctypes
+import platform
 from typing import Any, NamedTuple
 
 import numpy as np
 from llvmlite import binding
 from numba import types
 
+from mesokit.running.cores import usable_cores, which_cores
 from mesokit.scalar.jit import scalar
-from mesokit.scalar.system import read_work_clock, yield_core
+from mesokit.scalar.system import nap, read_work_clock, yield_core
 
 SPINS = 1_000  # times that a rank looks for its messages before it lets others have the core
 FAILED = 1  # bit of `Post.flag[1]`: a call of the library failed
@@ -34,7 +36,8 @@ class Post(NamedTuple):
 
     comm, words: handles of the communicator and of the type of 64-bit numbers; requests, statuses:
     memory of the library, `size` bytes for each request; flag (2,) int32: its answer, and what
-    failed; waited (3,): room for the clock, and ticks spent in waiting.
+    failed; waited (3,): room for the clock, and ticks spent in waiting; crowded: whether ranks
+    share cores, and so sleep while they wait: a core that is yielded often comes back at once.
     """
 
     comm: int
@@ -44,10 +47,21 @@ class Post(NamedTuple):
     statuses: Any
     flag: Any
     waited: Any
+    crowded: bool
 
 
-def post(comm: Any, messages: int) -> Post:
-    """For so many messages at a time, to ranks of this communicator of mpi4py."""
+def crowded(comm: Any, threads: int) -> bool:
+    """Whether the threads of those ranks that have this one's cores are more than these cores.
+
+    All ranks of the communicator call this, each with its threads.
+    """
+    own = platform.node(), which_cores()
+    every = comm.allgather((own, threads))
+    return sum(n for theirs, n in every if theirs == own) > usable_cores()
+
+
+def post(comm: Any, messages: int, crowded: bool) -> Post:
+    """For so many messages at a time, to ranks of this communicator, which may share cores."""
     from mpi4py import MPI
 
     library = ctypes.CDLL(MPI.__file__)
@@ -63,6 +77,7 @@ def post(comm: Any, messages: int) -> Post:
         statuses=np.zeros(MPI._sizeof(MPI.Status) * messages + 8, np.uint8),
         flag=np.zeros(2, np.int32),
         waited=np.zeros(3, np.int64),
+        crowded=crowded,
     )
 
 
@@ -105,6 +120,8 @@ def finish(post, n):
             post.flag[1] |= FAILED
             break
         spins += 1
-        if spins > SPINS:
+        if post.crowded:
+            nap()
+        elif spins > SPINS:
             yield_core()
     post.waited[2] += read_work_clock(post.waited) - began
