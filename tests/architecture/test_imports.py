@@ -90,6 +90,7 @@ ROWS = {
         "running.cores", "scalar", "statistics",
     ),
     "execute/": ("case", "errors", "execute", "geometry", "method.mpcd", "potential", "scalar"),
+    "execute/ranks/messages/mpi.py": ("execute", "running.cores", "scalar"),
     "observe/": (
         "case", "engine", "errors", "geometry", "method.mpcd", "method.protocol", "observe",
         "statistics", "theory",

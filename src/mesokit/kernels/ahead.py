@@ -37,6 +37,7 @@ def begin(kernel: Any, compile: Callable[[], Any]) -> None:
         _compile(compile, reported)
     os.close(reported)
     _under_way[kernel] = child, report
+    counts.compiles_ahead += 1
 
 
 def _has_a_core() -> bool:
@@ -68,5 +69,6 @@ def end(kernel: Any) -> None:
                 os.kill(child, signal.SIGKILL)
             told = pipe.read()
         os.waitpid(child, 0)
+        counts.compiles_ahead -= 1
         if told:
             counts.add_made(pickle.loads(told))

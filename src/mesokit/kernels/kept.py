@@ -32,6 +32,7 @@ class Counts:
     def __init__(self, explains: bool = False) -> None:
         self.parts_made = self.stages_made = self.kernels_made = 0
         self.parts_found = self.stages_found = self.kernels_found = 0
+        self.compiles_ahead = 0  # children of this process that compile for it
         self.explains = explains  # whether reasons are looked for, which takes time
         self.reasons: dict[str, str] = {}  # by the name of what was made
 

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import functools
 import sys
+import threading
 from collections.abc import Callable
 from typing import Any
+
+_making = threading.RLock()
 
 
 class Later:
@@ -19,13 +22,16 @@ class Later:
         self, function: Callable, make: Callable[[], Any], chooser: Callable | None = None
     ) -> None:
         functools.update_wrapper(self, function)
-        self._make = make
+        self._make, self._made = make, None
         self.chooser = chooser  # of the code, by the types of arguments
 
-    @functools.cached_property
+    @property
     def made(self) -> Any:
-        """What numba knows."""
-        return self._make()
+        """What numba knows; made once, also where two threads ask at a time."""
+        if self._made is None:
+            with _making:
+                self._made = self._made or self._make()
+        return self._made
 
     @functools.cached_property
     def _numba_type_(self) -> Any:

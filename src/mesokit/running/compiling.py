@@ -37,7 +37,7 @@ def _doing() -> Callable[[], str]:
     made, parts, kernels = counts.parts_made, counts.parts_found, counts.kernels_found
 
     def words() -> str:
-        if counts.parts_made > made:
+        if counts.parts_made > made or counts.compiles_ahead:
             return "compiling (once; kept for the next runs)"
         if counts.parts_found > parts:
             return "compiling from parts that are kept (once)"
