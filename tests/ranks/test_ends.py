@@ -282,9 +282,9 @@ def test_what_a_callback_of_one_rank_does_all_do(caught, name):
 ASKS = """
 import notes
 from mesokit import Simulation, every
-from mesokit.ranks import several
+from mesokit.ranks import end, several
 
-several.LONG = 0.5
+several.LONG, end.PATIENCE = 0.5, 0.2
 
 def look(simulation):
     if simulation.ranks.root:
