@@ -44,7 +44,7 @@ ENGINE = "from mesokit.execute.ranks.engine import Ranks", "Ranks.totals"
 
 
 def faulty(folder, rank, fault, imports, where, patience=0.2):
-    """Where others fail as well, they are given the seconds that the product gives them."""
+    """Where all fail, they are given the seconds that the product gives them."""
     (folder / "faulty.py").write_text(
         FAULTS.format(rank=rank, fault=fault, imports=imports, where=where, patience=patience)
     )
@@ -173,8 +173,7 @@ def test_the_physics_of_all_ranks_fails(folder, mpiexec):
 
 
 def test_two_of_three_ranks_fail(folder, mpiexec):
-    fault = "raise RunError('step 7: too fast')"
-    faulty(folder, "max(notes.rank, 1)", fault, *ENGINE, end.PATIENCE)
+    faulty(folder, "max(notes.rank, 1)", "raise RunError('step 7: too fast')", *ENGINE)
     ranks = mpiexec(3, "--import", "faulty", "run", "endless.toml", "--output", "out")
     assert ranks.end() == 1
     one_message(ranks, "mesokit: error: rank 1: step 7: too fast")
@@ -282,9 +281,9 @@ def test_what_a_callback_of_one_rank_does_all_do(caught, name):
 ASKS = """
 import notes
 from mesokit import Simulation, every
-from mesokit.ranks import several
+from mesokit.ranks import end, several
 
-several.LONG = 0.5
+several.LONG, end.PATIENCE = 0.5, 0.2
 
 def look(simulation):
     if simulation.ranks.root:
