@@ -405,15 +405,15 @@ def test_what_was_not_used_for_longest_goes_first(tmp_path: Path) -> None:
 def test_a_store_keeps_to_its_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("mesokit.kernels.store.BOUND", 10**6)
     store = Store(tmp_path / "store.sqlite")
-    for day in range(30):
-        monkeypatch.setattr("mesokit.kernels.store._today", lambda day=day: day)
-        code = Code(f"code {day}", (), os.urandom(100_000))
-        store.keep(f"key {day}", Entry("name", frozenset(), b"", code.hash), [code])
+    for hour in range(30):
+        monkeypatch.setattr("mesokit.kernels.store._hour", lambda hour=hour: hour)
+        code = Code(f"code {hour}", (), os.urandom(100_000))
+        store.keep(f"key {hour}", Entry("name", frozenset(), b"", code.hash), [code])
         assert list(store.find("key 0"))  # what is used again and again stays
         [first] = store.find("key 0")
         assert store.code(first.code)
         store.note_used()
-        assert store.size <= 10**6 and list(store.find(f"key {day}"))
+        assert store.size <= 10**6 and list(store.find(f"key {hour}"))
     assert not list(store.find("key 1"))
 
 

@@ -218,18 +218,18 @@ class Store:
 
     def keep(self, key: str, entry: Entry, codes: Sequence[Code]) -> None:
         """Add an entry and the code that it needs, or nothing. Raises sqlite3.Error."""
-        today = _today()
+        now = _hour()
         with self._written():
             for code in codes:
                 body = zlib.compress(code.body, self.level)
                 self._disk.execute(
                     "INSERT OR REPLACE INTO code VALUES (?, ?, ?, ?, ?)",
-                    (code.hash, code.name, " ".join(code.called), body, today),
+                    (code.hash, code.name, " ".join(code.called), body, now),
                 )
             needs = self._write_needs(entry.needs)
             text = f"{key} {entry.name} {entry.code}".encode()
             digest = hashlib.sha256(text + needs + entry.about).digest()
-            row = key, entry.name, needs, entry.about, entry.code, digest, today
+            row = key, entry.name, needs, entry.about, entry.code, digest, now
             self._disk.execute("DELETE FROM entries WHERE key = ? AND needs = ?", (key, needs))
             self._disk.execute(
                 "INSERT INTO entries (key, name, needs, about, code, digest, used)"
@@ -264,16 +264,16 @@ class Store:
         self._disk.execute("COMMIT")
 
     def note_used(self) -> None:
-        """Write down what was used since this was opened, by the day, and keep to the bound.
+        """Write down what was used since this was opened, by the hour, and keep to the bound.
 
         Raises sqlite3.Error.
         """
         if not self.writes:
             return
-        today = _today()
+        now = _hour()
         with self._written():
             for table, name in (("entries", "id"), ("code", "hash")):
-                rows = [(today, one, today) for one in self._used[table]]
+                rows = [(now, one, now) for one in self._used[table]]
                 change = f"UPDATE {table} SET used = ? WHERE {name} = ? AND used < ?"
                 self._disk.executemany(change, rows)
                 self._used[table].clear()
@@ -292,10 +292,10 @@ class Store:
             " GROUP BY used ORDER BY used DESC"
         ).fetchall()
         total, last = 0, None
-        for day, size in ages:
+        for hour, size in ages:
             total += size
             if total > most:
-                last = day
+                last = hour
                 break
         if last is not None:
             with self._written():
@@ -339,8 +339,8 @@ class Store:
         self._disk.close()
 
 
-def _today() -> int:
-    return int(time.time() // 86400)
+def _hour() -> int:
+    return int(time.time() // 3600)
 
 
 def clear() -> None:
