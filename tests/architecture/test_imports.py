@@ -88,6 +88,7 @@ ROWS = {
         "case", "engine", "errors", "method.brownian", "method.protocol", "observe",
         "running.cores", "scalar", "statistics",
     ),
+    "execute/ranks/messages/mpi.py": ("execute", "running.cores", "scalar"),
     "execute/": ("case", "errors", "execute", "geometry", "method.mpcd", "potential", "scalar"),
     "observe/": (
         "case", "engine", "errors", "geometry", "method.mpcd", "method.protocol", "observe",
