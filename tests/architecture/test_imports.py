@@ -89,6 +89,7 @@ ROWS = {
         "case", "engine", "errors", "method.brownian", "method.protocol", "observe",
         "running.cores", "scalar", "statistics",
     ),
+    "execute/ranks/messages/mpi.py": ("execute", "running.cores", "scalar"),
     "execute/": ("case", "errors", "execute", "geometry", "method.mpcd", "potential", "scalar"),
     "execute/ranks/messages/mpi.py": ("execute", "running.cores", "scalar"),
     "observe/": (
