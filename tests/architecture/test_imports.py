@@ -91,7 +91,6 @@ ROWS = {
     ),
     "execute/ranks/messages/mpi.py": ("execute", "running.cores", "scalar"),
     "execute/": ("case", "errors", "execute", "geometry", "method.mpcd", "potential", "scalar"),
-    "execute/ranks/messages/mpi.py": ("execute", "running.cores", "scalar"),
     "observe/": (
         "case", "engine", "errors", "geometry", "method.mpcd", "method.protocol", "observe",
         "statistics", "theory",
