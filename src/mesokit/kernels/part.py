@@ -21,7 +21,7 @@ from typing import Any
 
 import llvmlite.binding as llvm
 from llvmlite.binding import Linkage
-from numba import njit, types
+from numba import njit
 from numba._dynfunc import make_function
 from numba.core import typed_passes, untyped_passes
 from numba.core.bytecode import FunctionIdentity
@@ -29,7 +29,6 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, CompileResult
 from numba.core.compiler_machinery import register_pass
 from numba.core.environment import Environment
-from numba.core.errors import TypingError
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.serialize import dumps
 
@@ -463,14 +462,6 @@ class _Part(CPUDispatcher):
         if "_called" not in vars(self):
             self._called = njit(error_model="numpy", no_cfunc_wrapper=True)(self.py_func)
         return self._called(*arguments)
-
-    def get_call_template(self, args: Any, kws: Any) -> Any:
-        """Numba would compile a part anew for each number that is written where it is called."""
-        plain = [types.unliteral(kind) for kind in args]
-        try:
-            return super().get_call_template(plain, kws)
-        except TypingError:  # such as the place in a tuple whose elements differ
-            return super().get_call_template(args, kws)
 
 
 OPTIONS = {
