@@ -5,11 +5,12 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterable, Iterator
 
+CHILD = {"signal.SIGALRM", "signal.SIGKILL", "signal.alarm"}  # by which a process ends its child
 # The files that may use some of it: what they use
 HOMES = {
     "running/cores.py": {"os.sched_getaffinity"},
     "case/warnings.py": {"os.sysconf"},
-    "kernels/ahead.py": {"os.fork", "os.sched_getaffinity", "signal.SIGKILL"},
+    "kernels/ahead.py": {"os.fork", "os.sched_getaffinity"} | CHILD,
     "kernels/made_of.py": {"ExternalFunction"},
     "kernels/store.py": {"/proc", "os.getuid"},
     "scalar/system.py": {"time.CLOCK_MONOTONIC", "ctypes", "ExternalFunction"},

@@ -1,24 +1,28 @@
 """Compiling a kernel ahead of its first call, on another core, while this process goes on.
 
 A child of this process compiles it and keeps it in the store, where the first call finds it. This
-needs a system that copies processes, a core that is free, and a store that can be written; where
-any of these is missing, and among ranks, the first call compiles the kernel as ever.
+needs a system that copies processes, a core that is free, a store that can be written, and that no
+other thread of the user is at work; elsewhere, and among ranks, the first call compiles the kernel.
 """
 
 from __future__ import annotations
 
+import atexit
 import os
 import pickle
 import select
 import signal
 import sys
+import threading
 import warnings
 from collections.abc import Callable
 from typing import Any
 
+from numba.core.compiler_lock import global_compiler_lock
+
 from mesokit.kernels.kept import counts, kept
 
-PATIENCE = 300.0  # seconds: a child that hangs holds no run up for ever
+PATIENCE = 300  # seconds: a child that hangs ends, and holds no run up for ever
 
 _under_way: dict[Any, tuple[int, int]] = {}  # of each kernel: the child, and where it reports
 
@@ -26,18 +30,27 @@ _under_way: dict[Any, tuple[int, int]] = {}  # of each kernel: the child, and wh
 def begin(kernel: Any, compile: Callable[[], Any]) -> None:
     """Compile a kernel in a child of this process, if that can be done."""
     own = kept().own
-    if own is None or not own.writes or kernel in _under_way or not _has_a_core():
+    if own is None or not own.writes or kernel in _under_way or not _can_copy():
         return
-    with warnings.catch_warnings():
-        # Python warns of threads, which the child has not; those of this process hold no lock
+    with global_compiler_lock, warnings.catch_warnings():
+        # Python warns of threads: the child has none, and the locks that it needs are held here
         warnings.simplefilter("ignore", DeprecationWarning)
         report, reported = os.pipe()
         child = os.fork()
-    if child == 0:
-        _compile(compile, reported)
+        if child == 0:
+            _compile(compile, reported)
     os.close(reported)
     _under_way[kernel] = child, report
     counts.compiles_ahead += 1
+
+
+def _can_copy() -> bool:
+    """Whether a child would have a core of its own, and find no lock of another thread."""
+    if threading.current_thread() is not threading.main_thread():
+        return False
+    if not all(one.daemon for one in threading.enumerate() if one is not threading.main_thread()):
+        return False
+    return _has_a_core()
 
 
 def _has_a_core() -> bool:
@@ -50,8 +63,12 @@ def _has_a_core() -> bool:
 def _compile(compile: Callable[[], Any], reported: int) -> None:
     """The whole life of the child."""
     try:
-        for number in signal.SIGINT, signal.SIGTERM:
+        for number in signal.SIGINT, signal.SIGTERM, signal.SIGALRM:
             signal.signal(number, signal.SIG_DFL)
+        signal.alarm(PATIENCE)
+        nothing = os.open(os.devnull, os.O_RDWR)
+        for stream in range(3):  # who reads what the parent writes does not wait for the child
+            os.dup2(nothing, stream)
         counts.__init__(counts.explains)  # type: ignore[misc]
         compile()
         with os.fdopen(reported, "wb") as pipe:
@@ -62,13 +79,30 @@ def _compile(compile: Callable[[], Any], reported: int) -> None:
 
 def end(kernel: Any) -> None:
     """Wait for the child that compiles a kernel, if there is one, and count what it made."""
-    if kernel in _under_way:
-        child, report = _under_way.pop(kernel)
+    if kernel not in _under_way:
+        return
+    child, report = _under_way.pop(kernel)
+    told = b""
+    try:
         with os.fdopen(report, "rb") as pipe:
-            if not select.select([pipe], [], [], PATIENCE)[0]:
-                os.kill(child, signal.SIGKILL)
-            told = pipe.read()
-        os.waitpid(child, 0)
-        counts.compiles_ahead -= 1
-        if told:
-            counts.add_made(pickle.loads(told))
+            if select.select([pipe], [], [], PATIENCE)[0]:
+                told = pipe.read()
+    finally:
+        _stop(child)
+    if told:
+        counts.add_made(pickle.loads(told))
+
+
+def _stop(child: int) -> None:
+    """End a child, which has reported or is not needed any more."""
+    counts.compiles_ahead -= 1
+    os.kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+
+
+@atexit.register
+def _stop_all() -> None:
+    while _under_way:
+        child, report = _under_way.popitem()[1]
+        os.close(report)
+        _stop(child)

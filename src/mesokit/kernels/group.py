@@ -71,9 +71,9 @@ class Group(types.Type):
         super().__init__(name=f"{kind.__name__}.{word}")
 
     @property
-    def key(self) -> str:
-        """What tells types apart."""
-        return self.name
+    def key(self) -> Any:
+        """What tells types apart: classes of one name can be several."""
+        return self.instance_class, self.types
 
     def __len__(self) -> int:
         return len(self.types)

@@ -98,11 +98,11 @@ class Kept:
         """Go on without the user's own store if something is wrong with it."""
         try:
             yield
-        except (sqlite3.Error, OSError, RuntimeError) as error:
+        except Exception as error:
             self.trouble = str(error) or type(error).__name__
             self.stores = [store for store in self.stores if store is not self.own]
             self.own = None
-            if type(error) is sqlite3.DatabaseError:  # damaged: it is begun anew
+            if not _is_busy(error):  # damaged: it is begun anew
                 with contextlib.suppress(OSError, sqlite3.Error):
                     clear()
                     self.own = _sound(store_file())
@@ -115,7 +115,7 @@ class Kept:
             with self._without_own():
                 yield
         else:
-            with contextlib.suppress(sqlite3.Error):
+            with contextlib.suppress(Exception):  # damaged, in any way
                 yield
 
     def find(self, key: str) -> tuple[Entry, Store] | None:
@@ -162,6 +162,12 @@ class Kept:
         if self.own is not None:
             with self._without_own():
                 self.own.note_used()
+
+
+def _is_busy(error: Exception) -> bool:
+    """Whether a store is locked, full or out of reach, and not damaged."""
+    decoded = "decode" in str(error)  # a text that is none
+    return isinstance(error, (sqlite3.OperationalError, OSError, RuntimeError)) and not decoded
 
 
 def _sound(file: Path) -> Store:

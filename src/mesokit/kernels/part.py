@@ -174,8 +174,11 @@ def _found_ready(hash: str) -> Any:
     code = None if hit is None else kept().code(hit[0].code)
     if hit is None or code is None:
         return None
-    names, below = pickle.loads(hit[0].about)
-    make_ready(below)
+    try:
+        names, below = pickle.loads(hit[0].about)
+        make_ready(below)
+    except Exception:  # what was kept does not fit, in any way: it is made anew
+        return None
     counts.stages_found += 1
     _ready[hash] = machine_code(code, names)
     return _ready[hash]
@@ -457,6 +460,8 @@ def _keep(key: str, function: Any, made: Any) -> None:
 
 class _Part(CPUDispatcher):
     """A part; called from Python, it is compiled once more in numba's usual way."""
+
+    is_part = True
 
     def __call__(self, *arguments: Any) -> Any:
         if "_called" not in vars(self):

@@ -18,7 +18,10 @@ def export(file: Path) -> int:
     own = kept().own
     if own is None:
         raise OSError(f"there is no store of compiled code: {kept().trouble}")
+    if file.exists() and file.samefile(own.file):
+        raise OSError(f"{file} is the store itself; expected another file")
     file.parent.mkdir(parents=True, exist_ok=True)
+    whole, file = file, file.with_name(f"{file.name}.part")
     file.unlink(missing_ok=True)
     made, number = Store(file, level=0), 0
     for key, entry in own.parts():
@@ -27,6 +30,7 @@ def export(file: Path) -> int:
             made.keep(key, entry, [code for code in codes if not made.has_code(code.hash)])
             number += 1
     made.finish()
+    file.replace(whole)
     return number
 
 

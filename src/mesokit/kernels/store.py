@@ -105,6 +105,9 @@ def _private(place: Path) -> Path:
             raise PermissionError(f"{place} is not the user's own folder")
         if stat.S_IMODE(about.st_mode) != 0o700:
             place.chmod(0o700)
+        for file in place.glob("compiled-*"):
+            if about.st_mode & 0o022 or file.lstat().st_uid != os.getuid():
+                file.unlink()  # others could have written it
     return place
 
 
