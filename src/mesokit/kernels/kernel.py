@@ -14,7 +14,6 @@ from typing import Any
 
 from numba import njit, typeof
 from numba.core.registry import CPUDispatcher, cpu_target
-from numba.core.serialize import dumps
 
 from mesokit.kernels import ahead
 from mesokit.kernels.group import all_packed
@@ -22,6 +21,7 @@ from mesokit.kernels.kept import counts, kept, versions
 from mesokit.kernels.made_of import Unknown, code_of, describe_type, digest
 from mesokit.kernels.one_compiles import released, taken
 from mesokit.kernels.part import (
+    as_bytes,
     machine_code,
     make_ready,
     needs_below,
@@ -143,7 +143,7 @@ class _MachineCode:
         others = compiled._find_referenced_environments()
         told = compiled.fndesc, compiled.environment, compiled.signature, names, others, stages
         code = Code(library.name, (), library._get_compiled_object())
-        entry = Entry(name, below, dumps(told), code.hash)
+        entry = Entry(name, below, as_bytes(told), code.hash)
         kept().keep(key, lambda store: (entry, [code]))
 
     def flush(self) -> None:

@@ -15,6 +15,7 @@ import importlib
 import sys
 import types as python_types
 from collections.abc import Iterable, Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -79,9 +80,16 @@ def _named(function: Any) -> dict[str, Any]:
 def place_of(thing: Any) -> str:
     """Module and name under which every process finds a function or class. Raises Unknown."""
     module, name = thing.__module__, thing.__qualname__
+    if module == "__main__" and not _is_script():
+        raise Unknown(f"{name} is of a notebook, whose cells may define it anew")
     if module is None or "<locals>" in name or _find(module, name) is not thing:
         raise Unknown(f"{module}.{name}")
     return f"{module}:{name}"
+
+
+def _is_script() -> bool:
+    """Whether what runs is a file, and no notebook."""
+    return Path(getattr(sys.modules["__main__"], "__file__", "") or "no file").is_file()
 
 
 def _find(module: str, name: str) -> Any:

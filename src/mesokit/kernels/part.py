@@ -434,6 +434,15 @@ def result_of(library: Any, fndesc: Any, signature: Any, entry: Any, environment
     )
 
 
+def as_bytes(told: Any) -> bytes:
+    """What numba must be told of compiled code. Classes are named, and not copied: those of a
+    script that is run again are the same."""
+    try:
+        return pickle.dumps(told)
+    except Exception:  # something that has no name
+        return dumps(told)
+
+
 def _keep(key: str, function: Any, made: Any) -> None:
     """Write a compiled part down for other kernels and processes."""
     library, below = made.library, needs_below(made.library)
@@ -444,7 +453,7 @@ def _keep(key: str, function: Any, made: Any) -> None:
     except Unknown:
         return
     made.fndesc.typemap = made.fndesc.calltypes = None
-    about = dumps((made.fndesc, made.signature))
+    about = as_bytes((made.fndesc, made.signature))
     name = f"{function.__module__}:{function.__qualname__}"
 
     def entry(store: Store) -> tuple[Entry, list[Code]]:
