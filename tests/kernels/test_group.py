@@ -114,3 +114,15 @@ def test_a_group_is_one_word_and_a_type_of_its_own() -> None:
 def test_what_cannot_be_packed_is_named() -> None:
     with pytest.raises(TypeError, match="a group cannot hold"):
         packed(Inner(np.ones(1), Pair("a", 1)))  # type: ignore[arg-type]
+
+
+def test_classes_of_one_name_are_told_apart() -> None:
+    def kinds() -> type:
+        class Row(NamedTuple):
+            parameters: Any
+            values: Any
+
+        return Row
+
+    one, other = (packed(kind((1.0,), np.ones(2))) for kind in (kinds(), kinds()))
+    assert typeof(one) != typeof(other)

@@ -199,3 +199,70 @@ def test_a_child_that_dies_costs_time_only(tmp_path: Path) -> None:
         env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache")},
     )  # fmt: skip
     assert (done.returncode, done.stdout.strip()) == (0, "[7.0, 7.0, 7.0] 1"), done.stderr
+
+
+CELL = """
+from typing import NamedTuple
+import numpy as np
+from mesokit.kernels.group import by_address
+from mesokit.kernels.kernel import kernel
+from mesokit.scalar.jit import generic
+
+@by_address()
+class Physics(NamedTuple):
+    field: tuple
+
+@generic
+def push(field, x):
+    'What a field adds.'
+
+@kernel
+def advance(physics, values):
+    for i in range(len(values)):
+        values[i] = push(physics.field, values[i])
+
+for factor in 1.0, 3.0, 5.0:
+    exec(f"class Field(NamedTuple):\\n    g: float\\n"
+         f"@push.register(Field)\\ndef _(field, x):\\n    return x + {factor} * field.g")
+    values = np.zeros(1)
+    advance(Physics(Field(2.0)), values)
+    print(values[0])
+"""
+
+
+def test_a_cell_of_a_notebook_that_is_defined_anew(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-"], input=CELL, capture_output=True, text=True, timeout=300,
+        env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)},
+    )  # fmt: skip
+    assert done.stdout.split() == ["2.0", "6.0", "10.0"], done.stderr
+
+
+THREADS = """
+import threading
+import numpy as np
+import law
+from mesokit.kernels import ahead
+
+ahead._has_a_core = lambda: True
+values, physics = np.ones(3), law.Physics((1.0,), 2.0, (5.0,))
+done = threading.Event()
+other = threading.Thread(target=done.wait)
+other.start()
+law.advance.compile_ahead(physics, values, 1)
+begun = len(ahead._under_way)
+done.set()
+other.join()
+law.advance.compile_ahead(physics, values, 1)
+print(begun, len(ahead._under_way))
+"""
+
+
+@LINUX
+def test_no_child_beside_threads_of_the_user_and_none_outlives_us(tmp_path: Path) -> None:
+    place = Place(tmp_path)
+    done = subprocess.run(  # ends while the child compiles, which does not hold what it wrote to
+        [sys.executable, "-c", THREADS], cwd=place.root, timeout=300, capture_output=True,
+        text=True, env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache")},
+    )  # fmt: skip
+    assert (done.returncode, done.stdout.split()) == (0, ["0", "1"]), done.stderr

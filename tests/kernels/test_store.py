@@ -20,6 +20,7 @@ from mesokit.kernels.store import Code, Entry, Store, folder, on_network
 
 LAW = """
 import numpy as np
+from numba import njit
 from mesokit.kernels.kernel import kernel
 from mesokit.scalar.jit import by_type, generic, scalar
 from typing import NamedTuple
@@ -50,9 +51,14 @@ def _(shape, x):
     return x**shape.power
 
 
+@njit
+def same(x):
+    return x + 0.0
+
+
 @scalar
 def twice(x):
-    return 2.0 * x
+    return 2.0 * same(x)
 
 
 @scalar
@@ -165,12 +171,13 @@ def test_a_second_process_makes_nothing(place: Place) -> None:
     ("before", "after", "kernels", "parts", "factor"),
     [
         # twice, what was chosen for reduced, and the bodies of both kernels; 2 is there twice
-        ("return 2.0 * x", "return 4.0 * x", 2, 4, 4.0),
+        ("return 2.0 * same(x)", "return 4.0 * same(x)", 2, 4, 4.0),
         ("return FACTOR * x", "return x * FACTOR * 2.0", 1, 2, 2.0),
         ("FACTOR = 3.0", "FACTOR = 6.0", 1, 2, 2.0),
         ("return shape.slope * x", "return shape.slope * x * 2.0", 1, 2, 2.0),
         ("len(rows) > 1", "len(rows) > 2", 1, 2, 0.5),  # only what chooses has changed
         ("out[i] = twice(out[i])", "out[i] = twice(twice(out[i]))", 1, 1, 2.0),  # a kernel itself
+        ("x + 0.0", "x + x", 2, 4, 4.0),  # of a function of numba's own kind
         ("return x + 1.0", "return x + 2.0", 0, 0, 1.0),
         ("return x**shape.power", "return x**shape.power + 1.0", 0, 0, 1.0),
         ("'''Height of a shape at x.'''", "'''Height.'''\n    # of what", 0, 0, 1.0),
@@ -219,6 +226,53 @@ def test_a_damaged_store_is_made_anew(place: Place, how: str) -> None:
     first = place.run()
     assert first["sum"] == 72.0 and first["kernels_made"] > 0
     assert place.run()["sum"] == 72.0  # where damage was seen late, the store is new only now
+    assert place.run().items() >= NOTHING_MADE.items()
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        "UPDATE code SET body = NULL",
+        "UPDATE code SET called = NULL",
+        "UPDATE entries SET needs = NULL",
+        "UPDATE entries SET about = 7",
+        "UPDATE needs SET line = CAST(CAST(line AS BLOB) || x'ff20' AS TEXT)",  # no text any more
+    ],
+)
+def test_rows_of_other_kinds_are_made_anew(place: Place, change: str) -> None:
+    disk = sqlite3.connect(place.store)
+    with disk:
+        assert disk.execute(change).rowcount > 0
+    disk.close()
+    first = place.run()
+    assert first["sum"] == 72.0 and first["kernels_made"] > 0
+    assert place.run()["sum"] == 72.0  # where damage was seen late, the store is new only now
+    assert place.run().items() >= NOTHING_MADE.items()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="folders of Windows have no mode")
+def test_a_file_that_others_could_write_is_not_run(place: Place) -> None:
+    place.store.parent.chmod(0o777)
+    assert place.run()["kernels_made"] == 2
+    assert place.run().items() >= NOTHING_MADE.items()
+
+
+@pytest.mark.skipif(not hasattr(os, "chown") or os.geteuid() != 0, reason="only root gives away")
+def test_a_file_of_another_user_is_not_run(place: Place) -> None:
+    os.chown(place.store, 12345, 12345)
+    assert place.run()["kernels_made"] == 2
+
+
+def test_the_store_is_not_exported_to_itself(place: Place) -> None:
+    export = f"""
+from pathlib import Path
+from mesokit.kernels.ship import export
+export(Path({str(place.store)!r}))
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", export], env=place.environment, capture_output=True, text=True
+    )
+    assert "is the store itself" in done.stderr
     assert place.run().items() >= NOTHING_MADE.items()
 
 
