@@ -24,9 +24,11 @@ settings.load_profile("same every time")
 
 HERE = Path(__file__).parent
 # laboratory.py, kinds.py, hard_spheres.py, refusal.py, fake_fluid.py, compared.py,
-# fake_spheres.py, flows.py, shapes.py, examples.py, ptx.py, rank_runs.py
+# fake_spheres.py, flows.py, shapes.py, examples.py, ptx.py,
+# module_with_kernels.py, rank_runs.py
 sys.path[:0] = [
-    str(HERE / name) for name in ("laws", "case", "observe", "report", "geometry", "gpu", "ranks")
+    str(HERE / name)
+    for name in ("laws", "case", "observe", "report", "geometry", "gpu", "kernels", "ranks")
 ]
 
 

@@ -12,6 +12,7 @@ import platform
 import sqlite3
 import sys
 import sysconfig
+import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -77,10 +78,14 @@ def shipped_file() -> Path:
 
 
 class Kept:
-    """The stores of one process: the user's own, and the one that came with the package."""
+    """The stores of one process: the user's own, and the one that came with the package.
+
+    Threads use them one at a time.
+    """
 
     def __init__(self) -> None:
         self.process = os.getpid()
+        self._one_thread = threading.RLock()
         self.trouble = ""  # why the user's own store is not used
         self.own: Store | None = None
         self.stores: list[Store] = []
@@ -97,7 +102,8 @@ class Kept:
     def _without_own(self) -> Iterator[None]:
         """Go on without the user's own store if something is wrong with it."""
         try:
-            yield
+            with self._one_thread:
+                yield
         except Exception as error:
             self.trouble = str(error) or type(error).__name__
             self.stores = [store for store in self.stores if store is not self.own]
@@ -115,7 +121,7 @@ class Kept:
             with self._without_own():
                 yield
         else:
-            with contextlib.suppress(Exception):  # damaged, in any way
+            with contextlib.suppress(Exception), self._one_thread:  # damaged, in any way
                 yield
 
     def find(self, key: str) -> tuple[Entry, Store] | None:
@@ -131,7 +137,7 @@ class Kept:
         """Why there is no valid entry of a key, in a line."""
         known = False
         for store in self.stores:
-            with contextlib.suppress(sqlite3.Error, ValueError):
+            with contextlib.suppress(sqlite3.Error, ValueError), self._one_thread:
                 for entry in store.find(key):
                     for need in sorted(entry.needs):
                         if not still_holds(need):

@@ -270,10 +270,10 @@ def needs_of(function: Any) -> Iterator[str]:
 
 def holds(need: str) -> bool:
     """Whether what a line names is still the same."""
-    what, place, word, *more = need.split(" ")
-    module, name = place.split(":")
-    found = _find(module, name)
     try:
+        what, place, word, *more = need.split(" ")
+        module, name = place.split(":")
+        found = _find(module, name)
         if what == "function":
             return found is not None and code_of(found) == word
         if what == "choice":
@@ -282,8 +282,8 @@ def holds(need: str) -> bool:
                 importlib.import_module(registered_in)
             return code_of(found.implementation(_find(*kind.split(":")))) == word
         return digest(describe(vars(importlib.import_module(module))[name])) == word
-    except (Unknown, AttributeError, KeyError, ImportError):
-        return False
+    except (Unknown, AttributeError, KeyError, ImportError, ValueError):
+        return False  # also a line as another version of this package writes it
 
 
 _still = functools.cache(holds)

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import itertools
 import os
 import sqlite3
 import stat
@@ -27,7 +28,7 @@ from typing import Any, NamedTuple
 from numba import config
 
 FORMAT = 1  # of the tables
-BOUND = 512 * 2**20  # bytes; what has not been used for longest goes first
+BOUND = 500_000_000  # bytes; what has not been used for longest goes first
 PATIENCE = 5.0  # seconds that a process waits for one that writes
 MOST_ENTRIES = 4  # of one key: states of what it needs, such as two versions of the sources
 NETWORK = (
@@ -100,9 +101,9 @@ def _private(place: Path) -> Path:
     """The folder, which only its user may open. Raises OSError."""
     place.mkdir(mode=0o700, parents=True, exist_ok=True)
     if hasattr(os, "getuid"):
-        about = place.lstat()
-        if not stat.S_ISDIR(about.st_mode) or about.st_uid != os.getuid():
-            raise PermissionError(f"{place} is not the user's own folder")
+        about = place.stat()
+        if {about.st_uid, place.lstat().st_uid} != {os.getuid()}:  # the folder, and a link to it
+            raise PermissionError(f"{place} belongs to another user")
         if stat.S_IMODE(about.st_mode) != 0o700:
             place.chmod(0o700)
         for file in place.glob("compiled-*"):
@@ -288,22 +289,23 @@ class Store:
 
         Raises sqlite3.Error.
         """
-        ages = self._disk.execute(
-            "SELECT used, SUM(bytes) FROM"
-            " (SELECT used, length(about) + length(needs) + 200 AS bytes FROM entries"
-            " UNION ALL SELECT used, length(body) + 200 FROM code)"
-            " GROUP BY used ORDER BY used DESC"
+        rows = self._disk.execute(
+            "SELECT hash, used, length(body) + 200 + coalesce(bytes, 0) FROM code LEFT JOIN"
+            " (SELECT code AS hash, SUM(length(about) + length(needs) + 200) AS bytes"
+            " FROM entries GROUP BY code) USING (hash) ORDER BY used DESC, code.rowid DESC"
         ).fetchall()
-        total, last = 0, None
-        for hour, size in ages:
-            total += size
-            if total > most:
-                last = hour
-                break
-        if last is not None:
+        sizes = itertools.accumulate(size for _, _, size in rows)
+        left = sum(size <= most for size in sizes)
+        if left < len(rows):
+            oldest = rows[left - 1][1] if left else _hour() + 1
             with self._written():
-                self._disk.execute("DELETE FROM entries WHERE used <= ?", (last,))
-                self._disk.execute("DELETE FROM code WHERE used <= ?", (last,))
+                gone = [(hash,) for hash, _, _ in rows[left:]]
+                self._disk.executemany("DELETE FROM code WHERE hash = ?", gone)
+                self._disk.execute(
+                    "DELETE FROM entries WHERE CASE code WHEN '' THEN used < ?"
+                    " ELSE code NOT IN (SELECT hash FROM code) END",
+                    (oldest,),
+                )
                 self._forget_needs()
         self._disk.execute("VACUUM")
         self._disk.execute("PRAGMA wal_checkpoint(TRUNCATE)")
@@ -363,4 +365,7 @@ def store_file() -> Path:
     if not config.CACHE_DIR and on_network(place):
         user = os.getuid() if hasattr(os, "getuid") else "user"
         place = Path(tempfile.gettempdir()) / f"mesokit-{user}"
-    return _private(place) / f"compiled-{FORMAT}.sqlite"
+    file = _private(place) / f"compiled-{FORMAT}.sqlite"
+    if file.is_dir():
+        raise IsADirectoryError(f"{file} is a folder; expected a file, or nothing")
+    return file
