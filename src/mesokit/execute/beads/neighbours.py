@@ -185,9 +185,12 @@ def make_list(lists, box, places, i, zero):
         along_x, _ = next_along(lists, box, 0, x)
         for c in range(3 if d == 3 else 1):
             layer = along_z[c] if d == 3 else 0
+            if min(along_y[b], layer) < 0:
+                continue
+            row = along_y[b] * rows + layer * layers
             for a in range(3):
-                if min(along_x[a], along_y[b], layer) >= 0:
-                    cell = along_x[a] + along_y[b] * rows + layer * layers
+                if along_x[a] >= 0:
+                    cell = np.uint64(along_x[a] + row)
                     found = list_cell(lists, box, places, i, mine, cell, found, zero)
     lists.count[i] = found if found <= lists.near.shape[1] else CROWDED
 
