@@ -12,10 +12,13 @@ MOST = 120
 PROGRAM = """
 import json
 import llvmlite.binding as llvm
-from mesokit import Box, Case, Fluid, MaxwellBoltzmann, Plates, Run, Simulation
+from mesokit import (
+    Box, Case, Fluid, MaxwellBoltzmann, OscillatingForce, Plates, Run, Simulation, Uniform
+)
 from mesokit.kernels.kept import kept
 
-fluid = Fluid(thermostat=MaxwellBoltzmann())
+force = OscillatingForce(Uniform([0.01, 0.0]), frequency=1.0)
+fluid = Fluid(thermostat=MaxwellBoltzmann(), force=force)
 case = Case(run=Run(steps=2), box=Box([8, 8]), fluid=fluid, walls=[Plates("y")])
 Simulation(case, threads=1).run(progress=False)
 longest = {}

@@ -10,8 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba import njit, typeof
 
-from mesokit.kernels.group import Group, by_address, kind_of, packed, writer
+from mesokit.kernels.group import Group, by_address, kind_of, packed, replaced, writer
 from mesokit.kernels.kernel import kernel
+from mesokit.scalar.jit import seldom
 
 
 class Pair(NamedTuple):
@@ -126,3 +127,53 @@ def test_classes_of_one_name_are_told_apart() -> None:
 
     one, other = (packed(kind((1.0,), np.ones(2))) for kind in (kinds(), kinds()))
     assert typeof(one) != typeof(other)
+
+
+class Wave(NamedTuple):
+    amplitude: float
+    on: bool
+    at: tuple
+    inner: Any
+
+
+@by_address(in_words=True)
+class Law(NamedTuple):
+    scale: float
+    field: Any
+    masses: tuple
+
+
+with_field = replaced("field")
+
+
+@njit
+def pushed(law, i):
+    wave = law.field
+    value = wave.inner.values[i] + wave.inner.pair.second if wave.on else 0.0
+    return law.scale * wave.amplitude * value + wave.at[1] * law.masses[0]
+
+
+@seldom
+def pushed_once_more(law, i):
+    return 0.0 if law.field.on else pushed(law, i)
+
+
+@kernel
+def sum_of_steps(law, steps, out):
+    for n in range(steps):
+        field = Wave(law.field.amplitude * n, n % 3 > 0, (0.0, float(n)), law.field.inner)
+        now = with_field(law, field)
+        for i in range(len(out)):
+            out[i] += pushed(now, i) + pushed_once_more(now, i)  # inlined, and called
+    for i in range(len(out)):  # the group itself is as it was
+        out[i] += pushed(with_field(law, None), i)
+
+
+@pytest.mark.parametrize("order", ["C", "A"])
+def test_a_replaced_field_is_that_of_each_step(order: str) -> None:
+    values = np.arange(8.0) if order == "C" else np.arange(16.0)[::2]
+    inner = Inner(values, Pair(1.0, 4))
+    law, out = Law(2.0, Wave(3.0, True, (0.0, 7.0), inner), (5.0,)), np.zeros(8)
+    sum_of_steps(law, 7, out)
+    by_hand = 2.0 * 3.0 * (1 + 2 + 4 + 5) * (values + 4) + (21 + 0 + 3 + 6) * 5.0
+    np.testing.assert_array_equal(out, by_hand + 2.0 * 3.0 * (values + 4) + 7.0 * 5.0)

@@ -36,7 +36,7 @@ from numba.extending import (
 )
 from numba.np.arrayobj import populate_array
 
-_WORD = ir.IntType(64)
+_WORD, _BYTES = ir.IntType(64), ir.IntType(8).as_pointer()
 _CHANGING: dict[type, tuple[str, ...]] = {}  # classes that are always packed, and what changes
 _IN_WORDS: set[type] = set()  # classes of which each field takes one word
 
@@ -256,7 +256,7 @@ def _unbox(kind: Group, thing: Any, context: Any) -> NativeValue:
     word = context.pyapi.object_getattr_string(thing, "address")
     value = context.pyapi.long_as_longlong(word)
     context.pyapi.decref(word)
-    return NativeValue(context.builder.inttoptr(value, ir.IntType(8).as_pointer()))
+    return NativeValue(context.builder.inttoptr(value, _BYTES))
 
 
 # --- reading and writing in compiled code ---------------------------------------------------------
@@ -311,7 +311,7 @@ def _load_field(context: Any, builder: Any, kind: Group, value: Any, name: str) 
     inner, fixed = kind.types[kind.fields.index(name)], name not in kind.changing
     at = kind.offsets[name]
     if kind.in_words and not isinstance(inner, types.Number):
-        value, at = _load_word(builder, value, at, ir.IntType(8).as_pointer(), True), 0
+        value, at = _load_word(builder, value, at, _BYTES, True), 0
         for what, number in ("dereferenceable", 8 * _words_of(inner)), ("align", 8):
             node = builder.module.add_metadata([ir.Constant(_WORD, max(8, number))])
             value.set_metadata(what, node)
@@ -395,6 +395,81 @@ def without(*names: str) -> Any:
         return kind(group), lambda context, builder, signature, arguments: arguments[0]
 
     return intrinsic(hide)
+
+
+def replaced(name: str) -> Any:
+    """The function (group, value) that gives a group with another value of a field, or, for None,
+    the group as it is.
+
+    The group has fields of one word each. The new one lies in the memory of the function that
+    calls this, until that returns or calls it again in the same place.
+    """
+
+    def replace(typing_context: Any, group: Any, value: Any) -> Any:
+        if value is types.none:
+            return group(group, value), lambda context, builder, kinds, given: given[0]
+        place = group.fields.index(name)
+        inner = (*group.types[:place], _stored(value), *group.types[place + 1 :])
+        kind = _group(group.instance_class, inner)
+
+        def generate(context: Any, builder: Any, kinds: Any, given: Any) -> Any:
+            held = _room(builder, _words_of(value))
+            _store(context, builder, held, 0, value, given[1])
+            made = _room(builder, kind.words)
+            _store(context, builder, made, 0, kind, given[0])
+            address = _place(builder, made, kind.offsets[name], _BYTES)
+            builder.store(held, address, align=8)
+            # Loads are marked as of memory that does not change, and this does at the next call: so
+            # each call gives a pointer that LLVM takes for another, which no load can come before.
+            same = ir.FunctionType(_BYTES, [_BYTES])
+            return builder.asm(same, "", "=r,0,~{memory}", [made], side_effect=True)
+
+        return kind(group, value), generate
+
+    return intrinsic(replace)
+
+
+def _stored(kind: Any) -> Any:
+    """The type of a value of compiled code once it lies in a group."""
+    if not isinstance(kind, types.BaseTuple):
+        return kind
+    inner = tuple(map(_stored, _items(kind)))
+    holds_arrays = any(isinstance(one, (Group, types.Array)) for one in inner)
+    named = getattr(kind, "instance_class", None)
+    return _group(named, inner) if named is not None and holds_arrays else kind
+
+
+def _room(builder: Any, words: int) -> Any:
+    """Memory of the function that is compiled."""
+    room = cgutils.alloca_once(builder, ir.ArrayType(_WORD, max(1, words)))
+    return builder.bitcast(room, _BYTES)
+
+
+def _store(context: Any, builder: Any, base: Any, at: int, kind: Any, value: Any) -> int:
+    """Write a value to memory, as `_flatten` does; the word after it."""
+    if isinstance(kind, Group):
+        for word in range(kind.words):
+            found = _load_word(builder, value, word, _WORD, False)
+            builder.store(found, _place(builder, base, at + word, _WORD), align=8)
+        return at + kind.words
+    if isinstance(kind, types.BaseTuple):
+        for place, inner in enumerate(_items(kind)):
+            item = builder.extract_value(value, place)
+            at = _store(context, builder, base, at, inner, item)
+        return at
+    if isinstance(kind, types.Array):
+        array = context.make_array(kind)(context, builder, value)
+        words = [builder.ptrtoint(array.data, _WORD), *cgutils.unpack_tuple(builder, array.shape)]
+        words += cgutils.unpack_tuple(builder, array.strides) if kind.layout != "C" else []
+        for word in words:
+            builder.store(word, _place(builder, base, at, _WORD), align=8)
+            at += 1
+        return at
+    wide = types.float64 if isinstance(kind, types.Float) else types.int64
+    element = context.get_data_type(wide)
+    found = context.cast(builder, value, kind, wide)
+    builder.store(found, _place(builder, base, at, element), align=8)
+    return at + 1
 
 
 def writer(name: str) -> Any:

@@ -2,7 +2,7 @@
 
 from typing import Any, NamedTuple
 
-from mesokit.kernels.group import by_address, without
+from mesokit.kernels.group import by_address, replaced, without
 from mesokit.method.mpcd.field.protocol import field_at
 from mesokit.scalar.jit import by_type, scalar
 
@@ -39,30 +39,15 @@ def momentum_scale(physics):
     return physics.scales[0]
 
 
+with_field = replaced("field")
+
+
 @by_type
-def at_middle(physics, done):
-    """The same physics in the middle of the step after so many: forces may change in time."""
-    changes = field_of(physics, "field").instance_class in field_at.implementations
-    return _at_middle if changes else lambda physics, done: physics
-
-
-def _at_middle(physics, done):
-    return Physics(
-        physics.rule,
-        physics.thermostat,
-        field_at(physics.field, (done + 0.5) * physics.timestep),
-        physics.solid,
-        physics.masses,
-        physics.energy,
-        physics.timestep,
-        physics.kT,
-        physics.molecule,
-        physics.zero,
-        physics.coefficients,
-        physics.terms,
-        physics.scales,
-        physics.stress_scale,
-    )
+def field_of_step(physics, done):
+    """The field in the middle of the step after so many; None if it does not change in time."""
+    if field_of(physics, "field").instance_class in field_at.implementations:
+        return lambda physics, done: field_at(physics.field, (done + 0.5) * physics.timestep)
+    return lambda physics, done: None
 
 
 def kind_of_solid(physics: Any) -> type:

@@ -6,7 +6,7 @@ from mesokit.execute.cpu.clock import BEADS, CELLS, FINISH, START, SWEEP, lap
 from mesokit.execute.cpu.collide import collide
 from mesokit.execute.cpu.grid import moved_grid
 from mesokit.execute.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM, Now
-from mesokit.execute.cpu.physics import at_middle
+from mesokit.execute.cpu.physics import field_of_step, with_field
 from mesokit.execute.cpu.threads import meet
 from mesokit.execute.embedded.stages import move_beads, stream
 from mesokit.execute.neighbours.gradient import fill_field
@@ -72,7 +72,8 @@ def interval(team, course, now, physics, fluid, beads, walls, n):
     first, going = n, True
     while n < course.steps and going:
         now = next_step(course, now, physics, n)
-        step(team, now, at_middle(physics, course.done + n), fluid, beads, walls)
+        field = field_of_step(physics, course.done + n)
+        step(team, now, with_field(physics, field), fluid, beads, walls)
         going = migrate(team, now, physics, fluid)
         n += 1
     return n - first, now
