@@ -67,7 +67,7 @@ def _compile(compile: Callable[[], Any], reported: int) -> None:
             signal.signal(number, signal.SIG_DFL)
         signal.alarm(PATIENCE)
         nothing = os.open(os.devnull, os.O_RDWR)
-        for stream in range(3):  # who reads what the parent writes does not wait for the child
+        for stream in range(3):  # a reader of its output does not wait for the child
             os.dup2(nothing, stream)
         counts.__init__(counts.explains)  # type: ignore[misc]
         compile()

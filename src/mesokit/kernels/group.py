@@ -159,6 +159,7 @@ class Packed:
 
 
 def _in_memory(value: Any, kind: Any, apart: list[Any]) -> Any:
+    """The words of a value; what fields of one word are addresses of is added to `apart`."""
     numbers: list[Any] = []
     formats: list[str] = []
     _flatten(value, kind, numbers, formats, apart)

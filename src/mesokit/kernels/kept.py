@@ -51,7 +51,15 @@ counts = Counts()
 @functools.cache
 def versions() -> str:
     """What else machine code depends on: a word that is part of every key."""
-    names = "made_of.py", "later.py", "part.py", "group.py", "kernel.py", "../scalar/jit.py"
+    names = (
+        "made_of.py",
+        "later.py",
+        "library.py",
+        "part.py",
+        "group.py",
+        "kernel.py",
+        "../scalar/jit.py",
+    )
     sources = "".join((HERE / name).read_text(encoding="utf-8") for name in names)
     options = [str(getattr(config, name)) for name in
                ("OPT", "LOOP_VECTORIZE", "SLP_VECTORIZE", "BOUNDSCHECK", "DEBUGINFO_DEFAULT",

@@ -18,18 +18,10 @@ from numba.core.registry import CPUDispatcher, cpu_target
 from mesokit.kernels import ahead
 from mesokit.kernels.group import all_packed
 from mesokit.kernels.kept import counts, kept, versions
+from mesokit.kernels.library import machine_code, make_ready, needs_below, processor, stages_of
 from mesokit.kernels.made_of import Unknown, code_of, describe_type, digest
 from mesokit.kernels.one_compiles import released, taken
-from mesokit.kernels.part import (
-    as_bytes,
-    machine_code,
-    make_ready,
-    needs_below,
-    part,
-    processor,
-    result_of,
-    stages_of,
-)
+from mesokit.kernels.part import as_bytes, part, result_of
 from mesokit.kernels.store import Code, Entry
 
 _used: set[str] | None = set()  # lines of all kernels of this process
