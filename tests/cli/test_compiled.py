@@ -36,3 +36,13 @@ def test_what_was_warmed_is_there_until_it_is_cleared(tmp_path: Path) -> None:
     assert not exported.startswith("0 parts") and (tmp_path / "parts.sqlite").exists()
     assert mesokit(tmp_path, "cache", "--clear").startswith("cleared")
     assert "kernels 0" in " ".join(mesokit(tmp_path, "cache").split())
+
+
+def test_to_clear_and_to_export_are_two_things(tmp_path: Path) -> None:
+    words = [sys.executable, "-m", "mesokit", "cache", "--clear", "--export", "parts.sqlite"]
+    done = subprocess.run(
+        words, cwd=tmp_path, capture_output=True, text=True, timeout=300,
+        env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "kernels")},
+    )  # fmt: skip
+    assert done.returncode != 0 and "expected one of them" in done.stderr
+    assert not list(tmp_path.iterdir())

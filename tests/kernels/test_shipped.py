@@ -127,3 +127,9 @@ def test_what_another_version_of_the_package_wrote_is_not_exported(place: Place)
         assert disk.execute(lines.format("'choice %'")).rowcount == 1
     number, parts = place.run(BRINGS, EXPORT)
     assert 0 < number < parts
+
+
+def test_parts_of_another_state_of_the_compiler_are_not_exported(place: Place) -> None:
+    place.run(NUMBA_OPT="1")  # versions and options are part of every key
+    number, parts = place.run(BRINGS, EXPORT)
+    assert number == parts / 2 > 4

@@ -201,6 +201,42 @@ def test_a_child_that_dies_costs_time_only(tmp_path: Path) -> None:
     assert (done.returncode, done.stdout.strip()) == (0, "[7.0, 7.0, 7.0] 1"), done.stderr
 
 
+COPIED = """
+import os, signal, sys
+import numpy as np
+import law
+from mesokit.kernels import ahead
+
+ahead._has_a_core = lambda: True
+if sys.argv[1] == "no waiting":
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+values, physics = np.ones(3), law.Physics((1.0,), 2.0, (5.0,))
+law.advance.compile_ahead(physics, values, 1)
+child = os.fork() if sys.argv[1] == "copied" else None
+law.advance(physics, values, 1)
+if child == 0:
+    os._exit(int(values.sum()))
+print(values.tolist())
+if child:
+    print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+"""
+
+
+@LINUX
+@pytest.mark.parametrize(
+    ("how", "said"), [("copied", {"[7.0, 7.0, 7.0]", "21"}), ("no waiting", {"[7.0, 7.0, 7.0]"})]
+)
+def test_a_child_is_that_of_one_process(tmp_path: Path, how: str, said: set[str]) -> None:
+    """A copy of the process compiles for itself; the user may have the system end children."""
+    place = Place(tmp_path)
+    done = subprocess.run(
+        [sys.executable, "-c", COPIED, how], cwd=place.root, timeout=300, capture_output=True,
+        text=True, env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache")},
+    )  # fmt: skip
+    assert done.returncode == 0 and not done.stderr, done.stderr
+    assert set(done.stdout.splitlines()) == said
+
+
 CELL = """
 from typing import NamedTuple
 import numpy as np

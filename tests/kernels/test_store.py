@@ -63,6 +63,21 @@ def test_a_full_disk_ends_writing_not_the_run(place: Place) -> None:
     assert place.run()["kernels_made"] == 1
 
 
+def test_a_place_that_is_named_from_here(place: Place) -> None:
+    """A relative one means the same, also where it can only be read."""
+    assert place.run(NUMBA_CACHE_DIR="cache").items() >= NOTHING_MADE.items()
+    held = """
+import sqlite3
+from pathlib import Path
+disk = sqlite3.connect("cache/mesokit/compiled-1.sqlite", isolation_level=None)
+disk.execute("PRAGMA locking_mode = EXCLUSIVE")
+disk.execute("BEGIN EXCLUSIVE")
+"""
+    found = place.run(held, NUMBA_CACHE_DIR="cache")
+    assert found["sum"] == 72.0 and "locked" in found["trouble"]
+    assert place.run().items() >= NOTHING_MADE.items()
+
+
 IN_OWN_MOUNTS = ["unshare", "--map-root-user", "--mount"]
 mounts = pytest.mark.skipif(
     shutil.which("unshare") is None or subprocess.run([*IN_OWN_MOUNTS, "true"]).returncode != 0,
@@ -91,6 +106,16 @@ def test_a_disk_that_is_full(tmp_path: Path, kilobytes: int) -> None:
     mount = f"mount -t tmpfs -o size={kilobytes}k none {cache}"
     found = place.run(within=[*IN_OWN_MOUNTS, "sh", "-c", f'{mount} && exec "$@"', "sh"])
     assert found["sum"] == 72.0 and found["kernels_made"] == 2 and found["trouble"]
+
+
+@mounts
+def test_a_disk_that_is_full_by_now_is_read(place: Place) -> None:
+    cache, copy = place.root / "cache", place.root / "copy"
+    shutil.copytree(cache, copy)
+    mount = f"mount -t tmpfs -o size=2m none {cache} && cp -r {copy}/mesokit {cache}"
+    fill = f"(dd if=/dev/zero of={cache}/fill bs=1k 2> /dev/null || true)"
+    found = place.run(within=[*IN_OWN_MOUNTS, "sh", "-c", f'{mount} && {fill} && exec "$@"', "sh"])
+    assert found.items() >= NOTHING_MADE.items() and not found["trouble"]
 
 
 def test_two_processes_at_once(tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 NUMBER = re.compile(r"-?\d+(\.\d+)?(e[-+]?\d+)?")
 FILE = re.compile(r'file = "[^"]*"')
-NOT_COMPILED = ("[[observe]]", "[trajectory]", "[log]", "[units]", "[run]", "title")
+NOT_COMPILED = ("[trajectory]", "[log]", "[units]", "[run]", "title")
 
 
 def has_run(case: Case) -> bool:

@@ -71,6 +71,8 @@ def cache(clear: bool, file: Path | None) -> None:
     from mesokit.kernels.kept import forget, kept, shipped_file
     from mesokit.kernels.ship import export
 
+    if clear and file is not None:
+        raise CaseError("cache: --clear and --export: expected one of them")
     if clear:
         place = store.store_file()
         before = sum(one.stat().st_size for one in place.parent.glob(f"{place.name}*"))
@@ -95,6 +97,7 @@ def cache(clear: bool, file: Path | None) -> None:
         rows = [
             ("size", size_text(own.size), f"at most {size_text(store.BOUND)}"),
             ("kernels", str(counted["kernels"]), "machine code for this processor"),
+            ("stages", str(counted["stages"]), "machine code that kernels share"),
             ("parts", str(counted["parts"]), "for all kernels to be made of"),
             ("kinds of case", str(counted["kinds"]), "that have run here"),
         ]

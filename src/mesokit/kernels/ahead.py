@@ -8,6 +8,7 @@ other thread of the user is at work; elsewhere, and among ranks, the first call 
 from __future__ import annotations
 
 import atexit
+import contextlib
 import os
 import pickle
 import select
@@ -96,8 +97,20 @@ def end(kernel: Any) -> None:
 def _stop(child: int) -> None:
     """End a child, which has reported or is not needed any more."""
     counts.compiles_ahead -= 1
-    os.kill(child, signal.SIGKILL)
-    os.waitpid(child, 0)
+    with contextlib.suppress(OSError):  # the user ignores SIGCHLD, or has waited for it
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+
+
+def _forget() -> None:
+    """In a copy of this process: the children are those of the other."""
+    while _under_way:
+        os.close(_under_way.popitem()[1][1])
+    counts.compiles_ahead = 0
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget)
 
 
 @atexit.register

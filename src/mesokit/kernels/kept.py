@@ -21,7 +21,7 @@ import numba
 import numpy
 from numba import config
 
-from mesokit.kernels.made_of import digest, still_holds
+from mesokit.kernels.made_of import digest, named, still_holds
 from mesokit.kernels.store import Code, Entry, Store, clear, store_file
 
 HERE = Path(__file__).parent
@@ -65,6 +65,11 @@ def versions() -> str:
                ("OPT", "LOOP_VECTORIZE", "SLP_VECTORIZE", "BOUNDSCHECK", "DEBUGINFO_DEFAULT",
                 "LLVM_REFPRUNE_PASS")]  # fmt: skip
     return digest(" ".join([era(), sources, *options]))
+
+
+def version_line() -> str:
+    """The same as a line of what a part needs."""
+    return f"version mesokit:kernels {versions()}"
 
 
 def era() -> str:
@@ -149,7 +154,7 @@ class Kept:
                 for entry in store.find(key):
                     for need in sorted(entry.needs):
                         if not still_holds(need):
-                            return f"{need.split(' ')[1]} has changed"
+                            return f"{named(need)} has changed"
                 known |= store.has_name(name)
         if known:
             return "its code, the types of its arguments, or a version is another than before"
@@ -180,8 +185,9 @@ class Kept:
 
 def _is_busy(error: Exception) -> bool:
     """Whether a store is locked, full or out of reach, and not damaged."""
-    decoded = "decode" in str(error)  # a text that is none
-    return isinstance(error, (sqlite3.OperationalError, OSError, RuntimeError)) and not decoded
+    # a text that is none; tables of another program
+    damaged = any(words in str(error) for words in ("decode", "no such", "has no column"))
+    return isinstance(error, (sqlite3.OperationalError, OSError, RuntimeError)) and not damaged
 
 
 def _sound(file: Path) -> Store:

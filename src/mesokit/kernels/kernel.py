@@ -25,6 +25,7 @@ from mesokit.kernels.part import as_bytes, part, result_of
 from mesokit.kernels.store import Code, Entry
 
 _used: set[str] | None = set()  # lines of all kernels of this process
+_words: dict[tuple[str, ...], str] = {}  # the hash in such a line, by the rest of it
 
 
 def needs_of_all() -> frozenset[str] | None:
@@ -36,6 +37,18 @@ def needs_of_all() -> frozenset[str] | None:
 def _note_used(needs: frozenset[str] | None) -> None:
     global _used
     _used = None if needs is None or _used is None else _used | needs
+    _words.update(map(_split, needs or ()))
+
+
+def _split(need: str) -> tuple[tuple[str, ...], str]:
+    what, place, word, *more = need.split(" ")
+    return (what, place, *more), word
+
+
+def _is_of_another(needs: frozenset[str]) -> bool:
+    """Whether this process has code of something that was defined anew since: names in machine code
+    do not tell one from the other."""
+    return any(_words.get(rest, word) != word for rest, word in map(_split, needs))
 
 
 def inner(function: Callable) -> Any:
@@ -153,7 +166,7 @@ class _MachineCode:
     def _found(self, key: str) -> Any:
         hit = kept().find(key)
         code = None if hit is None else kept().code(hit[0].code)
-        if hit is None or code is None:
+        if hit is None or code is None or _is_of_another(hit[0].needs):
             return None
         try:
             fndesc, environment, signature, names, others, stages = pickle.loads(hit[0].about)

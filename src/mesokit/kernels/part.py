@@ -28,7 +28,7 @@ from numba.core.environment import Environment
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.serialize import dumps
 
-from mesokit.kernels.kept import counts, kept, versions
+from mesokit.kernels.kept import counts, kept, version_line, versions
 from mesokit.kernels.library import (
     STAGE,
     PartLibrary,
@@ -60,6 +60,7 @@ _identity = FunctionIdentity.from_function
 _compiling = [f"process {os.urandom(16).hex()}"]  # keys of the parts that are being compiled
 _numbers = itertools.count()
 _unknown = itertools.count()  # parts without a key
+_here: dict[str, Any] = {}  # hashes of the parts of this process by key: a name is for one code
 
 
 def _identified(cls: type, function: Any) -> Any:
@@ -141,24 +142,27 @@ class PartCompiler(Compiler):
     def compile_extra(self, func: Any) -> Any:
         """Find the part, or compile and keep it."""
         key = self._key(func)
-        found = key and _found(key)
-        if found:
+        found = None if key is None else _found(key)
+        if found and _here.setdefault(key or "", found.library.hash) == found.library.hash:
             counts.parts_found += 1
             return found
+        again = key in _here  # and other than before, as what it contains was defined anew
         counts.parts_made += 1
         if key is not None and counts.explains:
             name = f"{func.__module__}:{func.__qualname__}"
             counts.reasons[f"part {name}"] = kept().reason(key, name)
         global _numbers
         outer, _numbers = _numbers, itertools.count()
-        _compiling.append(key or f"{_compiling[0]} {next(_unknown)}")
+        known = None if again else key
+        _compiling.append(known or f"{_compiling[0]} {next(_unknown)}")
         try:
             made = super().compile_extra(func)
         finally:
             _compiling.pop()
             _numbers = outer
-        if key is not None:
-            _keep(key, func, made)
+        if known is not None:
+            _keep(known, func, made)
+            _here[known] = made.library.hash
         return made
 
     def _key(self, function: Any) -> str | None:
@@ -231,7 +235,7 @@ def _keep(key: str, function: Any, made: Any) -> None:
     if below is None or library._reload_init:
         return
     try:
-        library.needs = below | frozenset(needs_of(function))
+        library.needs = below | {version_line(), *needs_of(function)}
     except Unknown:
         return
     made.fndesc.typemap = made.fndesc.calltypes = None

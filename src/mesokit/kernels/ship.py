@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from mesokit.kernels.kept import kept
+from mesokit.kernels.kept import kept, version_line
 from mesokit.kernels.made_of import still_holds
 from mesokit.kernels.store import Code, Store
 
@@ -23,10 +23,11 @@ def export(file: Path) -> int:
     file.parent.mkdir(parents=True, exist_ok=True)
     whole, file = file, file.with_name(f"{file.name}.part")
     file.unlink(missing_ok=True)
+    version = version_line()
     made, number = Store(file, level=0), 0
     for key, entry in own.parts():
         codes = _with_called(own, entry.code)
-        if codes and all(map(still_holds, entry.needs)):
+        if codes and version in entry.needs and all(map(still_holds, entry.needs)):
             made.keep(key, entry, [code for code in codes if not made.has_code(code.hash)])
             number += 1
     made.finish()

@@ -83,7 +83,7 @@ class Code(NamedTuple):
 def folder() -> Path:
     """The user's folder of compiled code, in NUMBA_CACHE_DIR or the user's cache."""
     named = config.CACHE_DIR or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    place = Path(named) / "mesokit"
+    place = Path(named).absolute() / "mesokit"
     if not _is_ours(place) and hasattr(os, "getuid"):  # several users share NUMBA_CACHE_DIR
         return place.with_name(f"mesokit-{os.getuid()}")
     return place
@@ -154,12 +154,13 @@ class Store:
             disk.execute("PRAGMA journal_mode = WAL")
             disk.execute("PRAGMA synchronous = NORMAL")
             disk.executescript(TABLES)
-        except sqlite3.OperationalError:  # read-only or full: what is there can be read
-            # where nothing can be written SQLite has no place for its locks, nor need of any
-            locks = "" if os.access(self.file.parent, os.W_OK) else "&immutable=1"
-            uri = f"{self.file.as_uri()}?mode=ro{locks}"
+        except sqlite3.OperationalError as error:  # read-only or full: what is there can be read
             self.writes = False
-            return sqlite3.connect(uri, PATIENCE, uri=True, check_same_thread=False)
+            if "locked" in str(error):
+                raise
+            # where nothing can be written SQLite has no place for its locks, nor need of any
+            uri = f"{self.file.as_uri()}?mode=ro&immutable=1"
+            return sqlite3.connect(uri, uri=True, check_same_thread=False)
         return disk
 
     def find(self, key: str) -> Iterator[Entry]:
@@ -327,14 +328,13 @@ class Store:
         return sum(file.stat().st_size for file in files if file.exists())
 
     def counts(self) -> dict[str, int]:
-        """Number of entries of kernels and of parts. Raises sqlite3.Error."""
+        """Number of entries of parts, kernels, stages and kinds of case. Raises sqlite3.Error."""
         rows = self._disk.execute(
-            "SELECT name LIKE 'kernel %', name LIKE 'kind %', COUNT(*) FROM entries GROUP BY 1, 2"
+            "SELECT CASE WHEN name LIKE 'kernel stage %' THEN 'stages' WHEN name LIKE 'kernel %'"
+            " THEN 'kernels' WHEN name LIKE 'kind %' THEN 'kinds' ELSE 'parts' END, COUNT(*)"
+            " FROM entries GROUP BY 1"
         )
-        found = {"parts": 0, "kernels": 0, "kinds": 0}
-        for kernel, kind, number in rows:
-            found["kernels" if kernel else "kinds" if kind else "parts"] = number
-        return found
+        return {"parts": 0, "kernels": 0, "stages": 0, "kinds": 0} | dict(rows.fetchall())
 
     def finish(self) -> None:
         """Bring all into the one file, which then is only read. Raises sqlite3.Error."""
