@@ -1,6 +1,8 @@
 """Event-driven dynamics with gravity and walls: bounces, weights, containers, moving floors."""
 
 import math
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ from mesokit import (
     RandomStart,
     Rectangle,
     Sphere,
+    SphereKind,
     Surface,
     SurfaceContact,
 )
@@ -130,6 +133,104 @@ def test_a_vibrating_floor_is_never_crossed():
     assert min(gaps) > -1e-10
     assert engine.collisions[1] > 4
     assert max(heights[2000:]) > 0.2  # it does not come to rest
+
+
+@pytest.mark.parametrize("draw", range(60))
+def test_no_floor_is_crossed_whatever_the_scales(draw):
+    """Amplitudes, frequencies, speeds and sizes of six decades; flights of up to a thousand
+    diameters."""
+    amplitude, frequency, speed, radius = scales = 10 ** np.random.default_rng(draw).uniform(
+        -3, 3, 4
+    )
+    radius, (far, fall) = max(radius, 1e-3), np.random.default_rng(scales.view(np.uint64)).random(2)
+    height = max(3.0, 2 * (radius + amplitude) * 10 ** (0.5 + 2.5 * far))
+    fastest = max(speed, amplitude * frequency)
+    floor = SurfaceContact(restitution=1.0, amplitude=amplitude, frequency=frequency)
+    engine = gas(
+        [max(8 * radius, 3), height],
+        walls=[Plates("y", lower=Surface(contact=floor))],
+        number=1,
+        kinds=[SphereKind(diameter=2 * radius)],
+        gravity=[0, -(speed**2) / height * 10 ** (2 * fall - 1)],
+        timestep=height / fastest / 20,
+        given={"positions": [[4 * radius, height / 2]], "velocities": [[0, speed]]},
+    ).engine
+    gaps, tops = [], []
+    for _ in range(60):
+        engine.advance(1)
+        place, moved = engine.positions()[0, 1], amplitude * math.sin(frequency * engine.time)
+        gaps.append(place - radius - moved)
+        tops.append(place + radius)
+    known = 1e-11 * (height + amplitude * frequency * engine.timestep)
+    assert min(gaps) > -known and max(tops) < height + known
+
+
+@pytest.mark.parametrize("draw", range(40))
+def test_nothing_leaves_a_round_vessel_whatever_the_scales(draw):
+    """Down to a ten-thousandth of its size, speeds of six decades, with gravity or not."""
+    rng, d = np.random.default_rng(draw), 2 + draw % 2
+    vessel, speed = 10 ** rng.uniform(0.5, 1.5), 10 ** rng.uniform(-3, 3)
+    size = max(vessel * 10 ** rng.uniform(-4, -0.3), 1.2e-3)
+    middle, velocity = float(math.ceil(1.1 * vessel)), rng.normal(size=d)
+    pull = speed**2 / vessel * 10 ** rng.uniform(-2, 1) if draw % 3 == 0 else 0.0
+    engine = gas(
+        [2 * middle] * d,
+        walls=[(Disk if d == 2 else Sphere)([middle] * d, radius=vessel, fluid="inside")],
+        number=1,
+        kinds=[SphereKind(diameter=size)],
+        start=RandomStart(),
+        gravity=[0, -pull, 0][:d] if pull else [],
+        timestep=vessel / speed,
+        given={
+            "positions": [middle + 0.1 * vessel * rng.uniform(-1, 1, d)],
+            "velocities": [speed * velocity / np.linalg.norm(velocity)],
+        },
+    ).engine
+    away = []
+    for _ in range(100):
+        engine.advance(1)
+        away.append(np.linalg.norm(engine.positions()[0] - middle) + size / 2)
+    assert max(away) < vessel * (1 + 1e-11)
+    assert engine.collisions[1] > 10
+
+
+def test_fast_disks_stay_above_a_vibrating_floor():
+    floor = SurfaceContact(restitution=1.0, amplitude=0.3, frequency=20.0)
+    engine = gas(
+        [30, 500],
+        walls=[Plates("y", lower=Surface(contact=floor))],
+        number=30,
+        kT=40.0,
+        gravity=[0, -1],
+        start=RandomStart(),
+        timestep=4.0,
+        collision=HardCollision(restitution=0.975, contact_time=1e-4),
+    ).engine
+    lowest = []
+    for _ in range(60):
+        engine.advance(1)
+        lowest.append(engine.positions()[:, 1].min())
+    assert min(lowest) > 0.5 - 0.3 - 1e-9
+    assert engine.collisions[1] > 150
+
+
+def test_a_search_that_fails_ends_the_run_in_a_line():
+    program = """
+from mesokit.method.event_driven.machine import walls
+walls.STEPS = 2
+from mesokit import *
+floor = Surface(contact=SurfaceContact(restitution=1.0, amplitude=0.3, frequency=20))
+case = Case(
+    run=Run(50, method="event-driven"), box=Box([10, 40]), walls=[Plates("y", lower=floor)],
+    spheres=HardSpheres(number=5, gravity=[0, -1], timestep=1.0),
+)
+try:
+    Simulation(case).engine.advance(50)
+except RunError as error:
+    print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.stdout.startswith("sphere ") and "no time found" in done.stdout, done.stderr
 
 
 def test_walls_at_two_temperatures_heat_a_gas_to_their_geometric_mean():

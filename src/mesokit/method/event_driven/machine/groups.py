@@ -17,9 +17,10 @@ MASS, INERTIA, LAST, SPIN, BODY_WIDTH = 0, 1, 2, 3, 6
 PARTNER, PARTNER_HITS, AFTER, PREVIOUS, BIN, PLACE, EVENT_WIDTH = 0, 1, 2, 3, 4, 5, 8
 # what a sphere's next event is with, where it is with no other sphere
 LEAVES, NOTHING = -1, -2  # the surroundings of its list; never
-FIRST_WALL = -3  # and below: walls, -3 - number
+LOST = -3  # a wall, but the search for the time of that failed
+FIRST_WALL = -4  # and below: walls, -4 - number
 # how `advance` ends
-DONE, FULL, COLLAPSED, PAUSED = 0, 1, 2, 3
+DONE, FULL, COLLAPSED, PAUSED, FAILED = 0, 1, 2, 3, 4
 
 
 class World(NamedTuple):

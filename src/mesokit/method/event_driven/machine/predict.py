@@ -7,6 +7,7 @@ import numpy as np
 from mesokit.method.event_driven.machine.groups import (
     FIRST_WALL,
     LEAVES,
+    LOST,
     NOTHING,
     PARTNER,
     PARTNER_HITS,
@@ -50,6 +51,8 @@ def predict(world, rules, spheres, lists, queue, i, now):
         time = time_to_wall(world, state, i, w, best)
         if time < best:
             best, partner = time, np.int64(FIRST_WALL - w)
+        elif math.isnan(time):
+            best, partner = now, np.int64(LOST)
     queue.time[i], queue.event[i, PARTNER] = best, partner
     if partner >= 0:
         queue.event[i, PARTNER_HITS] = np.int32(spheres.hits[partner])

@@ -8,11 +8,13 @@ from mesokit.method.event_driven.machine.collide import collide_pair, collide_wa
 from mesokit.method.event_driven.machine.groups import (
     COLLAPSED,
     DONE,
+    FAILED,
     FIRST_WALL,
     FULL,
     IN_A_ROW,
     LAST,
     LEAVES,
+    LOST,
     PARTNER,
     PARTNER_HITS,
     PAUSED,
@@ -37,7 +39,8 @@ AT_ONCE = 1_000_000  # events, so that signals are heard
 
 @kernel
 def advance(world, rules, spheres, lists, queue, tally, end):
-    """Do all events before a time; how it ended: DONE, FULL lists, COLLAPSED, or PAUSED."""
+    """Do all events before a time; how it ended: DONE, FULL lists, COLLAPSED, PAUSED, or
+    FAILED where no time was found at which a sphere meets a wall."""
     number, bin_before = spheres.number, np.int64(-1)
     for _ in range(AT_ONCE):
         i = next_event(queue, number, end)
@@ -59,6 +62,8 @@ def advance(world, rules, spheres, lists, queue, tally, end):
         elif partner == LEAVES:
             if not renew(world, lists, spheres.state, i, boxed(world, spheres.state, i, now)):
                 return FULL
+        elif partner == LOST:
+            return FAILED
         elif partner <= FIRST_WALL:
             collide_wall(world, rules, spheres, tally, i, FIRST_WALL - partner, now)
             if tally.counts[IN_A_ROW] >= MANY:

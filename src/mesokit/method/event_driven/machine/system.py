@@ -237,6 +237,8 @@ class System:
                 return
             if ended == groups.COLLAPSED:
                 raise RunError(self._collapse())
+            if ended == groups.FAILED:
+                raise RunError(self._failure())
             if ended == groups.PAUSED:
                 began = self._paused(began)
                 continue
@@ -254,6 +256,16 @@ class System:
         if self.given.most * self.n * (now - began) < AT_ONCE:
             raise RunError(f"more than {self.given.most:.3g} events of a sphere in a unit of time")
         return now
+
+    def _failure(self) -> str:
+        """Which sphere lost a wall, and when."""
+        i = int(self.queue.heap[0])
+        now = self.windows * self.window + float(self.queue.time[i])
+        number = int(self.spheres.number[i])
+        return (
+            f"sphere {number} at time {now:.6g}: no time found at which it meets a wall; "
+            "expected walls that vibrate more slowly, or fewer turns of them in a flight"
+        )
 
     def _collapse(self) -> str:
         """Who collides without end, and when."""

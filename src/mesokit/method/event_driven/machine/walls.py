@@ -15,6 +15,7 @@ from mesokit.scalar.vector import added_scaled, dot, scaled
 from mesokit.spheres.wall.rows import (
     AMPLITUDE,
     AXIS,
+    FREQUENCY,
     INSIDE,
     KIND,
     OUTSIDE,
@@ -25,7 +26,8 @@ from mesokit.spheres.wall.rows import (
 )
 
 CLOSE = 1e-13  # of the radius of a sphere: it touches
-STEPS = 1_000_000
+ROUNDING = 2e-15  # of the lengths that a gap is made of: no gap is known better
+STEPS = 100_000  # of one search; those of a thousand turns of a plate are fewer
 
 
 @scalar
@@ -50,7 +52,10 @@ def outward(world, w, r):
 @seldom
 def time_to_wall(world, state, i, w, until):
     """The time at which sphere i touches a wall, from its own state; infinite if not before
-    `until`."""
+    `until`, NaN if it was not found.
+
+    Each step ends before the sphere may touch: the larger of two lower bounds of that time.
+    """
     walls, g, since = world.walls, world.gravity, state[i, TIME]
     r, v = entries(state, i, 0, g), entries(state, i, VELOCITY, g)
     radius = state[i, RADIUS]
@@ -60,14 +65,39 @@ def time_to_wall(world, state, i, w, until):
     tau = 0.0
     for _ in range(STEPS):
         gap, closing, bend, longest = approach(world, state, i, w, tau)
-        if gap <= CLOSE * radius:
+        if gap <= CLOSE * radius + unsure(world, state, i, w, tau):
             if closing > 0.0:
                 return since + tau
             gap = 0.0
-        tau += min(parabola(gap, closing, bend), longest)
+        tau += max(min(parabola(gap, closing, bend), longest), until_near(world, state, i, w, tau))
         if not since + tau < until:
             return math.inf
-    return math.inf
+    return math.nan
+
+
+@scalar
+def unsure(world, state, i, w, tau):
+    """What rounding may make of the gap after a time: of places, and of the time of fast ones."""
+    walls, g = world.walls, world.gravity
+    r, v = entries(state, i, 0, g), entries(state, i, VELOCITY, g)
+    place, pull, then = entries(walls, w, PLACE, g), math.sqrt(dot(g, g)), state[i, TIME] + tau
+    lengths = math.sqrt(dot(r, r)) + math.sqrt(dot(place, place)) + walls[w, ROUND]
+    speed = math.sqrt(dot(v, v)) + pull * tau + walls[w, AMPLITUDE] * walls[w, FREQUENCY]
+    return ROUNDING * (lengths + speed * then)
+
+
+@scalar
+def until_near(world, state, i, w, tau):
+    """How long a sphere flies until it comes to where a vibrating plate may be; 0 elsewhere."""
+    walls, g = world.walls, world.gravity
+    if walls[w, KIND] != PLANE or world.growth != 0.0:
+        return 0.0
+    r, v = entries(state, i, 0, g), entries(state, i, VELOCITY, g)
+    distance, normal = outward(world, w, fallen(r, tau, v, g))
+    above = distance - walls[w, AMPLITUDE] - state[i, RADIUS]
+    if above <= 0.0:
+        return 0.0
+    return fall(above, dot(added_scaled(v, tau, g), normal), dot(g, normal))
 
 
 @scalar
