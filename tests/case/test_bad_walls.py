@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -174,6 +175,15 @@ BAD: dict[str, tuple[str, list[str], tuple[str, ...]]] = {
     "a folder": (PLANE, ['shape = "picture"\nfile = "."'], ("wall[#1].file", "cannot be read")),
     "text for a picture": (PLANE, ['shape = "picture"\nfile = "text.png"'],
                            ("wall[#1].file", "expected a picture")),
+    "a program of PostScript for a picture": (
+        PLANE, ['shape = "picture"\nfile = "drawing.png"'], ("wall[#1].file", "expected a picture"),
+    ),
+    "a picture of 4 thousand million pixels": (
+        PLANE, ['shape = "picture"\nfile = "huge.png"'], ("wall[#1].file", "at most 16777216"),
+    ),
+    "a picture of 64 million pixels": (
+        PLANE, ['shape = "picture"\nfile = "large.png"'], ("wall[#1].file", "at most 16777216"),
+    ),
     "white picture": (PLANE, ['shape = "picture"\nfile = "white.png"'],
                       ("wall[#1].file", "no surface")),
     "picture of other proportions": (
@@ -235,6 +245,14 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     x, y = np.meshgrid(np.arange(120) / 10 - 6, np.arange(100) / 10 - 5)
     Image.fromarray(np.where(np.hypot(x, y) > 2, 255, 0).astype(np.uint8)).save(path / "disk.png")
     Image.new("L", (120, 100), 255).save(path / "white.png")
+    (path / "drawing.png").write_text(
+        "%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 9 9\n%%EndComments\nshowpage\n%%EOF\n"
+    )
+    Image.new("1", (8000, 8000)).save(path / "large.png")
+    drawn = bytearray((path / "large.png").read_bytes())
+    drawn[16:24] = (60_000).to_bytes(4, "big") * 2
+    drawn[29:33] = zlib.crc32(drawn[12:29]).to_bytes(4, "big")
+    (path / "huge.png").write_bytes(drawn)
     for name in ("text.png", "text.stl"):
         (path / name).write_text("neither picture nor mesh")
     x, y = np.meshgrid(np.arange(-3, 3.1, 0.5), np.arange(-3, 3.1, 0.5), indexing="ij")

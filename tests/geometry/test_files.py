@@ -8,7 +8,7 @@ import trimesh
 from PIL import Image
 from shapes import solids_of
 
-from mesokit import Mesh, Picture, Plates, Sampled, Solids
+from mesokit import CaseError, Mesh, Picture, Plates, Sampled, Solids
 
 CENTRE = np.array([6.1, 4.9])
 
@@ -212,3 +212,17 @@ def test_a_file_that_changes_makes_another_solid(make_case, tmp_path):
     assert abs(kept(before).free_volume - (120 - np.pi * 4)) < 0.3
     assert abs(kept(after).free_volume - (120 - np.pi * 9)) < 0.3
     assert isinstance(kept(before), Solids)
+
+
+def test_a_picture_starts_no_program(tmp_path, monkeypatch):
+    """Pillow hands PostScript to Ghostscript, whatever the name of the file."""
+    program, started = tmp_path / "gs", tmp_path / "started"
+    program.write_text(f"#!/bin/sh\ntouch {started}\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
+    monkeypatch.setattr("PIL.EpsImagePlugin.gs_binary", None)
+    drawing = "%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 9 9\n%%EndComments\nshowpage\n%%EOF\n"
+    (tmp_path / "a.png").write_text(drawing)
+    with pytest.raises(CaseError, match="expected a picture"):
+        solids_of((Picture(str(tmp_path / "a.png")),), 2)
+    assert not started.exists()

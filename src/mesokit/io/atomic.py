@@ -33,6 +33,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
     path = Path(path)
     temporary = path.with_name(f".{path.name}.tmp")
     try:
+        _begun(temporary)
         yield temporary
         _to_disk(temporary)
         _replace(temporary, path)
@@ -42,6 +43,12 @@ def replacing(path: str | Path) -> Iterator[Path]:
     finally:
         with suppress(OSError):  # where the folder itself is not there, the error above says so
             temporary.unlink(missing_ok=True)
+
+
+def _begun(temporary: Path) -> None:
+    """An empty file of our own: a link that lies in its place is removed, and not followed."""
+    temporary.unlink(missing_ok=True)
+    os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
 
 
 def write_text(path: str | Path, text: str) -> Path:

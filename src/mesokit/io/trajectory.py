@@ -28,6 +28,13 @@ OWN = ("mass", "diameter")  # what each sphere has of its own, the same in all f
 LARGEST = 64 * 2**20  # bytes of frames kept in memory
 
 
+def _removed(folder: Path) -> None:
+    """Delete a folder; a link in its place is deleted, and what it leads to is not."""
+    if folder.is_symlink():
+        folder.unlink()
+    shutil.rmtree(folder, ignore_errors=True)
+
+
 class TrajectoryWriter:
     """Frames of a running simulation, kept in the folder `folder`.
 
@@ -110,7 +117,7 @@ class TrajectoryWriter:
         """
         if len(self.steps()):
             return
-        shutil.rmtree(self.coming, ignore_errors=True)  # we may have been killed here before
+        _removed(self.coming)  # we may have been killed here before
         back = TrajectoryWriter(self.trajectory, self.coming, self.number, self.first, self.spheres)
         back._own = own
         for frame in frames:
@@ -171,9 +178,9 @@ class TrajectoryWriter:
 
     def remove(self) -> None:
         """Delete all segments at once, after their frames have gone to the data file."""
-        shutil.rmtree(self.coming, ignore_errors=True)
+        _removed(self.coming)
         done = self.folder.with_name(f".{self.folder.name}.done")
-        shutil.rmtree(done, ignore_errors=True)  # we may have been killed here before
+        _removed(done)  # we may have been killed here before
         if self.folder.is_dir():
             self.folder.rename(done)  # all or none, should we be killed here
             shutil.rmtree(done, ignore_errors=True)

@@ -30,6 +30,7 @@ class HeightInTime(Observable):
 
     quantity: Literal["height-in-time"] = tag("height-in-time")
     methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
 
     def check(self, case: Case) -> None:

@@ -13,7 +13,8 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from mesokit.errors import MesokitError
+from mesokit.errors import MesokitError, RunError
+from mesokit.io.atomic import write_text
 from mesokit.io.run_directory import RunDirectory
 from mesokit.report.progress import Reporter
 from mesokit.running.signals import Stopped, catching
@@ -34,10 +35,8 @@ class Note(Reporter):
         super().update(step)
         if (now := time.monotonic()) >= self.noted + NOTE_SECONDS:
             self.noted = now
-            beside = self.file.with_name(f"{self.file.name}.tmp")
-            with contextlib.suppress(OSError):  # a run does not end because nobody can be told
-                beside.write_text(str(step), encoding="utf-8")
-                os.replace(beside, self.file)
+            with contextlib.suppress(RunError):  # a run does not end because this cannot be told
+                write_text(self.file, str(step))
 
     def finish(self) -> None:
         """The run is over."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import io
 import math
+import warnings
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -29,7 +30,9 @@ MARGIN = 2.0  # cells of fluid around a picture that does not span the box
 NEAR = 0.8  # pixels from the outline: those that it passes through
 FINE = 8  # points of the outline per pixel
 LEAF = 200  # points of the outline that are compared one by one: they lie close together
-LARGEST = 2**26  # pixels
+LARGEST = 2**24  # pixels: some 40 bytes each while it is read
+# no others: Pillow starts a program for some
+FORMATS = ("PNG", "JPEG", "TIFF", "BMP", "GIF", "PPM", "WEBP")
 ENOUGH = 8  # pixels a cell
 PLAIN, FEW = 0.1, 0.02  # off black or white that no one sees, share of pixels that are not
 
@@ -122,23 +125,30 @@ class Picture(FromFile):
     def _format(self) -> str | None:
         from PIL import Image
 
-        with Image.open(io.BytesIO(self.contents)) as image:
+        with Image.open(io.BytesIO(self.contents), formats=FORMATS) as image:
             return image.format
 
     def _white(self) -> Floats:
         """How white each pixel is, from 0 to 1, x first and y upwards."""
         from PIL import Image, UnidentifiedImageError
 
+        ignoring_size = warnings.catch_warnings(
+            action="ignore", category=Image.DecompressionBombWarning
+        )
         try:
-            with Image.open(io.BytesIO(self.contents)) as image:
+            with ignoring_size, Image.open(io.BytesIO(self.contents), formats=FORMATS) as image:
                 if image.width * image.height > LARGEST:
-                    raise self.wrong(f"{image.width} x {image.height} pixels: too many")
+                    raise self.wrong(
+                        f"{image.width} x {image.height} pixels: expected at most {LARGEST}"
+                    )
                 if image.mode.startswith("I"):  # 16 bits of grey
                     grey, alpha = np.asarray(image, float) / 65535.0, np.ones(1)
                 else:
                     levels = np.asarray(image.convert("RGBA"), float) / 255.0
                     grey = levels[..., :3] @ np.array([0.299, 0.587, 0.114])
                     alpha = levels[..., 3]
+        except Image.DecompressionBombError:
+            raise self.wrong(f"too many pixels: expected at most {LARGEST}") from None
         except (UnidentifiedImageError, OSError, ValueError, SyntaxError):
             raise self.wrong("expected a picture, such as PNG") from None
         return np.ascontiguousarray((1.0 - alpha * (1.0 - grey))[::-1].T)
