@@ -178,6 +178,27 @@ def test_pressure_and_collision_rate(size, fraction, kinds):
         assert found.error < 0.02 * found.expected
 
 
+@pytest.mark.parametrize(
+    ("size", "number", "fraction"), [([5, 5, 5], 12, 0.16), ([8, 8], 20, 0.4), ([6, 6, 6], 16, 0.3)]
+)
+def test_few_spheres_have_the_pressure_of_few(size, number, fraction):
+    """The law of many is 6 to 20 standard errors away."""
+    simulation = gas(
+        size,
+        15000,
+        observe=[EquationOfState(every=1)],
+        number=number,
+        packing_fraction=fraction,
+        timestep=1.0,
+    )
+    simulation.run()
+    found = simulation["equation-of-state"]
+    for name in ("Z by the virial", "Z by the collision rate", "collision rate"):
+        one = found[name]
+        assert abs(one.measured - one.expected) < 4 * one.error
+        assert one.error < 0.003 * one.expected
+
+
 def test_a_gas_cools_by_the_law_of_haff():
     e, haff = 0.9, 39.51
     engine = gas(

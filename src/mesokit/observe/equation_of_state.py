@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
-from mesokit.observe.shared.enskog import fluid_note
+from mesokit.observe.shared.enskog import fluid_note, speed_factor
 from mesokit.observe.shared.estimate import Estimate, of_mean
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Comparison, Result
@@ -43,6 +43,8 @@ class EquationOfState(Observable):
             raise CaseError("equation-of-state: not beside a wall or with gravity")
         if not case.spheres.collision.elastic:
             raise CaseError("equation-of-state: expected collisions that keep energy")
+        if case.particles < 2:
+            raise CaseError("equation-of-state: one sphere meets none; expected two or more")
 
     def accumulator(self, case: Case) -> EquationOfStateAccumulator:
         """An empty memory for it."""
@@ -125,7 +127,7 @@ class EquationOfStateAccumulator:
             kind, box = case.spheres.kinds[0], case.box
             mass = kind.mean_mass(d)
             factor = kind.diameter * case.spheres.scale(box) * math.sqrt(math.pi * mass / kT)
-            factor *= 2 / n / (2 * d)
+            factor *= 2 / n / (2 * d) / speed_factor(case)
             gradient = np.array([0.0, factor, -0.5 * factor * events / twice])
             pressures.append(found.scalar(1 + factor * events, gradient))
         return pressures, found.scalar(2 * events / n, np.array([0.0, 2 / n, 0.0]))
@@ -139,10 +141,10 @@ class EquationOfStateAccumulator:
     def expected(self) -> tuple[float, str]:
         """Z of the fluid in equilibrium, and whose law that is."""
         section, box = self.case.spheres, self.case.box
-        phi, d = section.fraction(box), box.dimension
+        d = box.dimension
         if self.equal:
             name = "virial series" if d == 2 else "Kolafa"
-            return theory.compressibility(phi, d), name
+            return self._of_few(lambda x: theory.compressibility(x, d)), name
         counts, scale = section.counts(box), section.scale(box)
         total = sum(counts)
         moments = [
@@ -154,7 +156,12 @@ class EquationOfStateAccumulator:
             for p in range(1, d + 1)
         ]
         name = "Santos, Yuste, Lopez de Haro" if d == 2 else "Boublik, Mansoori et al."
-        return theory.mixture_compressibility(phi, moments, d), name
+        return self._of_few(lambda x: theory.mixture_compressibility(x, moments, d)), name
+
+    def _of_few(self, law: Callable[[float], float]) -> float:
+        """Z in this box, by the law of many spheres."""
+        section, box = self.case.spheres, self.case.box
+        return theory.compressibility_of_few(law, section.fraction(box), self.case.particles)
 
     def expected_rate(self) -> float:
         """Collisions of a sphere per time that belong to that Z, nan for mixtures."""
@@ -164,5 +171,5 @@ class EquationOfStateAccumulator:
         kind = case.spheres.kinds[0]
         diameter = kind.diameter * case.spheres.scale(case.box)
         kT = self.blocks.mean()[2] / (d * (case.particles - 1))
-        excess = self.expected()[0] - 1
+        excess = (self.expected()[0] - 1) * speed_factor(case)
         return float(2 * d * excess / (diameter * math.sqrt(math.pi * kind.mean_mass(d) / kT)))

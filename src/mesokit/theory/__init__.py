@@ -45,7 +45,11 @@ from mesokit.theory.hagen_poiseuille import (
     hagen_poiseuille_flow_rate,
     hagen_poiseuille_velocity,
 )
-from mesokit.theory.hard_sphere_pressure import compressibility
+from mesokit.theory.hard_sphere_pressure import (
+    compressibility,
+    compressibility_of_few,
+    mean_speed_factor,
+)
 from mesokit.theory.harmonic_spring import Spring, mean_square_bond, spring, spring_of_bond
 from mesokit.theory.harmonic_trap import TrappedShape, normal_in_box, trapped_shape
 from mesokit.theory.heading_memory import angular_memory, vectorial_memory
@@ -210,6 +214,7 @@ __all__ = [
     "collision_speeds",
     "complex_viscosity",
     "compressibility",
+    "compressibility_of_few",
     "contact_value",
     "cosine_cdf",
     "couette_velocity",
@@ -266,6 +271,7 @@ __all__ = [
     "maxwell_speed_cdf",
     "maxwell_speed_pdf",
     "mean_exit_time",
+    "mean_speed_factor",
     "mean_square_bond",
     "mean_square_end_to_end",
     "mean_square_gyration",

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+
 # B_k / B_2^(k-1) of hard disks, k = 2 to 10 (Clisby and McCoy 2006, table 1)
 DISKS = (1.0, 0.782004, 0.532232, 0.333556, 0.198843, 0.114868, 0.0649930, 0.0362193, 0.0199537)
 
@@ -32,3 +35,42 @@ def compressibility(packing_fraction: float, dimension: int) -> float:
         ratio = 2 * x * DISKS[-1] / DISKS[-2]
         return 1.0 + known + DISKS[-1] * (2 * x) ** len(DISKS) * ratio / (1 - ratio)
     return (1 + x + x**2 - 2 / 3 * x**3 * (1 + x)) / (1 - x) ** 3
+
+
+def compressibility_of_few(law: Callable[[float], float], packing_fraction: float, n: int) -> float:
+    """Z of n hard spheres in a periodic box, to first order in 1/n, from the law of many.
+
+    In a box of few the number around a sphere cannot fluctuate: Z falls by
+    (phi/2n) d ln(d(phi Z)/dphi)/dphi (Lebowitz and Percus 1961).
+
+    Parameters
+    ----------
+    law : function
+        Z of many, by the packing fraction.
+    packing_fraction : float
+        Part of the area or volume that they fill.
+    n : int
+        Number of spheres.
+
+    Examples
+    --------
+    >>> few = compressibility_of_few(lambda phi: compressibility(phi, 3), 0.16, 12)
+    >>> round(few, 3), round(compressibility(0.16, 3), 3)
+    (1.944, 1.995)
+    """
+    x, h = packing_fraction, 1e-3 * packing_fraction
+    below, here, above = ((y * law(y)) for y in (x - h, x, x + h))
+    slope, bend = (above - below) / (2 * h), (above - 2 * here + below) / h**2
+    return law(x) - x / (2 * n) * bend / slope
+
+
+def mean_speed_factor(degrees: int) -> float:
+    """Mean speed at a fixed kinetic energy of so many degrees of freedom, over that of a bath.
+
+    Velocities are spread over a sphere, not by Maxwell: 1 + 1/(4 degrees) for many.
+
+    >>> round(mean_speed_factor(33), 4)
+    1.0076
+    """
+    half = 0.5 * degrees
+    return math.sqrt(half) * math.exp(math.lgamma(half) - math.lgamma(half + 0.5))

@@ -30,8 +30,17 @@ def pair_rate(case: Case, root: float) -> float:
         return math.nan
     kind, phi = section.kinds[0], section.fraction(case.box)
     diameter = kind.diameter * section.scale(case.box)
-    excess = theory.compressibility(phi, d) - 1
+    z = theory.compressibility_of_few(lambda x: theory.compressibility(x, d), phi, case.particles)
+    excess = (z - 1) * speed_factor(case)
     return 2 * d * excess * root / (diameter * math.sqrt(math.pi * kind.mean_mass(d)))
+
+
+def speed_factor(case: Case) -> float:
+    """Mean relative speed over that of Maxwell's law: not 1 where nothing changes the energy."""
+    section = case.spheres
+    if section.heating is not None or not section.collision.elastic or case.particles < 2:
+        return 1.0
+    return theory.mean_speed_factor(case.box.dimension * (case.particles - 1))
 
 
 def root_of_temperature(case: Case, kinetic: float) -> float:
