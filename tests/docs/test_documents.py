@@ -70,7 +70,7 @@ def test_commands_and_scripts_run_in_order(
     # tests/study has studies in processes of their own, whose start is most of their time here
     monkeypatch.setattr("mesokit.study.study.Processes", lambda jobs, threads, parts: Here(threads))
     if page == "docs/studies.md":  # other pages have the figures of a run
-        monkeypatch.setattr("mesokit.report.save_all", lambda results, folder, case=None: [])
+        monkeypatch.setattr("mesokit.report.save_all", lambda *given, **more: [])
     if not (workplace / "poiseuille.toml").exists():
         run("mesokit new poiseuille", workplace)
     if not (workplace / "poiseuille").exists():  # which all pages go on from

@@ -221,3 +221,20 @@ def test_runs_together_know_the_temperature_better_than_their_starts():
     assert number.error / together.error == pytest.approx(12**0.5, rel=0.15)
     scatter = np.std(means, ddof=1) / 12**0.5
     assert abs(np.log(together.error / scatter)) < 3 / np.sqrt(2 * 11)
+
+
+def test_a_merge_is_there_whole_or_not_at_all(runs, tmp_path, monkeypatch):
+    folders = [simulation.directory.path for simulation in runs]
+    with monkeypatch.context() as broken:
+        broken.setattr("mesokit.report.save_all", lambda *given, **more: 1 / 0)
+        with pytest.raises(ZeroDivisionError):
+            merge(folders, tmp_path / "all")
+    assert not list(tmp_path.iterdir())
+    killed = tmp_path / ".all.part"  # what a killed one leaves
+    killed.mkdir()
+    (killed / "case.toml").write_text("half")
+    (tmp_path / "all").mkdir()
+    assert merge(folders, tmp_path / "all").ended
+    assert [path.name for path in tmp_path.iterdir()] == ["all"]
+    with pytest.raises(RunError, match="not empty"):
+        merge(folders, tmp_path / "all")

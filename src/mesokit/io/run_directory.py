@@ -121,10 +121,8 @@ class RunDirectory:
         Raises RunError if something is there already, or the folder cannot be written.
         """
         run = cls(Path(path))
+        run.require_empty()
         try:
-            if run.path.is_dir() and any(run.path.iterdir()):
-                hint = "resume that run or " if run.case_file.exists() else ""
-                raise RunError(f"{path}: folder is not empty; {hint}choose another output")
             made = not run.path.exists()
             run.path.mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -141,6 +139,15 @@ class RunDirectory:
                     run.path.rmdir()
             raise
         return run
+
+    def require_empty(self) -> None:
+        """Raise RunError if something is in the folder."""
+        try:
+            if self.path.is_dir() and any(self.path.iterdir()):
+                hint = "resume that run or " if self.case_file.exists() else ""
+                raise RunError(f"{self.path}: folder is not empty; {hint}choose another output")
+        except OSError as error:
+            raise RunError(f"{self.path}: {(error.strerror or str(error)).lower()}") from None
 
     def write_case(self, case: Case) -> None:
         """Replace the case by one that differs in how long it runs. Raises RunError."""

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from mesokit.errors import RunError
 from mesokit.io.arrays_file import LARGE, load, one, save
+from mesokit.io.atomic import delete_folder
 
 if TYPE_CHECKING:
     from mesokit.case.trajectory import Trajectory
@@ -26,13 +27,6 @@ if TYPE_CHECKING:
 Frame = dict[str, Any]  # arrays, or what comes in pieces
 OWN = ("mass", "diameter")  # what each sphere has of its own, the same in all frames
 LARGEST = 64 * 2**20  # bytes of frames kept in memory
-
-
-def _removed(folder: Path) -> None:
-    """Delete a folder; a link in its place is deleted, and what it leads to is not."""
-    if folder.is_symlink():
-        folder.unlink()
-    shutil.rmtree(folder, ignore_errors=True)
 
 
 class TrajectoryWriter:
@@ -117,7 +111,7 @@ class TrajectoryWriter:
         """
         if len(self.steps()):
             return
-        _removed(self.coming)  # we may have been killed here before
+        delete_folder(self.coming)  # we may have been killed here before
         back = TrajectoryWriter(self.trajectory, self.coming, self.number, self.first, self.spheres)
         back._own = own
         for frame in frames:
@@ -178,9 +172,9 @@ class TrajectoryWriter:
 
     def remove(self) -> None:
         """Delete all segments at once, after their frames have gone to the data file."""
-        _removed(self.coming)
+        delete_folder(self.coming)
         done = self.folder.with_name(f".{self.folder.name}.done")
-        _removed(done)  # we may have been killed here before
+        delete_folder(done)  # we may have been killed here before
         if self.folder.is_dir():
             self.folder.rename(done)  # all or none, should we be killed here
             shutil.rmtree(done, ignore_errors=True)

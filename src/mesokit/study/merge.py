@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from mesokit.case.component import show
 from mesokit.errors import RunError
 from mesokit.io import h5md
+from mesokit.io.atomic import delete_folder
 from mesokit.io.measured import measured
 from mesokit.io.open import RunFiles
 from mesokit.io.run_directory import RunDirectory, now, provenance
@@ -75,14 +76,27 @@ def merge(runs: Sequence[str | Path], output: str | Path) -> RunFiles:
 def _write(
     case: Case, results: Sequence[Result], record: list[dict[str, Any]], output: str | Path
 ) -> RunFiles:
+    """The folder, which is there with all that belongs to it, or not at all."""
     from mesokit.report import save_all
 
-    directory = RunDirectory.create(output, case)
-    kept = provenance(case, threads=0) | {"merged": record, "ended": now()}
-    h5md.write(directory.data_file, case, kept, results)
-    directory.write_provenance(kept)
-    save_all(results, directory.path, case)
-    return RunFiles(directory.path)
+    output = Path(output)
+    RunDirectory(output).require_empty()
+    coming = output.with_name(f".{output.name}.part")
+    delete_folder(coming)  # we may have been killed here before
+    directory = RunDirectory.create(coming, case)
+    try:
+        kept = provenance(case, threads=0) | {"merged": record, "ended": now()}
+        h5md.write(directory.data_file, case, kept, results)
+        directory.write_provenance(kept)
+        save_all(results, directory.path, case, run=output.resolve().name)
+        if output.is_dir():
+            output.rmdir()  # empty; Windows renames onto none
+        coming.rename(output)
+    except OSError as error:
+        raise RunError(f"{output}: {(error.strerror or str(error)).lower()}") from None
+    finally:
+        delete_folder(coming)
+    return RunFiles(output)
 
 
 def _record(files: RunFiles, step: int) -> dict[str, Any]:
