@@ -19,7 +19,6 @@ import numpy as np
 from llvmlite import ir
 from numba import typeof, types
 from numba.core import cgutils
-from numba.core.callconv import CPUCallConv
 from numba.core.errors import TypingError
 from numba.core.typing import signature
 from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_global
@@ -263,26 +262,6 @@ def _unbox(kind: Group, thing: Any, context: Any) -> NativeValue:
 # --- reading and writing in compiled code ---------------------------------------------------------
 
 
-_decorate = CPUCallConv.decorate_function
-
-
-def _decorated(self: Any, function: Any, names: Any, kinds: Any, noalias: bool = False) -> None:
-    """Tell LLVM how long the groups are that a function takes.
-
-    It may then load a field before a loop, in which only some branch reads it.
-    """
-    _decorate(self, function, names, kinds, noalias)
-    groups = {f"arg.{name}": kind for name, kind in zip(names, kinds, strict=False)}
-    for argument in self.get_arguments(function):
-        kind = groups.get(argument.name)
-        if isinstance(kind, Group):
-            argument.attributes.dereferenceable = max(8, 8 * kind.words)
-            argument.attributes.align = 8
-
-
-CPUCallConv.decorate_function = _decorated
-
-
 @infer_getattr
 class _Field(AttributeTemplate):
     key = Group
@@ -313,9 +292,6 @@ def _load_field(context: Any, builder: Any, kind: Group, value: Any, name: str) 
     at = kind.offsets[name]
     if kind.in_words and not isinstance(inner, types.Number):
         value, at = _load_word(builder, value, at, _BYTES, True), 0
-        for what, number in ("dereferenceable", 8 * _words_of(inner)), ("align", 8):
-            node = builder.module.add_metadata([ir.Constant(_WORD, max(8, number))])
-            value.set_metadata(what, node)
     return _load(context, builder, value, at, inner, fixed)
 
 
