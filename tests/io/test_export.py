@@ -36,7 +36,7 @@ EVERYONE = np.arange(79)  # in the mixed run
 
 @pytest.fixture(autouse=True)
 def no_figures(monkeypatch):
-    monkeypatch.setattr("mesokit.report.save_all", lambda results, folder, case=None: [])
+    monkeypatch.setattr("mesokit.report.save_all", lambda *given, **more: [])
 
 
 class Watched(Simulation):
@@ -72,7 +72,7 @@ def run_of(folder, size=(6, 6, 6), steps=40, walls=(), fields=ALL, subset=None, 
 def whole(tmp_path_factory):
     """A run of trimers in a box whose lengths differ."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("mesokit.report.save_all", lambda results, folder, case=None: [])
+        patch.setattr("mesokit.report.save_all", lambda *given, **more: [])
         folder = tmp_path_factory.mktemp("runs") / "run"
         return run_of(folder, (6, 5, 7))
 
@@ -159,7 +159,7 @@ def mixed(tmp_path_factory):
         trajectory=Trajectory(every=10, fields=ALL),
     )  # fmt: skip
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("mesokit.report.save_all", lambda results, folder, case=None: [])
+        patch.setattr("mesokit.report.save_all", lambda *given, **more: [])
         folder = tmp_path_factory.mktemp("runs") / "mixed"
         simulation = Simulation(case, output=folder, threads=1)
         simulation.run()
@@ -284,7 +284,7 @@ def among_molecules(folder, start=None):
 @pytest.fixture(scope="module")
 def ended(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("mesokit.report.save_all", lambda results, folder, case=None: [])
+        patch.setattr("mesokit.report.save_all", lambda *given, **more: [])
         simulation = among_molecules(tmp_path_factory.mktemp("runs") / "among")
         simulation.run()
     return simulation

@@ -37,7 +37,7 @@ def whole(logging, tmp_path_factory):
 
     folder = tmp_path_factory.mktemp("logs") / "run"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("mesokit.report.save_all", lambda results, folder, case=None: [])
+        patch.setattr("mesokit.report.save_all", lambda *given, **more: [])
         Simulation(logging, output=folder, callbacks=[every(9, look)], threads=1).run()
     return folder, seen
 

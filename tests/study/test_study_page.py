@@ -33,7 +33,7 @@ def study(case_file, tmp_path_factory) -> Study:
     output = tmp_path_factory.mktemp("pages") / "study"
     study = Study(case_file, {FORCE: [0.02, 0.04]}, seeds=2, output=output)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("mesokit.report.save_all", lambda results, folder, case=None: [])
+        patch.setattr("mesokit.report.save_all", lambda *given, **more: [])
         for run in study.runs:
             assert carry(str(run.path)) == ""
     return study
@@ -157,7 +157,7 @@ def test_a_notebook_shows_a_study(study, case_file, tmp_path):
 
 def test_a_notebook_shows_how_a_study_goes(case_file, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(Study, "_workers", lambda self, *given: Here())
-    monkeypatch.setattr("mesokit.report.save_all", lambda results, folder, case=None: [])
+    monkeypatch.setattr("mesokit.report.save_all", lambda *given, **more: [])
     display = in_a_notebook(monkeypatch)
     Study(case_file, {}, 1, output=tmp_path / "quiet").run(progress=False)
     assert display.pages == []

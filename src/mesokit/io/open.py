@@ -22,6 +22,7 @@ from mesokit.io.run_directory import RunDirectory
 from mesokit.io.shared_work import work_words
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.method.protocol import method_of
+from mesokit.observe.shared.build_up import result_of
 from mesokit.observe.shared.named import keyed
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         if not self.directory.checkpoint_file.exists():
             raise RunError(f"{self.path}: the run {self.state}")
         made, _ = measured(self.directory, self.case)
-        return {name: accumulator.result() for name, accumulator in made.items()}
+        return {name: result_of(one, self.case) for name, one in made.items()}
 
     @cached_property
     def _final(self) -> dict[str, Result]:

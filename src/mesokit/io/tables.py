@@ -94,6 +94,7 @@ def record(comparison: Comparison) -> dict[str, Any]:
         "deviation": number(c.deviation),
         "percent": number(c.percent),
         "approximate": c.approximate,
+        "steady": c.steady,
         "note": c.note,
     }
 

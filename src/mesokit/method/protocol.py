@@ -122,6 +122,9 @@ class Method:
         What the log of its run may tell.
     si : function of a case, optional
         What its units are in SI; without it, a case must not have the section `[units]`.
+    build_up : function of a case, optional
+        How its flow comes from rest to its steady state (`observe.shared.build_up.BuildUp`), or
+        None.
     check_ranks : function of a case and a number of ranks, optional
         Raises CaseError for a case that cannot be run on so many ranks of MPI; without it, none
         can. Its engine is then asked by all ranks at once.
@@ -155,6 +158,7 @@ class Method:
     keep_files: Callable[[Case, Path], Case] = lambda case, folder: case
     log: Callable[[Case], Columns] = lambda case: NO_COLUMNS
     si: Callable[[Case], Any] | None = None
+    build_up: Callable[[Case], Any] | None = None
     check_ranks: Callable[[Case, int], None] | None = None
 
 

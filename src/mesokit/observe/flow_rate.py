@@ -38,6 +38,7 @@ class FlowRate(Observable):
 
     quantity: Literal["flow-rate"] = tag("flow-rate")
     asks_transport: ClassVar[bool] = True
+    of_built_up_flow: ClassVar[bool] = True
     axis: Axis | None = param(None, doc="axis of the flow (that of the force unless said)")
 
     def check(self, case: Case) -> None:

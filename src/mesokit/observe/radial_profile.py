@@ -40,6 +40,7 @@ class RadialProfile(Observable):
 
     quantity: Literal["radial-profile"] = tag("radial-profile")
     asks_transport: ClassVar[bool] = True
+    of_built_up_flow: ClassVar[bool] = True
     of: Literal["azimuthal", "axial", "radial", "density", "temperature"] = param(
         "azimuthal", doc="what: a velocity component, 'density' or 'temperature'"
     )

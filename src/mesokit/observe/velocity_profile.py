@@ -41,6 +41,7 @@ class VelocityProfile(Profile):
 
     quantity: Literal["velocity-profile"] = tag("velocity-profile")
     asks_transport: ClassVar[bool] = True
+    of_built_up_flow: ClassVar[bool] = True
     component: Axis | None = param(None, doc="axis of the velocity (that of the flow unless said)")
     kind: int | str | None = param(None, doc=KIND)
 

@@ -120,7 +120,7 @@ def _wrapped(text: str, width: float) -> list[str]:
 
 def _caution(c: Comparison) -> str:
     """What must be known to read a deviation, or why there is none."""
-    if c.approximate or "lower bound" in c.note or c.expected != c.expected:
+    if c.approximate or not c.steady or "lower bound" in c.note or c.expected != c.expected:
         return c.note
     return ""
 
@@ -136,7 +136,7 @@ def _line(c: Comparison, shared: Sequence[str]) -> str:
         said.append(f"theory {c.expected:.4g}")
         if c.approximate and c.expected:
             said[0] += f", {two_digits(c.percent, sign='+')} %"
-        elif c.error > 0 and not c.approximate:
+        elif c.deviation == c.deviation:
             said[0] += f", {c.deviation:+.1f} s.e."
     said += [note] if note else []
     return f"{text} ({'; '.join(said)})" if said else text

@@ -27,7 +27,9 @@ NAMES = {
 def draw(result: Result, figure: Any, ax: Any) -> None:
     """Draw a profile; the panel of deviations only in a figure of its own."""
     (axis, x), residuals = next(iter(result.x.items())), None
-    if ax is None and result.expected is not None and np.isfinite(result.expected).any():
+    steady = all(comparison.steady for comparison in result.comparisons)
+    known = result.expected is not None and np.isfinite(result.expected).any()
+    if ax is None and known and steady:
         ax, residuals = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
     elif ax is None:
         ax = figure.subplots()

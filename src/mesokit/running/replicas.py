@@ -13,6 +13,7 @@ import numpy as np
 
 from mesokit.errors import RunError
 from mesokit.method.protocol import method_of
+from mesokit.observe.shared.build_up import result_of
 from mesokit.observe.shared.pooled import pool
 
 if TYPE_CHECKING:
@@ -113,7 +114,7 @@ class Replicas:
             pooled = copy.deepcopy(pooled)
             for other in self.all[1:]:
                 pool(name, pooled, other.accumulators[name])
-        return pooled.result()
+        return result_of(pooled, self.first.case)
 
     def state(self) -> dict[str, Any]:
         """Arrays for a checkpoint: of the first as of a run alone, of others with a number."""

@@ -18,6 +18,7 @@ from mesokit.io.atomic import delete_folder
 from mesokit.io.measured import measured
 from mesokit.io.open import RunFiles
 from mesokit.io.run_directory import RunDirectory, now, provenance
+from mesokit.observe.shared.build_up import result_of
 from mesokit.observe.shared.pooled import pool
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ def merge(runs: Sequence[str | Path], output: str | Path) -> RunFiles:
         for name, accumulator in pooled.items():
             pool(name, accumulator, more[name])
         record.append(_record(each, steps))
-    results = [accumulator.result() for accumulator in pooled.values()]
+    results = [result_of(one, files[0].case) for one in pooled.values()]
     return _write(files[0].case, results, record, output)
 
 

@@ -113,7 +113,9 @@ def pooled(
     first = each[0]
     expected = float(share @ np.array([c.expected for c in each]))
     notes = [c.note for c in each]
+    early = next((c.note for c in each if not c.steady), "")
     note = first.note if len({*notes}) == 1 or first.approximate else _shared(notes)
+    note = early or note
     return Comparison(first.what, mean, error, expected, first.unit, note), spread, seeds
 
 

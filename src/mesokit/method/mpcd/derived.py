@@ -14,8 +14,9 @@ from mesokit.geometry.shape.plates import Plates
 from mesokit.method.mpcd.expected import recognise, setting
 from mesokit.method.mpcd.expected.heating import heating
 from mesokit.method.mpcd.expected.molecules import longest_rouse_time
-from mesokit.method.mpcd.numbers import PIPE, Derived
+from mesokit.method.mpcd.numbers import PIPE, TIMES, Derived
 from mesokit.method.mpcd.warnings import cautions
+from mesokit.observe.shared.build_up import BuildUp
 from mesokit.running.cores import usable_cores
 
 if TYPE_CHECKING:
@@ -189,6 +190,17 @@ def _wavenumber(case: Case, across: int) -> float:
         if case.fluid.force.waves_across()
         else (2 * math.pi / case.box.size[across])
     )
+
+
+def build_up(case: Case) -> BuildUp | None:
+    """How a driven flow comes from rest to its steady state; None where there is none, or where
+    obstacles make it shorter than is known."""
+    numbers, dt = derive(case), float(case.fluid.timestep)
+    known = numbers.steady_time is not None and numbers.flow_speed and not numbers.flow_bound
+    if not known or not case.fluid.force.steady or case.fluid.start.run is not None:
+        return None
+    steps = float(numbers.steady_time or 0.0) / dt
+    return BuildUp(steps, math.ceil(TIMES * steps), case.run.warmup)
 
 
 def _steady_time(case: Case, across: int, viscosity: float) -> float:

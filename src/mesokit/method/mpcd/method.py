@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from mesokit.method.mpcd.solutes import Solutes
     from mesokit.method.mpcd.start.first_state import FirstState
     from mesokit.method.protocol import Summary
+    from mesokit.observe.shared.build_up import BuildUp
 
 
 def _summary(case: Case, threads: int | None) -> Summary:
@@ -57,6 +58,12 @@ def _engine(case: Case, threads: int, measures: Sequence[str]) -> Engine:
     from mesokit.execute.ranks.engine import Ranks
 
     return Ranks(case, threads, measures, here.comm)
+
+
+def _build_up(case: Case) -> BuildUp | None:
+    from mesokit.method.mpcd.derived import build_up
+
+    return build_up(case)
 
 
 def _check_ranks(case: Case, ranks: int) -> None:
@@ -167,5 +174,6 @@ METHOD = Method(
     expected={theory.answers: theory for theory in (Displacement, Velocities, VelocityMemory)},
     log=columns,
     si=_si,
+    build_up=_build_up,
     check_ranks=_check_ranks,
 )

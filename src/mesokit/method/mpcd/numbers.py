@@ -11,6 +11,7 @@ from mesokit.case.amounts import duration_text, number, size_text
 from mesokit.case.describe.shown import Shown
 
 PIPE = "Hagen-Poiseuille"  # the flow along a round pipe
+TIMES = 3  # in which a flow builds up to 5 %, in units of that to 1/e
 Row = tuple[str, str, str]  # what, its value, and a word on it
 
 

@@ -18,7 +18,7 @@ from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.compression import compression, unit_cell
 from mesokit.method.mpcd.expected.molecules import spring_of, without_bonds, without_solutes
 from mesokit.method.mpcd.molecule import COARSE
-from mesokit.method.mpcd.numbers import PIPE
+from mesokit.method.mpcd.numbers import PIPE, TIMES
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -240,12 +240,12 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
             yield unstable
     if numbers.steady_time is not None and (numbers.flow_speed or numbers.flow_bound):
         # obstacles make it shorter, nobody knows how much
-        times, need = (1, "up to") if numbers.flow_bound else (3, "about")
+        times, need = (1, "up to") if numbers.flow_bound else (TIMES, "about")
         wait = math.ceil(times * numbers.steady_time / fluid.timestep)
         if case.run.warmup < wait and case.run.steps and fluid.start.run is None:
             yield (
                 f"run.warmup = {case.run.warmup}: the flow needs {need} "
-                f"{math.ceil(3 * numbers.steady_time / fluid.timestep)} steps from rest to its "
+                f"{math.ceil(TIMES * numbers.steady_time / fluid.timestep)} steps from rest to its "
                 "steady state; observables will average over the start"
             )
     yield from _start_of_shear(case, numbers)

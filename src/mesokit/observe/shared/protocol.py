@@ -56,6 +56,7 @@ class Observable(ABC):
     in_open_box: ClassVar[bool] = False  # whether it can be told of particles far outside the box
     # whether its theory needs the transport coefficients of the fluid as it is, molecules and all
     asks_transport: ClassVar[bool] = False
+    of_built_up_flow: ClassVar[bool] = False  # whether its theory is of the steady flow
     measures: ClassVar[tuple[str, ...]] = ()  # "stress" or "walls": what the step has to sum for it
     every: int = option(default=10, doc="steps between two samples", ge=1, kw_only=True)
     name: str | None = option(

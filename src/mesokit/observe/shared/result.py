@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.floating[Any]]
 FIGURES = "mesokit.report"  # by their names: results know nothing of how they are drawn
 TABLES = "mesokit.io.tables"  # and written
+NOT_STEADY = "not steady"  # how the note of a comparison begins, where that is so
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,8 @@ class Comparison:
     unit: of all three.
     note: what the theory assumes, or what the estimate is. One that starts with "approximate" says
         that the theory is known to be off by more than an error bar: deviations are in percent.
+        One that starts with "not steady" says that the run began to measure too early for the
+        theory: there is no deviation.
 
     >>> c = Comparison("viscosity", 0.88, 0.01, 0.87, "a^2/time")
     >>> round(c.deviation, 6), round(c.percent, 2)
@@ -63,7 +66,7 @@ class Comparison:
     @property
     def deviation(self) -> float:
         """(measured - expected) in standard errors; nan without an error bar or an exact theory."""
-        if self.approximate or not self.error > 0:
+        if self.approximate or not self.steady or not self.error > 0:
             return math.nan
         return (self.measured - self.expected) / self.error
 
@@ -73,6 +76,11 @@ class Comparison:
         return self.note.startswith("approximate")
 
     @property
+    def steady(self) -> bool:
+        """Whether the run measured the steady state that the theory is of, as far as is known."""
+        return not self.note.startswith(NOT_STEADY)
+
+    @property
     def percent(self) -> float:
         """(measured - expected) in percent of the size of what is expected, nan if that is 0.
 
@@ -80,6 +88,8 @@ class Comparison:
         -10.0
         """
         difference = self.measured - self.expected
+        if not self.steady:
+            return math.nan
         return 100 * difference / abs(self.expected) if self.expected else math.nan
 
     def __str__(self) -> str:
