@@ -66,6 +66,7 @@ ROWS = {
     "method/protocol.py": ("case", "engine", "=method", "running.cores"),
     "method/mpcd/": MPCD,
     "method/mpcd/columns.py": (*MPCD, "method.protocol"),
+    "method/mpcd/derived.py": (*MPCD, "method.protocol"),
     "method/mpcd/summary.py": (*MPCD, "method.protocol"),
     "method/mpcd/start/": START,
     "method/mpcd/start/first_state.py": (*MPCD, "execute", "io", "ranks"),
@@ -100,8 +101,8 @@ ROWS = {
         "observe.shared.pooled", "observe.shared.result",
     ),
     "io/open.py": (
-        "case", "errors", "io", "method.protocol", "observe.shared.named", "observe.shared.result",
-        "report",
+        "case", "errors", "io", "method.protocol", "observe.shared.build_up",
+        "observe.shared.named", "observe.shared.result", "report",
     ),
     "report/": ("case", "errors", "geometry", "io", "method.protocol", "observe", "report"),
     "report/flow/state.py": ("case", "method.protocol"),

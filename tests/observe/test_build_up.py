@@ -74,7 +74,7 @@ def test_a_flow_that_has_built_up_is_compared(steps, warmup, height):
 
 
 def test_what_is_lacking_is_the_mean_of_an_exponential():
-    from mesokit.observe.shared.build_up import BuildUp
+    from mesokit.method.protocol import BuildUp
 
     steps = [math.exp(-(50 + n) / 200.0) for n in range(1000)]
     assert BuildUp(200.0, 600, 50).lacks(1000) == pytest.approx(sum(steps) / 1000, rel=0.01)

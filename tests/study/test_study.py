@@ -106,7 +106,7 @@ def test_pictures(study):
     figure = study.plot("acceleration", "flow-rate.mean", fit="line")
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
     assert (
-        labels[0] == "theory: poiseuille"
+        labels[0] == "theory of the steady flow, not reached"
         and labels[1].startswith("fit: $y = ")
         and "3 runs" in labels[2]
     )

@@ -56,6 +56,27 @@ class Columns(NamedTuple):
 NO_COLUMNS = Columns((), (), lambda engine, wanted: {})
 
 
+class BuildUp(NamedTuple):
+    """How a flow from rest comes to its steady state: what it lacks falls as an exponential.
+
+    steps: in which that falls to 1/e; need: that `mesokit check` asks to wait for before the first
+    sample; had: that the run waited.
+    """
+
+    steps: float
+    need: int
+    had: int
+
+    def lacks(self, length: float) -> float:
+        """The part of the steady flow that the mean over so many steps lacks.
+
+        >>> round(BuildUp(1200.0, 3600, 100).lacks(500), 2)
+        0.75
+        """
+        left = math.exp(-self.had / self.steps)
+        return left * -math.expm1(-length / self.steps) * self.steps / length
+
+
 @dataclass(frozen=True)
 class Method:
     """A method of simulation.
@@ -123,8 +144,7 @@ class Method:
     si : function of a case, optional
         What its units are in SI; without it, a case must not have the section `[units]`.
     build_up : function of a case, optional
-        How its flow comes from rest to its steady state (`observe.shared.build_up.BuildUp`), or
-        None.
+        How its flow comes from rest to its steady state (`BuildUp`), or None.
     check_ranks : function of a case and a number of ranks, optional
         Raises CaseError for a case that cannot be run on so many ranks of MPI; without it, none
         can. Its engine is then asked by all ranks at once.
@@ -158,7 +178,7 @@ class Method:
     keep_files: Callable[[Case, Path], Case] = lambda case, folder: case
     log: Callable[[Case], Columns] = lambda case: NO_COLUMNS
     si: Callable[[Case], Any] | None = None
-    build_up: Callable[[Case], Any] | None = None
+    build_up: Callable[[Case], BuildUp | None] | None = None
     check_ranks: Callable[[Case, int], None] | None = None
 
 

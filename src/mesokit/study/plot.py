@@ -92,6 +92,8 @@ def _curve(label: str, key: str, rows: list[Pooled]) -> Curve:
 
 def _theory(numbers: Sequence[Comparison]) -> str:
     """What is expected, in a few words."""
+    if not all(number.steady for number in numbers):
+        return "theory of the steady flow, not reached"
     if any(number.approximate for number in numbers):
         return "theory, approximate"
     parts = numbers[0].note.split("; ")

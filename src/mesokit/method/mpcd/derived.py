@@ -16,7 +16,7 @@ from mesokit.method.mpcd.expected.heating import heating
 from mesokit.method.mpcd.expected.molecules import longest_rouse_time
 from mesokit.method.mpcd.numbers import PIPE, TIMES, Derived
 from mesokit.method.mpcd.warnings import cautions
-from mesokit.observe.shared.build_up import BuildUp
+from mesokit.method.protocol import BuildUp
 from mesokit.running.cores import usable_cores
 
 if TYPE_CHECKING:

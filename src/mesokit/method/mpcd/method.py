@@ -33,8 +33,7 @@ if TYPE_CHECKING:
     from mesokit.method.mpcd.si import SI
     from mesokit.method.mpcd.solutes import Solutes
     from mesokit.method.mpcd.start.first_state import FirstState
-    from mesokit.method.protocol import Summary
-    from mesokit.observe.shared.build_up import BuildUp
+    from mesokit.method.protocol import BuildUp, Summary
 
 
 def _summary(case: Case, threads: int | None) -> Summary:

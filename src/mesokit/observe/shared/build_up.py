@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from mesokit.method.protocol import method_of
 from mesokit.observe.shared.protocol import Accumulator
@@ -16,27 +15,6 @@ if TYPE_CHECKING:
 MATTERS = 0.5  # of the standard error: a missing part that is larger is told
 
 
-class BuildUp(NamedTuple):
-    """How a flow from rest comes to its steady state: what it lacks falls as an exponential.
-
-    steps: in which that falls to 1/e; need: that `mesokit check` asks to wait for before the first
-    sample; had: that the run waited.
-    """
-
-    steps: float
-    need: int
-    had: int
-
-    def lacks(self, length: float) -> float:
-        """The part of the steady flow that the mean over so many steps lacks.
-
-        >>> round(BuildUp(1200.0, 3600, 100).lacks(500), 2)
-        0.75
-        """
-        left = math.exp(-self.had / self.steps)
-        return left * -math.expm1(-length / self.steps) * self.steps / length
-
-
 def result_of(accumulator: Accumulator, case: Case) -> Result:
     """What an accumulator says, with comparisons marked where the flow had not built up."""
     result, method = accumulator.result(), method_of(case)
@@ -46,13 +24,24 @@ def result_of(accumulator: Accumulator, case: Case) -> Result:
     build_up = method.build_up(case)
     if build_up is None:
         return result
-    length = min(result.samples * observable.every, case.run.steps)
+    series = getattr(accumulator, "blocks").series  # noqa: B009  # of runs that are pooled
+    length = result.samples // series * observable.every
     if not length or not any(_is_off(c, build_up.lacks(length)) for c in result.comparisons):
         return result
     note = f"{NOT_STEADY}: the flow needs {build_up.need} steps before samples, had {build_up.had}"
     return dataclasses.replace(
-        result, comparisons=tuple(dataclasses.replace(c, note=note) for c in result.comparisons)
+        result,
+        comparisons=tuple(
+            dataclasses.replace(c, note="; ".join([note, *_of_theory(c)]))
+            for c in result.comparisons
+        ),
     )
+
+
+def _of_theory(comparison: Comparison) -> list[str]:
+    """What its note says of the theory; error bars of a flow that builds up are another matter."""
+    parts = comparison.note.split("; ")
+    return [part for part in parts if part and not part.startswith("error bar is a lower bound")]
 
 
 def _is_off(comparison: Comparison, share: float) -> bool:
