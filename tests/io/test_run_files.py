@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import warnings
 
 import h5py
@@ -262,3 +264,40 @@ def test_folders_that_are_refused(tmp_path, make_case):
 def test_several_folders_are_no_run():
     with pytest.raises(RunError, match=r"^[^\n]*mesokit.merge[^\n]*$"):
         mesokit.open(["a", "b"])
+
+
+@pytest.mark.parametrize("size", [3_000, 60_000, 400_000])
+@pytest.mark.skipif(sys.platform == "win32", reason="no limit of the size of files")
+def test_a_disk_that_is_full_ends_in_one_line_and_loses_nothing(tmp_path, size):
+    """A limit on the size of files stands for it, in a process that HDF5 could bring down."""
+    program = f"""
+import resource, signal
+import mesokit.io.h5md as h5md
+from mesokit import *
+
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+case = Case(
+    run=Run(steps=100), box=Box([32, 32]), observe=[Conservation(every=10)],
+    trajectory=Trajectory(every=2),
+)
+write, (_, most) = h5md.write, resource.getrlimit(resource.RLIMIT_FSIZE)
+def limited(*given, **more):
+    resource.setrlimit(resource.RLIMIT_FSIZE, ({size}, most))
+    try:
+        return write(*given, **more)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+h5md.write = limited
+try:
+    Simulation(case, output="run").run(progress=False)
+except RunError as error:
+    print(error)
+h5md.write = write
+print(Simulation.resume("run").run(progress=False) is not None)
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0 and not done.stderr, done.stderr
+    assert done.stdout.splitlines()[0] == "cannot write run/run.h5: file too large"
+    assert len(mesokit.open(tmp_path / "run").trajectory) == 51

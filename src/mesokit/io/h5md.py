@@ -21,6 +21,7 @@ the images have slid: that of the nearest image, between -L/2 and L/2.
 
 from __future__ import annotations
 
+import io
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -67,23 +68,19 @@ def write(
 
     Raises RunError if it cannot be written.
     """
-    with replacing(path) as temporary:
-        try:
-            with h5py.File(temporary, "w") as file:
-                _header(file, case, provenance)
-                steps = None
-                if trajectory is not None:
-                    steps = trajectory.steps()
-                    if len(steps) or not _kept(file, path):
-                        _particles(file, case, trajectory, steps)
-                    else:
-                        steps = particles_of(file)["box/edges/step"][()]
-                measured = file.create_group("results")
-                for result in results:
-                    _result(measured, result)
-                    _time_series(file, result, steps)
-        except RuntimeError as error:  # what h5py makes of a full disk while closing
-            raise OSError(None, str(error).splitlines()[0]) from error
+    with replacing(path) as temporary, made(temporary) as file:
+        _header(file, case, provenance)
+        steps = None
+        if trajectory is not None:
+            steps = trajectory.steps()
+            if len(steps) or not _kept(file, path):
+                _particles(file, case, trajectory, steps)
+            else:
+                steps = particles_of(file)["box/edges/step"][()]
+        measured = file.create_group("results")
+        for result in results:
+            _result(measured, result)
+            _time_series(file, result, steps)
 
 
 def read_results(path: str | Path) -> dict[str, Result]:
@@ -131,6 +128,46 @@ def columns(field: str, dimension: int) -> Any:
 def particles_of(file: Any) -> Any:
     """The group of the particles in a data file, None without a trajectory."""
     return next(iter(file["particles"].values())) if "particles" in file else None
+
+
+class _Target(io.FileIO):
+    """A file that HDF5 can always write to, and close: where it cannot it ends the process later.
+
+    What comes after the system has refused, such as for a full disk, is dropped; `refused` is why.
+    """
+
+    refused: OSError | None = None
+
+    def write(self, data: Any) -> int:
+        """Write all of it, or nothing any more."""
+        left = memoryview(data).cast("B")
+        try:
+            while len(left) and self.refused is None:
+                left = left[super().write(left) :]
+        except OSError as error:
+            self.refused = error
+        return memoryview(data).nbytes
+
+    def truncate(self, size: int | None = None) -> int:
+        """Make it longer or shorter, if that can be done."""
+        try:
+            return super().truncate(size)
+        except OSError as error:
+            self.refused = self.refused or error
+            return size or 0
+
+    def flush(self) -> None:
+        """Nothing waits to be written."""
+
+
+@contextmanager
+def made(path: str | Path) -> Iterator[Any]:
+    """A new HDF5 file, for writing. Raises OSError, such as for a full disk."""
+    with _Target(path, "w+") as target:
+        with h5py.File(target, "w") as file:
+            yield file
+        if target.refused is not None:
+            raise target.refused
 
 
 @contextmanager

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Any
 import h5py
 import numpy as np
 
+from mesokit.io.h5md import made
+
 if TYPE_CHECKING:
     from mesokit.io.moments import Moment, Particles
 
@@ -30,7 +32,7 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
     """All frames, with box, masses, kinds, molecules, bonds and what is known of them."""
     from mesokit import __version__
 
-    with h5py.File(path, "w") as file:
+    with made(path) as file:
         head = file.create_group("h5md")
         head.attrs["version"] = np.array([1, 1], np.int32)
         head.create_group("author").attrs["name"] = "unknown"
