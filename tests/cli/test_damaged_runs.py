@@ -328,6 +328,31 @@ def test_overwrite_replaces_a_run(folder: Path) -> None:
     assert "seed = 3" in (folder / "run" / "case.toml").read_text()
 
 
+@pytest.mark.parametrize("removals", range(0, 9, 2))
+def test_overwrite_may_be_killed_and_repeated(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, removals: int
+) -> None:
+    """What is removed last is the case, by which the folder is known as that of a run."""
+    unlink, done = Path.unlink, []
+
+    def killed(path: Path, missing_ok: bool = False) -> None:
+        if path.exists() and path.parent.name == "run":
+            done.append(path.name)
+            if len(done) > removals:
+                raise KeyboardInterrupt
+        unlink(path, missing_ok=missing_ok)
+
+    words = ["run", "case.toml", "--output", "run", "--overwrite", "--quiet"]
+    with monkeypatch.context() as limited, pytest.raises(SystemExit):
+        limited.setattr(Path, "unlink", killed)
+        main(words)
+    assert done
+    with pytest.raises(SystemExit) as end:
+        main(words)
+    assert not end.value.code
+    assert (folder / "run" / "run.h5").exists()
+
+
 def test_overwrite_spares_other_files(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "run" / "notes.txt").write_text("precious")
     before = contents(folder)

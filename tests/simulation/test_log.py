@@ -131,6 +131,9 @@ def test_damaged_files_are_refused_in_one_line(tmp_path):
         file.write_text(text)
         with pytest.raises(RunError, match=r"log.csv: damaged"):
             log_file.read(file)
+    file.write_bytes(b"step,time\n1,2\n\xff,3\n")
+    with pytest.raises(RunError, match=r"log.csv: damaged: byte 14 is not UTF-8"):
+        log_file.read(file)
 
 
 def test_a_method_has_columns_of_its_own(tmp_path):

@@ -211,8 +211,10 @@ def _clear(output: Path) -> None:
 
     run = RunDirectory(output)
     with alone(run if output.is_dir() else None):
-        for path in set(_files_of_run(output)) - {run.lock_file}:
-            if path.is_dir():
+        for path in _files_of_run(output):  # in this order: what is left makes a run until the end
+            if path == run.lock_file:
+                continue
+            if path.is_dir() and not path.is_symlink():
                 shutil.rmtree(path)
             else:
                 path.unlink(missing_ok=True)

@@ -90,6 +90,10 @@ def _whole_lines(path: Path) -> list[str]:
         lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
     except OSError as error:
         raise RunError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+    except UnicodeDecodeError as error:
+        raise RunError(
+            f"{path}: damaged: byte {error.start} is not UTF-8; expected numbers"
+        ) from None
     return [line for line in lines if line.endswith("\n")]
 
 
