@@ -36,6 +36,7 @@ from numba.extending import (
 from numba.np.arrayobj import populate_array
 
 _WORD, _BYTES = ir.IntType(64), ir.IntType(8).as_pointer()
+OWNS = 4  # the bit of an array's flags that says that the memory is its own
 _CHANGING: dict[type, tuple[str, ...]] = {}  # classes that are always packed, and what changes
 _IN_WORDS: set[type] = set()  # classes of which each field takes one word
 
@@ -125,7 +126,15 @@ def kind_of(value: Any) -> Any:
         if hasattr(value, "_fields"):
             return _group(type(value), inner)
         return types.Tuple(inner)
+    if type(value) is np.ndarray:
+        key = value.dtype, value.ndim, value.flags.num & ~OWNS
+        if key not in _arrays:
+            _arrays[key] = typeof(value)
+        return _arrays[key]
     return typeof(value)
+
+
+_arrays: dict[Any, Any] = {}  # types of arrays: numba takes long to find them
 
 
 @functools.cache
@@ -147,8 +156,8 @@ class Packed:
     (2.0, 3)
     """
 
-    def __init__(self, value: Any) -> None:
-        self.value, self._numba_type_ = value, kind_of(value)
+    def __init__(self, value: Any, kind: Any = None) -> None:
+        self.value, self._numba_type_ = value, kind or kind_of(value)
         self._apart: list[Any] = []  # what fields of one word are addresses of
         self.memory = _in_memory(value, self._numba_type_, self._apart)
         self.address = self.memory.ctypes.data
@@ -228,7 +237,10 @@ class Packing:
         known = self._known.get(type(value))
         if known is not None and _is_same(known.value, value):
             return known
-        made = packed(value)
+        if known is not None and _is_alike(known.value, value):
+            made = Packed(value, known._numba_type_)
+        else:
+            made = packed(value)
         if isinstance(made, Packed):
             self._known[type(value)] = made
         return made
@@ -244,6 +256,19 @@ def _is_same(one: Any, other: Any) -> bool:
     if isinstance(one, tuple):
         return len(one) == len(other) and all(map(_is_same, one, other))
     return bool(one == other)
+
+
+def _is_alike(one: Any, other: Any) -> bool:
+    """Whether two values have the same type in compiled code: much faster than to find that."""
+    if type(one) is not type(other):
+        return False
+    if isinstance(one, np.ndarray):
+        if one.dtype != other.dtype or one.ndim != other.ndim:
+            return False
+        return not (one.flags.num ^ other.flags.num) & ~OWNS
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(map(_is_alike, one, other))
+    return True
 
 
 @typeof_impl.register(Packed)
