@@ -164,8 +164,12 @@ class _Target(io.FileIO):
 def made(path: str | Path) -> Iterator[Any]:
     """A new HDF5 file, for writing. Raises OSError, such as for a full disk."""
     with _Target(path, "w+") as target:
-        with h5py.File(target, "w") as file:
-            yield file
+        try:
+            with h5py.File(target, "w") as file:
+                yield file
+        except (OSError, RuntimeError):  # what HDF5 makes of it
+            if target.refused is None:
+                raise
         if target.refused is not None:
             raise target.refused
 
