@@ -24,7 +24,7 @@ def result_of(accumulator: Accumulator, case: Case) -> Result:
     build_up = method.build_up(case)
     if build_up is None:
         return result
-    series = getattr(accumulator, "blocks").series  # noqa: B009  # of runs that are pooled
+    series = getattr(getattr(accumulator, "blocks", None), "series", 1)  # pooled runs
     length = result.samples // series * observable.every
     if not length or not any(_is_off(c, build_up.lacks(length)) for c in result.comparisons):
         return result
