@@ -266,6 +266,34 @@ def test_several_folders_are_no_run():
         mesokit.open(["a", "b"])
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="no limit of the size of files")
+def test_hdf5_reads_back_what_the_disk_refused(tmp_path):
+    """Else it takes zeros for its own records, and may end the process."""
+    program = """
+import resource, signal
+import numpy as np
+from mesokit.io.h5md import made
+
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (5000, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
+try:
+    with made("out.h5") as (file, check):
+        for k in range(300):
+            file[f"group {k}/numbers"] = np.arange(50) + k
+        file.flush()
+        print(all(file[f"group {k}/numbers"][49] == 49 + k for k in range(300)))
+        check()
+        print("unreachable")
+except OSError as error:
+    print(error.strerror)
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines() == ["True", "File too large"]
+
+
 @pytest.mark.parametrize("size", [3_000, 60_000, 400_000])
 @pytest.mark.skipif(sys.platform == "win32", reason="no limit of the size of files")
 def test_a_disk_that_is_full_ends_in_one_line_and_loses_nothing(tmp_path, size):

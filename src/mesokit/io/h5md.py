@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -46,6 +46,7 @@ if TYPE_CHECKING:
 UNITS = {"position": "a", "velocity": "a/tau", "spin": "1/tau", "time": "tau", "radius": "a"}
 FIELDS = ("position", "velocity", "spin", "image")
 CHUNK = 65536  # particles
+MOST_IN_MEMORY = 2**28  # bytes kept in memory once the disk is full
 LARGE = 2**20  # numbers of one result, beyond which it is compressed
 _TABLE = ("what", "measured", "error", "expected", "unit", "note")
 
@@ -68,13 +69,13 @@ def write(
 
     Raises RunError if it cannot be written.
     """
-    with replacing(path) as temporary, made(temporary) as file:
+    with replacing(path) as temporary, made(temporary) as (file, check):
         _header(file, case, provenance)
         steps = None
         if trajectory is not None:
             steps = trajectory.steps()
             if len(steps) or not _kept(file, path):
-                _particles(file, case, trajectory, steps)
+                _particles(file, case, trajectory, steps, check)
             else:
                 steps = particles_of(file)["box/edges/step"][()]
         measured = file.create_group("results")
@@ -131,22 +132,61 @@ def particles_of(file: Any) -> Any:
 
 
 class _Target(io.FileIO):
-    """A file that HDF5 can always write to, and close: where it cannot it ends the process later.
+    """A file that HDF5 can always write to, read from and close: else it may end the process.
 
-    What comes after the system has refused, such as for a full disk, is dropped; `refused` is why.
+    From the first write that the system refuses on, as on a full disk, writes are kept in memory,
+    where HDF5 reads them back; `refused` is the reason.
     """
 
-    refused: OSError | None = None
+    def __init__(self, path: str | Path) -> None:
+        super().__init__(path, "w+")
+        self.refused: OSError | None = None
+        self._kept: list[tuple[int, bytes]] = []  # offsets and what was written there
+        self._end = 0  # of the last byte in memory
+
+    def check(self) -> None:
+        """Raise OSError once the system has refused a write."""
+        if self.refused is not None:
+            raise self.refused
 
     def write(self, data: Any) -> int:
-        """Write all of it, or nothing any more."""
-        left = memoryview(data).cast("B")
+        """Write all of it, to the file or to memory."""
+        whole = memoryview(data).cast("B")
+        start, left = self.tell(), whole
         try:
             while len(left) and self.refused is None:
                 left = left[super().write(left) :]
         except OSError as error:
             self.refused = error
-        return memoryview(data).nbytes
+        if self.refused is not None:
+            self._keep(start, bytes(whole))
+        return whole.nbytes
+
+    def _keep(self, start: int, data: bytes) -> None:
+        if sum(len(one) for _, one in self._kept) < MOST_IN_MEMORY:
+            self._kept.append((start, data))
+        self._end = max(self._end, start + len(data))
+        self.seek(start + len(data))
+
+    def readinto(self, buffer: Any) -> int:
+        """Fill a buffer from the file, and from what is in memory instead."""
+        if self.refused is None:
+            return super().readinto(buffer) or 0
+        out, start = memoryview(buffer).cast("B"), self.tell()
+        out[:] = bytes(out.nbytes)
+        super().readinto(out)
+        for at, data in self._kept:
+            first, last = max(at, start), min(at + len(data), start + out.nbytes)
+            if first < last:
+                out[first - start : last - start] = data[first - at : last - at]
+        self.seek(start + out.nbytes)
+        return out.nbytes
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        """Go to a place, which may lie in memory."""
+        if whence == io.SEEK_END:
+            return super().seek(max(super().seek(0, io.SEEK_END), self._end) + offset)
+        return super().seek(offset, whence)
 
     def truncate(self, size: int | None = None) -> int:
         """Make it longer or shorter, if that can be done."""
@@ -161,17 +201,19 @@ class _Target(io.FileIO):
 
 
 @contextmanager
-def made(path: str | Path) -> Iterator[Any]:
-    """A new HDF5 file, for writing. Raises OSError, such as for a full disk."""
-    with _Target(path, "w+") as target:
+def made(path: str | Path) -> Iterator[tuple[Any, Callable[[], None]]]:
+    """A new HDF5 file, for writing, and a function that raises OSError once a write was refused.
+
+    Raises OSError at the end, such as for a full disk.
+    """
+    with _Target(path) as target:
         try:
             with h5py.File(target, "w") as file:
-                yield file
+                yield file, target.check
         except (OSError, RuntimeError):  # what HDF5 makes of it
             if target.refused is None:
                 raise
-        if target.refused is not None:
-            raise target.refused
+        target.check()
 
 
 @contextmanager
@@ -224,6 +266,7 @@ def _particles(
     case: Case,
     trajectory: TrajectoryWriter,
     steps: NDArray[np.int64],
+    check: Callable[[], None],
 ) -> None:
     group = file.create_group(f"particles/{case.groups[0].name}")
     n, frames = trajectory.number, len(steps)
@@ -255,6 +298,7 @@ def _particles(
                 sets[name].attrs["reduced_unit"] = UNITS[name]
     edges = _box(group, case, frames)
     for index, frame in enumerate(trajectory.frames()):
+        check()
         group["time"][index] = frame["time"]
         edges[index] = _edges(case, float(frame["time"]), edges.shape[1:])
         for name, data in sets.items():
