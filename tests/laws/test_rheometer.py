@@ -22,7 +22,9 @@ from mesokit import (
 
 pytestmark = pytest.mark.long
 
-CHAOS = 0.15  # friction of beads by molecular chaos, see test_viscoelastic
+# Rouse's stress is too large for beads whose friction is that of molecular chaos: by 12 to 19 % in
+# these runs and with other seeds, see also test_viscoelastic
+CHAOS = 0.2
 PERIOD = 240  # steps: some 7 relaxation times of rest, and as many of shear
 
 
@@ -44,6 +46,32 @@ def dimers(periods, shear=START_UP):
             observe=[StressInTime(window=10)],
         ),
     )  # fmt: skip
+
+
+@pytest.mark.parametrize(("start", "period"), [(9.0, 36.0), (4.2, 9.1)])
+def test_stress_of_a_simple_fluid_steps_with_the_shear(start, period):
+    """No step before or after: a step that ends as the shear begins is not sheared."""
+    timestep = 0.5 if period == 36.0 else 0.7
+    steps, first = round(period / timestep), round(start / timestep)
+    simulation = Simulation(
+        Case(
+            run=Run(steps=300 * steps, seed=8),
+            box=Box((8, 8), shear=StartUp(rate=0.2, start=start, period=period)),
+            fluid=Fluid(density=8, timestep=timestep, thermostat=MaxwellBoltzmann()),
+            observe=[StressInTime(window=1)],
+        ),
+    )
+    simulation.run()
+    result = simulation["stress-in-time"]
+    stress, error = result.value[:, 0], result.error[:, 0]
+    plateau = stress[first + 4 :].mean()
+    assert plateau > 20 * error.mean()
+    assert abs(stress[first - 1]) < 4.5 * error[first - 1]
+    assert stress[first] > 0.7 * plateau
+    assert stress[-1] > 0.8 * plateau
+    assert abs(stress[0]) < 0.3 * plateau
+    c = result["shear stress over theory"]
+    assert abs(c.measured - 1) < 4.5 * c.error + 0.02, c
 
 
 def test_stress_grows_and_relaxes_as_rouse_has_it():

@@ -153,8 +153,10 @@ class Box:
         """The shear, if it oscillates."""
         return self.history if isinstance(self.history, OscillatingShear) else None
 
-    def kernel(self, closed: tuple[bool, ...], time: float = 0.0) -> Periodic | Sheared:
-        """Parameters for `fold` at a time; `closed` says which axes walls close."""
+    def kernel(
+        self, closed: tuple[bool, ...], time: float = 0.0, timestep: float = 0.0
+    ) -> Periodic | Sheared:
+        """Parameters for `fold` after a step that ends at a time; walls close the axes `closed`."""
         size = tuple(float(length) for length in self.size)
         inverse = tuple(
             0.0 if shut or axis in self.open else 1.0 / length
@@ -163,8 +165,9 @@ class Box:
         history = self.history
         if history is None:
             return Periodic(size, inverse)
-        kernel = history.kernel(size[1])
-        return Sheared(size, inverse, speed(kernel, time), slid(kernel, time) % size[0], kernel)
+        kernel, lag = history.kernel(size[1]), 0.5 * timestep
+        offset = slid(kernel, time) % size[0]
+        return Sheared(size, inverse, speed(kernel, time - lag), offset, lag, kernel)
 
     def displacement(self, time: float) -> float:
         """How far the image above has slid since time 0.
@@ -186,14 +189,16 @@ class Periodic(NamedTuple):
 class Sheared(NamedTuple):
     """A box whose images along y slide along x (Lees and Edwards 1972).
 
-    The image above moves at `speed` and is displaced by `offset` at this time; `history` is the
-    kernel that says how both go on.
+    At this time the image above is displaced by `offset`. Its `speed` is that of the middle of the
+    step that ends now, a `lag` of half a timestep ago: a step that ends as the shear begins is
+    not sheared. `history` is the kernel of both.
     """
 
     size: tuple[float, ...]
     inverse: tuple[float, ...]
     speed: float
     offset: float
+    lag: float
     history: Any
 
 
@@ -212,8 +217,8 @@ def _(box, time):
 
 @at_time.register(Sheared)
 def _(box, time):
-    offset = slid(box.history, time) % box.size[0]
-    return Sheared(box.size, box.inverse, speed(box.history, time), offset, box.history)
+    offset, fast = slid(box.history, time) % box.size[0], speed(box.history, time - box.lag)
+    return Sheared(box.size, box.inverse, fast, offset, box.lag, box.history)
 
 
 @scalar

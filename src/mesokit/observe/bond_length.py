@@ -12,6 +12,7 @@ from mesokit.engine import RunningFluid, Terms
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import (
     KIND,
+    bond_at_rest,
     bonds_in_shear,
     bonds_of,
     group_of,
@@ -93,7 +94,7 @@ class BondLengthAccumulator(MoleculeTensorAccumulator):
         if self.molecule.pair is None and not ideal:
             return np.nan  # beads of other kinds matter
         found = self.molecule.mean_square_bond(case.box.dimension, case.fluid.kT)
-        return np.nan if found is None else found
+        return np.nan if found is None else found * bond_at_rest(case, self.kind)
 
     def expected(self) -> Array:
         """Isotropic products, or those in shear."""

@@ -100,7 +100,8 @@ class CollisionRateAccumulator:
         shown = [0, 1] if self.case.walls else [0, 2] if contact_time else [0]
         drawn = 2 if self.case.walls else 1
         note = "approximate: molecular chaos" if not self.case.spheres.collision.elastic else ""
-        notes = [note, note, "; ".join(filter(None, (note, few.note)))]
+        share = note or ("" if math.isnan(known[2]) else "approximate: neighbours meet again")
+        notes = [note, note, "; ".join(filter(None, (share, few.note)))]
         listed = [
             Comparison(
                 f"collisions per time, {KINDS[k]}",

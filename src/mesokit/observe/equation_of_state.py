@@ -25,11 +25,12 @@ if TYPE_CHECKING:
 
 @component
 class EquationOfState(Observable):
-    """Z = P/(n kT) of elastic hard spheres, by the virial and by the collision rate.
+    """Z = P/(n kT) of spheres that keep energy, by the virial and, of hard ones, by the rate.
 
     By the virial Z = 1 + sum of r.dp over collisions/(d N kT t), where d (N - 1) kT is twice the
-    kinetic energy, as the momentum is zero. Spheres of one size collide at a rate that says the
-    same (Enskog): (Z - 1) 2 d/(diameter sqrt(pi m/kT)).
+    kinetic energy, as the momentum is zero. Hard spheres of one size collide at a rate that says
+    the same (Enskog): (Z - 1) 2 d/(diameter sqrt(pi m/kT)). Spheres with wells or shoulders have
+    the virial alone, and no theory.
     """
 
     quantity: Literal["equation-of-state"] = tag("equation-of-state")
@@ -82,13 +83,14 @@ class EquationOfStateAccumulator:
         self.blocks.pool(other.blocks)
 
     def result(self) -> Result:
-        """Z by the virial and, of equal spheres, by the rate of collisions."""
+        """Z by the virial and, of equal hard spheres, by the rate of collisions."""
         pressures, rate = self.measured()
         expected, theory_name = self.expected()
         names = ["virial", "collision rate"][: len(pressures)]
         values = np.array([value for value, _ in pressures])
         errors = np.array([error for _, error in pressures])
-        note = fluid_note(self.case) or self._note_of_few(expected)
+        hard = self.case.spheres.collision.hard
+        note = (fluid_note(self.case) or self._note_of_few(expected)) if hard else ""
         listed = [
             Comparison(f"Z by the {name}", *found, expected, "", note)
             for name, found in zip(names, pressures, strict=True)
@@ -134,13 +136,15 @@ class EquationOfStateAccumulator:
 
     @property
     def equal(self) -> bool:
-        """Whether all spheres are alike."""
-        kinds = self.case.spheres.kinds
-        return len(kinds) == 1 and kinds[0].spread == 0
+        """Whether all are hard spheres of one size, whose collision rate says what Z is."""
+        kinds, collision = self.case.spheres.kinds, self.case.spheres.collision
+        return len(kinds) == 1 and kinds[0].spread == 0 and collision.hard
 
     def expected(self) -> tuple[float, str]:
-        """Z of this box of spheres in equilibrium, and whose law that is."""
+        """Z of this box of hard spheres in equilibrium, and whose law that is; nan of others."""
         section, box = self.case.spheres, self.case.box
+        if not section.collision.hard:
+            return math.nan, ""
         z = theory.compressibility_of_few(self._law, section.fraction(box), self.case.particles)
         if self.equal:
             return z, "virial series" if box.dimension == 2 else "Kolafa"

@@ -44,6 +44,7 @@ class Forces(Observable):
     """
 
     quantity: Literal["forces"] = tag("forces")
+    of_built_up_flow: ClassVar[bool] = True
     asks_transport: ClassVar[bool] = True
     measures: ClassVar[tuple[str, ...]] = ("walls",)
     length: float | None = param(
@@ -268,7 +269,7 @@ class ForcesAccumulator:
                 one = np.zeros(mean.value.shape)
                 one[force[place]] = 1.0
                 value, error = mean.scalar(mean.value[force[place]], one)
-                note = setting.caveat(self.case) or "Taylor-Couette"
+                note = setting.caveat(self.case) or self.note_on_torque(int(body))
                 what = f"torque on {self.bodies[body]}"
                 found.append(Comparison(what, value, error, float(expected[place]), TORQUE, note))
         if self.observable.length is not None:
@@ -297,6 +298,16 @@ class ForcesAccumulator:
         if speed is None:
             speed = float(slope @ self.blocks.mean())
         return self.scale(speed) if speed else np.nan
+
+    def note_on_torque(self, body: int) -> str:
+        """How well cells resolve one of two round surfaces: the inner one takes too little.
+
+        Measured: 31 % less at a radius of 1, 15 % at 2; the outer one within 3 %.
+        """
+        gap = recognise.gap(self.case)
+        if gap is None or body != gap.inner_body:
+            return "Taylor-Couette"
+        return f"approximate: Taylor-Couette; cells at this radius take {30 / gap.inner:.2g} % off"
 
     def slope(self) -> Array:
         """Of the mean superficial velocity along the flow, by the numbers in a sample."""

@@ -100,7 +100,8 @@ class HeightProfileAccumulator(BlockAccumulator):
         kinds = section.kinds
         collision = getattr(section, "collision", None)
         alike = len(kinds) == 1 and kinds[0].spread == 0
-        if not alike or collision is None or not collision.elastic or not kT > 0:
+        gas = collision is not None and collision.elastic and collision.hard
+        if not alike or not gas or not kT > 0:
             return np.full(len(self.edges) - 1, math.nan), math.nan
         radius = 0.5 * kinds[0].diameter * section.scale(self.case.box)
         scale, free = kT / (kinds[0].mean_mass(d) * abs(self.gravity)), self.depth - 2 * radius

@@ -18,9 +18,10 @@ from mesokit.method.mpcd.expected.compression import unit_cell
 from mesokit.method.mpcd.expected.ideal import flow_axis, mean_shape, stretched, undisturbed
 from mesokit.method.mpcd.expected.molecules import (
     KIND,
+    ends_at_rest,
     free_bond,
     group_of,
-    modes_of,
+    modes_at_rest,
     molecule_of,
 )
 from mesokit.method.mpcd.expected.traps import held, trapped
@@ -257,17 +258,19 @@ class MoleculeHistogramAccumulator:
         bond = free_bond(case, kind)
         if bond is None or self.mean is None:
             return None
+        ends = ends_at_rest(case, kind)
         if self.component:
             from scipy.special import ndtr
 
-            ends = theory.mean_square_end_to_end(molecule.length, bond)
+            assert ends is not None
             middle = (self.mean[-1] - self.mean[0])[self.axis]
             return np.asarray(ndtr((edges - middle) / (ends / d) ** 0.5))
         if not self.as_at_rest():
             return None
         if of == "gyration":
-            return theory.gyration_cdf(edges, modes_of(molecule), bond, d)
-        return theory.end_to_end_cdf(edges, theory.mean_square_end_to_end(molecule.length, bond), d)
+            return theory.gyration_cdf(edges, modes_at_rest(case, kind), bond, d)
+        assert ends is not None
+        return theory.end_to_end_cdf(edges, ends, d)
 
     def as_at_rest(self) -> bool:
         """Whether ideal molecules have the shape that they have at rest."""

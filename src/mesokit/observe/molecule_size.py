@@ -13,10 +13,11 @@ from mesokit.method.mpcd.expected.ideal import mean_shape
 from mesokit.method.mpcd.expected.molecules import (
     KIND,
     beads_of,
+    ends_at_rest,
     free_bond,
     group_of,
     gyration,
-    modes_of,
+    modes_at_rest,
     molecule_of,
 )
 from mesokit.observe.shared.molecule_tensor import MoleculeTensorAccumulator
@@ -87,10 +88,10 @@ class MoleculeSizeAccumulator(MoleculeTensorAccumulator):
         mean = mean_shape(self.case, self.kind, group_of(self.case, "beads", self.kind))
         if bond is None or mean is None:
             return np.full((len(self.parts), d, d), np.nan)
-        squares = [theory.mean_square_gyration(modes_of(self.molecule), bond)]
+        squares = [theory.mean_square_gyration(modes_at_rest(self.case, self.kind), bond)]
         added = [gyration(mean[None])[0]]
         if len(self.parts) > 1:
-            squares.append(theory.mean_square_end_to_end(self.molecule.length, bond))
+            squares.append(ends_at_rest(self.case, self.kind))
             added.append(np.outer(mean[-1] - mean[0], mean[-1] - mean[0]))
         return np.array(squares)[:, None, None] / d * np.eye(d) + np.array(added)
 

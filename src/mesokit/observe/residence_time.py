@@ -250,4 +250,8 @@ class ResidenceTimeAccumulator(EventAccumulator):
         if len(bound) != 1 or drift.velocity[bound].any():
             return np.nan, ""
         width = float((high - low)[bound[0]])
-        return theory.mean_exit_time(width, drift.diffusion, self.interval), drift.note
+        forgetful = theory.mean_exit_time(width, drift.diffusion, self.interval)
+        known = theory.mean_exit_time(width, drift.diffusion, self.interval, drift.memory)
+        if known < 1.02 * forgetful:
+            return known, drift.note
+        return known, f"approximate: velocities are remembered for {drift.memory:.2g} tau"

@@ -42,6 +42,7 @@ class Wake(Observable):
     """
 
     quantity: Literal["wake"] = tag("wake")
+    of_built_up_flow: ClassVar[bool] = True
     asks_transport: ClassVar[bool] = True
     solid: str | None = param(None, doc="name of the body (the first that is no plate unless said)")
     flow: Axis | None = param(None, doc="axis of the flow (that of the force unless said)")

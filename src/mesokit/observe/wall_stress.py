@@ -34,6 +34,7 @@ class WallStress(Observable):
     """Force per area of the fluid on each plate: drag along it, pressure across it."""
 
     quantity: Literal["wall-stress"] = tag("wall-stress")
+    of_built_up_flow: ClassVar[bool] = True
     asks_transport: ClassVar[bool] = True
     measures: ClassVar[tuple[str, ...]] = ("walls",)
 

@@ -98,6 +98,27 @@ class Blocks:
         """Means of the complete blocks of this series, oldest first, (n, *shape)."""
         return self._sums[: self._complete] / self.block_length
 
+    def halves(self) -> tuple["Blocks", ...]:
+        """The first and the second half of the complete blocks, each a series of its own.
+
+        () where several series are pooled, and for fewer than 16 blocks.
+
+        >>> blocks = Blocks()
+        >>> for sample in range(64):
+        ...     blocks.add(sample)
+        >>> [float(half.mean()) for half in blocks.halves()]
+        [15.5, 47.5]
+        """
+        number = self._complete // 2
+        if self._others or number < 8:
+            return ()
+        found = Blocks(self.shape, self.capacity), Blocks(self.shape, self.capacity)
+        for start, half in zip((0, number), found, strict=True):
+            half._sums[:number] = self._sums[start : start + number]
+            half.block_length, half._complete = self.block_length, number
+            half.count = number * self.block_length
+        return found
+
     def mean(self) -> NDArray[np.float64]:
         """Mean over every sample, (*shape); nan before the first."""
         if not self.count:

@@ -79,7 +79,8 @@ class Memory:
     def box(self) -> tuple:
         """The box as it is after the last step."""
         numbers = self.numbers
-        return numbers.case.box.kernel(numbers.closed, self.step * numbers.timestep)
+        time = self.step * numbers.timestep
+        return numbers.case.box.kernel(numbers.closed, time, numbers.timestep)
 
     def groups(self) -> tuple[Any, ...]:
         """Physics, fluid, solutes and walls as the step takes them."""

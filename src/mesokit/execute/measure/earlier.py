@@ -27,7 +27,7 @@ class EarlierRows:
             if state[array].shape != self.shape:
                 raise ValueError(f"{array} of shape {state[array].shape}, not {self.shape}")
         time = int(state["step"]) * numbers.timestep
-        self.box = numbers.case.box.kernel(numbers.closed, time)
+        self.box = numbers.case.box.kernel(numbers.closed, time, numbers.timestep)
 
     def __len__(self) -> int:
         return self.shape[0]

@@ -75,7 +75,7 @@ def enskog(case: Case) -> tuple[float, float]:
     kind, d = section.kinds[0], box.dimension
     alike = len(section.kinds) == 1 and kind.spread == 0 and case.particles > 1
     quiet = not (case.walls or section.gravity or section.heating) and section.kT > 0
-    if not (alike and quiet and section.collision.elastic and section.collision.reach == 1.0):
+    if not (alike and quiet and section.collision.elastic and section.collision.hard):
         return math.nan, math.nan
     if section.collision.rough:
         return math.nan, math.nan

@@ -30,7 +30,7 @@ def equilibrium(case: Case) -> Equilibrium | None:
     if warm:
         return Equilibrium(warm.pop(), True)
     even = not section.collision.rough or section.first_spin_kT == section.kT
-    kept = even and section.collision.reach == 1.0 and not section.gravity
+    kept = even and section.collision.hard and not section.gravity
     return Equilibrium(of_start(case) if kept else math.nan, True)
 
 

@@ -26,7 +26,7 @@ class Neighbours:
         self.diameter = kind.diameter * section.scale(box) if alike else math.nan
         self.value, self.note = math.nan, ""
         phi = section.fraction(box)
-        plain = section.collision.elastic and section.collision.reach == 1.0
+        plain = section.collision.elastic and section.collision.hard
         if alike and plain and not section.heating:
             self.note = fluid_note(case)
             self.value = (theory.compressibility(phi, d) - 1) / (2 ** (d - 1) * phi)

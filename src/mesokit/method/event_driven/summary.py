@@ -62,7 +62,7 @@ def _beside(
 ) -> Iterator[Row]:
     """What the same spheres would cost as soft ones, and which method is cheaper."""
     section = case.spheres
-    if flight is None or section.collision.reach > 1:
+    if flight is None or not section.collision.hard:
         return
     contact = cost.contact_time_as_hard(flight)
     step = contact / cost.STEPS

@@ -271,7 +271,10 @@ class Solutes:
         return self.sum_over_mass(lambda mass: mass)
 
     def frequency(self, dimension: int, kT: float, lightest: float) -> float:
-        """Angular frequency of the fastest oscillation in a fluid of particles of this mass."""
+        """Angular frequency of the fastest motion in a fluid whose lightest particle has this mass.
+
+        Bonds and other potentials, traps and the turning in magnetic fields count.
+        """
         found = [
             molecule.frequency(dimension, kT, mass)
             for molecule, mass in zip(self._molecules(), self.masses, strict=True)
@@ -288,13 +291,22 @@ class Solutes:
         if self.solvent_pair is not None:
             square = stiffness((self.solvent_pair.kernel(),), kT, self.solvent_pair.reach)
             found.append(math.sqrt(square * (1.0 / min(self.masses) + 1.0 / lightest)))
-        return max(found, default=0.0)
+        found += [math.sqrt(trap.k / self.masses[self.index_of(trap.kind)]) for trap in self.traps]
+        return max(*found, self.largest_turning(), 0.0)
+
+    def largest_turning(self) -> float:
+        """Largest angular frequency q B/m at which magnetic fields turn a bead's velocity."""
+        turning = np.zeros((self.beads, 3))
+        for magnetic in self.magnetic:
+            mass = self.masses[self.index_of(magnetic.kind)]
+            turning[magnetic.beads(self)] += magnetic.charge / mass * np.array(magnetic.field)
+        return float(np.linalg.norm(turning, axis=1).max()) if self.magnetic else 0.0
 
     def _molecules(self) -> list[Molecule | None]:
         return [self.molecule(kind) for kind in range(len(self.polymers))]
 
     def needed_substeps(self, dimension: int, fluid: Fluid) -> int:
-        """So many that the fastest oscillation turns by PHASE in each."""
+        """So many that the fastest motion turns by PHASE in each."""
         lightest = min(kind.mass for kind in fluid.kinds)
         turns = self.frequency(dimension, fluid.kT, lightest) * fluid.timestep
         return max(1, math.ceil(turns / PHASE))

@@ -16,7 +16,13 @@ from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.compression import compression, unit_cell
-from mesokit.method.mpcd.expected.molecules import spring_of, without_bonds, without_solutes
+from mesokit.method.mpcd.expected.molecules import (
+    FAST,
+    spring_of,
+    swing_of_flight,
+    without_bonds,
+    without_solutes,
+)
 from mesokit.method.mpcd.molecule import COARSE
 from mesokit.method.mpcd.numbers import PIPE, TIMES
 
@@ -68,6 +74,14 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
                 f"by {phase:.2g} rad in each (above {COARSE:g}): its swings read up to "
                 f"{25 * phase**2:.2g} % too large"
             )
+    if fluid.molecule is not None:
+        turns = swing_of_flight(case)
+        if turns > FAST:
+            yield (
+                f"fluid.timestep = {fluid.timestep:g}: the fastest bond turns by {turns:.2g} rad "
+                f"in one flight (above {FAST:g}); theory of slow bonds, Rouse's viscosity "
+                "and times, is approximate"
+            )
     if case.solutes is not None and case.solutes.substeps is not None:
         given = case.solutes
         lightest = min(kind.mass for kind in fluid.kinds)
@@ -75,9 +89,9 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
         phase = frequency * fluid.timestep / case.solutes.substeps
         if phase > COARSE:
             yield (
-                f"solutes.substeps = {given.substeps}: the stiffest potential turns by {phase:.2g} "
-                f"rad in each (above {COARSE:g}): its swings read up to {25 * phase**2:.2g} % too "
-                "large"
+                f"solutes.substeps = {given.substeps}: the stiffest potential or the magnetic "
+                f"field turns by {phase:.2g} rad in each (above {COARSE:g}): swings read up to "
+                f"{25 * phase**2:.2g} % too large"
             )
     if fluid.density < 3 and fluid.collision.acts:
         yield (

@@ -2,33 +2,31 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
+import math
 from typing import TYPE_CHECKING
 
 from mesokit.method.protocol import method_of
 from mesokit.observe.shared.protocol import Accumulator
-from mesokit.observe.shared.result import NOT_STEADY, Comparison, Result
+from mesokit.observe.shared.result import NOT_STEADY, Comparison, Result, with_error
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 MATTERS = 0.5  # of the standard error: a missing part that is larger is told
+DRIFTS = 5.0  # standard errors between both halves of the samples: the flow still changes
 
 
 def result_of(accumulator: Accumulator, case: Case) -> Result:
     """What an accumulator says, with comparisons marked where the flow had not built up."""
-    result, method = accumulator.result(), method_of(case)
+    result = accumulator.result()
     observable = next((one for one in case.observe if one.label == result.name), None)
-    if method.build_up is None or observable is None or not observable.of_built_up_flow:
+    if observable is None or not observable.of_built_up_flow:
         return result
-    build_up = method.build_up(case)
-    if build_up is None:
+    note = _too_early(accumulator, result, case, observable.every) or _drift(accumulator)
+    if not note:
         return result
-    series = getattr(getattr(accumulator, "blocks", None), "series", 1)  # pooled runs
-    length = result.samples // series * observable.every
-    if not length or not any(_is_off(c, build_up.lacks(length)) for c in result.comparisons):
-        return result
-    note = f"{NOT_STEADY}: the flow needs {build_up.need} steps before samples, had {build_up.had}"
     return dataclasses.replace(
         result,
         comparisons=tuple(
@@ -36,6 +34,35 @@ def result_of(accumulator: Accumulator, case: Case) -> Result:
             for c in result.comparisons
         ),
     )
+
+
+def _too_early(accumulator: Accumulator, result: Result, case: Case, every: int) -> str:
+    """That samples began before the flow had built up, where the method knows how long it takes."""
+    method = method_of(case)
+    build_up = method.build_up(case) if method.build_up is not None else None
+    if build_up is None:
+        return ""
+    series = getattr(getattr(accumulator, "blocks", None), "series", 1)  # pooled runs
+    length = result.samples // series * every
+    if not length or not any(_is_off(c, build_up.lacks(length)) for c in result.comparisons):
+        return ""
+    return f"{NOT_STEADY}: the flow needs {build_up.need} steps before samples, had {build_up.had}"
+
+
+def _drift(accumulator: Accumulator) -> str:
+    """That both halves of the samples differ by more than they scatter."""
+    blocks = getattr(accumulator, "blocks", None)
+    halves = []
+    for part in blocks.halves() if blocks is not None else ():
+        half = copy.copy(accumulator)
+        half.blocks = part  # type: ignore[attr-defined]
+        halves.append(half.result().comparisons)
+    for one, other in zip(*halves, strict=True) if halves else ():
+        apart = abs(one.measured - other.measured)
+        if math.isfinite(one.expected) and apart > DRIFTS * math.hypot(one.error, other.error) > 0:
+            first, second = (with_error(c.measured, c.error) for c in (one, other))
+            return f"{NOT_STEADY}: {one.name} {first} in the first half, {second} in the second"
+    return ""
 
 
 def _of_theory(comparison: Comparison) -> list[str]:

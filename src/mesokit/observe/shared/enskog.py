@@ -25,8 +25,7 @@ def pair_rate(case: Case, root: float) -> float:
     temperature; nan of all others."""
     section, d = case.spheres, case.box.dimension
     alike = len(section.kinds) == 1 and section.kinds[0].spread == 0
-    hard = section.collision.reach <= 1
-    if not (alike and hard) or case.walls or section.gravity:
+    if not (alike and section.collision.hard) or case.walls or section.gravity:
         return math.nan
     kind, phi = section.kinds[0], section.fraction(case.box)
     diameter = kind.diameter * section.scale(case.box)
@@ -36,9 +35,10 @@ def pair_rate(case: Case, root: float) -> float:
 
 
 def speed_factor(case: Case) -> float:
-    """Mean relative speed over that of Maxwell's law: not 1 where nothing changes the energy."""
+    """Mean relative speed over that of Maxwell's law: not 1 where the kinetic energy is fixed."""
     section = case.spheres
-    if section.heating is not None or not section.collision.elastic or case.particles < 2:
+    alone = section.heating is None and section.collision.elastic and section.collision.hard
+    if not alone or case.particles < 2:
         return 1.0
     return theory.mean_speed_factor(case.box.dimension * (case.particles - 1))
 

@@ -35,7 +35,7 @@ def cumulant(find: Find, case: Case) -> Known:
     if len(section.kinds) > 1 or kind.spread:
         return math.nan, ""
     kicked = hasattr(heating, "power")  # a white noise, unlike a bath
-    constant = hasattr(collision, "restitution") and collision.reach == 1
+    constant = hasattr(collision, "restitution") and collision.hard
     if not constant or collision.rough or collision.contact_time or (heating and not kicked):
         return math.nan, ""
     known = theory.fourth_cumulant(collision.restitution, case.box.dimension, heated=kicked)

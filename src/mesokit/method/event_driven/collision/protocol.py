@@ -59,6 +59,11 @@ class SphereCollision(ABC):
         return 1.0
 
     @property
+    def hard(self) -> bool:
+        """Whether spheres act on one another only where they touch."""
+        return self.reach <= 1.0
+
+    @property
     def rough(self) -> bool:
         """Whether it changes spins."""
         return self.tangential > -1.0 and self.friction != 0.0

@@ -98,16 +98,18 @@ def _substeps(case: Case, given: Solutes) -> Iterator[str]:
     if given.substeps is None:
         if need > MOST_SUBSTEPS:
             yield (
-                f"solutes: the stiffest potential needs {need} sub-steps in a timestep; expected "
-                f"at most {MOST_SUBSTEPS}: softer potentials, or a shorter fluid.timestep"
+                f"solutes: the stiffest potential or the magnetic field needs {need} sub-steps in "
+                f"a timestep; expected at most {MOST_SUBSTEPS}: softer potentials, weaker fields, "
+                "or a shorter fluid.timestep"
             )
         return
     lightest = min(kind.mass for kind in fluid.kinds)
     phase = given.frequency(d, fluid.kT, lightest) * fluid.timestep / given.substeps
     if phase >= UNSTABLE:
         yield (
-            f"solutes.substeps = {given.substeps}: the stiffest potential turns by {phase:.3g} rad "
-            f"in each, and velocity Verlet is unstable from {UNSTABLE:g} on; expected {need}"
+            f"solutes.substeps = {given.substeps}: the stiffest potential or the magnetic field "
+            f"turns by {phase:.3g} rad in each, and velocity Verlet is unstable from {UNSTABLE:g} "
+            f"on; expected {need}"
         )
 
 

@@ -13,8 +13,10 @@ from mesokit import theory
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import (
     Group,
+    ends_at_rest,
     free_bond,
     free_diffusion,
+    modes_at_rest,
     modes_of,
     of_fluid,
     rouse_note,
@@ -66,12 +68,11 @@ def ideal_sizes(case: Case, kind: int | str, group: Group) -> tuple[float, float
     bond = free_bond(case, kind) if mean is not None else None
     if molecule is None or mean is None or bond is None:
         return math.nan, math.nan
-    square = theory.mean_square_gyration(modes_of(molecule), bond) + float((mean**2).sum()) / len(
-        mean
-    )
-    if molecule.topology != "chain":
+    square = theory.mean_square_gyration(modes_at_rest(case, kind), bond)
+    square += float((mean**2).sum()) / len(mean)
+    ends = ends_at_rest(case, kind) if molecule.topology == "chain" else None
+    if ends is None:
         return square, math.nan
-    ends = theory.mean_square_end_to_end(molecule.length, bond)
     return square, ends + float(((mean[-1] - mean[0]) ** 2).sum())
 
 
@@ -83,11 +84,15 @@ def stretched(case: Case, molecule: Molecule) -> float:
 
 
 class Drift(NamedTuple):
-    """Velocity (d,) and diffusion coefficient of centres of mass, and what to say of them."""
+    """Velocity (d,) and diffusion coefficient of centres of mass, and what to say of them.
+
+    A velocity is remembered for the time `memory`, beyond that of one flight.
+    """
 
     velocity: NDArray[np.float64]
     diffusion: float
     note: str
+    memory: float
 
 
 def drift_of(case: Case, group: Group, kind: int | str = 1) -> Drift | None:
@@ -108,7 +113,9 @@ def drift_of(case: Case, group: Group, kind: int | str = 1) -> Drift | None:
     note = "molecular chaos, exact for a bead alone" if single else rouse_note(case)
     spread = free_diffusion(case, kind=kind) if single else alone / group.length
     assert spread is not None
-    return Drift(setting.acceleration(case) * mobility, spread, note)
+    fluid, mass = case.fluid, solutes.masses[place] * group.length
+    memory = max(spread * mass / fluid.kT - 0.5 * fluid.timestep, 0.0)
+    return Drift(setting.acceleration(case) * mobility, spread, note, memory)
 
 
 def flow_axis(case: Case) -> int:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 
 Array = NDArray[np.floating[Any]]
+FAST = 0.5  # radians of a bond in one flight: from here on Rouse's times are off by a tenth
 CROWDED = 0.03  # of D: what pairs of beads take, from which on those of three matter
 KIND = (
     "which molecules: name or number, from 1, of solutes.polymers; 'fluid': those of the fluid, "
@@ -165,6 +166,45 @@ def spring_of(molecule: Molecule) -> theory.Spring | None:
     return molecule.bond.spring()
 
 
+def modes_at_rest(case: Case, kind: int | str = 1) -> theory.NormalModes:
+    """Normal modes whose eigenvalues say how far springs swing at rest, as sub-steps move them.
+
+    Velocity Verlet makes each spring mode a little softer, see `theory.verlet_swing`.
+    """
+    molecule, spring = molecule_of(case, kind=kind), springs_of(case, kind)
+    modes = modes_of(molecule)
+    if spring is None or molecule.propagation == "exact":
+        return modes
+    substep, mass = substep_of(case, kind)
+    stiffness = (spring.k * modes.eigenvalues[1:]).tolist()
+    swing = np.array([1.0, *(theory.verlet_swing(k, substep, mass) for k in stiffness)])
+    return modes._replace(eigenvalues=modes.eigenvalues / swing)
+
+
+def bond_at_rest(case: Case, kind: int | str = 1) -> float:
+    """By which factor sub-steps enlarge the mean square length of bonds at rest."""
+    modes, slow = modes_of(molecule_of(case, kind=kind)), modes_at_rest(case, kind)
+    return float(np.mean(modes.eigenvalues[1:] / slow.eigenvalues[1:]))
+
+
+def ends_at_rest(case: Case, kind: int | str = 1) -> float | None:
+    """Mean square end-to-end distance of chains at rest; None without a theory."""
+    bond, modes = free_bond(case, kind), modes_at_rest(case, kind)
+    if bond is None:
+        return None
+    across = modes.vectors[-1, 1:] - modes.vectors[0, 1:]
+    return bond * float((across**2 / modes.eigenvalues[1:]).sum())
+
+
+def swing_of_flight(case: Case) -> float:
+    """By how much the fastest bond of the fluid's molecules turns in one flight, in radians."""
+    fluid = case.fluid
+    return (
+        molecule_of(case, kind=FLUID).frequency(case.box.dimension, fluid.kT, fluid.mass)
+        * fluid.timestep
+    )
+
+
 def without_bonds(case: Case) -> theory.Transport | None:
     """Transport coefficients of the same fluid of single particles; None if it has solutes."""
     if case.solutes is not None:
@@ -248,6 +288,8 @@ def rouse_note(case: Case) -> str:
     """How good Rouse's theory is where beads are said to have the friction of free particles."""
     if case.solutes is not None and case.fluid.molecule is not None:
         return setting.caveat(case)
+    if case.solutes is None and (turns := swing_of_flight(case)) > FAST:
+        return f"approximate: Rouse; bonds turn by {turns:.2g} rad in one flight"
     if case.solutes is None and setting.mean_free_path(case) < 1:
         return "approximate: Rouse; beads drag one another along"
     if case.solutes is not None:

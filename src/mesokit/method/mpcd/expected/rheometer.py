@@ -54,7 +54,10 @@ def stress_of_history(case: Case, steps: int, first: int, count: int) -> theory.
     memory = math.ceil(FORGOTTEN * max(times, default=0.0) / (steps * timestep)) + 1
     number = min(first + count, first + memory)
     time = np.arange(number * steps + 1) * timestep
-    strain = np.zeros(len(time)) if history is None else history.strain_at(time)
+    strain = np.zeros(len(time))
+    if history is not None:  # images keep the speed of the middle of each step
+        middles = 0.5 * (time[1:] + time[:-1])
+        strain[1:] = timestep * np.cumsum([history.rate_at(t) for t in middles.tolist()])
     found = theory.stress_in_time(time, strain, modulus, times, viscosity)
     weights = np.ones(number - first)
     weights[-1] += count - len(weights)

@@ -11,7 +11,8 @@ from mesokit.method.mpcd.solute.chosen import Chosen
 class MagneticField(Chosen):
     """Force q v x B on each of some beads; in 2D the field is along z.
 
-    Velocities are turned by exactly q B t/m about the field (Boris 1970): it does no work.
+    Velocities are turned by exactly q B t/m about the field (Boris 1970): it does no work. Between
+    turns beads fly straight, in sub-steps short enough that each turn is small.
 
     >>> MagneticField([0.0, 0.0, 0.5], charge=2.0).charge
     2.0
