@@ -60,17 +60,20 @@ def test_a_magnetic_field_turns_at_the_cyclotron_frequency_and_does_no_work(d):
     np.testing.assert_allclose(w, path.y[:d, -1], atol=1e-8)
 
 
-def test_diffusion_across_a_magnetic_field():
-    """Velocities keep the share s in a collision and turn by w in a step: s^n cos(n w)."""
+@pytest.mark.parametrize("turn", [0.15, 2.0])
+def test_diffusion_across_a_magnetic_field(turn):
+    """Velocities keep the share s in a collision and turn by w in a step: s^n cos(n w); on their
+    arcs beads come as far as sin(w/2)/(w/2) of a straight way."""
     number, dt, mass, steps = 600, 0.1, 200.0, 100
-    field = MagneticField([0, 0, 0.15 * mass / dt], kind=1)
-    # so dilute that no two collide
-    fluid = in_random_solvent(Polymer(number), size=(150, 150), mass=mass, magnetic=[field])
+    field = MagneticField([0, 0, turn * mass / dt], kind=1)
+    # so dilute that no two collide: those that do forget, and diffuse in the strong field
+    fluid = in_random_solvent(Polymer(number), size=(900, 900), mass=mass, magnetic=[field])
     free = theory.bead_diffusion("srd", 2, 10, dt, 130, mass)
     share = 1 - theory.decorrelation_from_diffusion(free, dt, 1.0, mass)
     lag = np.arange(1, steps)
-    kept = share**lag * np.cos(0.15 * lag)
-    expected = 2 * dt**2 / mass * (steps + 2 * ((steps - lag) * kept).sum())
+    kept = share**lag * np.cos(turn * lag)
+    flight = dt * np.sin(turn / 2) / (turn / 2)
+    expected = 2 * flight**2 / mass * (steps + 2 * ((steps - lag) * kept).sum())
     assert expected < 0.5 * 4 * free * steps * dt
     fluid.advance(50)
     samples = []

@@ -11,6 +11,7 @@ from mesokit import (
     SRD,
     WCA,
     Bending,
+    BondLength,
     Disk,
     Harmonic,
     MaxwellBoltzmann,
@@ -20,6 +21,7 @@ from mesokit import (
     Uniform,
 )
 from mesokit.errors import CaseError, RunError
+from mesokit.method.mpcd.expected.molecules import bond_at_rest
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.start.first_state import first_state
 
@@ -113,6 +115,25 @@ def test_bonds_and_beads_have_the_temperature(molecule, d):
         temperatures.append(2 * fluid.totals()[2] / (d * (fluid.n - 1)))
     assert mean(squares).agrees(expected, systematic=0.01), (mean(squares), expected)
     assert mean(temperatures).agrees(1.0, systematic=0.002), mean(temperatures)
+
+
+@pytest.mark.parametrize(("K", "timestep", "substeps"), [(1.3, 0.2, 2), (0.7, 0.25, 1)])
+def test_bonds_are_as_long_as_their_sub_steps_make_them(K, timestep, substeps):
+    molecule = Molecule(length=5, bond=Harmonic(K=K), substeps=substeps)
+    parts = {"density": 10, "timestep": timestep, "molecule": molecule}
+    parts |= {"thermostat": MaxwellBoltzmann()}
+    case = make_case((20, 18), [BondLength()], **parts)
+    longer = bond_at_rest(case)
+    fluid = make_fluid((20, 18), **parts)
+    squares = []
+    for _ in range(120):
+        fluid.advance(int(8 / timestep))
+        squares.append((fluid.bond_vectors() ** 2).sum(axis=1).mean())
+    found = mean(squares)
+    assert longer - 1 > 6 * found.error / found.value  # is seen
+    assert found.agrees(longer / K), (found, longer / K)
+    printed = BondLength().accumulator(case).expected().trace(axis1=1, axis2=2)
+    np.testing.assert_allclose(printed, longer / K, rtol=1e-5)
 
 
 def test_length_three_for_one_sixth():

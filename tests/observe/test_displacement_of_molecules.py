@@ -214,9 +214,13 @@ class TestHowSolutesDiffuse:
 
 
 def test_rouse_is_approximate_where_beads_drag_one_another_along():
-    molecule = Molecule(length=2, bond=Harmonic(K=1 / 6))
-    for timestep, word in ((0.1, "approximate"), (1.0, "Rouse")):
-        case = make_case((8, 8, 8), timestep=timestep, molecule=molecule)
+    molecule = Molecule(length=2, bond=Harmonic(K=1 / 20))
+    for timestep, word in (
+        (0.1, "approximate: Rouse; beads drag"),
+        (1.0, "Rouse"),
+        (1.2, "approximate: Rouse; bonds turn by 0.54 rad"),
+    ):
+        case = make_case((12, 12, 12), timestep=timestep, molecule=molecule)
         assert rouse_note(case).startswith(word)
     solutes = Solutes((Polymer(4, length=10),), bond=Harmonic(K=1.5), solvent="random")
     assert rouse_note(make_case((8, 8, 8), solutes=solutes)).startswith("approximate")

@@ -33,26 +33,27 @@ def pulled(walls=(), **changed):
     """Dimers without pulls, and chains with them."""
     given = {"pulls": [dataclasses.replace(pull, kind=2) for pull in PULLS]} | changed
     kinds = (Polymer(2, length=2), Polymer(3, length=BEADS))
-    solutes = Solutes(kinds, bond=Harmonic(K=K), mass=5.0, **given)
+    # in so many sub-steps springs swing as in theory
+    solutes = Solutes(kinds, bond=Harmonic(K=K), mass=5.0, substeps=1000, **given)
     return Case(run=Run(1), box=Box([12, 12]), fluid=Fluid(), solutes=solutes, walls=walls)
 
 
 def test_sizes_are_those_at_rest_and_of_the_mean_shape():
     expected = MoleculeSize(kind=2).accumulator(pulled()).expected()
     free = 3 * BOND / 2 * np.eye(2)
-    np.testing.assert_allclose(expected[1], free + np.outer(ENDS, ENDS), rtol=1e-12)
+    np.testing.assert_allclose(expected[1], free + np.outer(ENDS, ENDS), rtol=1e-7)
     places = np.arange(BEADS)[:, None] * ENDS / 3  # evenly along a line
     around = places - places.mean(axis=0)
     square = theory.mean_square_gyration(theory.linear_modes(BEADS), BOND)
     shape = square / 2 * np.eye(2) + around.T @ around / BEADS
-    np.testing.assert_allclose(expected[0], shape, rtol=1e-12)
+    np.testing.assert_allclose(expected[0], shape, rtol=1e-7)
 
 
 def test_the_histogram_of_a_component_is_moved_by_the_extension():
     of = MoleculeHistogram(of="end-to-end", axis="x", kind=2).accumulator(pulled())
     assert of.edges[-1] > ENDS[0] + 3 * (3 * BOND / 2) ** 0.5
     expected = ndtr((of.edges - ENDS[0]) / (3 * BOND / 2) ** 0.5)
-    np.testing.assert_allclose(of.cdf(of.edges), expected, atol=1e-12)
+    np.testing.assert_allclose(of.cdf(of.edges), expected, rtol=1e-4, atol=1e-9)
     for what in ("gyration", "end-to-end", "orientation"):  # no theory of these
         of = MoleculeHistogram(of=what, kind=2).accumulator(pulled())
         assert of.cdf(of.edges) is None
