@@ -1,15 +1,31 @@
 """A flow that had not built up is no deviation from the theory of the steady one."""
 
+import dataclasses
 import json
 import math
 import subprocess
 import sys
 
+import numpy as np
 import pytest
+from fake_fluid import FakeFluid
 
-from mesokit import Box, Case, Fluid, Plates, Run, Simulation, Study, Uniform, VelocityProfile
+from mesokit import (
+    Box,
+    Case,
+    FlowRate,
+    Fluid,
+    Plates,
+    Run,
+    Simulation,
+    Study,
+    Uniform,
+    VelocityProfile,
+)
 from mesokit.io.open import RunFiles
 from mesokit.io.tables import record
+from mesokit.observe.shared.build_up import result_of
+from mesokit.observe.shared.result import Result
 from mesokit.report.caption import compared
 from mesokit.study.merge import merge
 
@@ -78,6 +94,27 @@ def test_what_is_lacking_is_the_mean_of_an_exponential():
 
     steps = [math.exp(-(50 + n) / 200.0) for n in range(1000)]
     assert BuildUp(200.0, 600, 50).lacks(1000) == pytest.approx(sum(steps) / 1000, rel=0.01)
+
+
+def with_a_speed_that(grows: float) -> Result:
+    """The rate of a flow whose speed grows by so much over the samples, beside noise."""
+    case = dataclasses.replace(flow(4000, 2000), observe=[FlowRate(every=10)])
+    accumulator, fluid = case.observe[0].accumulator(case), FakeFluid(case)
+    noise = np.random.default_rng(7).normal(0, 0.02, 400)
+    for n in range(400):
+        fluid.step = 2000 + 10 * (n + 1)
+        speed = 0.1 + grows * n / 400 + noise[n]
+        fluid.totals = lambda v=speed: (fluid.n, fluid.m.sum() * np.array([v, 0.0]), 0.0)
+        accumulator.observe(fluid)
+    return result_of(accumulator, case)
+
+
+def test_a_flow_that_still_changes_is_not_compared():
+    """By the samples themselves, whatever the warm-up."""
+    (first, *_), steady = (with_a_speed_that(grows).comparisons for grows in (0.1, 0.0))
+    assert first.note.startswith("not steady: mean velocity along x 0.12")
+    assert "in the first half, 0.17" in first.note and math.isnan(first.deviation)
+    assert all(one.steady for one in steady) and math.isfinite(steady[0].deviation)
 
 
 def test_json_of_info_is_json(early):

@@ -215,6 +215,24 @@ def test_near_a_solid_of_a_name(make_case):
     np.testing.assert_array_equal(accumulator.within(places), [False, True, True])
 
 
+@pytest.mark.parametrize(("kept", "looks", "width"), [(0.5, 4, 40), (0.9, 1, 120), (0.9, 20, 200)])
+def test_mean_exit_time_knows_how_long_velocities_are_remembered(kept, looks, width):
+    """Against walkers whose velocity keeps a share in each step of time 1."""
+    rng = np.random.default_rng(3)
+    x, v = rng.random(10_000) * width, rng.normal(size=10_000)
+    left, step = np.zeros(len(x)), 0
+    while (inside := left == 0).any():
+        step += 1
+        v[inside] = kept * v[inside] + (1 - kept**2) ** 0.5 * rng.normal(size=inside.sum())
+        x[inside] += v[inside]
+        if step % looks == 0:
+            left[inside & ((x < 0) | (x > width))] = step
+    diffusion = 0.5 + kept / (1 - kept)
+    expected = theory.mean_exit_time(width, diffusion, looks, diffusion - 0.5)
+    assert expected > 1.05 * theory.mean_exit_time(width, diffusion, looks)
+    assert abs(left.mean() - expected) < 3.5 * left.std() / len(x) ** 0.5 + 0.03 * expected
+
+
 def test_mean_exit_time_knows_how_often_one_looks():
     """Against walkers on a line, many of them, as Chernoff has it."""
     rng = np.random.default_rng(7)

@@ -8,6 +8,7 @@ from spheres_observed import FakeSpheres, hard, hard_case_for
 from mesokit import (
     ClusterSize,
     CollisionRate,
+    EquationOfState,
     HeightProfile,
     KindTemperature,
     MeanSquareDisplacement,
@@ -15,6 +16,7 @@ from mesokit import (
     RadialDistribution,
     Simulation,
     SphereKind,
+    SquareWell,
     VelocityAutocorrelation,
     VelocityCumulant,
     theory,
@@ -43,6 +45,24 @@ def test_same_bits_after_a_stop(kind):
     sampled(second, spheres, 23)
     assert second.result() == whole.result()
     assert whole.result().samples in (39, 40)  # rates need two looks
+
+
+@pytest.mark.parametrize(("depth", "width"), [(0.5, 1.5), (-0.3, 1.2)])
+def test_no_theory_of_hard_spheres_for_those_that_attract_or_repel(depth, width):
+    """Collision rates count cores alone, and are no equation of state."""
+    well = SquareWell(depth=depth, width=width)
+    for kind in (EquationOfState, CollisionRate):
+        case = hard([kind(every=10)], collision=well)
+        accumulator = kind(every=10).accumulator(case)
+        sampled(accumulator, FakeSpheres(case), 40)
+        result = accumulator.result()
+        assert np.isnan([c.expected for c in result.comparisons]).all()
+        if kind is EquationOfState:
+            assert result.x["measured by"].tolist() == ["virial"]
+    case = hard([EquationOfState(every=10)])
+    accumulator = EquationOfState(every=10).accumulator(case)
+    sampled(accumulator, FakeSpheres(case), 40)
+    assert np.isfinite(accumulator.result().expected).all()
 
 
 @pytest.mark.parametrize("kind", OF_SPHERES)

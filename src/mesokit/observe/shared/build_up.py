@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import dataclasses
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mesokit.method.protocol import method_of
 from mesokit.observe.shared.protocol import Accumulator
@@ -54,14 +54,16 @@ def _drift(accumulator: Accumulator) -> str:
     blocks = getattr(accumulator, "blocks", None)
     halves = []
     for part in blocks.halves() if blocks is not None else ():
-        half = copy.copy(accumulator)
-        half.blocks = part  # type: ignore[attr-defined]
-        halves.append(half.result().comparisons)
-    for one, other in zip(*halves, strict=True) if halves else ():
+        half: Any = copy.copy(accumulator)
+        half.blocks = part
+        halves.append({c.what: c for c in half.result().comparisons if math.isfinite(c.expected)})
+    first, second = halves or ({}, {})
+    for what in [what for what in first if what in second]:
+        one, other = first[what], second[what]
         apart = abs(one.measured - other.measured)
-        if math.isfinite(one.expected) and apart > DRIFTS * math.hypot(one.error, other.error) > 0:
-            first, second = (with_error(c.measured, c.error) for c in (one, other))
-            return f"{NOT_STEADY}: {one.name} {first} in the first half, {second} in the second"
+        if apart > DRIFTS * math.hypot(one.error, other.error) > 0:
+            early, late = (with_error(c.measured, c.error) for c in (one, other))
+            return f"{NOT_STEADY}: {what} {early} in the first half, {late} in the second"
     return ""
 
 
