@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -38,7 +38,6 @@ class SurfaceProfile(Observable):
     """
 
     quantity: Literal["surface-profile"] = tag("surface-profile")
-    of_built_up_flow: ClassVar[bool] = True
     of: Literal["density", "temperature", "speed"] = param(
         "density", doc="what: 'density', 'temperature' or 'speed'"
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +42,6 @@ class TemperatureProfile(Profile):
     """
 
     quantity: Literal["temperature-profile"] = tag("temperature-profile")
-    of_built_up_flow: ClassVar[bool] = True
     kind: int | str | None = param(None, doc=KIND)
 
     def check(self, case: Case) -> None:
