@@ -24,6 +24,7 @@ from mesokit import (
 )
 from mesokit.io.open import RunFiles
 from mesokit.io.tables import record
+from mesokit.method.protocol import summary_of
 from mesokit.observe.shared.build_up import result_of
 from mesokit.observe.shared.result import Result
 from mesokit.report.caption import compared
@@ -69,6 +70,16 @@ def test_it_is_told_wherever_the_number_is(early, tmp_path):
         assert NOTE in " ".join(said.split())
     pooled = merge(early, tmp_path / "both").results["velocity-profile"].comparisons
     assert all(one.note.startswith(NOTE) for one in pooled)
+
+
+def test_warnings_of_check_are_kept_with_runs_and_what_is_merged_of_them(early, tmp_path):
+    merge(early, tmp_path / "both")
+    said = list(summary_of(flow(500, 20, 1, 30)).warnings)
+    assert [words for words in said if words.startswith("run.warmup = 20")]
+    for folder in (*early, tmp_path / "both"):
+        files = RunFiles(folder)
+        assert files.provenance["warnings"] == said
+        assert f"\n  warning: {said[0]}" in repr(files)
 
 
 def test_a_study_tells_it_of_pooled_numbers(tmp_path):

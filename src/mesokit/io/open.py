@@ -336,6 +336,7 @@ class RunFiles(Shown, Mapping[str, "Result"]):
             lines.append(f"  {self.pooled}")
         with contextlib.suppress(RunError):  # results can be read without the record
             lines += [f"  {line}" for line in work_words(self.provenance)]
+            lines += [f"  warning: {words}" for words in self.provenance.get("warnings", ())]
         lines += ["  " + repr(result).replace("\n", "\n  ") for result in self.so_far().values()]
         if self.ended and self.trajectory is not None:
             lines.append(f"  {self.trajectory!r}")

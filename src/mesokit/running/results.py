@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from mesokit.errors import MesokitError
 from mesokit.io import h5md
 from mesokit.io.run_directory import RunDirectory, now
+from mesokit.method.protocol import summary_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -23,6 +26,8 @@ def write_results(
 ) -> None:
     """Write all that a run says at its end; `spent` says where the time went. Raises RunError."""
     kept = directory.read_provenance() | {"ended": now(), **spent}
+    with contextlib.suppress(MesokitError):  # a file that the start was made from may be gone
+        kept["warnings"] = list(summary_of(case).warnings)
     h5md.write(directory.data_file, case, kept, results.values(), writer)
     directory.write_provenance(kept)
     from mesokit.report import save_all

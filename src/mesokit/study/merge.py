@@ -71,11 +71,13 @@ def merge(runs: Sequence[str | Path], output: str | Path) -> RunFiles:
             pool(name, accumulator, more[name])
         record.append(_record(each, steps))
     results = [result_of(one, files[0].case) for one in pooled.values()]
-    return _write(files[0].case, results, record, output)
+    told = dict.fromkeys(words for one in files for words in one.provenance.get("warnings", ()))
+    own = {"merged": record, "warnings": list(told)}
+    return _write(files[0].case, results, own, output)
 
 
 def _write(
-    case: Case, results: Sequence[Result], record: list[dict[str, Any]], output: str | Path
+    case: Case, results: Sequence[Result], own: dict[str, Any], output: str | Path
 ) -> RunFiles:
     """The folder, which is there with all that belongs to it, or not at all."""
     from mesokit.report import save_all
@@ -86,7 +88,7 @@ def _write(
     delete_folder(coming)  # we may have been killed here before
     directory = RunDirectory.create(coming, case)
     try:
-        kept = provenance(case, threads=0) | {"merged": record, "ended": now()}
+        kept = provenance(case, threads=0) | {"ended": now()} | own
         h5md.write(directory.data_file, case, kept, results)
         directory.write_provenance(kept)
         save_all(results, directory.path, case, run=output.resolve().name)
