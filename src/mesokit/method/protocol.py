@@ -106,6 +106,8 @@ class Method:
         Fills the engine.
     whole_cells : bool, optional
         Whether the lengths of its box are whole numbers of cells; True unless said.
+    box : sequence of str, optional
+        Keys of the box that it takes beside `size`; all others are refused.
     keys : mapping, optional
         Names of sections as they are in a file where these differ from those in Python: of a list
         of tables, `[[wall]]` for `walls`.
@@ -163,6 +165,7 @@ class Method:
     whole_cells: bool = True
     keys: Mapping[str, str] = field(default_factory=dict)
     arrays: tuple[str, ...] = ()
+    box: tuple[str, ...] = ()
     expected: Mapping[str, Callable[[Case, Any], Any]] = field(default_factory=dict)
     bonds: Callable[[Case], NDArray[np.int64]] = lambda case: np.zeros((0, 2), np.int64)
     closed_axes: Callable[[Case], set[int]] = lambda case: set()

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mesokit.case.amounts import count_text, duration_text, number, size_text
-from mesokit.case.checks import no_shear
 from mesokit.case.component import show
 from mesokit.case.trajectory import Group, Kind, stored_bytes
 from mesokit.case.warnings import run_warnings
@@ -82,9 +81,6 @@ def check(case: Case) -> None:
             f"brownian.diffusion = {show(given.diffusion)}: in {steps} steps particles go so far "
             "that boxes cannot be counted; expected less"
         )
-    no_shear(case.box, "not with method 'brownian', whose particles drift with no one")
-    if case.box.open:
-        raise CaseError(f"box.open = {show(list(case.box.open))}: not with method 'brownian'")
 
 
 def groups(case: Case) -> tuple[Group, ...]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mesokit.case.checks import no_shear
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.event_driven.walls import wall_rows
@@ -19,9 +18,6 @@ def check(case: Case) -> None:
     """Raise CaseError for a case without a meaning."""
     section, box = case.spheres, case.box
     section.check(box)
-    no_shear(box, "not with method 'event-driven'")
-    if box.open:
-        raise CaseError(f"box.open = {show(list(box.open))}: not with method 'event-driven'")
     solids.check(case)
     for key, surface in solids.surfaces(case):
         if surface.rotation is not None:

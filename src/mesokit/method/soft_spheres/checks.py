@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mesokit.case.checks import no_shear
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import Solids
@@ -27,9 +26,6 @@ def check(case: Case) -> None:
     solids.check(case)
     section.check(box)
     section.start.check(case)
-    no_shear(box, "not with method 'soft-spheres'")
-    if box.open:
-        raise CaseError(f"box.open = {show(list(box.open))}: not with method 'soft-spheres'")
     _walls(case)
     plates.check(case)
     _potential(case)
