@@ -46,7 +46,7 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "no room on the lattice": ({"number = 30": "packing_fraction = 0.9"}, ("overlap", "'random'")),
     "negative fraction": ({"number = 30": "packing_fraction = -1"}, ("above 0",)),
     "no kinds": ({"[{ diameter = 1 }]": "[]"}, ("spheres.kinds",)),
-    "no diameter": ({"diameter = 1": "diameter = 0"}, ("kinds[#1].diameter = 0", "at least")),
+    "no diameter": ({"diameter = 1": "diameter = 0"}, ("kinds[#1].diameter = 0", "above 0")),
     "narrow box": ({"diameter = 1": "diameter = 9", "[20, 10.5]": "[10, 90]",
                     "number = 30": "number = 1"}, ("box.size", "two diameters", "along x")),
     "spread": ({"diameter = 1": "spread = 1"}, ("kinds[#1].spread = 1", "below 1")),

@@ -17,6 +17,7 @@ from mesokit.spheres.wall.surfaces import other_walls, surface_rows
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
+ROUNDING = 1e-5  # relative, of diameters as people write them
 CONTACT = ("temperature", "tangential", "restitution", "friction")  # of a surface
 
 
@@ -93,7 +94,7 @@ def _potential(case: Case) -> None:
     if any(kind.spread for kind in kinds) or len({kind.diameter for kind in kinds}) > 1:
         raise CaseError("spheres.kinds: a potential acts between spheres of one diameter alone")
     given, own = kinds[0].diameter * scale, section.pair.diameter
-    if abs(given - own) > 1e-9 * own:
+    if abs(given - own) > ROUNDING * own:
         raise CaseError(
             f"spheres.kinds: diameter {given:g}; expected that of the potential, {own:g} "
             "(with number or density, and no packing fraction beside)"

@@ -75,6 +75,12 @@ class SoftSpheres(Spheres):
         """Thermal energy of rotation at the start."""
         if self.spin_kT is not None:
             return self.spin_kT
+    @property
+    def usual_diameter(self) -> float:
+        """That of the potential, of contacts 1."""
+        touching = isinstance(self.pair, ContactLaw)
+        return 1.0 if touching else float(self.pair.diameter)  # type: ignore[attr-defined]
+
         return self.kT if self.turns else 0.0
 
     def reach(self, box: Box) -> float:
