@@ -44,6 +44,7 @@ def check(
         full = read(case, settings)
         method = method_of(full)
         with naming(case):
+            full = method.prepared(full, {})
             method.first_state(full, {})
         summary = summary_of(full, threads)
     if axes is not None and picture is None:

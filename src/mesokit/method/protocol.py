@@ -150,6 +150,8 @@ class Method:
     check_ranks : function of a case and a number of ranks, optional
         Raises CaseError for a case that cannot be run on so many ranks of MPI; without it, none
         can. Its engine is then asked by all ranks at once.
+    prepared : function of a case and arrays by name, optional
+        The case with keys that follow from the state it starts from; raises CaseError.
     """
 
     name: str
@@ -163,9 +165,9 @@ class Method:
     engine: Callable[[Case, int, Sequence[str]], Engine]
     start: Callable[[Any, Any], None]
     whole_cells: bool = True
+    box: tuple[str, ...] = ()
     keys: Mapping[str, str] = field(default_factory=dict)
     arrays: tuple[str, ...] = ()
-    box: tuple[str, ...] = ()
     expected: Mapping[str, Callable[[Case, Any], Any]] = field(default_factory=dict)
     bonds: Callable[[Case], NDArray[np.int64]] = lambda case: np.zeros((0, 2), np.int64)
     closed_axes: Callable[[Case], set[int]] = lambda case: set()
@@ -183,6 +185,7 @@ class Method:
     si: Callable[[Case], Any] | None = None
     build_up: Callable[[Case], BuildUp | None] | None = None
     check_ranks: Callable[[Case, int], None] | None = None
+    prepared: Callable[[Case, Mapping[str, Any]], Case] = lambda case, arrays: case
 
 
 def method_of(case: Case) -> Method:
