@@ -311,6 +311,19 @@ def test_a_missing_package_is_named(tmp_path, monkeypatch):
         started(tmp_path / "a.gsd")
 
 
+def test_lengths_of_a_file_are_scaled(tmp_path):
+    size = (16, 14, 12)
+    r, v = np.random.default_rng(2).random((2, 90, 3)) * np.array(size) / 4
+    path = write_data(tmp_path / "a.data", r, np.array(size) / 4, v=v)
+    density = 90 / np.prod(size)
+    case = make_case(size, start=Start(file=str(path), scale=4.0), density=density)
+    places, speeds = first_state(case)[:2]
+    np.testing.assert_allclose(places, 4 * r, atol=1e-12)
+    np.testing.assert_allclose(speeds, 4 * v, atol=1e-12)
+    with pytest.raises(CaseError, match=r"scale = 4: only with a file of another program"):
+        Start(run="a", scale=4.0)
+
+
 def test_two_states_are_refused():
     for other in ({"run": "a"}, {"positions": "r.npy"}):
         with pytest.raises(CaseError, match=r"fluid.start.file = .*: not with (run|positions)"):

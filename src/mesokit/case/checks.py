@@ -149,7 +149,12 @@ def box_keys(box: Any, method: Any) -> None:
 
 
 def whole_cells(box: Any) -> None:
-    """Raise CaseError for a length that is no whole number, where the method has cells."""
+    """Raise CaseError for a length that is no whole number, or too few cells, where the method has
+    cells."""
+    if min(box.size) < 2:
+        raise CaseError(
+            f"box.size = {show(list(box.size))}: expected at least 2 cells along each axis"
+        )
     for i, length in enumerate(box.size):
         if length != int(length):
             raise CaseError(f"box.size[#{i + 1}] = {show(length)}: expected a whole number")

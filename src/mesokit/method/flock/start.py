@@ -175,7 +175,7 @@ def _snapshot(case: Case, path: str) -> tuple[Any, Any]:
 
     Raises CaseError unless it has the box of the case, and as many particles.
     """
-    there, d = read_snapshot(path), case.box.dimension
+    there, d = read_snapshot(path, case.flock.start.scale), case.box.dimension
     lengths, wanted = there.lengths[:d], np.array(case.box.size, float)
     if not np.allclose(lengths, wanted, rtol=ROUNDING) or there.tilts.any():
         raise CaseError(
