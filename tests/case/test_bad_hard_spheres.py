@@ -90,6 +90,21 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "virtual particles": ({'axis = "y"': 'axis = "y"\nvirtual = "none"'}, ("wall[#1].virtual",)),
     "temperature of a cold wall": ({"restitution = 0.8": "temperature = 2"},
                                    ("wall[#1].lower.contact.temperature = 2", "diffuse")),
+    "restitution of a warm wall":
+        ({"lower = {": 'lower = { rule = "diffuse",'},
+         ("wall[#1].lower.contact.restitution = 0.8: no effect", "'diffuse'", "leave it out")),
+    "tangential of a warm wall":
+        ({"lower = {": 'lower = { rule = "diffuse",', "restitution = 0.8": "tangential = 0.4"},
+         ("wall[#1].lower.contact.tangential = 0.4: no effect",)),
+    "friction of a smooth wall":
+        ({"restitution = 0.8": "friction = 0.2"},
+         ("wall[#1].lower.contact.friction = 0.2: no effect", "lower.contact.tangential above -1")),
+    "friction of a mirror":
+        ({"lower = {": 'lower = { rule = "slip",',
+          "restitution = 0.8": "friction = 0.2, tangential = 0.5"},
+         ("wall[#1].lower.contact.friction = 0.2: no effect", "lower.rule than 'slip'")),
+    "spin of smooth spheres": ({"timestep = 0.1": "timestep = 0.1\nspin_kT = 0.3"},
+                               ("spheres.spin_kT = 0.3: no effect", "tangential above -1")),
     "half a vibration": ({"restitution = 0.8": "amplitude = 0.1"},
                          ("wall[#1].lower.contact.amplitude = 0.1", "contact.frequency beside")),
     "vibration of no size": ({"restitution = 0.8": "frequency = 3"},
