@@ -11,6 +11,7 @@ import numpy as np
 
 from mesokit.case.amounts import count_text, duration_text, number, size_text
 from mesokit.case.component import show
+from mesokit.case.outside_box import warn_outside
 from mesokit.case.trajectory import Group, Kind, stored_bytes
 from mesokit.case.warnings import run_warnings
 from mesokit.errors import CaseError
@@ -124,8 +125,11 @@ def first_state(case: Case, arrays: Mapping[str, Any]) -> Array | None:
     if arrays and file is not None:
         raise CaseError(f"{key}: not with an array of positions beside")
     shape = case.particles, case.box.dimension
-    if found.shape != shape or not np.isfinite(found).all():
-        raise CaseError(f"{key}: expected finite numbers of shape {shape}, not {found.shape}")
+    if found.shape != shape:
+        raise CaseError(f"{key}: shape {found.shape}: expected {shape}")
+    if not np.isfinite(found).all():
+        raise CaseError(f"{key}: row {int(np.argwhere(~np.isfinite(found))[0][0])} is not finite")
+    warn_outside(key, found, case.box)
     return found
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.component import show
+from mesokit.case.outside_box import warn_outside
 from mesokit.errors import CaseError, MesokitError
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.contact import MARGIN
@@ -115,6 +116,8 @@ def _places(case: Case, key: str, given: Any) -> Array:
         _refuse(key, places, beyond | (solids_of(case).distance(folded) < 0), "lies in a wall")
     far = (np.abs(places / np.array(case.box.size)) >= MOST_BOXES).any(axis=1)
     _refuse(key, places, far, "is 2^30 boxes away or more")
+    if not case.flock.start.run:  # where birds have flown out of the box
+        warn_outside(key, places, case.box, closed_axes(case.walls))
     return places
 
 

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.outside_box import warn_outside
 from mesokit.errors import CaseError, MesokitError
+from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.start.of_first import OfFirst, read_by_first, rows_of, told_by_first
 from mesokit.method.mpcd.start.section import Start
@@ -164,6 +166,8 @@ def _require_room(case: Case, key: str, given: Any, here: World) -> None:
         for first, rows in _pieces(array, here, isinstance(given, OfFirst)):
             _inside(case, key, first, rows)
             _near(case, key, first, rows)
+            if key.endswith(".positions") and case.fluid.molecule is None:  # which may cross edges
+                warn_outside(key, rows, case.box, [*closed_axes(case.walls), *case.box.open], first)
 
 
 def _inside(case: Case, key: str, first: int, positions: Floats) -> None:
