@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mesokit.case.amounts import count_text, duration_text, number, size_text
+from mesokit.case.array_file import EXPECTED, array_in_file
 from mesokit.case.component import show
 from mesokit.case.outside_box import warn_outside
 from mesokit.case.trajectory import Group, Kind, stored_bytes
@@ -118,13 +119,16 @@ def first_state(case: Case, arrays: Mapping[str, Any]) -> Array | None:
     key = "positions" if file is None else f"brownian.positions = {file!r}"
     if not arrays and file is None:
         return None
-    try:
-        found = np.asarray(arrays["positions"] if arrays else np.load(file), float)
-    except (OSError, ValueError, TypeError):
-        raise CaseError(f"{key}: expected an array of numbers") from None
     if arrays and file is not None:
         raise CaseError(f"{key}: not with an array of positions beside")
     shape = case.particles, case.box.dimension
+    try:
+        given = arrays["positions"] if file is None else array_in_file(file, "positions", shape)
+        found = np.asarray(given, float)
+    except OSError as error:
+        raise CaseError(f"{key}: {EXPECTED}: {error.strerror}") from None
+    except (ValueError, TypeError) as error:
+        raise CaseError(f"{key}: expected an array of numbers: {error}") from None
     if found.shape != shape:
         raise CaseError(f"{key}: shape {found.shape}: expected {shape}")
     if not np.isfinite(found).all():

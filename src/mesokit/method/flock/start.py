@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.array_file import EXPECTED, array_in_file
 from mesokit.case.component import show
 from mesokit.case.outside_box import warn_outside
 from mesokit.errors import CaseError, MesokitError
@@ -56,11 +57,15 @@ def first_state(case: Case, arrays: Mapping[str, Any]) -> FirstState:
                 found["positions"], found["velocities"] = read(case, getattr(start, key))
                 keys = {name: f"{where}: {name}" for name in keys}
             else:
-                found[key], keys[key] = np.load(getattr(start, key)), where
+                shape = case.particles, case.box.dimension
+                found[key] = array_in_file(getattr(start, key), key, shape)
+                keys[key] = where
         except MesokitError as error:
             raise CaseError(f"{where}: {error}") from None
-        except (OSError, ValueError, EOFError):
-            raise CaseError(f"{where}: expected a file .npy with an array of numbers") from None
+        except OSError as error:
+            raise CaseError(f"{where}: {EXPECTED}: {error.strerror}") from None
+        except ValueError as error:
+            raise CaseError(f"{where}: {error}") from None
     positions, velocities = found.get("positions"), found.get("velocities")
     if velocities is not None and start.headings != "random":
         raise CaseError("flock.start.headings: not with velocities beside; leave it out")
