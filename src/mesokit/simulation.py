@@ -13,6 +13,7 @@ from mesokit.errors import RunError
 from mesokit.io.measured import take_up
 from mesokit.io.one_writer import alone
 from mesokit.io.run_directory import RunDirectory, provenance
+from mesokit.method.protocol import method_of
 from mesokit.ranks.world import world
 from mesokit.report.document.progress import reporter_for
 from mesokit.report.progress import Reporter
@@ -82,6 +83,7 @@ class Simulation(Course):
         facts = {"output": str(output)}
         self.ranks.require_same(lambda: told(self.case, self.callbacks, arrays) | facts)
         with blaming(self.case):
+            self.case = method_of(self.case).prepared(self.case, arrays)
             self._build()
             self.replicas.start(arrays)
         self.directory: RunDirectory | None = None

@@ -230,7 +230,7 @@ def test_wrong_arrays_get_one_line(name: str) -> None:
 
 STARTS = {
     "no such file": ({"positions": "a.npy"}, "flock.start.positions = '", "no such file"),
-    "no array": ({"positions": "case.toml"}, "expected a file .npy"),
+    "no array": ({"positions": "case.toml"}, "expected a .npy or .npz file"),
     "no such run": ({"run": "b"}, "flock.start.run"),
     "no such particles": ({"file": "c.gsd"}, "flock.start.file"),
     "a run and positions": (

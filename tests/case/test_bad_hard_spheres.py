@@ -46,7 +46,7 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "no room on the lattice": ({"number = 30": "packing_fraction = 0.9"}, ("overlap", "'random'")),
     "negative fraction": ({"number = 30": "packing_fraction = -1"}, ("above 0",)),
     "no kinds": ({"[{ diameter = 1 }]": "[]"}, ("spheres.kinds",)),
-    "no diameter": ({"diameter = 1": "diameter = 0"}, ("kinds[#1].diameter = 0", "at least")),
+    "no diameter": ({"diameter = 1": "diameter = 0"}, ("kinds[#1].diameter = 0", "above 0")),
     "narrow box": ({"diameter = 1": "diameter = 9", "[20, 10.5]": "[10, 90]",
                     "number = 30": "number = 1"}, ("box.size", "two diameters", "along x")),
     "spread": ({"diameter = 1": "spread = 1"}, ("kinds[#1].spread = 1", "below 1")),
@@ -90,6 +90,21 @@ BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "virtual particles": ({'axis = "y"': 'axis = "y"\nvirtual = "none"'}, ("wall[#1].virtual",)),
     "temperature of a cold wall": ({"restitution = 0.8": "temperature = 2"},
                                    ("wall[#1].lower.contact.temperature = 2", "diffuse")),
+    "restitution of a warm wall":
+        ({"lower = {": 'lower = { rule = "diffuse",'},
+         ("wall[#1].lower.contact.restitution = 0.8: no effect", "'diffuse'", "leave it out")),
+    "tangential of a warm wall":
+        ({"lower = {": 'lower = { rule = "diffuse",', "restitution = 0.8": "tangential = 0.4"},
+         ("wall[#1].lower.contact.tangential = 0.4: no effect",)),
+    "friction of a smooth wall":
+        ({"restitution = 0.8": "friction = 0.2"},
+         ("wall[#1].lower.contact.friction = 0.2: no effect", "lower.contact.tangential above -1")),
+    "friction of a mirror":
+        ({"lower = {": 'lower = { rule = "slip",',
+          "restitution = 0.8": "friction = 0.2, tangential = 0.5"},
+         ("wall[#1].lower.contact.friction = 0.2: no effect", "lower.rule than 'slip'")),
+    "spin of smooth spheres": ({"timestep = 0.1": "timestep = 0.1\nspin_kT = 0.3"},
+                               ("spheres.spin_kT = 0.3: no effect", "tangential above -1")),
     "half a vibration": ({"restitution = 0.8": "amplitude = 0.1"},
                          ("wall[#1].lower.contact.amplitude = 0.1", "contact.frequency beside")),
     "vibration of no size": ({"restitution = 0.8": "frequency = 3"},
@@ -134,6 +149,20 @@ def test_bad_case_is_refused(
     message = refused(capsys, "run", "bad.toml")
     has_words(message, expected)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["bad.toml"]
+
+
+@pytest.mark.parametrize(
+    ("method", "section"),
+    [("event-driven", "spheres"), ("soft-spheres", "spheres"), ("flock", "flock")],
+)
+def test_check_tells_how_much_memory_is_missing(method, section, tmp_path, capsys):
+    file = tmp_path / "large.toml"
+    run = f'[run]\nsteps = 1\nmethod = "{method}"\n'
+    file.write_text(f"{run}[box]\nsize = [60000, 60000]\n[{section}]\nnumber = 2100000000\n")
+    with pytest.raises(SystemExit) as end:
+        main(["check", str(file)])
+    assert not end.value.code
+    assert "GB of memory, this machine has" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -53,6 +53,9 @@ BAD: list[tuple[str, dict[str, str], str, str, str, tuple[str, ...]]] = [
     (HARD, LOSSY, "", "equation-of-state", "", ("observe[#1]", "keep energy")),
     (HARD, {}, PLATES.format("y"), "equation-of-state", "", ("observe[#1]", "beside a wall")),
     (HARD, FALL, PLATES.format("y"), "equation-of-state", "", ("observe[#1]", "gravity")),
+    (FLUID, {}, PLATES.format("x") + 'upper = { rule = "diffuse" }\n', "wall-stress", "",
+     ("observe[#1] (wall-stress): wall[#1].upper.rule = 'diffuse'", "observe 'forces'")),
+    (FLUID, {}, "", "wall-stress", "", ("observe[#1]", "one [[wall]] of shape 'plates'")),
     (HARD, {}, "", "wall-force", "", ("observe[#1]", "[[wall]]")),
     (HARD, {}, "", "height-profile", "", ("observe[#1]", "gravity along one axis")),
     (HARD, FALL, PLATES.format("y"), "height-profile", "bins = 1", ("bins = 1", "at least 2")),
@@ -113,7 +116,7 @@ BAD: list[tuple[str, dict[str, str], str, str, str, tuple[str, ...]]] = [
 @pytest.mark.parametrize(
     ("good", "changes", "walls", "quantity", "keys", "expected"),
     BAD,
-    ids=[f"{'hard' if b[0] == HARD else 'soft' if b[0] == SOFT else 'birds'}-{b[3]}-{k}"
+    ids=[f"{'hard' if b[0] == HARD else 'soft' if b[0] == SOFT else 'others'}-{b[3]}-{k}"
          for k, b in enumerate(BAD)],
 )  # fmt: skip
 def test_a_wrong_observable_is_refused(

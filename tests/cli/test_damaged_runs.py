@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 
@@ -371,3 +372,110 @@ def test_a_run_that_had_ended_is_not_said_to_run(
     assert not end.value.code and "running" not in said
     assert "run: had ended at step 20; drawing its figures again" in said
     assert (folder / "run" / "conservation.png").exists()
+
+
+RECORDS: dict[str, object] = {
+    "list": [1],
+    "text": "a",
+    "nothing": {},
+    "parts": {"parts": [{}]},
+    "family": {"parts": [{"family": "mesokit.case.box:Box", "name": "a", "class": "b"}]},
+    "family of nothing": {"parts": [{"family": "mesokit.no:No", "name": "a", "class": "b"}]},
+    "resumed": {"resumed": 5},
+    "resumed when": {"resumed": [7]},
+    "lengthened": {"lengthened": [{"at": "now"}]},
+    "timings": {"timings": {"steps": "long"}},
+    "versions": {"versions": None},
+    "merged": {"merged": [1]},
+    "ranks": {"ranks": "two", "shared_work": {}},
+    "shared": {"shared_work": {"stages": {}}},
+    "units": {"units": 3},
+    "failed": {"failed": {"why": 1}},
+    "sources": {"sources": [2]},
+    "command": {"command": "mesokit"},
+}
+
+
+@pytest.mark.parametrize("whole", [False, True], ids=["changed", "alone"])
+@pytest.mark.parametrize("name", RECORDS)
+def test_a_record_of_another_shape(name, whole, folder: Path, capsys, monkeypatch) -> None:
+    """Whatever it is, each command ends in one line or does its work."""
+    monkeypatch.setattr("mesokit.report.save_all", lambda *given, **more: [])
+    record = folder / "run" / "provenance.json"
+    given = RECORDS[name]
+    known = {} if whole else json.loads(record.read_text())
+    changed = known | given if isinstance(given, dict) else given
+    for arguments in (["info", "run"], ["resume", "run", "--steps", "30", "--quiet"]):
+        record.write_text(json.dumps(changed))
+        capsys.readouterr()
+        with pytest.raises(SystemExit) as end:
+            main(arguments)
+        said = capsys.readouterr().err
+        assert end.value.code in (None, 0, 1, 2)
+        assert "Traceback" not in said
+        if end.value.code:
+            assert said.startswith("mesokit: error: ") and said.count("\n") == 1
+
+
+def test_a_record_of_many_brackets(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "run" / "provenance.json").write_text("[" * 100_000)
+    main_ends(["resume", "run", "--quiet"])
+    assert "provenance.json: cannot be read: maximum recursion" in capsys.readouterr().err
+    assert json.loads((folder / "run" / "provenance.json").read_text())["seed"] == 1
+
+
+def rewritten(folder: Path, save=np.savez, **changes: object) -> None:
+    """The checkpoint of a run with other arrays, all bytes of which are whole."""
+    file = folder / "run" / "checkpoint.npz"
+    with np.load(file) as archive:
+        arrays = dict(archive)
+    save(file, **{**arrays, **changes})
+
+
+METAS = ({}, [4], {"step": "x", "looked": True}, {"step": -1}, {"step": 2.5}, {"step": 10**9})
+
+
+@pytest.mark.parametrize("meta", METAS, ids=map(str, METAS))
+def test_a_checkpoint_of_another_meta(meta, folder: Path, capsys) -> None:
+    with np.load(folder / "run" / "checkpoint.npz") as archive:
+        header = json.loads(str(archive["meta"]))
+    rewritten(folder, meta=np.array(json.dumps(header | {"meta": meta})))
+    assert "checkpoint.npz: " in refusal(capsys, "resume", "run")
+    (folder / "run" / "run.h5").unlink()
+    with pytest.raises(SystemExit) as end:
+        main(["info", "run"])
+    assert end.value.code in (None, 0, 1)
+    assert "Traceback" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("change", ["no dimensions", "int8", "half"])
+@pytest.mark.parametrize("name", ["engine/positions", "observe/conservation/blocks/sums"])
+def test_a_checkpoint_of_other_arrays(name, change, folder: Path, capsys) -> None:
+    with np.load(folder / "run" / "checkpoint.npz") as archive:
+        good = archive[name]
+    other = {
+        "no dimensions": np.array(3.0),
+        "int8": np.zeros(good.shape, np.int8),
+        "half": good[: len(good) // 2],
+    }[change]
+    if name.startswith("engine") and change == "int8":
+        return  # which is as good as zeros
+    rewritten(folder, **{name: other})
+    assert "checkpoint.npz: " in refusal(capsys, "resume", "run")
+
+
+def test_a_checkpoint_is_not_compressed(folder: Path, capsys) -> None:
+    """Else it might be many times as large as the file."""
+    rewritten(folder, save=np.savez_compressed)
+    for command in ("resume", "info"):
+        (folder / "run" / "run.h5").unlink(missing_ok=True)
+        assert "checkpoint.npz: damaged" in refusal(capsys, command, "run")
+
+
+def test_results_of_another_shape(folder: Path, capsys) -> None:
+    results = folder / "run" / "run.h5"
+    with h5py.File(results, "r+") as file:
+        name = next(iter(file["results"]))
+        del file["results"][name]
+        file["results"][name] = np.arange(3)
+    assert "run.h5: damaged" in refusal(capsys, "info", "run")

@@ -3,7 +3,8 @@
 import numpy as np
 from laboratory import make_fluid
 
-from mesokit import ATPlusA
+from mesokit import ATPlusA, Box, Case, Harmonic, Run
+from mesokit.method.mpcd.derived import BYTES, derive
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 
 
@@ -25,3 +26,21 @@ def test_beads_far_from_the_fluid_change_nothing():
     assert 0 < (~far).sum() < 60
     np.testing.assert_array_equal(found[0][1][far], found[1][1][far])
     assert (found[0][1][~far] != found[1][1][~far]).any()
+
+
+def test_all_that_a_random_solvent_has_are_beads():
+    solutes = Solutes((Polymer(7, length=3, bond=Harmonic(K=1.0)),), mass=5.0, solvent="random")
+    engine = make_fluid((9, 8), solutes=solutes)
+    every = np.arange(engine.n, engine.n + 21)
+    assert engine.n == 0
+    for read in (engine.positions, engine.velocities, engine.images, engine.masses):
+        np.testing.assert_array_equal(read(), read(every))
+    assert engine.positions().shape == (21, 2) and engine.masses().tolist() == [5.0] * 21
+
+
+def test_cells_of_a_random_solvent_take_little_memory():
+    parts = {"run": Run(1), "box": Box([90, 80, 70])}
+    fluid = Case(solutes=Solutes((Polymer(50),)), **parts)
+    random = Case(solutes=Solutes((Polymer(50),), solvent="random"), **parts)
+    many = derive(fluid, 1).memory - BYTES["program"] - fluid.particles * BYTES["particle 3D"]
+    assert derive(random, 1).memory - BYTES["program"] < 0.3 * many

@@ -170,6 +170,44 @@ def test_a_body_in_a_cave_of_a_mesh(tmp_path):
         cave.invert()
 
 
+def test_triangles_that_are_turned_change_nothing(tmp_path):
+    """Each closed surface is the way round that most of its triangles are; the volume is known."""
+    shell, cave = (trimesh.creation.icosphere(subdivisions=2, radius=r) for r in (3.0, 1.4))
+    plate = trimesh.creation.box((1.0, 7.0, 0.6))
+    plate.apply_translation((-4.5, 0, 0))
+    cave.invert()
+    whole = trimesh.util.concatenate([shell, cave, plate])
+    turned = whole.copy()
+    some = np.random.default_rng(3).choice(len(whole.faces), 60, replace=False)
+    faces = turned.faces.copy()
+    faces[some] = faces[some, ::-1]
+    turned.faces = faces
+    walls = []
+    for name, mesh in (("whole", whole), ("turned", turned)):
+        mesh.export(tmp_path / f"{name}.stl")
+        walls.append(Mesh(str(tmp_path / f"{name}.stl"), position=(6, 5, 4.5), spacing=0.5))
+    good, bad = ([(part.hollow, part.size) for part in wall.closed] for wall in walls)
+    assert [hollow for hollow, _ in bad] == [hollow for hollow, _ in good] == [False, True, False]
+    np.testing.assert_allclose([x for _, x in bad], [x for _, x in good], rtol=1e-6)
+    one, other = (solids_of((wall,), 3) for wall in walls)
+    assert one.free_volume == pytest.approx(other.free_volume, rel=1e-9)
+    places = np.random.default_rng(1).random((300, 3)) * (12, 10, 9)
+    np.testing.assert_allclose(one.distance(places), other.distance(places), atol=1e-6)
+
+
+@pytest.mark.parametrize("turned", [0, 3])
+def test_samples_that_miss_a_plate_are_told(turned, tmp_path):
+    plate = trimesh.creation.box((6.0, 5.0, 0.6))
+    faces = plate.faces.copy()
+    faces[:turned] = faces[:turned, ::-1]
+    plate.faces = faces
+    plate.export(tmp_path / "a.stl")
+    wall = Mesh(str(tmp_path / "a.stl"), position=(6, 5, 4.5), spacing=0.5)
+    solids = solids_of((wall,), 3)
+    (note,) = wall.notes(solids.room, wall.distances(solids.room).values)
+    assert note.startswith("spacing = 0.5: the sampled solid has") and "the mesh 18;" in note
+
+
 @pytest.mark.parametrize("more", [0, 1], ids=["without its image", "with its image"])
 @pytest.mark.parametrize("sign", [1, -1], ids=["post", "vessel"])
 def test_arrays_may_end_with_the_image_of_the_first_samples(more, sign, tmp_path):

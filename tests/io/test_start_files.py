@@ -285,7 +285,9 @@ def test_the_good_file_is_good(tmp_path):
     ("name", "contents", "words"),
     [
         ("melt.gsd", b"half a file", "cannot be read as a GSD file"),
-        ("melt.data", b"", "cannot be read as a LAMMPS"),
+        ("melt.data", b"\xff", "cannot be read as a LAMMPS"),
+        ("melt.data", b"", "no section Atoms"),
+        ("melt.data", b"Atoms\n\n1 atoms\n\nAtoms\n\n1 1 1 0 0 0\n", "no line of 'xlo xhi'"),
         (
             "melt.data",
             b"title\n\n1 atoms\n\nAtoms # ellipsoid\n\n1 1 1 1 0 0 0\n",
@@ -302,15 +304,24 @@ def test_damaged_files_are_one_line(name, contents, words, tmp_path, capsys, mon
     assert words in refused(capsys, "check", "--set", f"fluid.start.file={name}")
 
 
-@pytest.mark.parametrize(
-    ("name", "module"),
-    [("a.gsd", "gsd.hoomd"), ("a.data", "MDAnalysis.topology.LAMMPSParser")],
-)
-def test_a_missing_package_is_named(name, module, tmp_path, monkeypatch):
-    (tmp_path / name).write_text("")
-    monkeypatch.setitem(sys.modules, module, None)
-    with pytest.raises(CaseError, match=r"need the package \w+: pip install 'mesokit\[files\]'"):
-        started(tmp_path / name)
+def test_a_missing_package_is_named(tmp_path, monkeypatch):
+    (tmp_path / "a.gsd").write_text("")
+    monkeypatch.setitem(sys.modules, "gsd.hoomd", None)
+    with pytest.raises(CaseError, match=r"need the package gsd: pip install 'mesokit\[files\]'"):
+        started(tmp_path / "a.gsd")
+
+
+def test_lengths_of_a_file_are_scaled(tmp_path):
+    size = (16, 14, 12)
+    r, v = np.random.default_rng(2).random((2, 90, 3)) * np.array(size) / 4
+    path = write_data(tmp_path / "a.data", r, np.array(size) / 4, v=v)
+    density = 90 / np.prod(size)
+    case = make_case(size, start=Start(file=str(path), scale=4.0), density=density)
+    places, speeds = first_state(case)[:2]
+    np.testing.assert_allclose(places, 4 * r, atol=1e-12)
+    np.testing.assert_allclose(speeds, 4 * v, atol=1e-12)
+    with pytest.raises(CaseError, match=r"scale = 4: only with a file of another program"):
+        Start(run="a", scale=4.0)
 
 
 def test_two_states_are_refused():

@@ -72,6 +72,27 @@ def test_an_export_is_a_start(ended, case_of, tmp_path, ending, rtol):
     alike(Simulation(case_of(ended.case.box.size, seed=4, start=start), threads=1), ended, rtol)
 
 
+@pytest.mark.parametrize("ending", ["gsd", "data"])
+def test_lengths_of_a_file_are_scaled(ended, case_of, tmp_path, ending):
+    """A start in millimetres for a case in metres: masses and times stay."""
+    scale = 1e-3
+    path = mesokit.open(ended.directory.path).export(tmp_path / f"a.{ending}")
+    masses = [kind.mean_mass(ended.case.box.dimension) for kind in SPREAD]
+    kinds = [
+        dataclasses.replace(kind, diameter=scale * kind.diameter, mass=mass, density=None)
+        for kind, mass in zip(SPREAD, masses, strict=True)
+    ]
+    size = [scale * length for length in ended.case.box.size]
+    start = FileStart(file=str(path), scale=scale)
+    engine = Simulation(case_of(size, kinds=kinds, start=start), threads=1).engine
+    for name, factor in (("positions", scale), ("velocities", scale), ("diameters", scale)):
+        found, wanted = getattr(engine, name)(), factor * getattr(ended.engine, name)()
+        np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-5 * scale)
+    np.testing.assert_allclose(engine.spins(), ended.engine.spins(), atol=1e-5)
+    with pytest.raises(CaseError, match=r"; scale = 0\.001 would make it so"):
+        Simulation(case_of(size, kinds=kinds, start=FileStart(file=str(path))))
+
+
 def test_motion_may_be_left_behind(ended, case_of):
     start = RunStart(run=str(ended.directory.path), moving=False)
     other = Simulation(case_of(ended.case.box.size, seed=4, start=start), threads=1)

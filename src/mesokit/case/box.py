@@ -58,8 +58,8 @@ class Box:
     def _two_or_three_lengths(cls, size: tuple[float, ...]) -> tuple[float, ...]:
         if len(size) not in (2, 3):
             raise ValueError("expected two lengths (2D) or three (3D)")
-        if min(size) < 2:
-            raise ValueError("expected at least 2 cells along each axis")
+        if not min(size) > 0:
+            raise ValueError("expected lengths above 0")
         return tuple(int(length) if length == int(length) else length for length in size)
 
     @field_validator("open")

@@ -90,6 +90,7 @@ class Case(Shown):
             raise CaseError(f"units: method {show(method.name)} does not know them in SI")
         if method.whole_cells:
             checks.whole_cells(self.box)
+        checks.box_keys(self.box, method)
         method.check(self)
         checks.check(self, method)
         if self.log is not None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
 from mesokit.case.box import AXES
-from mesokit.case.component import name_of, nearest, one_of, show
+from mesokit.case.component import is_component, name_of, nearest, one_of, show
 from mesokit.case.registry import family_of
 from mesokit.case.trajectory import Group, written
 from mesokit.errors import CaseError
@@ -135,16 +136,25 @@ def fields(case: Any, method: Any) -> Iterator[str]:
             )
 
 
-def no_shear(box: Any, why: str) -> None:
-    """Raise CaseError, which says why, for a box that says something of shear."""
-    if box.shear_rate or box.shear is not None:
-        raise CaseError(f"{box.shear_key}: {why}")
-    if box.shear_frequency:
-        raise CaseError(f"box.shear_frequency = {show(box.shear_frequency)}: {why}")
+def box_keys(box: Any, method: Any) -> None:
+    """Raise CaseError for a key of the box that the method does not take."""
+    usual = type(box)(box.size)
+    for key in (field.name for field in dataclasses.fields(box)):
+        value = getattr(box, key)
+        if key == "size" or key in method.box or value == getattr(usual, key):
+            continue
+        tagged = f".rule = {show(name_of(value))}" if is_component(type(value)) else ""
+        said = tagged or f" = {show(list(value) if isinstance(value, tuple) else value)}"
+        raise CaseError(f"box.{key}{said}: not with method {show(method.name)}")
 
 
 def whole_cells(box: Any) -> None:
-    """Raise CaseError for a length that is no whole number, where the method has cells."""
+    """Raise CaseError for a length that is no whole number, or too few cells, where the method has
+    cells."""
+    if min(box.size) < 2:
+        raise CaseError(
+            f"box.size = {show(list(box.size))}: expected at least 2 cells along each axis"
+        )
     for i, length in enumerate(box.size):
         if length != int(length):
             raise CaseError(f"box.size[#{i + 1}] = {show(length)}: expected a whole number")

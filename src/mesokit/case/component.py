@@ -16,6 +16,7 @@ import math
 import numbers
 import operator
 import re
+import stat
 import types
 import typing
 from collections.abc import Iterable, Sequence
@@ -44,7 +45,19 @@ T = TypeVar("T")
 def _located(name: str, info: ValidationInfo) -> str:
     """A file name that holds wherever it is read: from the folder of the case on, or from here."""
     folder = (info.context or {}).get("folder") or Path.cwd()
-    return str((folder / name).resolve())
+    try:
+        path = (folder / name).resolve()
+        mode = path.stat().st_mode
+    except (FileNotFoundError, NotADirectoryError, PermissionError):  # where it is read, it is told
+        return str(path)
+    except RuntimeError:  # of Python up to 3.12
+        raise PydanticCustomError("file", "a loop of links; expected a file") from None
+    except (OSError, ValueError) as error:
+        reason = (getattr(error, "strerror", None) or str(error)).lower()
+        raise PydanticCustomError("file", "{reason}; expected a file", {"reason": reason}) from None
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):  # a pipe would be waited for, for ever
+        raise PydanticCustomError("file", "a pipe or device; expected a file")
+    return str(path)
 
 
 FileName = Annotated[str, AfterValidator(_located)]

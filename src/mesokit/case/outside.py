@@ -62,7 +62,10 @@ def require_parts(record: Any) -> None:
         module, _, base = part["family"].partition(":")
         if not module.startswith("mesokit."):
             raise RunError(f"{part['family']} is no family of parts")
-        family = FAMILIES[getattr(importlib.import_module(module), base)]
+        try:
+            family = FAMILIES[getattr(importlib.import_module(module), base)]
+        except (ImportError, AttributeError, KeyError, TypeError):
+            raise RunError(f"{part['family']} is no family of parts") from None
         if family.find(part["name"]) is None:
             module = part["class"].partition(":")[0]
             cure = f"import it first: `import {module}`, or mesokit --import {module} ..."

@@ -33,6 +33,15 @@ class Snapshot(NamedTuple):
     diameters: Floats | None = None
     spins: Floats | None = None
 
+    def scaled(self, scale: float) -> Snapshot:
+        """The same with all lengths times a factor; times and masses stay."""
+        lengths = {
+            name: scale * getattr(self, name)
+            for name in ("positions", "velocities", "low", "lengths", "diameters")
+            if getattr(self, name) is not None
+        }
+        return self._replace(**lengths)
+
 
 def rows_of(numbers: NDArray[Any], wanted: NDArray[Any]) -> NDArray[np.int64]:
     """Rows in which these numbers of particles are. Raises CaseError for one that is not there.

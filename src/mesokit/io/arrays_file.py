@@ -82,9 +82,12 @@ def _write(file: IO[bytes], members: list[Member]) -> None:
 def load(path: str | Path, large: float = math.inf) -> dict[str, NDArray[Any]]:
     """The arrays of a file; those of so many bytes stay there, as maps that read what is asked for.
 
-    Every byte is checked first. Raises what zipfile, zlib and numpy do for a damaged file.
+    Every byte is checked first. Raises what zipfile, zlib and numpy do for a damaged file, and
+    ValueError for members that are compressed: the file has as many bytes as its arrays.
     """
     with zipfile.ZipFile(path) as archive:
+        for member in archive.infolist():
+            _require_plain(member)
         for member in archive.infolist():
             with archive.open(member) as stream:
                 while stream.read(READ):
@@ -98,14 +101,20 @@ def load(path: str | Path, large: float = math.inf) -> dict[str, NDArray[Any]]:
 def one(path: str | Path, name: str) -> NDArray[Any]:
     """One array of a file, checked. Raises what zipfile, zlib and numpy do for a damaged file."""
     with zipfile.ZipFile(path) as archive, archive.open(name + SUFFIX) as stream:
+        _require_plain(archive.getinfo(name + SUFFIX))
         return np.asarray(npy.read_array(stream, allow_pickle=False))
+
+
+def _require_plain(member: zipfile.ZipInfo) -> None:
+    if member.compress_type != zipfile.ZIP_STORED:
+        raise ValueError(f"{member.filename} is compressed")
 
 
 def _array(
     path: str | Path, archive: zipfile.ZipFile, member: zipfile.ZipInfo, large: float
 ) -> NDArray[Any]:
     with archive.open(member) as stream:
-        if member.file_size < large or member.compress_type != zipfile.ZIP_STORED:
+        if member.file_size < large:
             return np.asarray(npy.read_array(stream, allow_pickle=False))
         shape, fortran, dtype = HEADERS[npy.read_magic(stream)](stream)
         header = stream.tell()

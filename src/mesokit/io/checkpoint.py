@@ -59,7 +59,7 @@ def write(
     ----------
     path: the file.
     arrays: what the run needs to go on, by name; some may come in pieces (see `arrays_file`).
-    meta: plain numbers and texts that go with them.
+    meta: plain numbers and texts that go with them: `step`, and others.
     case: `digest` of the resolved case.
     here: whether this rank, of several that all call this, is the one that writes.
 
@@ -136,6 +136,10 @@ def _load(
         raise CheckpointError(
             f"{path}: format {version}; this version of mesokit reads format {FORMAT}"
         )
+    meta = header["meta"]
+    step = meta.get("step") if isinstance(meta, dict) else None
+    if type(step) is not int or step < 0:
+        raise CheckpointError(f"{path}: damaged: it does not say its step")
     return arrays, header
 
 

@@ -19,7 +19,7 @@ NONE_YET = -1  # the step of a run that has not looked at its first state
 
 def seen_until(meta: Mapping[str, Any]) -> int:
     """The step up to which the run of a checkpoint has looked, from the meta of that checkpoint."""
-    return int(meta["step"]) if meta["looked"] else NONE_YET
+    return int(meta["step"]) if meta.get("looked") else NONE_YET
 
 
 def require_frames(directory: RunDirectory, case: Case, step: int) -> None:
@@ -41,7 +41,8 @@ def require_frames(directory: RunDirectory, case: Case, step: int) -> None:
                 f"{place}: damaged, and only it held the frames of the trajectory; put a copy "
                 f"in its place, or run anew: {directory.again}"
             ) from None
-    wanted = range(case.run.warmup, step + 1, every)
+    last = min(step, case.run.warmup + case.run.steps)
+    wanted = range(case.run.warmup, last + 1, every)
     lost = sorted(set(wanted) - set(there.tolist()))
     if lost:
         raise RunError(

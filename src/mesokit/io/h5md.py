@@ -224,7 +224,7 @@ def opened(path: str | Path) -> Iterator[Any]:
             yield file
     except FileNotFoundError:
         raise RunError(f"{path}: no such file") from None
-    except (OSError, KeyError, ValueError, TypeError, RuntimeError) as error:
+    except (OSError, LookupError, ValueError, TypeError, AttributeError, RuntimeError) as error:
         if getattr(error, "errno", None):  # not the file but the system, such as a full disk
             raise
         raise RunError(f"{path}: damaged: it is not a whole HDF5 file") from None

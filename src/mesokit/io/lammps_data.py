@@ -1,8 +1,4 @@
-"""Data files of LAMMPS, of atom styles atomic, bond, angle, molecular, full and sphere.
-
-MDAnalysis takes the file apart into header and sections; it would keep numbers in single precision
-and neither images nor the corner of the box, so that the columns are read here.
-"""
+"""Data files of LAMMPS: header, sections, and the columns of common atom styles."""
 
 from __future__ import annotations
 
@@ -15,70 +11,118 @@ from numpy.typing import NDArray
 from mesokit.case.component import one_of, show
 from mesokit.case.snapshot import Snapshot, rows_of
 from mesokit.errors import CaseError
-from mesokit.io.optional import package
 
-# columns before the coordinates: number, molecule, type, charge; or number, type, diameter, density
-STYLES = {"atomic": 2, "bond": 3, "angle": 3, "molecular": 3, "full": 4, "sphere": 4}
-ROUND = "sphere"  # the style that is only known where the file says so
-COLUMNS = {5: "atomic", 6: "molecular", 7: "full"}  # without images, which are three more
+# columns before the coordinates
+STYLES = {
+    "atomic": ("id", "type"),
+    "charge": ("id", "type", "charge"),
+    "bond": ("id", "molecule", "type"),
+    "angle": ("id", "molecule", "type"),
+    "molecular": ("id", "molecule", "type"),
+    "full": ("id", "molecule", "type", "charge"),
+    "sphere": ("id", "type", "diameter", "density"),
+    "bpm/sphere": ("id", "molecule", "type", "diameter", "density"),
+}
+# styles of LAMMPS with other columns
+OTHERS = (
+    *("amoeba", "body", "dielectric", "dipole", "dpd", "edpd", "electron", "ellipsoid", "hybrid"),
+    *("line", "mdpd", "oxdna", "peri", "rheo", "smd", "sph", "spin", "tdpd", "template", "tri"),
+    "wavepacket",
+)
+# by the number of columns, without images: where the third is of whole numbers, and where it is not
+USUAL = {5: ("atomic", "atomic"), 6: ("molecular", "charge"), 7: ("full", "sphere")}
+CORNERS = tuple(f"{axis}lo {axis}hi" for axis in "xyz")
+TILTS = "xy xz yz"
+
+Sections = dict[str, list[list[str]]]
 
 
 def read(path: str) -> Snapshot:
     """The particles of a data file. Raises CaseError for one that cannot be read."""
-    parser = package("MDAnalysis.topology.LAMMPSParser", "LAMMPS data files")
     try:
-        style = _style(path)
-        with parser.DATAParser(path) as data:
-            header, sections = data.grab_datafile()
-        return _snapshot(header, sections, style)
+        return _snapshot(*_parts(Path(path).read_text(encoding="utf-8")))
     except CaseError:
         raise
-    except (OSError, EOFError, ValueError, KeyError, IndexError) as error:
+    except (OSError, ValueError, KeyError, IndexError) as error:
         reason = getattr(error, "strerror", None) or f"{error}"
         raise CaseError(f"cannot be read as a LAMMPS data file: {reason}") from None
 
 
-def _snapshot(header: dict[str, str], sections: dict[str, Any], style: str | None) -> Snapshot:
+def _parts(text: str) -> tuple[dict[str, str], Sections, str | None]:
+    """Values of the header by keyword, words of the lines of each section, and the atom style, if
+    the comment of the heading `Atoms` is one. The first line is a title."""
+    header: dict[str, str] = {}
+    sections: Sections = {}
+    rows: list[list[str]] | None = None
+    style = None
+    for line in text.splitlines()[1:]:
+        content, _, comment = line.partition("#")
+        words = content.split()
+        if not words:
+            continue
+        if words[0][0].isalpha():  # lines of the header and of sections begin with a number
+            rows = sections.setdefault(" ".join(words), [])
+            said = comment.split()[:1] if words == ["Atoms"] else []
+            if said and said[0] in OTHERS:
+                raise CaseError(f"atom style {show(said[0])}: expected {one_of(list(STYLES))}")
+            if said and said[0] in STYLES:
+                style = said[0]
+        elif rows is not None:
+            rows.append(words)
+        else:
+            values = [word for word in words if not word[0].isalpha()]
+            header[" ".join(words[len(values) :])] = " ".join(values)
+    return header, sections, style
+
+
+def _snapshot(header: dict[str, str], sections: Sections, style: str | None) -> Snapshot:
     if not sections.get("Atoms"):
         raise CaseError("it has no section Atoms")
     atoms = _numbers(sections, "Atoms")
-    style = style or COLUMNS.get(atoms.shape[1] - 3 * (atoms.shape[1] > 7))
-    before = STYLES.get(style or "")
-    if before is None or atoms.shape[1] not in (before + 3, before + 6):
+    width = atoms.shape[1]
+    if style is None and width - 3 * (width > 7) in USUAL:
+        whole = all(words[2].lstrip("+-").isdecimal() for words in sections["Atoms"])
+        style = USUAL[width - 3 * (width > 7)][0 if whole else 1]
+    names = STYLES.get(style or "", ())
+    before = len(names)
+    if not names or width not in (before + 3, before + 6):
         raise CaseError(
-            f"its {atoms.shape[1]} columns of Atoms are not those of style {show(style or '?')}; "
-            f"expected {one_of(list(STYLES))}"
+            f"its {width} columns of Atoms are not those of style {show(style or '?')}; "
+            f"expected {one_of(list(STYLES))}, after '#' beside the heading Atoms"
         )
     n, numbers = len(atoms), atoms[:, 0].astype(int)
     if len(np.unique(numbers)) < n or str(n) != header.get("atoms", str(n)).strip():
         raise CaseError(f"it has {n} lines of Atoms; expected one for each of its atoms")
+    if missing := [name for name in CORNERS if name not in header]:
+        raise CaseError(f"its header has no line of {show(missing[0])}; expected the box")
     order = np.argsort(numbers)
     atoms, numbers = atoms[order], numbers[order]
-    corners = np.array([header[f"{axis}lo {axis}hi"].split() for axis in "xyz"], float)
+    corners = np.array([header[name].split() for name in CORNERS], float)
     velocities, spins = _velocities(sections, numbers)
-    diameters = atoms[:, 2] if style == ROUND else None
+    column = {name: atoms[:, i] for i, name in enumerate(names)}
+    diameters = column.get("diameter")
     links = np.zeros((0, 2), int)
     if sections.get("Bonds"):
         links = rows_of(numbers, _numbers(sections, "Bonds")[:, 2:4].astype(int))
-    with_images = atoms.shape[1] == before + 6
+    with_images = width == before + 6
     return Snapshot(
         positions=atoms[:, before : before + 3],
         velocities=velocities,
         images=atoms[:, before + 3 :].astype(int) if with_images else None,
-        masses=_masses(sections, atoms[:, 1 if before == 2 else 2])
+        masses=_masses(sections, column["type"])
         if diameters is None
-        else atoms[:, 3] * np.pi / 6 * diameters**3,
+        else column["density"] * np.pi / 6 * diameters**3,
         bonds=links,
         numbers=numbers,
         low=corners[:, 0],
         lengths=corners[:, 1] - corners[:, 0],
-        tilts=np.array(header.get("xy xz yz", "0 0 0").split(), float),
+        tilts=np.array(header.get(TILTS, "0 0 0").split(), float),
         diameters=diameters,
         spins=spins,
     )
 
 
-def _velocities(sections: dict[str, Any], numbers: NDArray[np.int64]) -> tuple[Any, Any]:
+def _velocities(sections: Sections, numbers: NDArray[np.int64]) -> tuple[Any, Any]:
     """Velocities (n, 3), and angular velocities (n, 3) of spheres; None of what is not there."""
     if not sections.get("Velocities"):
         return None, None
@@ -88,7 +132,7 @@ def _velocities(sections: dict[str, Any], numbers: NDArray[np.int64]) -> tuple[A
     return found[:, :3], found[:, 3:6] if found.shape[1] >= 6 else None
 
 
-def _masses(sections: dict[str, Any], kinds: NDArray[np.float64]) -> NDArray[np.float64] | None:
+def _masses(sections: Sections, kinds: NDArray[np.float64]) -> NDArray[np.float64] | None:
     if not sections.get("Masses"):
         return None
     table = _numbers(sections, "Masses")
@@ -96,24 +140,11 @@ def _masses(sections: dict[str, Any], kinds: NDArray[np.float64]) -> NDArray[np.
     return np.array([mass[kind] for kind in kinds.tolist()])
 
 
-def _numbers(sections: dict[str, Any], name: str) -> NDArray[np.float64]:
+def _numbers(sections: Sections, name: str) -> NDArray[np.float64]:
     """The lines of a section as a table."""
     try:
-        return np.array([line.split() for line in sections[name]], float)
+        return np.array(sections[name], float)
     except ValueError:
         raise CaseError(
             f"its section {name} is damaged; expected as many numbers in every line"
         ) from None
-
-
-def _style(path: str) -> str | None:
-    """The atom style that the heading of the section says, `Atoms # bond`; None where it does not.
-
-    Raises CaseError for one that is not known.
-    """
-    with Path(path).open(encoding="utf-8") as file:
-        headings = [line.partition("#")[2].strip() for line in file if line.startswith("Atoms")]
-    style = headings[0] if headings and headings[0] else None
-    if style is not None and style not in STYLES:
-        raise CaseError(f"atom style {show(style)}: expected {one_of(list(STYLES))}")
-    return style

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesokit.errors import CheckpointError
+from mesokit.errors import CheckpointError, MesokitError
 from mesokit.io import checkpoint
 from mesokit.io.arrays_file import LARGE
 from mesokit.io.run_directory import RunDirectory
@@ -54,10 +54,16 @@ def take_up(
         engines = tuple(f"{prefix}engine/" for prefix, _ in parts)
         arrays, meta = _read_by_one(directory, case, engines, comm)
     with fitting(path):
+        if type(meta.get("looked")) is not bool:
+            raise ValueError("it does not say whether its step was looked at")
         for prefix, replica in parts:
             own = checkpoint.part(arrays, prefix)
             replica.engine.restore(checkpoint.part(own, "engine/"))
             restore(replica.accumulators, own)
+            if replica.engine.step != meta["step"]:
+                raise ValueError(
+                    f"it is of step {meta['step']}, its state of step {replica.engine.step}"
+                )
     return meta
 
 
@@ -108,19 +114,30 @@ def measured(directory: RunDirectory, case: Case) -> tuple[dict[str, Any], int]:
                     pool(name, pooled[name], accumulator)
                 else:
                     pooled[name] = accumulator
-    return pooled, int(meta["step"])
+    return pooled, meta["step"]
 
 
 def restore(accumulators: Mapping[str, Any], arrays: Mapping[str, Any]) -> None:
-    """Let accumulators go on from the arrays of a checkpoint."""
+    """Let accumulators go on from the arrays of a checkpoint.
+
+    Raises ValueError for one of other dimensions or another kind of numbers.
+    """
     for name, accumulator in accumulators.items():
-        accumulator.restore(checkpoint.part(arrays, f"observe/{name}/"))
+        own = checkpoint.part(arrays, f"observe/{name}/")
+        for key, empty in accumulator.state().items():
+            empty, given = np.asarray(empty), np.asarray(own[key])  # which may have grown
+            other = (empty.ndim, empty.dtype.kind) != (given.ndim, given.dtype.kind)
+            if empty.size and (other or given.size < empty.size):
+                raise ValueError(f"observe/{name}/{key}: {given.dtype} of shape {given.shape}")
+        accumulator.restore(own)
 
 
 @contextlib.contextmanager
 def fitting(path: Path) -> Iterator[None]:
-    """Arrays that do not fit the case are a CheckpointError."""
+    """Arrays that do not fit the case are a CheckpointError, whatever is wrong with them."""
     try:
         yield
-    except (KeyError, ValueError, IndexError) as error:
+    except MesokitError:
+        raise
+    except Exception as error:
         raise CheckpointError(f"{path}: does not fit this case: {error}") from None

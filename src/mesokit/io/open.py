@@ -16,7 +16,7 @@ from mesokit.case.describe.shown import Shown
 from mesokit.errors import CaseError, RunError
 from mesokit.io import checkpoint, h5md, log_file, tables
 from mesokit.io.frames import require_frames, seen_until
-from mesokit.io.measured import measured
+from mesokit.io.measured import fitting, measured
 from mesokit.io.pooled import merge_again, pooled_words
 from mesokit.io.run_directory import RunDirectory
 from mesokit.io.shared_work import work_words
@@ -73,7 +73,8 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         if not self.directory.checkpoint_file.exists():
             raise RunError(f"{self.path}: the run {self.state}")
         made, _ = measured(self.directory, self.case)
-        return {name: result_of(one, self.case) for name, one in made.items()}
+        with fitting(self.directory.checkpoint_file):
+            return {name: result_of(one, self.case) for name, one in made.items()}
 
     @cached_property
     def _final(self) -> dict[str, Result]:

@@ -18,6 +18,7 @@ from mesokit.case.outside import outside_parts, require_parts
 from mesokit.errors import CaseError, RunError
 from mesokit.io import checkpoint
 from mesokit.io.atomic import write_text
+from mesokit.io.record_shape import misshapen
 from mesokit.io.sources import parents, sources
 from mesokit.method.protocol import method_of
 
@@ -187,11 +188,14 @@ class RunDirectory:
     def read_provenance(self) -> dict[str, Any]:
         """What `write_provenance` wrote, {} if nothing. Raises RunError if it is damaged."""
         try:
-            return dict(json.loads(self.provenance_file.read_text(encoding="utf-8")))
+            record = json.loads(self.provenance_file.read_text(encoding="utf-8"))
         except FileNotFoundError:
             return {}
-        except (OSError, ValueError, TypeError) as error:
+        except (OSError, ValueError, RecursionError) as error:
             raise RunError(f"{self.provenance_file}: cannot be read: {error}") from None
+        if (wrong := misshapen(record)) is not None:
+            raise RunError(f"{self.provenance_file}: damaged: {wrong}")
+        return dict(record)
 
     def write_provenance(self, provenance: Mapping[str, Any]) -> None:
         """Replace the provenance. Raises RunError."""

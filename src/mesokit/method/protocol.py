@@ -26,12 +26,14 @@ Row = tuple[str, str, str]  # what, its value, and a word on it
 
 class Summary(NamedTuple):
     """What follows from a case before it runs: a table for `mesokit check`, warnings, about how
-    many seconds the run takes, and the same as plain numbers by name, for scripts."""
+    many seconds the run takes, the same as plain numbers by name, for scripts, and about how many
+    bytes of memory it takes."""
 
     rows: tuple[Row, ...]
     warnings: tuple[str, ...]
     seconds: float
     numbers: Mapping[str, Any] = MappingProxyType({})
+    memory: float = 0.0
 
     def record(self) -> dict[str, Any]:
         """What `mesokit check --json` prints of it."""
@@ -106,6 +108,8 @@ class Method:
         Fills the engine.
     whole_cells : bool, optional
         Whether the lengths of its box are whole numbers of cells; True unless said.
+    box : sequence of str, optional
+        Keys of the box that it takes beside `size`; all others are refused.
     keys : mapping, optional
         Names of sections as they are in a file where these differ from those in Python: of a list
         of tables, `[[wall]]` for `walls`.
@@ -148,6 +152,8 @@ class Method:
     check_ranks : function of a case and a number of ranks, optional
         Raises CaseError for a case that cannot be run on so many ranks of MPI; without it, none
         can. Its engine is then asked by all ranks at once.
+    prepared : function of a case and arrays by name, optional
+        The case with keys that follow from the state it starts from; raises CaseError.
     """
 
     name: str
@@ -161,6 +167,7 @@ class Method:
     engine: Callable[[Case, int, Sequence[str]], Engine]
     start: Callable[[Any, Any], None]
     whole_cells: bool = True
+    box: tuple[str, ...] = ()
     keys: Mapping[str, str] = field(default_factory=dict)
     arrays: tuple[str, ...] = ()
     expected: Mapping[str, Callable[[Case, Any], Any]] = field(default_factory=dict)
@@ -180,6 +187,7 @@ class Method:
     si: Callable[[Case], Any] | None = None
     build_up: Callable[[Case], BuildUp | None] | None = None
     check_ranks: Callable[[Case, int], None] | None = None
+    prepared: Callable[[Case, Mapping[str, Any]], Case] = lambda case, arrays: case
 
 
 def method_of(case: Case) -> Method:
@@ -203,4 +211,5 @@ def summary_of(case: Case, threads: int | None = None) -> Summary:
             rows.append((name, duration_text(seconds), f"estimate: of all, {cores} threads"))
         else:
             rows.append((name, value, "estimate: of each" if name == "memory" else note))
-    return Summary(tuple(rows), one.warnings, seconds, {**one.numbers, "replicas": number})
+    numbers = {**one.numbers, "replicas": number}
+    return Summary(tuple(rows), one.warnings, seconds, numbers, one.memory * number)

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.engine import RunningSpheres
 
+USUAL_GAP = 0.1  # of the largest diameter
+
 
 @component
 class ClusterSize(Observable):
@@ -30,7 +32,13 @@ class ClusterSize(Observable):
     methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
     of_methods_alone: ClassVar[bool] = True
     needs_fluid: ClassVar[bool] = False
-    gap: float = param(0.1, doc="between the surfaces of neighbours, at most", unit="a", gt=0)
+    gap: float | None = param(
+        None,
+        doc="between the surfaces of neighbours, at most (a tenth of the largest diameter unless "
+        "said)",
+        unit="a",
+        gt=0,
+    )
 
     def accumulator(self, case: Case) -> ClusterSizeAccumulator:
         """An empty memory for it."""
@@ -41,7 +49,9 @@ class ClusterSizeAccumulator(BlockAccumulator):
     """Block averages of the shares, of the mean and of the largest."""
 
     def __init__(self, observable: ClusterSize, case: Case) -> None:
-        self.name, self.gap, self.case = observable.label, observable.gap, case
+        self.name, self.case = observable.label, case
+        usual = USUAL_GAP * case.spheres.largest(case.box)
+        self.gap = usual if observable.gap is None else observable.gap
         self.classes = case.particles.bit_length()
         self.blocks = Blocks((self.classes + 2,))
         closed = method_of(case).closed_axes(case)

@@ -65,7 +65,11 @@ class RadialDistribution(Observable):
         "all", doc='"between": only those of different molecules'
     )
     reach: float | None = param(
-        None, doc="longest distance (half of the shortest side, 5 at most)", unit="a", gt=0
+        None,
+        doc="longest distance (half of the shortest side unless said; of fluids 5 at most, of "
+        "spheres 5 of the largest diameter)",
+        unit="a",
+        gt=0,
     )
     bins: int = param(50, doc="bins of the distance", ge=1, le=10_000)
     particles: int = param(400, doc="of the fluid, those looked at, others at each sample", ge=2)
@@ -123,10 +127,12 @@ class RadialDistributionAccumulator(BlockAccumulator):
             [_sample(case, group, most) for group in groups] for groups in (self.first, self.second)
         )
         self.box = np.array(case.box.size, float)
-        reach = observable.reach or min(FARTHEST, min(case.box.size) / 2)
+        method = method_of(case)
+        unit = case.spheres.largest(case.box) if method.spheres else 1.0
+        reach = observable.reach or min(FARTHEST * unit, min(case.box.size) / 2)
         self.edges = np.linspace(0.0, reach, observable.bins + 1)
         self.shells = shells(self.edges, case.box.dimension)
-        known = method_of(case).expected.get("radial-distribution")
+        known = method.expected.get("radial-distribution")
         self.theory: Neighbours | None = None if known is None else known(case, observable)
         self.near = np.zeros(0) if self.theory is None else _beyond(self.theory.diameter)
         self.blocks = Blocks((observable.bins + max(0, len(self.near) - 1),))

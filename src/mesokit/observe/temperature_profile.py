@@ -74,7 +74,7 @@ class TemperatureProfileAccumulator(ProfileAccumulator):
         self.across = min(others) if others else None
         if self.across is not None:
             self.axes += (self.across,)
-            self.counts += (int(case.box.size[self.across]) * observable.bins_per_cell,)
+            self.counts += (max(1, round(case.box.size[self.across] * observable.bins_per_cell)),)
         self.blocks = Blocks((width, *self.counts))
 
     def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:

@@ -41,6 +41,14 @@ class WallStress(Observable):
     def check(self, case: Case) -> None:
         """Raise CaseError without walls, or for a second one: it sees what the first left."""
         if slit_of(case) is None:
+            rules = {
+                f"wall[#{i + 1}].{side}.rule = 'diffuse'"
+                for i, wall in enumerate(case.walls)
+                for side, surface in wall.surfaces().items()
+                if wall.closed_axes and surface.rule == "diffuse"
+            }
+            if rules:
+                raise CaseError(f"{min(rules)}: not here; for diffuse plates observe 'forces'")
             raise CaseError(
                 "wall-stress needs one [[wall]] of shape 'plates', and no other; "
                 "for other walls observe 'forces'"

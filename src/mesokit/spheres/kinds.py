@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
+from typing import TYPE_CHECKING
 
 from pydantic import model_validator
 
 from mesokit.case.component import component, param
+
+if TYPE_CHECKING:
+    Diameter = float  # a section of spheres fills it in
+else:
+    Diameter = float | None
 
 
 @component
@@ -19,7 +26,14 @@ class SphereKind:
     True
     """
 
-    diameter: float = param(1.0, doc="diameter, or the middle of them", unit="a", ge=1e-3, le=1e6)
+    diameter: Diameter = param(
+        None,
+        doc="diameter, or the middle of them (that of the potential if one acts, else 1, unless "
+        "said)",
+        unit="a",
+        gt=0,
+        le=1e9,
+    )
     share: float = param(1.0, doc="how many, in proportion to other kinds", gt=0, le=1e9)
     spread: float = param(
         0.0, doc="diameters are uniform within this part of the middle on both sides", ge=0, lt=1
@@ -37,6 +51,14 @@ class SphereKind:
         if self.mass is not None and self.density is not None:
             raise ValueError("expected a mass or a density, not both")
         return self
+
+    def filled_in(self, diameter: float) -> SphereKind:
+        """The same with a diameter, where it has none.
+
+        >>> SphereKind(mass=2.0).filled_in(0.5).diameter
+        0.5
+        """
+        return self if self.diameter is not None else dataclasses.replace(self, diameter=diameter)
 
     def mean_mass(self, dimension: int) -> float:
         """Mass of a sphere of the middle diameter."""

@@ -60,6 +60,18 @@ class Spheres:
             raise ValueError("expected a number or a density, not both")
         return self
 
+    @model_validator(mode="after")
+    def _diameters(self) -> Spheres:
+        """Kinds without a diameter have the usual one."""
+        kinds = tuple(kind.filled_in(self.usual_diameter) for kind in self.kinds)
+        object.__setattr__(self, "kinds", kinds)  # of a frozen dataclass, while it is made
+        return self
+
+    @property
+    def usual_diameter(self) -> float:
+        """The diameter of kinds that say none."""
+        return 1.0
+
     @field_validator("gravity")
     @classmethod
     def _sane(cls, gravity: tuple[float, ...]) -> tuple[float, ...]:

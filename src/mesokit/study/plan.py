@@ -18,6 +18,7 @@ from mesokit.errors import CaseError, RunError
 from mesokit.io import checkpoint
 from mesokit.io.open import RunFiles
 from mesokit.io.run_directory import RunDirectory
+from mesokit.method.protocol import method_of
 from mesokit.observe.shared.named import keyed
 from mesokit.observe.shared.result import Comparison
 from mesokit.running.longer import longer
@@ -193,7 +194,7 @@ def make(runs: Sequence[Planned], base: Base) -> list[Planned]:
     Raises CaseError for a case that cannot be, before any folder is made, and RunError where
     another case lies in the place of a run.
     """
-    cases = [(run, base.case(run.point, run.seed)) for run in runs]
+    cases = [(run, _prepared(base.case(run.point, run.seed))) for run in runs]
     for run, case in cases:
         if RunDirectory(run.path).case_file.exists():
             _require_same(run, case)
@@ -201,6 +202,11 @@ def make(runs: Sequence[Planned], base: Base) -> list[Planned]:
         if not RunDirectory(run.path).case_file.exists():
             RunDirectory.create(run.path, case)
     return list(runs)
+
+
+def _prepared(case: Case) -> Case:
+    """With the keys that follow from the state it starts from."""
+    return method_of(case).prepared(case, {})
 
 
 def _require_same(run: Planned, case: Case) -> None:

@@ -162,6 +162,7 @@ class Readings:
 
     def masses(self, ids: NDArray | None = None) -> Floats:
         """Masses (n,) by particle id: kinds are numbered one after the other, then come solutes."""
+        ids = self._all_beads(ids)
         if ids is None:
             return self.numbers.masses()
         mass, beads = np.zeros(len(ids)), np.asarray(ids) >= self.n
@@ -175,6 +176,7 @@ class Readings:
     def species(self, ids: NDArray | None = None) -> NDArray[np.int64]:
         """Kind of each particle (n,), by particle id: its place in fluid.species, then those of
         solutes.polymers."""
+        ids = self._all_beads(ids)
         if ids is None:
             return self.numbers.kinds()
         kind = self.numbers.kinds_of(np.minimum(ids, max(self.n - 1, 0)))
@@ -237,6 +239,7 @@ class Readings:
 
     def _gather(self, ids: NDArray | None, unwrapped: bool) -> Seen:
         """Places, velocities, images by particle id; those of beads of solutes follow the fluid."""
+        ids = self._all_beads(ids)
         if self.solutes is None or ids is None or (ids < self.n).all():
             return self._gather_fluid(ids, unwrapped)
         own = ids < self.n
@@ -248,6 +251,12 @@ class Readings:
         if own.any():
             r[own], v[own], image[own] = self._gather_fluid(ids[own], unwrapped)
         return Seen(r, v, image)
+
+    def _all_beads(self, ids: NDArray | None) -> NDArray | None:
+        """The same ids; in a random solvent, which has no particles, None stands for all beads."""
+        if ids is not None or self.n or self.solutes is None:
+            return ids
+        return np.arange(len(self.solutes.kinds()))
 
     def _gather_fluid(self, ids: NDArray | None, unwrapped: bool) -> Seen:
         slots = np.arange(self.n, dtype=np.int32) if ids is None else self._slots(ids)

@@ -34,11 +34,11 @@ OFF = 0.05  # part of the volume that samples may miss
 
 class Closed(NamedTuple):
     """A closed surface or outline: the corners (n, d, d) of its triangles or straight pieces,
-    whether it is that of a hollow, and its volume or area (None: not known)."""
+    whether it is that of a hollow, and its volume or area."""
 
     corners: Floats
-    hollow: bool = False
-    size: float | None = None
+    hollow: bool
+    size: float
 
 
 @component
@@ -86,10 +86,8 @@ class Mesh(FromFile):
             raise self.wrong(
                 "the mesh is not watertight: it has holes or loose triangles; close it first"
             )
-        corners = self.scale * np.asarray(mesh.triangles, float)
-        if not mesh.is_winding_consistent:
-            return [Closed(corners)]
-        return _bodies(corners, np.asarray(mesh.faces))
+        faces = _one_way(np.asarray(mesh.faces))
+        return _bodies(self.scale * np.asarray(mesh.vertices, float)[faces], faces)
 
     def grid(self, room: Room) -> Grid:
         """Its signed distance, positive outside."""
@@ -158,7 +156,7 @@ class Mesh(FromFile):
         bottom, top = float(low[2]), float(high[2])
         level = (self.height or 0.0) + ABOVE * (top - bottom)
         found = [
-            Closed(outline, part.hollow, abs(_area(outline)) if part.size else None)
+            Closed(outline, part.hollow, abs(_area(outline)))
             for part in self.closed
             if len(outline := _cut(part.corners, level))
         ]
@@ -175,6 +173,42 @@ class Mesh(FromFile):
     def vectors(self) -> dict[str, Any]:
         """Its parameters that have one number for each axis, by key."""
         return {} if self.position is None else {"position": self.position}
+
+
+def _one_way(faces: NDArray[np.intp]) -> NDArray[np.intp]:
+    """The triangles of closed surfaces, by the numbers of their corners, each the way round that
+    most triangles of its surface have."""
+    n = len(faces)
+    edges = faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    # of two triangles at an edge both go along it one way only where one of them is turned
+    ends = np.sort(edges, axis=1)
+    one, two = np.lexsort(ends.T).reshape(-1, 2).T
+    turned = edges[one, 0] == edges[two, 0]
+    if not turned.any():
+        return faces
+    pairs = np.sort(np.stack([one // 3, two // 3], axis=1), axis=1)
+    pairs, first = np.unique(pairs, axis=0, return_index=True)
+    relation = np.where(turned[first], -1, 1)
+    which = _surfaces(pairs, n)
+    roots = np.unique(which, return_index=True)[1]
+    # a triangle more, beside one of each surface: all are reached from it
+    pairs = np.concatenate([pairs, np.stack([roots, np.full(len(roots), n)], axis=1)])
+    relation = np.concatenate([relation, np.ones(len(roots), int)])
+    graph = sparse.coo_matrix((relation, pairs.T), shape=(n + 1, n + 1)).tocsr()
+    graph = graph + graph.T
+    order, before = sparse.csgraph.breadth_first_order(graph, n, directed=False)
+    steps = np.asarray(graph[before[order[1:]], order[1:]]).ravel()
+    sign = np.ones(n + 1, int)
+    for face, last, step in zip(order[1:], before[order[1:]], steps, strict=True):
+        sign[face] = sign[last] * step
+    sign = sign[:n] * np.where(np.bincount(which, sign[:n]) < 0, -1, 1)[which]
+    return np.where(sign[:, None] < 0, faces[:, ::-1], faces)
+
+
+def _surfaces(pairs: NDArray[np.intp], n: int) -> NDArray[np.intp]:
+    """The number of the surface of each of n triangles, which neighbours share."""
+    graph = sparse.coo_matrix((np.ones(len(pairs)), pairs.T), shape=(n, n))
+    return np.asarray(sparse.csgraph.connected_components(graph, directed=False)[1])
 
 
 def _bodies(corners: Floats, faces: NDArray[np.intp]) -> list[Closed]:
@@ -233,12 +267,10 @@ def _ends(parts: Sequence[Closed]) -> tuple[Floats, Floats]:
 
 
 def _size(parts: Sequence[Closed]) -> float | None:
-    """Volume or area of them all; None if it is not known, or bodies may overlap."""
+    """Volume or area of them all; None if bodies may overlap."""
     total = 0.0
     seen: list[tuple[Floats, Floats]] = []
     for part in parts:
-        if part.size is None:
-            return None
         total += -part.size if part.hollow else part.size
         if not part.hollow:
             low, high = _ends([part])

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from mesokit.case.array_file import array_of_contents
 from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Either
 from mesokit.errors import CaseError
@@ -71,10 +71,8 @@ class Sampled(FromFile):
     def grid(self, room: Room) -> Grid:
         """Its signed distance, positive outside."""
         try:
-            values = np.load(io.BytesIO(self.contents), allow_pickle=False)
-            if not isinstance(values, np.ndarray):
-                raise ValueError("several arrays")
-        except (OSError, ValueError, EOFError):
+            values = array_of_contents(self.contents)
+        except (ValueError, EOFError):
             raise self.wrong("expected a .npy file of numbers") from None
         origin = self.origin or (0.0,) * values.ndim
         try:

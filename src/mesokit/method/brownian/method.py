@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mesokit.case.amounts import count_text, duration_text, number, size_text
-from mesokit.case.checks import no_shear
+from mesokit.case.array_file import EXPECTED, array_in_file
 from mesokit.case.component import show
+from mesokit.case.outside_box import warn_outside
 from mesokit.case.trajectory import Group, Kind, stored_bytes
 from mesokit.case.warnings import run_warnings
 from mesokit.errors import CaseError
@@ -82,9 +83,6 @@ def check(case: Case) -> None:
             f"brownian.diffusion = {show(given.diffusion)}: in {steps} steps particles go so far "
             "that boxes cannot be counted; expected less"
         )
-    no_shear(case.box, "not with method 'brownian', whose particles drift with no one")
-    if case.box.open:
-        raise CaseError(f"box.open = {show(list(case.box.open))}: not with method 'brownian'")
 
 
 def groups(case: Case) -> tuple[Group, ...]:
@@ -112,7 +110,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     warnings = [*run_warnings(case, memory, stored)]
     if step > 0.5 * min(case.box.size):
         warnings.append(f"brownian.timestep: a step is {step:.3g} long, more than half of the box")
-    return Summary(tuple(rows), tuple(warnings), seconds)
+    return Summary(tuple(rows), tuple(warnings), seconds, memory=memory)
 
 
 def first_state(case: Case, arrays: Mapping[str, Any]) -> Array | None:
@@ -121,15 +119,21 @@ def first_state(case: Case, arrays: Mapping[str, Any]) -> Array | None:
     key = "positions" if file is None else f"brownian.positions = {file!r}"
     if not arrays and file is None:
         return None
-    try:
-        found = np.asarray(arrays["positions"] if arrays else np.load(file), float)
-    except (OSError, ValueError, TypeError):
-        raise CaseError(f"{key}: expected an array of numbers") from None
     if arrays and file is not None:
         raise CaseError(f"{key}: not with an array of positions beside")
     shape = case.particles, case.box.dimension
-    if found.shape != shape or not np.isfinite(found).all():
-        raise CaseError(f"{key}: expected finite numbers of shape {shape}, not {found.shape}")
+    try:
+        given = arrays["positions"] if file is None else array_in_file(file, "positions", shape)
+        found = np.asarray(given, float)
+    except OSError as error:
+        raise CaseError(f"{key}: {EXPECTED}: {error.strerror}") from None
+    except (ValueError, TypeError) as error:
+        raise CaseError(f"{key}: expected an array of numbers: {error}") from None
+    if found.shape != shape:
+        raise CaseError(f"{key}: shape {found.shape}: expected {shape}")
+    if not np.isfinite(found).all():
+        raise CaseError(f"{key}: row {int(np.argwhere(~np.isfinite(found))[0][0])} is not finite")
+    warn_outside(key, found, case.box)
     return found
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mesokit.case.checks import no_shear
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.method.event_driven.walls import wall_rows
@@ -13,29 +12,24 @@ from mesokit.spheres.wall import plates, solids
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.geometry.surface import Surface
 
 
 def check(case: Case) -> None:
     """Raise CaseError for a case without a meaning."""
     section, box = case.spheres, case.box
     section.check(box)
-    no_shear(box, "not with method 'event-driven'")
-    if box.open:
-        raise CaseError(f"box.open = {show(list(box.open))}: not with method 'event-driven'")
     solids.check(case)
     for key, surface in solids.surfaces(case):
         if surface.rotation is not None:
             raise CaseError(
                 f"{key}.rotation = {show(surface.rotation)}: not with method 'event-driven'"
             )
-        warmth = None if surface.contact is None else surface.contact.temperature
-        if warmth is not None and surface.rule != "diffuse":
-            raise CaseError(
-                f"{key}.contact.temperature = {show(warmth)}: only with {key}.rule = 'diffuse'"
-            )
+        _contact(case, key, surface)
     wall_rows(case)
     plates.check(case)
     _friction(case)
+    _spins(case)
     largest = section.largest(box)
     shut = {axis for wall in case.walls for axis in wall.closed_axes}
     for axis, length in zip(box.axes, box.size, strict=True):
@@ -46,6 +40,43 @@ def check(case: Case) -> None:
             )
     falls.check(case)
     section.start.check(case)
+
+
+def _contact(case: Case, key: str, surface: Surface) -> None:
+    """A surface reflects spheres, which takes restitution and friction, or is warm."""
+    contact, diffuse = surface.contact, surface.rule == "diffuse"
+    if contact is None:
+        return
+    if contact.temperature is not None and not diffuse:
+        raise CaseError(
+            f"{key}.contact.temperature = {show(contact.temperature)}: only with {key}.rule = "
+            "'diffuse'"
+        )
+    for name in ("restitution", "tangential", "friction") if diffuse else ():
+        if (value := getattr(contact, name)) is not None:
+            raise CaseError(
+                f"{key}.contact.{name} = {show(value)}: no effect with {key}.rule = 'diffuse', "
+                "which sends spheres out with the wall's temperature; leave it out"
+            )
+    own = contact.tangential
+    smooth = (case.spheres.collision.tangential if own is None else own) == -1.0
+    if contact.friction is not None and (smooth or surface.rule == "slip"):
+        raise CaseError(
+            f"{key}.contact.friction = {show(contact.friction)}: no effect on a smooth surface; "
+            f"expected {key}.contact.tangential above -1"
+            + (f" and another {key}.rule than 'slip'" if surface.rule == "slip" else "")
+        )
+
+
+def _spins(case: Case) -> None:
+    """Spins have no effect where nothing turns spheres."""
+    section = case.spheres
+    turned = section.collision.rough or bool((wall_rows(case).contacts[:, 1] > -1).any())
+    if section.spin_kT and not turned:
+        raise CaseError(
+            f"spheres.spin_kT = {show(section.spin_kT)}: no effect on smooth spheres, which "
+            "nothing turns; leave it out, or expected spheres.collision.tangential above -1"
+        )
 
 
 def _friction(case: Case) -> None:

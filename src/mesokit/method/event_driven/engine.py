@@ -169,15 +169,34 @@ class EventDriven:
         return found[:, 0] if self.dimension == 2 else found
 
     def energies(self) -> dict[str, float]:
-        """Kinetic energy of translation and of rotation, and potential energy in gravity."""
+        """Kinetic energy of translation and of rotation, and potential energy: of pairs, and in
+        gravity."""
         v, spins = self._read()[1], self.spins().reshape(self.n, -1)
         gravity = np.array(self.case.spheres.gravity or (0.0,) * self.dimension)
         places = self.positions(unwrapped=True)
         return {
             "translation": 0.5 * float(self.made.masses @ (v * v).sum(axis=1)),
             "rotation": 0.5 * float(self.system.given.inertia @ (spins * spins).sum(axis=1)),
-            "potential": -float(self.made.masses @ (places @ gravity)),
+            "potential": self._energy_of_pairs() - float(self.made.masses @ (places @ gravity)),
         }
+
+    def _energy_of_pairs(self) -> float:
+        """Of all pairs that feel one another."""
+        pair = self.case.spheres.collision
+        if pair.energy_within == 0.0:
+            return 0.0
+        from scipy.spatial import cKDTree
+
+        places, diameters = self.positions(), self.diameters()
+        around = np.where(self._repeats > 0, self.box, 3 * self.box)  # images far away
+        inside = np.where(self._repeats > 0, places, np.clip(places, 0, self.box))
+        near = cKDTree(inside, boxsize=around).query_pairs(
+            pair.reach * float(diameters.max()), output_type="ndarray"
+        )
+        way = inside[near[:, 0]] - inside[near[:, 1]]
+        way -= around * np.rint(way / around)
+        within = 0.5 * pair.reach * (diameters[near[:, 0]] + diameters[near[:, 1]])
+        return pair.energy_within * int((np.linalg.norm(way, axis=1) < within).sum())
 
     def moments(
         self, axes: tuple[int, ...], bins: tuple[int, ...], ids: Integers | None = None

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from mesokit.case.amounts import count_text
-from mesokit.case.checks import no_shear
 from mesokit.case.component import name_of, show
 from mesokit.case.warnings import require_memory
 from mesokit.errors import CaseError
@@ -25,7 +24,7 @@ LONGEST_WAY = 0.5  # of the box, in a step
 
 def check(case: Case) -> None:
     """Raise CaseError, with the key first."""
-    for found in (_birds(case), _box(case), _walls(case)):
+    for found in (_birds(case), _walls(case)):
         for message in found:
             raise CaseError(message)
     if case.walls:
@@ -73,13 +72,6 @@ def _birds(case: Case) -> Iterator[str]:
             f"flock.cohesion.attraction = {show(cohesion.attraction)}: beyond flock.radius = "
             f"{show(given.radius)}, where nobody is seen; expected less"
         )
-
-
-def _box(case: Case) -> Iterator[str]:
-    box = case.box
-    no_shear(box, "not with method 'flock', whose birds drift with no one")
-    if box.open:
-        yield f"box.open = {show(list(box.open))}: not with method 'flock', whose birds need a box"
 
 
 def _walls(case: Case) -> Iterator[str]:

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.array_file import EXPECTED, array_in_file
 from mesokit.case.component import show
+from mesokit.case.outside_box import warn_outside
 from mesokit.errors import CaseError, MesokitError
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.contact import MARGIN
@@ -55,11 +57,15 @@ def first_state(case: Case, arrays: Mapping[str, Any]) -> FirstState:
                 found["positions"], found["velocities"] = read(case, getattr(start, key))
                 keys = {name: f"{where}: {name}" for name in keys}
             else:
-                found[key], keys[key] = np.load(getattr(start, key)), where
+                shape = case.particles, case.box.dimension
+                found[key] = array_in_file(getattr(start, key), key, shape)
+                keys[key] = where
         except MesokitError as error:
             raise CaseError(f"{where}: {error}") from None
-        except (OSError, ValueError, EOFError):
-            raise CaseError(f"{where}: expected a file .npy with an array of numbers") from None
+        except OSError as error:
+            raise CaseError(f"{where}: {EXPECTED}: {error.strerror}") from None
+        except ValueError as error:
+            raise CaseError(f"{where}: {error}") from None
     positions, velocities = found.get("positions"), found.get("velocities")
     if velocities is not None and start.headings != "random":
         raise CaseError("flock.start.headings: not with velocities beside; leave it out")
@@ -115,6 +121,8 @@ def _places(case: Case, key: str, given: Any) -> Array:
         _refuse(key, places, beyond | (solids_of(case).distance(folded) < 0), "lies in a wall")
     far = (np.abs(places / np.array(case.box.size)) >= MOST_BOXES).any(axis=1)
     _refuse(key, places, far, "is 2^30 boxes away or more")
+    if not case.flock.start.run:  # where birds have flown out of the box
+        warn_outside(key, places, case.box, closed_axes(case.walls))
     return places
 
 
@@ -175,7 +183,7 @@ def _snapshot(case: Case, path: str) -> tuple[Any, Any]:
 
     Raises CaseError unless it has the box of the case, and as many particles.
     """
-    there, d = read_snapshot(path), case.box.dimension
+    there, d = read_snapshot(path, case.flock.start.scale), case.box.dimension
     lengths, wanted = there.lengths[:d], np.array(case.box.size, float)
     if not np.allclose(lengths, wanted, rtol=ROUNDING) or there.tilts.any():
         raise CaseError(

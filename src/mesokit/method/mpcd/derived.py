@@ -35,11 +35,13 @@ BYTES = {
     "particle 3D": 88,
     "cell 2D": 60,
     "cell 3D": 110,
+    "empty cell": 24,  # of a random solvent, far from beads
     "program": 215e6,
     "figures": 115e6,  # to draw them
     "bead": 500,
 }
 
+CELLS_OF_BEAD = 40  # in the page of memory where its cell lies
 COMPILING = {"fluid": 290e6, "walls": 40e6, "solids": 20e6, "beads": 50e6}
 
 
@@ -84,7 +86,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         substeps = flights if fluid.molecule is None else substeps
         bead_seconds = beads * (BEAD + BEAD_SUBSTEP * flights) * steps
     memory = beads * BYTES["bead"] + case.particles * BYTES[f"particle {dimension}D"]
-    memory += case.box.volume * BYTES[f"cell {dimension}D"] * threads
+    memory += _cells_bytes(case, beads) * threads
     heated = _heating(case, across)
     numbers = Derived(
         particles=case.particles,
@@ -111,6 +113,15 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         warnings=(),
     )
     return Derived(**{**vars(numbers), "warnings": tuple(cautions(case, numbers, across))})
+
+
+def _cells_bytes(case: Case, beads: int) -> int:
+    """Memory of the cells for each thread; of a random solvent few are ever touched."""
+    cells, each = case.box.volume, BYTES[f"cell {case.box.dimension}D"]
+    if case.solutes is None or case.solutes.solvent != "random":
+        return cells * each
+    touched = min(cells, beads * CELLS_OF_BEAD)
+    return touched * each + cells * BYTES["empty cell"]
 
 
 def compiling_memory(case: Case) -> int:

@@ -154,6 +154,7 @@ METHOD = Method(
     start_from_run="fluid.start.run",
     sections=Sections,
     keys=KEYS,
+    box=("shear_rate", "shear_frequency", "open", "shear"),
     observables=(Observable,),
     check=combinations.check,
     groups=groups,

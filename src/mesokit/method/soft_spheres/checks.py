@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mesokit.case.checks import no_shear
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import Solids
@@ -18,6 +17,7 @@ from mesokit.spheres.wall.surfaces import other_walls, surface_rows
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
+ROUNDING = 1e-5  # relative, of diameters as people write them
 CONTACT = ("temperature", "tangential", "restitution", "friction")  # of a surface
 
 
@@ -27,9 +27,6 @@ def check(case: Case) -> None:
     solids.check(case)
     section.check(box)
     section.start.check(case)
-    no_shear(box, "not with method 'soft-spheres'")
-    if box.open:
-        raise CaseError(f"box.open = {show(list(box.open))}: not with method 'soft-spheres'")
     _walls(case)
     plates.check(case)
     _potential(case)
@@ -41,13 +38,18 @@ def check(case: Case) -> None:
                 f"box.size = {show(list(box.size))}: expected at least twice the reach of the pair "
                 f"law ({2 * reach:g}) along {axis}"
             )
-        if axis not in shut and length < 2 * (reach + section.skin_of(box)):
+        if axis not in shut and length < 2 * (reach + section.skin_of(box, shut)):
             raise CaseError(
-                f"spheres.skin: expected less than {0.5 * length - reach:.3g}, half of the box "
-                f"along {axis} less the reach"
+                f"spheres.skin = {show(section.skin)}: expected less than "
+                f"{0.5 * length - reach:.3g}, half of the box along {axis} less the reach"
             )
     falls.check(case)
     _timestep(case)
+    if section.spin_kT and not (section.turns or rubs(case)):
+        raise CaseError(
+            f"spheres.spin_kT = {show(section.spin_kT)}: no effect on smooth spheres, which "
+            "nothing turns; leave it out, or expected spheres.pair.friction above 0"
+        )
 
 
 def _walls(case: Case) -> None:
@@ -65,11 +67,11 @@ def _walls(case: Case) -> None:
         if wall.virtual != "extrapolate":
             raise CaseError(f"wall[#{i + 1}].virtual = {show(wall.virtual)}: spheres need none")
         for name, surface in wall.surfaces().items():
-            _surface(f"wall[#{i + 1}].{name}", surface, touching, i in others)
+            _surface(f"wall[#{i + 1}].{name}", surface, case, i in others)
 
 
-def _surface(key: str, surface: Surface, touching: bool, other: bool) -> None:
-    contact = surface.contact
+def _surface(key: str, surface: Surface, case: Case, other: bool) -> None:
+    contact, touching = surface.contact, isinstance(case.spheres.pair, ContactLaw)
     if surface.rule == "diffuse":
         raise CaseError(f"{key}.rule = 'diffuse': not with method 'soft-spheres'")
     if contact is None:
@@ -86,6 +88,8 @@ def _surface(key: str, surface: Surface, touching: bool, other: bool) -> None:
     for name in ("restitution", "friction"):
         if not touching and given[name] is not None:
             raise CaseError(f"{said[name]}: a potential has none")
+    if given["friction"] and surface.rule == "slip":
+        raise CaseError(f"{said['friction']}: no effect with {key}.rule = 'slip'; leave one out")
 
 
 def _potential(case: Case) -> None:
@@ -97,19 +101,25 @@ def _potential(case: Case) -> None:
     if any(kind.spread for kind in kinds) or len({kind.diameter for kind in kinds}) > 1:
         raise CaseError("spheres.kinds: a potential acts between spheres of one diameter alone")
     given, own = kinds[0].diameter * scale, section.pair.diameter
-    if abs(given - own) > 1e-9 * own:
+    if abs(given - own) > ROUNDING * own:
         raise CaseError(
-            f"spheres.kinds: diameter {given:g}; expected that of the potential, {own:g} "
-            "(with number or density, and no packing fraction beside)"
+            f"spheres.kinds: diameter {given:.9g}; expected that of the potential, {own:.9g}, as "
+            "kinds have that say none (with number or density, and no packing fraction beside)"
         )
+
+
+def rubs(case: Case) -> bool:
+    """Whether a wall has friction of its own."""
+    contacts = [surface.contact for _, surface in solids.surfaces(case)]
+    return any(contact is not None and bool(contact.friction) for contact in contacts)
 
 
 def _timestep(case: Case) -> None:
     """A contact must be followed."""
-    section, box = case.spheres, case.box
+    section = case.spheres
     if section.timestep is None or not isinstance(section.pair, ContactLaw):
         return
-    time = scales.shortest_contact(section, box)
+    time = scales.shortest_contact(case)
     if section.timestep > time / scales.REFUSED:
         raise CaseError(
             f"spheres.timestep = {show(section.timestep)}: expected at most a tenth of the contact "

@@ -26,10 +26,10 @@ class SoftEngine:
     """Engine of soft spheres (`mesokit.engine.Engine`) on the threads of one machine."""
 
     def __init__(self, case: Case, threads: int = 1) -> None:
-        section, box = case.spheres, case.box
+        box = case.box
         self.case, self.made = case, made(case)
         self.n, self.dimension = len(self.made.diameters), box.dimension
-        self.box, self.timestep = np.array(box.size, float), timestep_of(section, box)
+        self.box, self.timestep = np.array(box.size, float), timestep_of(case)
         self.system = System(given_of(case, self.made), threads)
         self.threads, self.step = threads, 0
         self.surfaces = surfaces_of(case)

@@ -7,14 +7,20 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import Solids
 from mesokit.geometry.surface import Surface
+from mesokit.method.soft_spheres.checks import rubs
 from mesokit.method.soft_spheres.machine.central import Central
 from mesokit.method.soft_spheres.machine.contact.force import OWN, Contact
 from mesokit.method.soft_spheres.machine.groups import Motion
 from mesokit.method.soft_spheres.machine.system import Given, Others
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw, damping_ratio
-from mesokit.method.soft_spheres.scales import speed_of_collision, timestep_of
+from mesokit.method.soft_spheres.scales import (
+    fastest_followed,
+    speed_of_collision,
+    timestep_of,
+)
 from mesokit.potential.protocol import central
 from mesokit.spheres.wall.surfaces import other_walls, room_of, surface_rows
 
@@ -43,14 +49,15 @@ def given_of(case: Case, made: Made) -> Given:
         if touching
         else central_of(case, law),
         touching,
-        law.width if touching else 0,
+        law.width(rubs(case)) if touching else 0,
         0.0 if touching else nearest(law),
         _motion(case),
         rows,
         own,
         case.run.seed,
-        section.skin_of(box),
+        section.skin_of(box, closed_axes(case.walls)),
         others_of(case, made),
+        fastest_followed(case),
     )
 
 
@@ -73,9 +80,8 @@ def contact_of(law: ContactLaw, largest: float, ahead: float) -> Contact:
 
 def _ahead(case: Case) -> float:
     """How far spheres may come nearer in half a step."""
-    section, box = case.spheres, case.box
-    way = 0.5 * timestep_of(section, box) * speed_of_collision(section, box)
-    return min(way, 0.25 * section.skin_of(box))
+    way = 0.5 * timestep_of(case) * speed_of_collision(case)
+    return min(way, 0.25 * case.spheres.skin_of(case.box, closed_axes(case.walls)))
 
 
 def central_of(case: Case, law: Any) -> Central:
@@ -88,7 +94,7 @@ def usual_force(law: Any) -> float:
     """A force of the potential that is met everywhere: at 0.95 of the diameter."""
     square = (0.95 * law.diameter) ** 2
     _, push = central(law.kernel(), square)
-    return max(abs(push) * law.diameter, 1e-6)
+    return abs(push) * law.diameter or 1.0
 
 
 def nearest(law: Any) -> float:
@@ -104,7 +110,7 @@ def nearest(law: Any) -> float:
 
 def _motion(case: Case) -> Motion:
     section, box = case.spheres, case.box
-    d, step = box.dimension, timestep_of(section, box)
+    d, step = box.dimension, timestep_of(case)
     gravity = [*section.gravity, 0.0, 0.0, 0.0][:3] if section.gravity else [0.0, 0.0, 0.0]
     bath = section.thermostat
     return Motion(

@@ -11,6 +11,7 @@ from mesokit.method.soft_spheres.cooling import SoftCooling
 from mesokit.method.soft_spheres.displacement import Displacement
 from mesokit.method.soft_spheres.engine import SoftEngine
 from mesokit.method.soft_spheres.equilibrium import equilibrium
+from mesokit.method.soft_spheres.first_speeds import with_speed
 from mesokit.method.soft_spheres.scales import timestep_of
 from mesokit.method.soft_spheres.section import KEYS, Sections
 from mesokit.method.soft_spheres.summary import summary
@@ -60,13 +61,14 @@ METHOD = Method(
     | answers(equilibrium),
     check=check,
     groups=groups,
-    timestep=lambda case: float(timestep_of(case.spheres, case.box)),
+    timestep=timestep_of,
     kT=lambda case: float(case.spheres.kT),
     summary=summary,
     starts=starts,
     missing_files=missing_files,
     arrays=ARRAYS,
     first_state=_first_state,
+    prepared=with_speed,
     engine=_engine,
     start=SoftEngine.start,
     log=columns,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Collection
 from typing import ClassVar
 
 from mesokit.case.box import Box
@@ -17,6 +19,7 @@ from mesokit.spheres.section import Spheres
 
 KEYS = {"walls": "wall"}  # field -> key in the file, where they differ: one [[wall]] each
 CONTACT_SKIN, POTENTIAL_SKIN, WIDEST_SKIN = 0.1, 0.16, 1.0  # of the largest reach of two
+FITS = 0.98  # of the largest skin with which a box has no sphere twice on a list
 ALONE = 0.1  # others within reach and skin: where there are so few, a wide skin costs nothing
 
 
@@ -48,6 +51,14 @@ class SoftSpheres(Spheres):
         gt=0,
         le=1e9,
     )
+    speed: float | None = param(
+        None,
+        doc="how fast two may meet, from which the time of a step follows (unless said from the "
+        "velocities of the start, kT, gravity and walls that move)",
+        unit="a/time",
+        gt=0,
+        le=1e9,
+    )
     skin: float | None = param(
         None,
         doc="how far lists of neighbours go beyond the reach: changes the speed alone (0.1 of the "
@@ -63,6 +74,12 @@ class SoftSpheres(Spheres):
         ge=0,
         le=1e9,
     )
+
+    @property
+    def usual_diameter(self) -> float:
+        """That of the potential, of contacts 1."""
+        touching = isinstance(self.pair, ContactLaw)
+        return 1.0 if touching else float(self.pair.diameter)  # type: ignore[attr-defined]
 
     @property
     def turns(self) -> bool:
@@ -84,11 +101,17 @@ class SoftSpheres(Spheres):
             return float(largest * self.scale(box))
         return float(self.pair.reach)  # type: ignore[attr-defined]
 
-    def skin_of(self, box: Box) -> float:
-        """How far lists go beyond that."""
+    def skin_of(self, box: Box, shut: Collection[str]) -> float:
+        """How far lists go beyond that, in a box of which walls shut some axes."""
         if self.skin is not None:
             return self.skin
         reach = self.reach(box)
+        pairs = zip(box.axes, box.size, strict=True)
+        free = min((length for axis, length in pairs if axis not in shut), default=math.inf)
+        return min(self._usual_skin(box, reach), FITS * (0.5 * free - reach))
+
+    def _usual_skin(self, box: Box, reach: float) -> float:
+        """The same where the box has room for it."""
         if not isinstance(self.pair, ContactLaw):
             return POTENTIAL_SKIN * reach
         d = box.dimension

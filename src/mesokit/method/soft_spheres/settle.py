@@ -66,7 +66,7 @@ def settled(case: Case, made: Made, places: Array, friction: float) -> Array:
         made.inertia,
         contact_of(law, stiffness * largest, 0.0),
         True,
-        law.width,
+        law.width(rubs=friction > 0),
         0.0,
         Motion(step, (pull[0], pull[1], pull[2]), 1.0, 0.0, (1.0, 1.0, float(d == 3)), turns),
         still,

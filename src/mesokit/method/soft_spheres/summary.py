@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
@@ -12,6 +11,7 @@ from mesokit.case.trajectory import stored_bytes
 from mesokit.case.warnings import run_warnings
 from mesokit.method.protocol import Row, Summary
 from mesokit.method.soft_spheres import scales
+from mesokit.method.soft_spheres.checks import rubs
 from mesokit.method.soft_spheres.pair.protocol import ContactLaw
 from mesokit.running.cores import usable_cores
 from mesokit.spheres import cost, falls
@@ -31,7 +31,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     """Derived numbers, cost, and warnings."""
     section, box = case.spheres, case.box
     cores = usable_cores() if threads is None else threads
-    steps, step = case.run.warmup + case.run.steps, scales.timestep_of(section, box)
+    steps, step = case.run.warmup + case.run.steps, scales.timestep_of(case)
     phi = section.fraction(box)
     memory = case.particles * section.bytes_each + 200_000_000
     stored = stored_bytes(case.trajectory, case.groups, box.dimension, case.run.steps)
@@ -43,20 +43,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     numbers: dict[str, Any] = {"packing_fraction": phi, "timestep": step}
     reach, density = section.reach(box), case.particles / box.volume
     if isinstance(section.pair, ContactLaw):
-        speed = scales.speed_of_collision(section, box)
-        time, mass = scales.shortest_contact(section, box), 0.5 * scales.lightest(section, box)
-        overlap = section.pair.overlap_of(mass, speed) / reach
-        numbers |= {"contact_time": time, "steps_per_contact": time / step, "overlap": overlap}
-        rows += [
-            ("contact time", number(time, "time"), "of the lightest two"),
-            ("steps per contact", number(time / step), ""),
-            (
-                "collision speed",
-                number(speed, "a/time"),
-                "thermal, or after a fall through the box",
-            ),
-            ("overlap", number(overlap, "diameters"), "expected at that speed"),
-        ]
+        rows += _contacts(case, numbers)
         # grains at rest lie closer than where they fall from, and have more others on their lists
         rests = cost.comes_to_rest(case, _loses(case), section.thermostat is not None)
         closer = max(phi, cost.AT_REST_FILLED[box.dimension]) / phi if rests else 1.0
@@ -79,7 +66,25 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     if stored:
         rows.append(("trajectory", size_text(stored), "estimate"))
     warnings = (*run_warnings(case, memory, stored), *_warnings(case, numbers))
-    return Summary(tuple(rows), warnings, seconds, numbers)
+    return Summary(tuple(rows), warnings, seconds, numbers, memory)
+
+
+def _contacts(case: Case, numbers: dict[str, Any]) -> Iterator[Row]:
+    """How long contacts take, and how far spheres overlap meanwhile, where anything moves."""
+    section, speed = case.spheres, scales.speed_of_collision(case)
+    time, mass = scales.shortest_contact(case), 0.5 * scales.lightest(case)
+    if math.isfinite(time):
+        numbers |= {"contact_time": time, "steps_per_contact": time / numbers["timestep"]}
+        yield "contact time", number(time, "time"), "of the lightest two"
+        yield "steps per contact", number(numbers["steps_per_contact"]), ""
+    if speed == 0:
+        yield "collision speed", "0", "nothing moves: kT, gravity and walls are without motion"
+        return
+    numbers["overlap"] = overlap = section.pair.overlap_of(mass, speed) / section.reach(case.box)
+    said = "thermal, or after a fall through the box, and of walls that move"
+    note = said if section.speed is None else "spheres.speed"
+    yield "collision speed", number(speed, "a/time"), note
+    yield "overlap", number(overlap, "diameters"), "expected at that speed"
 
 
 def _beside(case: Case, steps: int, of_core: float, numbers: dict[str, Any]) -> Iterator[Row]:
@@ -111,17 +116,15 @@ def _beside(case: Case, steps: int, of_core: float, numbers: dict[str, Any]) -> 
 
 def _loses(case: Case) -> bool:
     """Whether contacts take energy."""
-    section, box = case.spheres, case.box
-    mass, speed = 0.5 * scales.lightest(section, box), scales.speed_of_collision(section, box)
+    section, mass = case.spheres, 0.5 * scales.lightest(case)
+    speed = scales.speed_of_collision(case)
     return section.turns or section.pair.restitution_of(mass, speed) < 1
 
 
 def _warnings(case: Case, numbers: dict[str, float]) -> Iterator[str]:
     section, touching = case.spheres, isinstance(case.spheres.pair, ContactLaw)
-    own = [surface.contact for wall in case.walls for surface in wall.surfaces().values()]
-    rubs = any(contact is not None and contact.friction for contact in own)
-    yield from falls.warnings(case, touching and (section.pair.friction > 0 or rubs))
-    usual = scales.timestep_of(dataclasses.replace(section, timestep=None), case.box)
+    yield from falls.warnings(case, touching and (section.pair.friction > 0 or rubs(case)))
+    usual = scales.usual_timestep(case)
     if not touching and numbers["timestep"] > LONG * usual:
         yield (
             f"spheres.timestep = {numbers['timestep']:.3g}: energy drifts, or the run breaks down; "

@@ -44,7 +44,9 @@ class FieldAccumulator(BlockAccumulator):
         observable.check(case)
         self.observable, self.case, self.name = observable, case, observable.label
         self.axes = tuple(case.box.index(axis) for axis in observable.axes)
-        self.bins = tuple(int(case.box.size[a]) * observable.bins_per_cell for a in self.axes)
+        self.bins = tuple(
+            max(1, round(case.box.size[a] * observable.bins_per_cell)) for a in self.axes
+        )
         self.edges = [
             np.linspace(0.0, case.box.size[a], n + 1)
             for a, n in zip(self.axes, self.bins, strict=True)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.errors import CaseError
+from mesokit.spheres.expected.cooling import rate
 from mesokit.spheres.expected.slices import Find
 from mesokit.spheres.made import made
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 Array = NDArray[np.float64]
+FEW = 0.01  # of the collisions, made elastic by a contact time: they do not change the law
 Known = tuple[float, str]  # a_2, nan where nothing is known, and whose law it is
 
 
@@ -36,7 +38,9 @@ def cumulant(find: Find, case: Case) -> Known:
         return math.nan, ""
     kicked = hasattr(heating, "power")  # a white noise, unlike a bath
     constant = hasattr(collision, "restitution") and collision.hard
-    if not constant or collision.rough or collision.contact_time or (heating and not kicked):
+    if not constant or collision.rough or (heating and not kicked):
+        return math.nan, ""
+    if theory.elastic_share(rate(case, section.kT), collision.contact_time) > FEW:
         return math.nan, ""
     known = theory.fourth_cumulant(collision.restitution, case.box.dimension, heated=kicked)
     return known, "van Noije and Ernst"

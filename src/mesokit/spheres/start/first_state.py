@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.component import show
+from mesokit.case.outside_box import warn_outside
 from mesokit.errors import CaseError
+from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.spheres.made import Made
 from mesokit.spheres.start import thermal
 from mesokit.spheres.start.lattice import shut
-from mesokit.spheres.start.protocol import Array, Started
+from mesokit.spheres.start.protocol import Array, Placed, Started
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -28,28 +30,33 @@ def first_state(case: Case, made: Made, arrays: Mapping[str, Any], spin_kT: floa
 
     Velocities and spins that nobody gives are drawn. Only hard spheres must not overlap.
     """
-    d, n = case.box.dimension, len(made.diameters)
-    given = {name: arrays[name] for name in ARRAYS if arrays.get(name) is not None}
-    placed = case.spheres.start.place(case, made) if "positions" not in given else None
-    positions = placed.positions if placed else _checked("positions", given, (n, d))
-    velocities = placed.velocities if placed else None
-    spins = placed.spins if placed else None
-    if "velocities" in given:
-        velocities = _checked("velocities", given, (n, d))
-    if "spins" in given:
-        spins = _checked("spins", given, (n,) if d == 2 else (n, 3))
+    d, known = case.box.dimension, given_state(case, made, arrays)
     at_rest = not case.walls and not case.spheres.gravity
-    kT = case.spheres.kT
+    kT, velocities, spins = case.spheres.kT, known.velocities, known.spins
     if velocities is None:
         velocities = thermal.velocities(case.run.seed, made, kT, d, at_rest)
     if spins is None:
         spins = thermal.spins(case.run.seed, made, spin_kT, d)
-    diameters = placed.diameters if placed else None
-    if placed is None or case.spheres.start.files():
-        own = made.diameters if diameters is None else diameters
+    if arrays.get("positions") is not None or case.spheres.start.files():
+        own = made.diameters if known.diameters is None else known.diameters
         if case.spheres.hard:
-            require_apart(positions, own, np.array(case.box.size, float), shut(case))
-    return Started(positions, velocities, spins, diameters)
+            require_apart(known.positions, own, np.array(case.box.size, float), shut(case))
+        warn_outside("positions", known.positions, case.box, closed_axes(case.walls))
+    return Started(known.positions, velocities, spins, known.diameters)
+
+
+def given_state(case: Case, made: Made, arrays: Mapping[str, Any]) -> Placed:
+    """What arrays give, and else the start of the case. Raises CaseError for what does not fit."""
+    d, n = case.box.dimension, len(made.diameters)
+    shapes = {"positions": (n, d), "velocities": (n, d), "spins": (n,) if d == 2 else (n, 3)}
+    given = {
+        name: _checked(name, arrays[name], shape)
+        for name, shape in shapes.items()
+        if arrays.get(name) is not None
+    }
+    if "positions" in given:
+        return Placed(**given)
+    return case.spheres.start.place(case, made)._replace(**given)
 
 
 def require_apart(places: Array, diameters: Array, size: Array, closed: NDArray[np.bool_]) -> None:
@@ -72,13 +79,15 @@ def require_apart(places: Array, diameters: Array, size: Array, closed: NDArray[
         raise CaseError(f"positions: spheres {i} and {j} overlap by {-gaps.min():.3g}")
 
 
-def _checked(name: str, given: Mapping[str, Any], shape: tuple[int, ...]) -> Array:
+def _checked(name: str, given: Any, shape: tuple[int, ...]) -> Array:
     try:
-        found = np.asarray(given[name], float)
+        found = np.asarray(given, float)
     except (ValueError, TypeError):
         raise CaseError(f"{name}: expected an array of numbers") from None
-    if found.shape != shape or not np.isfinite(found).all():
-        raise CaseError(f"{name}: expected finite numbers of shape {shape}, not {found.shape}")
+    if found.shape != shape:
+        raise CaseError(f"{name}: shape {found.shape}: expected {shape}")
+    if not np.isfinite(found).all():
+        raise CaseError(f"{name}: row {int(np.argwhere(~np.isfinite(found))[0][0])} is not finite")
     return found
 
 

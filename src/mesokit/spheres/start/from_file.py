@@ -25,12 +25,19 @@ class FileStart(SphereStart):
 
     rule: Literal["file"] = tag("file")
     file: FileName = param(doc="GSD file (.gsd) or LAMMPS data file (.data, .lmp)")
+    scale: float | None = param(
+        None,
+        doc="lengths of the case per length of the file: of places, box, diameters and velocities "
+        "(1 unless said)",
+        gt=0,
+        le=1e12,
+    )
     moving: bool = param(True, doc="with the velocities and spins of the file; if not, drawn ones")
 
     def place(self, case: Case, made: Made) -> Placed:
         """What the file has. Raises CaseError where it cannot be read or has other spheres."""
         try:
-            return fitted(case, made, read_snapshot(self.file), self.moving)
+            return fitted(case, made, read_snapshot(self.file, self.scale), self.moving)
         except CaseError as error:
             raise CaseError(f"spheres.start.file = {show(self.file, 500)}: {error}") from None
 

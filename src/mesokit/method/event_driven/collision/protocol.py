@@ -64,6 +64,11 @@ class SphereCollision(ABC):
         return self.reach <= 1.0
 
     @property
+    def energy_within(self) -> float:
+        """Potential energy of two spheres nearer than `reach`."""
+        return 0.0
+
+    @property
     def rough(self) -> bool:
         """Whether it changes spins."""
         return self.tangential > -1.0 and self.friction != 0.0

@@ -51,6 +51,11 @@ class SquareWell(SphereCollision):
         """Distance in diameters at which two spheres first feel one another."""
         return self.width
 
+    @property
+    def energy_within(self) -> float:
+        """Potential energy of two spheres nearer than `reach`."""
+        return -self.depth
+
     def kernel(self) -> Well:
         """Parameters for the scalar functions below."""
         return Well(self.depth, self.width, self.restitution)

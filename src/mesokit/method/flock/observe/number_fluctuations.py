@@ -39,7 +39,8 @@ class NumberFluctuations(FlockObservable):
     quantity: Literal["number-fluctuations"] = tag("number-fluctuations")
     sides: Either[None, float] = param(
         None,
-        doc="sides of the squares (1, 2, 4, ... up to a quarter of the box unless said)",
+        doc="sides of the squares (1, 2, 4, ... times the reach of sight, up to a quarter of the "
+        "box, unless said)",
         unit="a",
         min_length=1,
     )
@@ -48,8 +49,9 @@ class NumberFluctuations(FlockObservable):
         """From the smallest to the largest."""
         if self.sides is not None:
             return tuple(sorted(float(side) for side in self.sides))
-        most = LARGEST * min(case.box.size)
-        return tuple(2.0**k for k in range(max(0, int(math.log2(max(most, 1.0)))) + 1))
+        shortest, reach = min(case.box.size), case.flock.radius
+        unit, most = reach if reach <= shortest else LARGEST * shortest, LARGEST * shortest
+        return tuple(unit * 2.0**k for k in range(int(math.log2(max(most / unit, 1.0))) + 1))
 
     def check(self, case: Case) -> None:
         """Raise CaseError among walls, and for sides that are longer than the box."""
@@ -57,7 +59,7 @@ class NumberFluctuations(FlockObservable):
         open_box(case, "quantity = 'number-fluctuations'")
         sides = self.all_sides(case)
         if self.sides is not None:
-            within(sides, 1e-3, float(min(case.box.size)), "sides")
+            within(sides, 1e-6 * min(case.box.size), float(min(case.box.size)), "sides")
         number = math.prod(int(length / sides[0]) for length in case.box.size)
         if number > MOST:
             raise CaseError(

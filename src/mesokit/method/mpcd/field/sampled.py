@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import io
 from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -11,6 +10,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.array_file import array_of_contents
 from mesokit.case.box import AXES, Box
 from mesokit.case.component import FileName, FromContents, component, param, show, tag
 from mesokit.errors import CaseError
@@ -140,8 +140,8 @@ class SampledForce(FromContents, Force):
     def values(self) -> Floats:
         """What the file holds. Raises CaseError."""
         try:
-            found = np.load(io.BytesIO(self.contents), allow_pickle=False)
-        except (OSError, ValueError, EOFError):
+            found = array_of_contents(self.contents)
+        except (ValueError, EOFError):
             raise self.wrong("expected a .npy file of numbers") from None
         try:
             return _checked(found, self.of)

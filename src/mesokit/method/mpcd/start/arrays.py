@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -10,7 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.case.array_file import EXPECTED, array_in_file, is_plain
+from mesokit.case.outside_box import warn_outside
 from mesokit.errors import CaseError, MesokitError
+from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.start.of_first import OfFirst, read_by_first, rows_of, told_by_first
 from mesokit.method.mpcd.start.section import Start
@@ -22,7 +24,6 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 State = Callable[["Case", str], tuple[Any, Any]]
 PIECE = 2**18  # rows that are looked at together
-MAGIC = b"\x93NUMPY"  # what a file .npy begins with
 MOST_IMAGES = 2**30  # boxes away from the primary one: image counts are 32-bit
 
 
@@ -48,9 +49,10 @@ def read_arrays(
 
     def loaded(name: str, path: str) -> Any:
         key = f"{where}.{name} = {path!r}"
-        if owner == "fluid" and here.on_root(lambda: _is_plain(path)):
-            return here.each(lambda: _load(key, name, path))
-        return taken(lambda: (_load(key, name, path),))[0]
+        load = partial(_load, case, owner, key, name, path)
+        if owner == "fluid" and here.on_root(lambda: _is_map(path)):
+            return here.each(load)
+        return taken(lambda: (load(),))[0]
 
     for name, read in states.items():
         if getattr(given, name) is None:
@@ -96,27 +98,27 @@ def _no_conformation(case: Case) -> None:
         )
 
 
-def _is_plain(path: str) -> bool:
-    """Whether a file is a .npy one, of which rows can be read where they are asked for."""
+def _is_map(path: str) -> bool:
+    """Whether each rank may read its rows of a file by itself."""
     try:
-        with open(path, "rb") as file:
-            return file.read(len(MAGIC)) == MAGIC
+        return is_plain(path)
     except OSError:
         return False
 
 
-def _load(key: str, name: str, path: str) -> Any:
+def _load(case: Case, owner: str, key: str, name: str, path: str) -> Any:
     """An array from a .npy file, or the only one (or the one of that name) from a .npz file."""
     try:
-        found = np.load(path, mmap_mode="r" if _is_plain(path) else None, allow_pickle=False)
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
-        reason = f": {error.strerror}" if isinstance(error, OSError) and error.strerror else ""
-        raise CaseError(f"{key}: expected a .npy or .npz file of numbers{reason}") from None
-    if isinstance(found, np.ndarray):
-        return found
-    if name not in found.files and len(found.files) != 1:
-        raise CaseError(f"{key}: expected one array, or one named {name!r}")
-    return found[name if name in found.files else found.files[0]]
+        return array_in_file(path, name, _shape(case, owner))
+    except (OSError, ValueError) as error:
+        reason = f"{EXPECTED}: {error.strerror}" if isinstance(error, OSError) else f"{error}"
+        raise CaseError(f"{key}: {reason}") from None
+
+
+def _shape(case: Case, owner: str) -> tuple[int, int]:
+    """One row for each of the particles or beads."""
+    beads = case.solutes.beads if owner == "solutes" and case.solutes else case.particles
+    return beads, case.box.dimension
 
 
 def _checked(case: Case, owner: str, key: str, given: Any, here: World) -> Any:
@@ -132,8 +134,7 @@ def _checked(case: Case, owner: str, key: str, given: Any, here: World) -> Any:
         raise CaseError(f"{key}: expected an array of numbers") from None
     if array.dtype.kind not in "iuf":
         raise CaseError(f"{key}: expected an array of numbers, not of {array.dtype.name}")
-    beads = case.solutes.beads if owner == "solutes" and case.solutes else case.particles
-    shape = beads, case.box.dimension
+    shape = _shape(case, owner)
     if array.shape != shape:
         raise CaseError(
             f"{key}: shape {array.shape}: expected {shape}, one row for each of the "
@@ -164,6 +165,8 @@ def _require_room(case: Case, key: str, given: Any, here: World) -> None:
         for first, rows in _pieces(array, here, isinstance(given, OfFirst)):
             _inside(case, key, first, rows)
             _near(case, key, first, rows)
+            if key.endswith(".positions") and case.fluid.molecule is None:  # which may cross edges
+                warn_outside(key, rows, case.box, [*closed_axes(case.walls), *case.box.open], first)
 
 
 def _inside(case: Case, key: str, first: int, positions: Floats) -> None:

@@ -81,7 +81,7 @@ def _require_drawable(solutes: Solutes) -> None:
 
 def _beads_from_file(case: Case, path: str) -> tuple[Any, Any]:
     """Places and velocities of beads, from a file that another program has written."""
-    return fitted_beads(case, read_snapshot(path))
+    return fitted_beads(case, read_snapshot(path, case.solutes.start.scale))
 
 
 def _last_beads(case: Case, path: str) -> tuple[Any, Any]:
@@ -104,7 +104,7 @@ def _polymers(case: Case) -> list[tuple[Any, ...]]:
 
 def _from_file(case: Case, path: str) -> tuple[Any, Any]:
     """Positions and velocities, by particle id, of a file that another program has written."""
-    return fitted(case, read_snapshot(path))
+    return fitted(case, read_snapshot(path, case.fluid.start.scale))
 
 
 def _last_state(case: Case, path: str) -> tuple[Any, Any]:

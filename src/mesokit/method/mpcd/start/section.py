@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from mesokit.case.component import FileName, component, param
+from pydantic import model_validator
+
+from mesokit.case.component import FileName, component, param, show
 
 
 @component
@@ -20,3 +22,12 @@ class Start:
     file: FileName | None = param(
         None, doc="GSD file (its last frame) or LAMMPS data file, with the bonds of the molecules"
     )
+    scale: float | None = param(
+        None, doc="cells per length of `file` (1 unless said)", gt=0, le=1e12
+    )
+
+    @model_validator(mode="after")
+    def _scaled_file(self) -> Start:
+        if self.scale is not None and self.file is None:
+            raise ValueError(f"scale = {show(self.scale)}: only with a file of another program")
+        return self

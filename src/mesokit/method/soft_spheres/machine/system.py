@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -63,7 +64,7 @@ class Given(NamedTuple):
     size of the box and closed axes; reach, masses, inertia (n,); law of the forces, see `acting`;
     halves: whether each pair is taken once; width: numbers that a contact remembers; nearest: no
     two come nearer, largest: no force exceeds it; motion; walls: rows and own, see `Walls`; seed;
-    skin; others: walls of any shape.
+    skin; others: walls of any shape; fastest: the speed beyond which steps do not follow contacts.
     """
 
     size: tuple[float, ...]
@@ -81,6 +82,7 @@ class Given(NamedTuple):
     seed: int
     skin: float
     others: Others | None = None
+    fastest: float = math.inf
 
 
 class System:
@@ -220,6 +222,8 @@ class System:
         bodies, spare = self.bodies, self.spare
         if not np.isfinite(bodies.place).all():
             raise RunError("places are no numbers any more; expected a shorter timestep")
+        if math.isfinite(self.given.fastest):
+            self._require_followed()
         sort(self.grid, bodies.place, self.cell, self.begins, self.order)
         for old, new in zip(bodies, spare, strict=True):
             np.take(old, self.order, axis=0, out=new, mode="clip")
@@ -245,6 +249,19 @@ class System:
             self.lists = self._lists(longest + GROUP)
         if self.given.halves:
             self._carry_springs()
+
+    def _require_followed(self) -> None:
+        """Raise RunError for a sphere so fast that a contact with one at rest has few steps."""
+        v, given = self.bodies.velocity[:, :3], self.given
+        if not len(given.rows) and given.others is None:
+            v = v - v.mean(axis=0)
+        fastest = math.sqrt(float(np.einsum("ij,ij->i", v, v).max()))
+        if fastest > given.fastest:
+            raise RunError(
+                f"a sphere moves at {fastest:.3g}: with a timestep of {given.motion.step:.3g} "
+                f"contacts take less than ten steps above {given.fastest:.3g}; expected a shorter "
+                "spheres.timestep, or a larger spheres.speed, from which that follows"
+            )
 
     def _carry_springs(self) -> None:
         lists = self.lists

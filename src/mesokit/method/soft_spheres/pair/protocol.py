@@ -95,12 +95,11 @@ class ContactLaw(PairLaw):
         """Whether energy is kept."""
         return self.restitution_of(1.0, 1.0) == 1.0 and self.friction == 0.0 and self.rolling == 0.0
 
-    @property
-    def width(self) -> int:
-        """How many numbers a contact remembers."""
+    def width(self, rubs: bool) -> int:
+        """How many numbers a contact remembers; `rubs`: whether walls have their own friction."""
         if self.rolling > 0:
             return 6
-        return 3 if self.friction > 0 and self.tangential == "history" else 0
+        return 3 if (self.friction > 0 or rubs) and self.tangential == "history" else 0
 
 
 def damping_ratio(restitution: float) -> float:
