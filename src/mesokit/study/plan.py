@@ -5,8 +5,9 @@ from __future__ import annotations
 import contextlib
 import copy
 import functools
+import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,15 +15,15 @@ from typing import Any, NamedTuple
 from mesokit.case import toml
 from mesokit.case.case import Case
 from mesokit.case.component import show
-from mesokit.errors import CaseError, RunError
+from mesokit.errors import CaseError, CheckpointError, RunError
 from mesokit.io import checkpoint
 from mesokit.io.open import RunFiles
 from mesokit.io.run_directory import RunDirectory
 from mesokit.observe.shared.named import keyed
-from mesokit.observe.shared.result import Comparison
+from mesokit.observe.shared.result import Comparison, Result
 from mesokit.running.longer import longer
 from mesokit.study.axes import Axis, grid
-from mesokit.study.merge import different_key, flat
+from mesokit.study.merge import different_key, flat, pooled
 
 
 @dataclass(frozen=True)
@@ -76,11 +77,25 @@ class Planned:
         return max(steps)
 
 
+Compared = tuple[tuple[str, str, Comparison], ...]  # each with its result, and its key there
+
+
 class Numbers(NamedTuple):
-    """Compared numbers, each with its result and its key there, and steps after the warm-up."""
+    """Compared numbers, and steps after the warm-up."""
 
     steps: int
-    compared: tuple[tuple[str, str, Comparison], ...]
+    compared: Compared
+
+
+def pooled_numbers(runs: Sequence[Planned]) -> Compared:
+    """The compared numbers of runs with several seeds, from the samples of all.
+
+    Those that cannot be pooled have no value, and a note that says why.
+    """
+    if len(runs) == 1:
+        return runs[0].numbers.compared
+    stamps = (tuple(_stamps(RunDirectory(run.path))) for run in runs)
+    return _pooled_numbers(tuple(run.path for run in runs), *stamps)
 
 
 # A study asks for these again and again; files that are as they were need not be read again.
@@ -92,12 +107,38 @@ def _ended(path: Path, *stamps: Any) -> bool:
 @functools.lru_cache(maxsize=10_000)
 def _numbers(path: Path, *stamps: Any) -> Numbers:
     files = RunFiles(path)
-    compared = (
-        (name, key, comparison)
-        for name, result in files.results.items()
+    results = files.results
+    in_order = (results[o.label] for o in files.case.observe if o.label in results)
+    return Numbers(files.case.run.steps, _compared(in_order))
+
+
+@functools.lru_cache(maxsize=10_000)
+def _pooled_numbers(paths: tuple[Path, ...], *stamps: Any) -> Compared:
+    files = [RunFiles(path) for path in paths]
+    try:
+        together = pooled(files)
+    except CheckpointError as error:
+        return _unknown(files[0].results.values(), str(error))
+    found = _compared(together.results)
+    for name, why in together.refused.items():
+        found += _unknown([files[0][name]], str(why))
+    return found
+
+
+def _compared(results: Iterable[Result]) -> Compared:
+    return tuple(
+        (result.name, key, comparison)
+        for result in results
         for key, comparison in keyed(result.comparisons).items()
     )
-    return Numbers(files.case.run.steps, tuple(compared))
+
+
+def _unknown(results: Iterable[Result], why: str) -> Compared:
+    """Numbers that are not known, and why."""
+    return tuple(
+        (name, key, Comparison(c.what, math.nan, math.nan, c.expected, c.unit, why))
+        for name, key, c in _compared(results)
+    )
 
 
 def _stamps(run: RunDirectory) -> list[Any]:

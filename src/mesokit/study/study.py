@@ -20,11 +20,11 @@ from mesokit.ranks.world import world
 from mesokit.running.cores import usable_cores
 from mesokit.study import table as tables
 from mesokit.study.axes import Axis
+from mesokit.study.between import theory_between
 from mesokit.study.cluster import Cluster
-from mesokit.study.dependence import Fitted, fitted
+from mesokit.study.dependence import Fitted, Theory, fitted
 from mesokit.study.drive import StudyReporter, Workers, drive, reporter_for
-from mesokit.study.here import Here
-from mesokit.study.local import Processes
+from mesokit.study.local import Here, Processes
 from mesokit.study.merge import merge
 from mesokit.study.names import called
 from mesokit.study.numbers import numbers, words_of
@@ -281,13 +281,23 @@ class Study(Shown):
         fit : "line" or "power", optional
             Fit y = a + b x, or y = a x^b, to each curve.
         look : optional
-            `log`, whether the axes are logarithmic (by the values unless said).
+            `log`, which axes are logarithmic: "x", "y", "x,y", True for both, False for none.
+            Unless said, x is where its values are a geometric sequence, and y with it where numbers
+            above zero span a decade.
 
-        Raises CaseError for a key or number that is not there, with the nearest one.
+        Raises CaseError for a key or number that is not there, with the nearest one, and for a
+        logarithmic axis of values that are not above zero.
         """
         key = self.key(x)
         case = self.base.case(self.runs[0].point, self.runs[0].seed)
-        return plot(self.table(), self.axes, key, y, called(case, key), fit, **look)
+        look = {"fit": fit, "between": self.theory_between} | look
+        return plot(self.table(), self.axes, key, y, called(case, key), **look)
+
+    def theory_between(
+        self, rows: Sequence[Pooled], keys: Sequence[str], log: bool
+    ) -> Theory | None:
+        """What is expected of a number between its points, None where that cannot be had."""
+        return theory_between(self.base, self.runs, rows, keys, log)
 
     def fit(self, x: str, y: str, kind: str) -> list[Fitted]:
         """Fit y = a + b x ("line") or y = a x^b ("power") to each curve that `plot` draws.
@@ -323,12 +333,12 @@ class Study(Shown):
         names = drawable(self.table(), self.axes)
         return [self.save_picture(self.keys[0], name) for name in names]
 
-    def save_picture(self, x: str, y: str, fit: str | None = None) -> Path:
-        """Draw one number against one varied value into a file of the folder."""
+    def save_picture(self, x: str, y: str, fit: str | None = None, **look: Any) -> Path:
+        """Draw one number against one varied value into a file of the folder, as `plot` does."""
         from mesokit.report import save_figure
         from mesokit.report.finish.origin import Origin
 
-        figure, names = self.plot(x, y, fit), short_names(self.keys)
+        figure, names = self.plot(x, y, fit, **look), short_names(self.keys)
         title = self.base.case(self.runs[0].point, self.runs[0].seed).title
         figure.origin = Origin(", ".join(filter(None, [title, f"study {self.path.name}"])))
         number = next(row.name for row in find_rows(self.table(), y))
