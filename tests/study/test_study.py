@@ -327,6 +327,16 @@ def test_examples_can_be_run(file, tmp_path):
         ('case = "c.toml"\nsead = 2', "sead: unknown key; did you mean 'seeds'"),
         ('case = "c.toml"\nvary = 3', r"expected \[\[vary\]\], in double brackets"),
         ('case = "nowhere.toml"', "nowhere.toml: no such file"),
+        ('case = "c.toml"\nset = "steps"', r"s.toml: set = 'steps': expected a table \[set\]"),
+        ('case = "c.toml"\nfolder = [1]', r"s.toml: folder = \[1\]: expected the name of a folder"),
+        ('case = "c.toml"\nseeds = 5_000_000', "s.toml: seeds = 5000000: expected at most 100000"),
+        ('case = "c.toml"\n[set]\nbox = 2', "s.toml: box = 2: expected a table"),
+        ('case = "c.toml"\n[set]\nrun = "a"', "s.toml: run = 'a': expected a table, with seed"),
+        ('case = "c.toml"\n[[vary]]\nrun = [2]', "s.toml: with run = 2: run = 2: expected a table"),
+        (
+            'case = "c.toml"\n[[vary]]\n"run.seed" = [2]',
+            "vary run.seed: expected seeds of the study",
+        ),
     ],
 )
 def test_poor_study_files(case_file, tmp_path, text, words):
@@ -336,15 +346,55 @@ def test_poor_study_files(case_file, tmp_path, text, words):
         Study.open(tmp_path / "s.toml")
 
 
+def test_settings_of_a_study_file_need_no_quotes(case_file, tmp_path):
+    """They replace values of a table, not the table."""
+    (tmp_path / "c.toml").write_text(case_file.read_text())
+    (tmp_path / "s.toml").write_text('case = "c.toml"\n[set]\nrun.steps = 30\nfluid.density = 7')
+    case = Study.open(tmp_path / "s.toml", tmp_path / "s").runs[0].files.case
+    assert (case.run.steps, case.run.warmup, case.fluid.density) == (30, 10, 7)
+    assert Study.open(tmp_path / "s").base.case({}, 5) == case
+
+
+def test_runs_of_a_study_have_a_bound(case_file, tmp_path):
+    """It is looked at before lists are made."""
+    with pytest.raises(CaseError, match=r"seeds = 1000000000000: expected at most 100000"):
+        Study(case_file, seeds=10**12, output=tmp_path / "s")
+    vary = {"fluid.density": "1:2:1000", "fluid.timestep": "0.1:0.2:1000"}
+    with pytest.raises(CaseError, match=r"1000000 runs: expected at most 100000 in a study"):
+        Study(case_file, vary, output=tmp_path / "s")
+    assert not (tmp_path / "s").exists()
+
+
 def test_seeds_of_one_case(case_file, tmp_path, capsys, here):
     """`run --seeds` runs them, and shows what they say as one."""
     output = tmp_path / "seeds"
     steps = ["--set", "run.steps=60"]
-    code, out, _ = said(capsys, "run", case_file, "--seeds", 2, "--output", output, *steps)
+    code, out, err = said(capsys, "run", case_file, "--seeds", 2, "--output", output, *steps)
     assert code == 0 and "mean velocity along x" in out
+    assert "study: 2 of 2 runs to do" in err
+    again = ["run", case_file, "--seeds", 2, "--output", output, "--overwrite"]
+    code, _, err = said(capsys, *again)
+    assert code == 2 and f"to begin anew, remove the folder {output}, or choose another" in err
     merged = mesokit.open(output / "runs" / "merged")
     assert merged["flow-rate"].samples == 14
     assert [entry["seed"] for entry in merged.provenance["merged"]] == [5, 6]
+
+
+def test_progress_is_told_once(capsys):
+    """Not again where nothing has changed, as while figures are drawn."""
+    reporter = StudyReporter(seconds=0.0)
+    reporter.runs = 3
+    reporter.start(100, 1, "study")
+    reporter.rate.add(0.0, 0)
+    for ended in (0, 0, 0, 1, 1):
+        reporter.ended, reporter.next = ended, 0.0
+        reporter.update(100)
+    lines = capsys.readouterr().err.splitlines()
+    what = "runs have ended, the last results and figures are being written"
+    assert lines == [
+        "study: 3 of 3 runs to do",
+        *(f"study: 100 %, {n} of 3 {what}" for n in (0, 1)),
+    ]
 
 
 def begun(study: Path, number: int, process: subprocess.Popen[str]) -> list[Path]:

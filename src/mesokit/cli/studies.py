@@ -11,7 +11,7 @@ import click
 
 from mesokit.cli.commands import RUN, SET, cli, require_run
 from mesokit.cli.outcome import show_results, stopping
-from mesokit.cli.words import say, show_table
+from mesokit.cli.words import patience, say, show_table
 from mesokit.errors import CaseError, RunError
 
 FITS = click.Choice(["line", "power"])
@@ -86,7 +86,8 @@ def study(what: Path, **given: Any) -> None:
     from mesokit.study.job_array import write_job_array
     from mesokit.study.study import Study
 
-    made = _made(Study, what, given)
+    with patience("checking the cases of all runs", given["quiet"]):
+        made = _made(Study, what, given)
     if given["listing"]:
         return show_table([(str(i + 1), run.state, str(run.path)) for i, run in _numbered(made)])
     if given["job_array"]:

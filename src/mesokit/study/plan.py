@@ -5,8 +5,10 @@ from __future__ import annotations
 import contextlib
 import copy
 import functools
+import itertools
 import math
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +24,7 @@ from mesokit.io.run_directory import RunDirectory
 from mesokit.observe.shared.named import keyed
 from mesokit.observe.shared.result import Comparison, Result
 from mesokit.running.longer import longer
-from mesokit.study.axes import Axis, grid
+from mesokit.study.axes import MOST, Axis, grid
 from mesokit.study.merge import different_key, flat, pooled
 
 
@@ -160,6 +162,9 @@ def planned(axes: Sequence[Axis], seeds: Sequence[int], folder: Path) -> list[Pl
     >>> [run.path.as_posix() for run in runs][:2]
     ['study/runs/kT=1/seed=1', 'study/runs/kT=1/seed=2']
     """
+    number = math.prod(len(axis.values) for axis in axes) * len(seeds)
+    if number > MOST:
+        raise CaseError(f"{number} runs: expected at most {MOST} in a study")
     keys = [key for axis in axes for key in axis.keys]
     names = dict(zip(keys, short_names(keys), strict=True))
     runs = []
@@ -167,10 +172,9 @@ def planned(axes: Sequence[Axis], seeds: Sequence[int], folder: Path) -> list[Pl
         words = [f"{names[key]}={_safe(value)}" for key, value in point.items()]
         place = folder / "runs" / ",".join(words) if words else folder / "runs"
         runs += [Planned(point, seed, place / f"seed={seed}") for seed in seeds]
-    paths = [run.path for run in runs]
-    for run in runs:
-        if paths.count(run.path) > 1:
-            raise CaseError(f"{run.path}: two runs would have this name; a value is there twice")
+    for path, times in Counter(run.path for run in runs).items():
+        if times > 1:
+            raise CaseError(f"{path}: two runs would have this name; a value is there twice")
     return runs
 
 
@@ -221,7 +225,7 @@ class Base:
         try:
             for key, value in point.items():
                 toml.override(data, key, value)
-            data.setdefault("run", {})["seed"] = seed
+            toml.override(data, "run.seed", seed)
             return Case.from_data(data, self.folder)
         except CaseError as error:
             words = ", ".join(f"{key} = {value}" for key, value in point.items())
@@ -266,9 +270,6 @@ def _require_same(run: Planned, case: Case) -> None:
 
 
 def by_point(runs: Sequence[Planned]) -> Iterator[list[Planned]]:
-    """The runs of each point, that is all its seeds."""
-    points: list[Mapping[str, Any]] = []
-    for run in runs:
-        if run.point not in points:
-            points.append(run.point)
-            yield [other for other in runs if other.point == run.point]
+    """The runs of each point, that is all its seeds, which follow one another."""
+    for _, group in itertools.groupby(runs, key=lambda run: run.point):
+        yield list(group)

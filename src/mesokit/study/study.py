@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +19,7 @@ from mesokit.method.protocol import summary_of
 from mesokit.ranks.world import world
 from mesokit.running.cores import usable_cores
 from mesokit.study import table as tables
-from mesokit.study.axes import Axis
+from mesokit.study.axes import MOST, Axis
 from mesokit.study.between import theory_between
 from mesokit.study.cluster import Cluster
 from mesokit.study.dependence import Fitted, Theory, fitted
@@ -122,15 +122,20 @@ class Study(Shown):
             if not isinstance(vary, list):
                 raise CaseError("vary: expected [[vary]], in double brackets")
             axes = [Axis.from_table(each) for each in vary]
-            base = Base.of(file.parent / given, data.get("set"))
+            settings = data.get("set", {})
+            if not isinstance(settings, Mapping):
+                raise CaseError(f"set = {show(settings)}: expected a table [set]")
+            base = Base.of(file.parent / given, dict(_settings(settings)))
+            folder = data.get("folder", str(base.folder))
+            if not isinstance(folder, str):
+                raise CaseError(f"folder = {show(folder)}: expected the name of a folder")
+            base.folder = Path(folder)
+            self.path = path if path.is_dir() else Path(output or path.stem)
+            self._set(base, axes, _seeds(data.get("seeds", 1), base))
+            if not path.is_dir():
+                self._make()
         except CaseError as error:
             raise CaseError(f"{file}: {error}") from None
-        if "folder" in data:
-            base.folder = Path(data["folder"])
-        self.path = path if path.is_dir() else Path(output or path.stem)
-        self._set(base, axes, _seeds(data.get("seeds", 1), base))
-        if not path.is_dir():
-            self._make()
         return self
 
     def _set(self, base: Base, axes: list[Axis], seeds: list[int]) -> None:
@@ -145,7 +150,7 @@ class Study(Shown):
         if self.path.is_dir() and any(self.path.iterdir()) and not (self.path / FILE).exists():
             raise RunError(f"{self.path}: folder is not empty, and holds no study")
         if (self.path / FILE).exists():
-            ours = [run.path for run in self.runs]
+            ours = {run.path for run in self.runs}
             for run in Study.open(self.path).runs:
                 if run.path not in ours:
                     raise RunError(
@@ -409,10 +414,22 @@ def require_one_process() -> None:
         raise CaseError(f"Study: not on {ranks} ranks; expected one process, no mpiexec")
 
 
+def _settings(table: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Values of [set] by their key paths; `run.steps = 9` without quotes is a table in a table."""
+    for key, value in table.items():
+        if isinstance(value, Mapping) and "." not in key:
+            yield from ((f"{key}.{inner}", each) for inner, each in value.items())
+        else:
+            yield key, value
+
+
 def _seeds(given: Any, base: Base) -> list[int]:
     """Which seeds: so many from that of the case on, or as listed."""
     if isinstance(given, int) and not isinstance(given, bool) and given >= 1:
-        first = base.data.get("run", {}).get("seed", 1)
+        if given > MOST:
+            raise CaseError(f"seeds = {given}: expected at most {MOST}")
+        run = base.data.get("run")
+        first = run.get("seed", 1) if isinstance(run, Mapping) else 1
         return [first + i for i in range(given)] if isinstance(first, int) else [1]
     whole = isinstance(given, Sequence) and all(type(seed) is int for seed in given)
     if not whole or not given or len(set(given)) < len(given):
