@@ -8,13 +8,15 @@ import os
 import subprocess
 import sys
 import threading
+import tomllib
 from pathlib import Path
 
 import pytest
 
 from mesokit.case.case import Case
 from mesokit.cli import main
-from mesokit.method import templates
+from mesokit.method import studies, templates
+from mesokit.study.study import Study
 
 Captured = pytest.CaptureFixture[str]
 SOURCE = str(Path(__file__).parents[2] / "src")
@@ -424,3 +426,59 @@ class TestProgress:
         reporter.finish()
         captured = capsys.readouterr()
         assert captured.out + captured.err == ""
+
+
+class TestNewStudies:
+    """`mesokit new studies/NAME`."""
+
+    @pytest.mark.parametrize("name", studies())
+    def test_writes_a_study_and_its_case(self, name: str, capsys: Captured) -> None:
+        """Some studies have the name of their case, and lie beside it all the same."""
+        assert ends("new", name) == 0
+        file = f"{name.removeprefix('studies/')}_study.toml"
+        assert f"mesokit study {file}" in capsys.readouterr().out
+        text = Path(file).read_text()
+        assert len(Study.open(file, output="s")) > 1 and f"mesokit study {file}" in text
+        case = tomllib.loads(text)["case"]
+        assert ends("check", case) == 0
+        assert f"{file}: exists already" in refusal(capsys, "new", name)
+        Path(file).unlink()
+        assert f"{case}: exists already" in refusal(capsys, "new", name)
+        assert not Path(file).exists()
+
+    @pytest.mark.parametrize(("given", "wanted"), [
+        ("permeabilty", "did you mean 'studies/permeability'?"), ("kolmogorow", "'kolmogorov'?"),
+    ])  # fmt: skip
+    def test_lists_names_only_where_none_is_near(self, given, wanted, capsys: Captured) -> None:
+        told = refusal(capsys, "new", given)
+        assert wanted in told and "give one of them" not in told
+        assert "give one of them, or --template: brownian," in refusal(capsys, "new", "zzz")
+
+
+@pytest.mark.parametrize(("given", "wanted"), [
+    ("visocsity", "visocsity: no key of a case; 'viscosity' is explained at observe.flow-rate"),
+    ("restituton", "'restitution' is explained at spheres"),
+    ("denisty", "denisty: unknown key; did you mean 'density'?"),
+    ("zzz", "zzz: unknown key; mesokit explain lists the sections of a case"),
+])  # fmt: skip
+def test_explain_proposes_what_it_can_explain(given, wanted, capsys: Captured) -> None:
+    assert wanted in refusal(capsys, "explain", given)
+
+
+@pytest.mark.parametrize(("text", "wanted"), [
+    ("class A(", "--import mine: SyntaxError: "),
+    ("1 / 0", "--import mine: ZeroDivisionError: division by zero"),
+    ("import sys; sys.exit(4)", "--import mine: SystemExit: 4"),
+    ("import nowhere_at_all", "--import mine: No module named 'nowhere_at_all'"),
+])  # fmt: skip
+def test_a_module_that_cannot_be_imported(text, wanted, capsys, monkeypatch) -> None:
+    monkeypatch.setattr(sys, "path", sys.path.copy())
+    monkeypatch.delitem(sys.modules, "mine", raising=False)
+    Path("mine.py").write_text(text)
+    assert wanted in refusal(capsys, "--import", "mine", "schema")
+
+
+@pytest.mark.parametrize("name", ["", "..mine", "mine/parts", "mine.py-"])
+def test_what_is_no_name_of_a_module(name: str, capsys: Captured) -> None:
+    told = refusal(capsys, "--import", name, "schema")
+    assert f"--import {name!r}: expected the name of a module, such as mine" in told

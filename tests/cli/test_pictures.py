@@ -98,6 +98,10 @@ def test_pictures_and_films_are_files_of_the_run(capsys: Captured) -> None:
         (["plot", "nowhere", "--kind", "speed"], "nowhere: no such folder", 2),
         (["animate", "run", "--output", "a.avi"], "ends in .mp4 or .gif", 2),
         (["animate", "run", "--fps", "-1"], "fps = -1", 2),
+        (["animate", "run", "--fps", "nan"], "'--fps': nan is no number", 2),
+        (["plot", "run", "--width", "nan"], "'--width': nan is no number", 2),
+        (["plot", "run", "--kind", "speed", "--at", "inf"], "'--at': inf is no number", 2),
+        (["plot", "run", "--kind", "speed", "--window", "0:nan"], "--window 0:nan: expected", 2),
         (["animate", "nowhere"], "nowhere: no such folder", 2),
     ],
 )

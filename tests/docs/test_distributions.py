@@ -58,7 +58,7 @@ def test_a_wheel_works_by_itself(built: Path, tmp_path: Path) -> None:
     file, digest, commit = python("-c", code, cwd=tmp_path, **place).splitlines()
     assert Path(file).is_relative_to(built / "wheel")
     assert (digest, commit) == (sources()["digest"], "None")
-    for name in ("bulk", "junction", "viscoelastic/fig_4_1"):
+    for name in ("bulk", "junction", "viscoelastic/fig_4_1", "studies/frequency_sweep"):
         python("-m", "mesokit", "new", name, cwd=tmp_path, **place)
     assert (tmp_path / "junction.png").exists()
     told = python("-m", "mesokit", "check", "bulk.toml", cwd=tmp_path, **place)

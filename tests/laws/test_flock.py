@@ -281,6 +281,28 @@ def test_giant_number_fluctuations():
     assert 0.72 < found.measured < 0.9
 
 
+@pytest.mark.parametrize(("strength", "expected", "why"), [
+    (0.4, 0.8, "approximate: large ordered flocks (Toner and Tu 1995), polar order 0.9"),
+    (3.2, math.nan, "no theory for this flock, polar order 0."),
+    (5.6, 0.489, "approximate: disordered flocks, polar order 0.0"),
+])  # fmt: skip
+def test_fluctuations_are_compared_with_the_theory_of_their_phase(strength, expected, why):
+    """That of order only where birds fly together, that at random only where they do not."""
+    observe = [NumberFluctuations(every=10, sides=[1, 2, 4])]
+    given = case((16, 16), steps=400, density=2, noise=AngularNoise(strength), observe=observe)
+    simulation = Simulation(given)
+    simulation.engine.advance(300)
+    simulation.run()
+    found = simulation["number-fluctuations"]["exponent"]
+    assert found.expected == pytest.approx(expected, abs=1e-3, nan_ok=True)
+    assert found.note.startswith(why)
+    accumulator = observe[0].accumulator(given)
+    kept = simulation.accumulators["number-fluctuations"].state()
+    accumulator.restore({k: v for k, v in kept.items() if k.startswith("blocks")})  # of before
+    assert math.isnan(accumulator.result()["exponent"].expected)
+    assert accumulator.result()["exponent"].measured == found.measured
+
+
 # --- cohesion -----------------------------------------------------------------------------------
 
 

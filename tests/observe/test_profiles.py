@@ -24,7 +24,10 @@ from mesokit import (
     theory,
 )
 from mesokit.errors import CaseError
+from mesokit.io.tables import record
 from mesokit.method.mpcd.expected import setting
+from mesokit.report.caption import compared
+from mesokit.report.table import cells
 
 
 def watched(case, observable, flow=None, samples=300, seed=1):
@@ -50,6 +53,30 @@ def poiseuille_case(make_case, **kwargs):
 
 def parabola(viscosity, slip=0.0, push=0.02, height=12):
     return lambda y: slip + push * y * (height - y) / (2 * viscosity)
+
+
+@pytest.mark.parametrize(("force", "what"), [
+    (Uniform((0.02, 0)), "viscosity from curvature"),
+    (Sinusoidal(amplitude=0.02), "viscosity from amplitude"),
+])  # fmt: skip
+def test_a_quotient_of_noise_is_undetermined(make_case, force, what):
+    """Where the flow cannot be told from none, no viscosity follows from it."""
+    walls = [Plates(axis="y")] * isinstance(force, Uniform)
+    case = make_case((8, 12), walls=walls, force=force, thermostat=MaxwellBoltzmann())
+    flows = {"noise": lambda y: 0 * y, "strong": parabola(setting.transport(case).viscosity)}
+    if not walls:
+        flows["strong"] = lambda y: np.sin(2 * np.pi * y / 12)
+    noise, strong = (
+        by_name(watched(case, VelocityProfile(), flows[f])) for f in ("noise", "strong")
+    )
+    for number in noise.values():
+        assert np.isnan([number.measured, number.error, number.deviation, number.percent]).all()
+        assert number.note.startswith("its divisor is within two standard errors of zero")
+        assert f"{number.what}: undetermined, expected" in str(number)
+        assert cells(number)[1] == "undetermined" and cells(number)[4] == ""
+        assert record(number)["measured"] is None and "undetermined" in compared([number], 6)
+    assert what in noise and noise.keys() == strong.keys()
+    assert all(np.isfinite([n.measured, n.error]).all() for n in strong.values())
 
 
 def test_poiseuille_gives_the_viscosity_that_drove_the_flow(make_case):

@@ -96,16 +96,24 @@ def test_every_result_has_a_figure(tmp_path):
 
 @pytest.mark.parametrize("noise", [1.0, 2 * np.pi])
 def test_ordered_flocks_have_a_guide_to_giant_fluctuations(noise):
-    """A slope of 0.8 through the middle of the last points, dashed; not beside birds at random."""
-    simulation = flock(noise=AngularNoise(noise), observe=OBSERVED)
+    """A slope of 0.8 through the middle of the last points, dashed; not beside birds at random.
+
+    Powers are straight lines, as both axes are logarithmic.
+    """
+    simulation = flock(noise=AngularNoise(noise), steps=200, observe=OBSERVED)
     result = simulation["number-fluctuations"]
     (ax,) = result.plot().axes
-    guides = [line for line in ax.lines if "slope 0.8" in str(line.get_label())]
+    assert (ax.get_xscale(), ax.get_yscale()) == ("log", "log")
+    guides = [line for line in ax.lines if "Toner and Tu" in str(line.get_label())]
+    [random] = [line for line in ax.lines if "birds at random" in str(line.get_label())]
+    mean, (n, spread) = result.x["mean number"], random.get_xydata().T
+    assert len(n) == 200 and np.interp(mean, n, spread) == pytest.approx(result.expected, rel=1e-3)
     if noise > 6:
         assert not guides
         return
     (guide,) = guides
     x, y = np.log(guide.get_xydata()).T
     np.testing.assert_allclose(np.diff(y) / np.diff(x), 0.8)
-    assert y.mean() == pytest.approx(np.log(result.value[-4:]).mean())
+    middle = np.log(mean[-4:]).mean()
+    assert np.interp(middle, x, y) == pytest.approx(np.log(result.value[-4:]).mean())
     assert guide.get_linestyle() == "--"

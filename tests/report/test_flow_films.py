@@ -136,7 +136,8 @@ def test_folders_that_are_not_there(run, tmp_path):
     ("choices", "words"),
     [
         ({"path": "film.avi"}, "output = 'film.avi': expected a name that ends in .mp4 or .gif"),
-        ({"fps": 0}, "fps = 0: expected a number above 0"),
+        ({"fps": 0}, "fps = 0: expected a number from 0.1 to 100"),
+        ({"fps": 1e-5}, "fps = 1e-05: expected a number from 0.1 to 100"),
         ({"fps": "fast"}, "fps = 'fast'"),
         ({"kind": "spede"}, "did you mean 'speed'"),
         ({"window": (0, 1)}, "no frame in it"),

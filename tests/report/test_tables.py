@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import sys
+from math import isnan
 
 import numpy as np
 import pytest
@@ -12,6 +13,8 @@ import pytest
 import mesokit
 from mesokit import CaseError
 from mesokit.cli import main
+from mesokit.observe.shared.result import Comparison
+from mesokit.report.table import cells
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +77,7 @@ def test_comparisons_as_data_frame_and_csv(files, tmp_path):
     assert [row["key"] for row in rows] == list(frame["key"]) and list(frame) == list(rows[0])
     for row, (name, comparison) in zip(rows, files.comparisons().items(), strict=True):
         assert name == f"{row['result']}.{row['key']}"
-        assert float(row["measured"]) == comparison.measured
+        assert row["measured"] == ("" if isnan(comparison.measured) else str(comparison.measured))
 
 
 def test_without_pandas_the_extra_is_named(files, monkeypatch):
@@ -89,7 +92,8 @@ def test_info_as_json(files, run_folder, capsys):
     record = json.loads(out.out)
     assert status == 0 and record["ended"] and record["case"]["fluid"]["density"] == 5.0
     measured = [row["measured"] for row in record["comparisons"]]
-    assert measured == [c.measured for c in files.comparisons().values()]
+    numbers = [c.measured for c in files.comparisons().values()]
+    assert measured == [None if isnan(number) else number for number in numbers]
     assert record["provenance"]["seed"] == 1 and record["results"][1]["shape"]["x"] == 6
     assert "NaN" not in out.out
     status, out = said(capsys, "info", run_folder(False), "--json")
@@ -119,3 +123,13 @@ def test_table_writes_csv(files, tmp_path, capsys):
     wanted[1] = "velocity-profil"
     status, out = said(capsys, "table", files.path, *wanted)
     assert status == 2 and "did you mean 'velocity-profile'?" in out.err
+
+
+def test_digits_of_what_is_known_far_better_than_its_value():
+    """An error of rounding is none; a small deviation that is significant shows its size."""
+    count = Comparison("contacts", 2.75, 2e-18, 3.0)
+    assert isnan(count.deviation) and str(count) == "contacts: 2.750, expected 3"
+    sharp = Comparison("temperature", 1.000049, 3.2e-6, 1.0)
+    assert str(sharp).endswith("+15.3 standard errors, +0.0049 %")
+    assert cells(sharp)[4] == "+15.3 s.e. (+0.0049 %)"
+    assert cells(Comparison("slip", 1.05, 0.01, 1.0))[4] == "+5.0 s.e. (+5.0 %)"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mesokit.study.here import Here
+from mesokit.study.local import Here
 
 CASE = """
 title = "a channel"

@@ -18,6 +18,7 @@ import mesokit
 from mesokit import Study
 from mesokit.cli import main
 from mesokit.errors import CaseError, RunError
+from mesokit.method.mpcd.expected import setting
 from mesokit.study import local
 from mesokit.study.drive import StudyReporter
 
@@ -35,7 +36,7 @@ def said(capsys, *arguments) -> tuple[int, str, str]:
 
 @pytest.fixture(scope="module")
 def study(case_file, tmp_path_factory) -> Study:
-    """Two forces, three seeds, two at once."""
+    """Two forces, three seeds, two at once; the flow has not built up, and is weak."""
     output = tmp_path_factory.mktemp("studies") / "study"
     study = Study(case_file, {FORCE: [0.02, 0.04]}, seeds=3, output=output)
     study.run(jobs=2)
@@ -78,6 +79,12 @@ def test_what_has_ended_is_not_repeated(study, monkeypatch, case_file):
 
 def test_table_pools_the_seeds(study, tmp_path):
     rows = {(row.point[FORCE], row.name): row for row in study.table()}
+    merged = mesokit.merge([run.path for run in study.runs[3:]], tmp_path / "merged")
+    assert {(point, name) for point, name in rows if point == 0.04} == {
+        (0.04, name) for name in merged.comparisons()
+    }
+    for name, number in merged.comparisons().items():  # ratios are those of all samples
+        assert rows[0.04, name].number == number, name
     row = rows[0.04, "flow-rate.mean-velocity-along-x"]
     each = [
         mesokit.open(run.path)["flow-rate"]["mean velocity"]
@@ -85,9 +92,8 @@ def test_table_pools_the_seeds(study, tmp_path):
         if run.point[FORCE] == 0.04
     ]
     values, errors = np.array([(c.measured, c.error) for c in each]).T
-    assert row.runs == 3 and row.number.measured == pytest.approx(values.mean())
-    assert row.number.error == pytest.approx(np.sqrt((errors**2).sum()) / 3)
-    assert row.number.expected == pytest.approx(each[0].expected)
+    assert row.runs == 3 and row.each == tuple(each)
+    assert row.number.measured == pytest.approx(values.mean())
     assert row.scatter == pytest.approx(values.std(ddof=1) / np.sqrt(3))
     assert row.seeds.dof == 2
     assert row.seeds.chi2 == pytest.approx((((values - values.mean()) / errors) ** 2).sum())
@@ -95,7 +101,7 @@ def test_table_pools_the_seeds(study, tmp_path):
     with open(study.to_csv(tmp_path / "t.csv"), newline="") as file:
         lines = list(csv.DictReader(file))
     assert len(frame) == len(lines) == len(rows)
-    assert float(lines[0][FORCE]) == 0.02 and lines[0]["result"] == "flow-rate"
+    assert float(lines[0][FORCE]) == 0.02 and lines[0]["result"] == "velocity-profile"
     assert [float(line["measured"]) for line in lines] == list(frame["measured"])
 
 
@@ -105,12 +111,13 @@ def test_pictures(study):
 
     figure = study.plot("acceleration", "flow-rate.mean", fit="line")
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
-    assert (
-        labels[0] == "theory of the steady flow, not reached"
-        and labels[1].startswith("fit: $y = ")
-        and "3 runs" in labels[2]
-    )
-    assert figure.axes[0].get_xlabel() == r"acceleration  [$a/\tau^2$]"
+    assert labels[0] == "each run" and labels[1] == "theory of the steady flow, not reached"
+    assert labels[2].startswith("fit: $y = ") and labels[3].startswith("3 runs pooled")
+    assert figure.axes[0].get_xlabel() == r"acceleration $g$  [$a/\tau^2$]"
+    [dots] = [line for line in figure.axes[0].lines if line.get_label() == "each run"]
+    row = study.table()[-1]
+    wanted = [run.files["flow-rate"]["mean velocity"].measured for run in study.runs]
+    assert sorted(dots.get_ydata()) == pytest.approx(sorted(wanted)) and len(row.each) == 3
     x = np.array([1.0, 2.0, 4.0, 8.0])
     curve = Curve("", x, 3 * x**-0.5, 0.01 * x, np.full(4, np.nan))
     found = fitted(curve, "power")
@@ -119,7 +126,7 @@ def test_pictures(study):
     assert r"\,x^{-0.500(" in found.legend
     assert found(x) == pytest.approx(3 * x**-0.5)
     [line] = study.fit("acceleration", "flow-rate.mean", "line")
-    assert line.formula.replace(" x", r"\,x") in labels[1]
+    assert line.formula.replace(" x", r"\,x") in labels[2]
     with pytest.raises(CaseError, match=r"density: not varied; expected 'acceleration'"):
         study.plot("density", "flow-rate.mean")
     with pytest.raises(CaseError, match=r"did you mean 'flow-rate\.mean-velocity"):
@@ -133,13 +140,87 @@ def test_pictures(study):
 ])  # fmt: skip
 def test_theory_is_drawn_between_points_where_it_is_straight(log, power, joined):
     """Elsewhere straight pieces would be what no theory says."""
-    from mesokit.study.dependence import Curve, draw
+    from mesokit.study.dependence import Curve, Theory, draw
 
     x = np.array([1.0, 2.0, 4.0, 8.0])
     curve = Curve("", x, 3 * x**power, 0.1 * x, 3 * x**power)
     ax = draw([curve], ("x", ""), ("y", ""), log=log).axes[0]
-    theory = next(line for line in ax.lines if line.get_label() == "theory")
-    assert (theory.get_linestyle() != "None") == joined
+    [theory] = [line for line in ax.lines if line.get_label().startswith("theory")]
+    assert (theory.get_label() == "theory") == joined and (theory.get_marker() == "None") == joined
+    dense = Theory(np.linspace(1, 8, 50), np.linspace(1, 8, 50) ** power)
+    asked = []
+    curve = curve._replace(between=lambda log: asked.append(log) or dense)
+    ax = draw([curve], ("x", ""), ("y", ""), log=log).axes[0]
+    [theory] = [line for line in ax.lines if line.get_label() == "theory"]
+    assert (len(theory.get_xdata()) == 50) != joined and asked == [log] * (not joined)
+
+
+def test_theory_has_gaps_where_there_is_none():
+    from mesokit.study.dependence import Curve, draw
+
+    x = np.arange(1.0, 7.0)
+    for expected in ([0.8, 0.8, np.nan, np.nan, 0.5, np.nan], [1, 1, np.nan, 1, 1, 1]):
+        curve = Curve("", x, x, 0.1 * x, np.array(expected))
+        ax = draw([curve], ("x", ""), ("y", "")).axes[0]
+        drawn = [line for line in ax.lines if line.get_color() == "black"]
+        np.testing.assert_array_equal(drawn[0].get_ydata(), expected)
+        np.testing.assert_array_equal(drawn[1].get_ydata(), [0.5] * (expected[0] == 0.8))
+
+
+@pytest.mark.parametrize(("x", "y", "scales"), [
+    ([1.0, 2.0, 4.0], [1.0, 2.0, 4.0], ("log", "linear")),  # a geometric list
+    ([0.02, 0.0437344, 0.0956352], [0.001, 0.01, 0.1], ("log", "log")),
+    ([0.02, 0.0437344, 0.0956352], [-0.001, 0.01, 0.1], ("log", "linear")),
+    ([0.5, 1.4, 2.3, 3.2, 4.1, 5.0], [1.0, 2.0, 4.0, 8.0, 16.0, 32.0], ("linear", "linear")),
+    ([1.0, 10.0], [1.0, 10.0], ("linear", "linear")),  # two points have any ratio
+])  # fmt: skip
+def test_axes_are_logarithmic_where_values_are_geometric(x, y, scales):
+    from mesokit.study.dependence import Curve, draw
+
+    x, y = np.array(x), np.array(y)
+    curve = Curve("", x, y, 0.01 * abs(y), np.full(len(x), np.nan))
+    ax = draw([curve], ("x", ""), ("y", "")).axes[0]
+    assert (ax.get_xscale(), ax.get_yscale()) == scales
+    for log, wanted in (("x", ("log", "linear")), (False, ("linear", "linear"))):
+        ax = draw([curve], ("x", ""), ("y", ""), log=log).axes[0]
+        assert (ax.get_xscale(), ax.get_yscale()) == wanted
+    with pytest.raises(CaseError, match="log = 'z': expected x, y or x,y"):
+        draw([curve], ("x", ""), ("y", ""), log="z")
+    with pytest.raises(CaseError, match="log = 'y': -1 is among its values; expected all above 0"):
+        draw([curve._replace(value=-np.ones(len(x)))], ("x", ""), ("y", ""), log="x,y")
+
+
+def test_wild_and_undetermined_points_do_not_set_the_axis():
+    from mesokit.study.dependence import Curve, draw
+
+    x = np.array([1.0, 2.0, 3.0, 4.0, 5.0])
+    value = np.array([2e4, 1.1, np.nan, 0.9, 1.0])
+    error = np.array([3e4, 0.1, np.nan, 0.2, 0.1])
+    ax = draw([Curve("", x, value, error, np.full(5, 0.8))], ("x", ""), ("y", "")).axes[0]
+    low, high = ax.get_ylim()
+    assert 0.6 < low < 0.7 and 1.2 < high < 1.3
+    labels = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert "undetermined at 3" in labels and "error bar beyond the axis: 2.0(30)e+04 at 1" in labels
+    calm = draw([Curve("", x, value, 0.01 * error, value)], ("x", ""), ("y", "")).axes[0]
+    assert calm.get_ylim()[1] > 2e4  # a number that is known well is shown
+
+
+def test_theory_is_evaluated_between_points(case_file, tmp_path, here):
+    """That of cases which were not run, also where keys change together."""
+    case = tmp_path / "c.toml"
+    case.write_text(f'{case_file.read_text()}\n[[observe]]\nquantity = "conservation"\n')
+    linked = {("fluid.timestep", "run.steps"): [(0.1, 60), (0.4, 30), (1.6, 20)]}
+    study = Study(case, linked, seeds=2, output=tmp_path / "s")
+    study.run()
+    rows = [row for row in study.table() if row.key == "viscosity-from-curvature"]
+    theory = study.theory_between(rows, study.axes[0].keys, True)
+    assert len(theory.x) == 3 + 2 * 7 and theory.x[4] == pytest.approx(0.2)
+    for timestep, expected in zip(theory.x, theory.expected, strict=True):
+        made = study.base.case({"fluid.timestep": float(timestep)}, 1)
+        assert expected == pytest.approx(setting.transport(made).viscosity)
+    figure = study.plot("timestep", "velocity-profile.viscosity")
+    [line] = [line for line in figure.axes[0].lines if len(line.get_xdata()) == len(theory.x)]
+    assert line.get_label().startswith("theory")
 
 
 def test_another_case_in_its_place_is_refused(study, case_file, tmp_path):
@@ -246,6 +327,16 @@ def test_examples_can_be_run(file, tmp_path):
         ('case = "c.toml"\nsead = 2', "sead: unknown key; did you mean 'seeds'"),
         ('case = "c.toml"\nvary = 3', r"expected \[\[vary\]\], in double brackets"),
         ('case = "nowhere.toml"', "nowhere.toml: no such file"),
+        ('case = "c.toml"\nset = "steps"', r"s.toml: set = 'steps': expected a table \[set\]"),
+        ('case = "c.toml"\nfolder = [1]', r"s.toml: folder = \[1\]: expected the name of a folder"),
+        ('case = "c.toml"\nseeds = 5_000_000', "s.toml: seeds = 5000000: expected at most 100000"),
+        ('case = "c.toml"\n[set]\nbox = 2', "s.toml: box = 2: expected a table"),
+        ('case = "c.toml"\n[set]\nrun = "a"', "s.toml: run = 'a': expected a table, with seed"),
+        ('case = "c.toml"\n[[vary]]\nrun = [2]', "s.toml: with run = 2: run = 2: expected a table"),
+        (
+            'case = "c.toml"\n[[vary]]\n"run.seed" = [2]',
+            "vary run.seed: expected seeds of the study",
+        ),
     ],
 )
 def test_poor_study_files(case_file, tmp_path, text, words):
@@ -255,15 +346,55 @@ def test_poor_study_files(case_file, tmp_path, text, words):
         Study.open(tmp_path / "s.toml")
 
 
+def test_settings_of_a_study_file_need_no_quotes(case_file, tmp_path):
+    """They replace values of a table, not the table."""
+    (tmp_path / "c.toml").write_text(case_file.read_text())
+    (tmp_path / "s.toml").write_text('case = "c.toml"\n[set]\nrun.steps = 30\nfluid.density = 7')
+    case = Study.open(tmp_path / "s.toml", tmp_path / "s").runs[0].files.case
+    assert (case.run.steps, case.run.warmup, case.fluid.density) == (30, 10, 7)
+    assert Study.open(tmp_path / "s").base.case({}, 5) == case
+
+
+def test_runs_of_a_study_have_a_bound(case_file, tmp_path):
+    """It is looked at before lists are made."""
+    with pytest.raises(CaseError, match=r"seeds = 1000000000000: expected at most 100000"):
+        Study(case_file, seeds=10**12, output=tmp_path / "s")
+    vary = {"fluid.density": "1:2:1000", "fluid.timestep": "0.1:0.2:1000"}
+    with pytest.raises(CaseError, match=r"1000000 runs: expected at most 100000 in a study"):
+        Study(case_file, vary, output=tmp_path / "s")
+    assert not (tmp_path / "s").exists()
+
+
 def test_seeds_of_one_case(case_file, tmp_path, capsys, here):
     """`run --seeds` runs them, and shows what they say as one."""
     output = tmp_path / "seeds"
     steps = ["--set", "run.steps=60"]
-    code, out, _ = said(capsys, "run", case_file, "--seeds", 2, "--output", output, *steps)
+    code, out, err = said(capsys, "run", case_file, "--seeds", 2, "--output", output, *steps)
     assert code == 0 and "mean velocity along x" in out
+    assert "study: 2 of 2 runs to do" in err
+    again = ["run", case_file, "--seeds", 2, "--output", output, "--overwrite"]
+    code, _, err = said(capsys, *again)
+    assert code == 2 and f"to begin anew, remove the folder {output}, or choose another" in err
     merged = mesokit.open(output / "runs" / "merged")
     assert merged["flow-rate"].samples == 14
     assert [entry["seed"] for entry in merged.provenance["merged"]] == [5, 6]
+
+
+def test_progress_is_told_once(capsys):
+    """Not again where nothing has changed, as while figures are drawn."""
+    reporter = StudyReporter(seconds=0.0)
+    reporter.runs = 3
+    reporter.start(100, 1, "study")
+    reporter.rate.add(0.0, 0)
+    for ended in (0, 0, 0, 1, 1):
+        reporter.ended, reporter.next = ended, 0.0
+        reporter.update(100)
+    lines = capsys.readouterr().err.splitlines()
+    what = "runs have ended, the last results and figures are being written"
+    assert lines == [
+        "study: 3 of 3 runs to do",
+        *(f"study: 100 %, {n} of 3 {what}" for n in (0, 1)),
+    ]
 
 
 def begun(study: Path, number: int, process: subprocess.Popen[str]) -> list[Path]:

@@ -21,7 +21,7 @@ from mesokit.report.document.links import link_to
 from mesokit.report.progress import Reporter
 from mesokit.report.table import cells
 from mesokit.study import document
-from mesokit.study.here import Here
+from mesokit.study.local import Here
 from mesokit.study.work import carry
 
 FORCE = "fluid.force.acceleration"
@@ -70,7 +70,11 @@ def test_the_page_is_sound_and_holds_every_number(study, capsys):
     for row in rows:
         _, measured, expected, _, deviation, _ = cells(row.number)
         assert {row.number.what, measured, expected, deviation} - {""} <= set(page.texts)
-        assert f"{row.seeds.chi2:.2g} of 1, p {row.seeds.p:.2g}" in page.texts
+        known = all(number.error > 0 for number in row.each)  # of a weak flow some are not
+        assert (row.seeds is not None) == known
+        if known:
+            assert f"{row.seeds.chi2:.2g} of 1, p {row.seeds.p:.2g}" in page.texts
+    assert sum(row.seeds is not None for row in rows) >= 4
     assert len(rows) >= 6 and {"0.02", "0.04", "a channel"} <= set(page.texts)
     pictures = [link for link in page.links if link.startswith("data:")]
     drawn = {row.name for row in rows if row.number.error > 0}

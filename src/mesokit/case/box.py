@@ -35,6 +35,7 @@ class Box:
     shear_rate: float = param(
         0.0,
         doc="Lees-Edwards shear: flow along x, gradient along y",
+        symbol=r"\dot\gamma",
         unit="1/time",
         ge=-1e6,
         le=1e6,

@@ -91,10 +91,15 @@ TAGS = ("rule", "shape", "quantity", "substance")
 
 
 def param(default: Any = ..., *, doc: str, unit: str = "", **limits: Any) -> Any:
-    """A field of a component: default (none: required), one-line meaning, unit, gt/ge/lt/le."""
+    """A field of a component: default (none: required), one-line meaning, unit, gt/ge/lt/le.
+
+    `symbol` is what formulas and figures write for it, and `unless_said` stands for a default that
+    is no value.
+    """
     extra: dict[str, Any] = {"unit": unit}
-    if "unless_said" in limits:  # what a default that is no value stands for
-        extra["unless_said"] = limits.pop("unless_said")
+    for known in ("symbol", "unless_said"):
+        if known in limits:
+            extra[known] = limits.pop(known)
     return Field(default, description=doc, json_schema_extra=extra, **limits)
 
 

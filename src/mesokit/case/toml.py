@@ -63,6 +63,8 @@ def override(data: dict[str, Any], key: str, value: Any) -> None:
             value = tomllib.loads(f"value = {value}")["value"]
     if isinstance(here, list) and last:
         raise _which(key, here)
+    if parents and last and not isinstance(here, dict):
+        raise CaseError(f"{'.'.join(parents)} = {show(here)}: expected a table, with {last}")
     if not isinstance(here, dict) or not last:
         raise CaseError(f"{key} = {show(value)}: expected a key path such as fluid.density")
     here[last] = _along(here.get(last), value)

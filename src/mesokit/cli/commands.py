@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import importlib
+import math
 import os
 import sys
 from collections.abc import Iterator, Sequence
@@ -32,6 +33,15 @@ MODULES = {  # what is here, and the commands that each has
     "compiled": ("warm", "cache"),
 }
 COMMANDS = {command: module for module, commands in MODULES.items() for command in commands}
+
+
+class Finite(click.FloatRange):
+    """A number within bounds, if there are any; nan lies within none."""
+
+    def convert(self, value: Any, option: click.Parameter | None, context: Any) -> Any:
+        """The number. Raises click.BadParameter, as for one out of bounds."""
+        number = super().convert(value, option, context)
+        return number if math.isfinite(number) else self.fail(f"{value} is no number", option)
 
 
 class Commands(click.Group):
@@ -72,10 +82,15 @@ def cli(context: click.Context, modules: Sequence[str]) -> None:
     take_part(context.invoked_subcommand)
     for module in modules:
         sys.path[:0] = [os.getcwd()] if os.getcwd() not in sys.path else []
+        if not all(part.isidentifier() for part in module.split(".")):
+            raise CaseError(f"--import {module!r}: expected the name of a module, such as mine")
         try:
             importlib.import_module(module)
         except ImportError as error:
             raise CaseError(f"--import {module}: {error}") from None
+        except (Exception, SystemExit) as error:  # whatever the code of a user does
+            why = f"{type(error).__name__}: {error}"
+            raise CaseError(f"--import {module}: {why}") from None
 
 
 CASE = click.Path(dir_okay=False, path_type=Path)

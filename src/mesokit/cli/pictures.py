@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import click
 
-from mesokit.cli.commands import FORMATS, RUN, axes_of, cli, require_run, result_named
+from mesokit.cli.commands import (
+    FORMATS,
+    RUN,
+    Finite,
+    axes_of,
+    cli,
+    require_run,
+    result_named,
+)
 from mesokit.cli.completion import colours, kinds
 from mesokit.cli.words import say
 from mesokit.errors import CaseError
@@ -22,10 +31,13 @@ def _ranges(context: click.Context, option: click.Parameter, text: str | None) -
     if text is None:
         return None
     try:
-        return tuple(
+        ranges = tuple(
             (float(low), float(high))
             for low, _, high in (part.partition(":") for part in text.split(","))
         )
+        if any(math.isnan(end) for ends in ranges for end in ends):
+            raise ValueError
+        return ranges
     except ValueError:
         form = {"region": "x0:x1,y0:y1, in cells", "window": "t0:t1, two times"}[str(option.name)]
         raise CaseError(f"--{option.name} {text}: expected {form}") from None
@@ -59,7 +71,7 @@ CHOICES: Sequence[Callable[[Any], Any]] = (
     ),
     click.option(
         "--at",
-        type=float,
+        type=Finite(),
         help="Place along the third axis where solids are shown; of spheres those behind it.",
     ),
     click.option(
@@ -84,7 +96,7 @@ def _choices(command: Any) -> Any:
 @_choices
 @click.option("--result", metavar="NAME", help="Draw this result alone.")
 @click.option("--format", "kind_of_file", type=click.Choice(FORMATS), help="[png]")
-@click.option("--width", type=click.FloatRange(2, 20), help="Inches; a column has 3.4.  [6.4]")
+@click.option("--width", type=Finite(2, 20), help="Inches; a column has 3.4.  [6.4]")
 @click.option("--output", type=FILE, help="The file of one picture: PNG, PDF or SVG.")
 def plot(run: Path, output: Path | None, width: float | None, **given: Any) -> None:
     """Draw the results of RUN again, one of them, or with --kind a picture of the flow.
@@ -142,7 +154,7 @@ def _require_one(kind: str | None, name: str | None, output: Path | None, given:
     help=f"What is drawn: {KIND}.  [that of the method, else speed]",
 )
 @_choices
-@click.option("--fps", default=15.0, help="Frames shown per second.  [15]")
+@click.option("--fps", type=Finite(), default=15.0, help="Frames shown per second.  [15]")
 @click.option("--output", type=FILE, help="MP4 or GIF (RUN/flow-KIND.mp4 unless said).")
 @click.option("--quiet", is_flag=True, help="No progress; errors only.")
 def animate(

@@ -15,7 +15,8 @@ from mesokit.errors import CaseError
 
 TEMPLATES = methods.templates()
 EXAMPLES = methods.examples()
-KNOWN = TEMPLATES | EXAMPLES
+STUDIES = methods.studies()
+KNOWN = TEMPLATES | EXAMPLES | STUDIES
 
 
 def _listed(names: Iterable[str]) -> str:
@@ -32,6 +33,7 @@ SCHEMA = "case.schema.json"
 @cli.command(
     help="Write a commented case NAME.toml: "
     f"{', '.join(TEMPLATES)}, or one of the examples: {_listed(EXAMPLES)}.\n\n"
+    f"Or the file of a study, and its case beside it: {', '.join(STUDIES)}.\n\n"
     "With a FILE, that is what is written (or give another NAME and its --template). Beside it "
     "comes "
     f"{SCHEMA}, by which editors complete and check all cases of the folder."
@@ -50,37 +52,68 @@ def new(name: str, path: str | None, template: str | None) -> None:
         if template not in KNOWN:
             raise CaseError(f"{template}: no such template{nearest(template, KNOWN)}")
     file = Path(name if name.endswith(".toml") else f"{name}.toml")
-    if template is None and file.stem in KNOWN:
-        template = file.stem
-    elif template is None and name.removesuffix(".toml") in KNOWN:  # one in a folder of examples
+    if template is None and name.removesuffix(".toml") in KNOWN:  # also one in a folder of examples
         template, file = name.removesuffix(".toml"), Path(file.name)
+        if template in STUDIES:  # some have the name of their case, which lies beside them
+            file = Path(f"{file.stem}_study.toml")
+    elif template is None and file.stem in KNOWN:
+        template = file.stem
     if template is None:
-        raise CaseError(
-            f"{name}: no such template{nearest(file.stem, KNOWN)} (give one of them, "
-            f"or --template: {_listed(KNOWN)})"
-        )
-    source = KNOWN[template]
-    text = source.read_text(encoding="utf-8")
-    said = rf"(^# .*?\bmesokit .*?\b){template.rpartition('/')[2]}(?=\.toml|/| |$)"
-    text = re.sub(said, rf"\g<1>{file.stem}", text, flags=re.M)
-    try:
-        with open(file, "x", encoding="utf-8") as written:
-            written.write(f"#:schema ./{SCHEMA}\n{text}")
-    except FileExistsError:
-        raise CaseError(f"{file}: exists already; remove it, or choose another name") from None
+        listed = f" (give one of them, or --template: {_listed(KNOWN)})"
+        raise CaseError(f"{name}: no such template{nearest(file.stem, KNOWN) or listed}")
+    written = _write_study(template, file) if template in STUDIES else [file]
+    if template not in STUDIES:
+        _write_case(template, file)
     from mesokit.case.describe.schema import schema_text
     from mesokit.io.atomic import write_text
 
     write_text(file.with_name(SCHEMA), schema_text())  # for the parts that are installed now
-    for other in re.findall(
-        r'^(?:file|bonds) = "([\w.-]+)"', text, flags=re.M
-    ):  # such as a picture of solids
+    command = "study" if template in STUDIES else "run"
+    click.echo(
+        f"wrote {' and '.join(map(str, written))} (and {SCHEMA}, for editors); "
+        f"next: mesokit check {written[-1]}, mesokit {command} {file}"
+    )
+
+
+def _write_study(template: str, file: Path) -> list[Path]:
+    """The study file and its case beside it; both, in this order."""
+    text = _named(template, file)
+    of = re.search(r'^case = "\.\./([^"]+)\.toml"', text, flags=re.M)
+    assert of is not None  # studies of examples name one of them
+    case = file.with_name(f"{of[1].rpartition('/')[2]}.toml")
+    _create(file, text.replace(of[0], f'case = "{case.name}"'))
+    try:
+        _write_case(of[1], case)
+    except CaseError:
+        file.unlink()
+        raise
+    return [file, case]
+
+
+def _write_case(template: str, file: Path) -> None:
+    """A case, and the files that it names, such as a picture of solids."""
+    text, source = _named(template, file), KNOWN[template]
+    _create(file, f"#:schema ./{SCHEMA}\n{text}")
+    for other in re.findall(r'^(?:file|bonds) = "([\w.-]+)"', text, flags=re.M):
         beside = file.with_name(other)
         if not beside.exists():
             beside.write_bytes((source.parent / other).read_bytes())
-    click.echo(
-        f"wrote {file} (and {SCHEMA}, for editors); next: mesokit check {file}, mesokit run {file}"
-    )
+
+
+def _named(template: str, file: Path) -> str:
+    """The text of a template, whose commands name the file."""
+    text = KNOWN[template].read_text(encoding="utf-8")
+    said = rf"(^# .*?\bmesokit .*?\b){template.rpartition('/')[2]}(?=\.toml|/| |$)"
+    return str(re.sub(said, rf"\g<1>{file.stem}", text, flags=re.M))
+
+
+def _create(file: Path, text: str) -> None:
+    """Write a new file. Raises CaseError if one is there."""
+    try:
+        with open(file, "x", encoding="utf-8") as written:
+            written.write(text)
+    except FileExistsError:
+        raise CaseError(f"{file}: exists already; remove it, or choose another name") from None
 
 
 @cli.command()

@@ -66,7 +66,10 @@ def run(
         from mesokit.cli.studies import run_seeds
 
         if overwrite:
-            raise CaseError("--overwrite: not with --seeds, whose runs go on where they are")
+            raise CaseError(
+                "--overwrite: not with --seeds, whose runs go on where they are; to begin anew, "
+                f"remove the folder {output}, or choose another --output"
+            )
         if here.size > 1:
             raise CaseError(f"--seeds: not on {here.size} ranks; expected one process")
         given = {"settings": settings, "threads": threads, "quiet": quiet}

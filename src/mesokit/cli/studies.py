@@ -11,10 +11,11 @@ import click
 
 from mesokit.cli.commands import RUN, SET, cli, require_run
 from mesokit.cli.outcome import show_results, stopping
-from mesokit.cli.words import say, show_table
+from mesokit.cli.words import patience, say, show_table
 from mesokit.errors import CaseError, RunError
 
 FITS = click.Choice(["line", "power"])
+LOGS = click.Choice(["x", "y", "x,y"])
 
 
 def _options(context: click.Context, option: click.Parameter, values: Sequence[str]) -> Any:
@@ -68,6 +69,8 @@ def _axes(context: click.Context, option: click.Parameter, values: Sequence[str]
 @click.option("--x", metavar="KEY", help="Draw against this key (the first varied unless said).")
 @click.option("--y", metavar="NUMBER", help="Draw this number, such as flow-rate.permeability.")
 @click.option("--fit", type=FITS, help="Fit a straight line or a power law to it.")
+@click.option("--log", type=LOGS, help="Logarithmic axes of it.")
+@click.option("--linear", is_flag=True, help="Linear axes of it.")
 @click.option("--quiet", is_flag=True, help="No progress, no table; errors only.")
 def study(what: Path, **given: Any) -> None:
     """Run CASE for several values and seeds, or go on with a STUDY (its folder, or a study file).
@@ -75,13 +78,16 @@ def study(what: Path, **given: Any) -> None:
     Runs that have ended are not repeated. At the end there are a table (table.csv) and a picture of
     every number against the first key that is varied.
     """
-    for option in ("x", "fit"):
+    for option in ("x", "fit", "log", "linear"):
         if given[option] and not given["y"]:
             raise CaseError(f"--{option}: of which number? add --y")
+    if given["log"] and given["linear"]:
+        raise CaseError("--linear: not with --log")
     from mesokit.study.job_array import write_job_array
     from mesokit.study.study import Study
 
-    made = _made(Study, what, given)
+    with patience("checking the cases of all runs", given["quiet"]):
+        made = _made(Study, what, given)
     if given["listing"]:
         return show_table([(str(i + 1), run.state, str(run.path)) for i, run in _numbered(made)])
     if given["job_array"]:
@@ -165,7 +171,8 @@ def _show(made: Any, given: dict[str, Any]) -> None:
     click.echo(f"table: {table}")
     if given["y"]:
         x, fit = given["x"] or _first(made), given["fit"]
-        picture = made.save_picture(x, given["y"], fit)
+        log = False if given["linear"] else given["log"]
+        picture = made.save_picture(x, given["y"], fit, log=log)
         for found in made.fit(x, given["y"], fit) if fit else ():
             click.echo(f"fit: {found}")
         return click.echo(f"picture: {picture}")

@@ -55,7 +55,17 @@ def _templates_beside(module: str) -> Iterable[Any]:
 
 
 def examples() -> dict[str, Any]:
-    """Commented cases from a channel with a cylinder to thinning dumbbells, by name.
+    """Commented cases from a channel with a cylinder to thinning dumbbells, by name."""
+    return _examples_in("") | _examples_in("viscoelastic/") | _examples_in("rheometer/")
+
+
+def studies() -> dict[str, Any]:
+    """Commented study files, by name: each names one of the examples as its case."""
+    return _examples_in("studies/")
+
+
+def _examples_in(start: str) -> dict[str, Any]:
+    """The examples in a folder, by name with the folder before it.
 
     Wheels carry them inside the package; in a clone they lie beside `src`.
     """
@@ -65,10 +75,7 @@ def examples() -> dict[str, Any]:
     folder = package / "examples"
     if not folder.is_dir():
         folder = pathlib.Path(str(package)).parents[1] / "examples"
-    found, within = {}, ("viscoelastic", "rheometer")
-    for place, start in ((folder, ""), *((folder / name, f"{name}/") for name in within)):
-        files = place.iterdir() if place.is_dir() else ()
-        for file in sorted(files, key=lambda f: f.name):
-            if file.name.endswith(".toml"):
-                found[start + file.name.removesuffix(".toml")] = file
-    return found
+    place = folder / start if start else folder
+    files = sorted(place.iterdir(), key=lambda f: f.name) if place.is_dir() else []
+    named = {file.name.removesuffix(".toml"): file for file in files}
+    return {start + name: file for name, file in named.items() if file.name.endswith(".toml")}

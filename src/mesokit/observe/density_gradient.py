@@ -15,7 +15,7 @@ from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.compression import compression, unit_cell
 from mesokit.method.mpcd.expected.ideal import flow_axis
-from mesokit.observe.shared.estimate import Estimate, of_mean
+from mesokit.observe.shared.estimate import Estimate, noted, of_mean
 from mesokit.observe.shared.protocol import BlockAccumulator, Observable
 from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
@@ -162,5 +162,6 @@ class DensityGradientAccumulator(BlockAccumulator):
             slope = np.zeros(self.slices)
             slope[high] += 1 / bottom
             slope[low] -= top / bottom**2
-            what = "largest density over smallest"
-            yield Comparison(what, *filled.scalar(top / bottom, slope), note=said)
+            what, smallest = "largest density over smallest", np.eye(self.slices)[low]
+            value, error = filled.scalar(top / bottom, slope, over=(bottom, smallest))
+            yield Comparison(what, value, error, note=noted(value, said))

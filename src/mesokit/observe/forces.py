@@ -16,7 +16,7 @@ from mesokit.errors import CaseError
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import free_volume, slit_of, solids_of
 from mesokit.method.mpcd.expected import recognise, setting
-from mesokit.observe.shared.estimate import Estimate, of_mean
+from mesokit.observe.shared.estimate import Estimate, noted, of_mean
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Array, Comparison, Result, with_error
 from mesokit.observe.shared.walls import require_counted
@@ -295,9 +295,11 @@ class ForcesAccumulator:
         if self.observable.length is None or not self.blocks.count:
             return np.nan
         slope, speed = self.slope(), self.observable.speed
-        if speed is None:
-            speed = float(slope @ self.blocks.mean())
-        return self.scale(speed) if speed else np.nan
+        if speed is not None:
+            return self.scale(speed)
+        mean = of_mean(self.blocks, falling=True)
+        speed = float(slope @ mean.value)
+        return mean.scalar(self.scale(speed), slope, over=(speed, slope))[0] if speed else np.nan
 
     def note_on_torque(self, body: int) -> str:
         """How well cells resolve one of two round surfaces: the inner one takes too little.
@@ -359,6 +361,6 @@ class ForcesAccumulator:
                 kind = "drag coefficient" if axis == flow else "lift coefficient"
                 where = f" along {AXES[axis]}" if self.dimension == 3 and axis != flow else ""
                 what = f"{kind} of {self.bodies[body]}{where}"
-                value, error = mean.scalar(value, gradient)
-                found.append(Comparison(what, value, error, note=note))
+                value, error = mean.scalar(value, gradient, over=(speed, slope))
+                found.append(Comparison(what, value, error, note=noted(value, note)))
         return found

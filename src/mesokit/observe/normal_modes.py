@@ -22,6 +22,7 @@ from mesokit.method.mpcd.expected.molecules import (
     substep_of,
 )
 from mesokit.observe.shared.decay import fit_curve, normalised
+from mesokit.observe.shared.estimate import noted
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Comparison, Result
 from mesokit.observe.transverse_modes import FEWEST, LOWEST, decaying
@@ -150,7 +151,7 @@ class NormalModesAccumulator:
             if measured is not None:
                 expected = float(times.mode[p]) if times is not None else np.nan
                 what = f"normal-mode time {p + 1}"
-                found.append(Comparison(what, *measured, expected, "tau", note))
+                found.append(Comparison(what, *measured, expected, "tau", noted(measured[0], note)))
         for p, correlator in enumerate(self.correlators[:SHOWN]):
             square = correlator.correlation()
             if len(square.value):
@@ -188,4 +189,4 @@ class NormalModesAccumulator:
         if fitted is None or not fitted.value[0] > 0:
             return None
         rate = fitted.value[0]
-        return fitted.scalar(1 / rate, np.array([-1 / rate**2, 0.0]))
+        return fitted.scalar(1 / rate, np.array([-1 / rate**2, 0.0]), over=(rate, np.eye(2)[0]))

@@ -15,7 +15,7 @@ from mesokit.case.describe.hints import Either
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import FINE, solids_of
 from mesokit.method.mpcd.expected import recognise, setting
-from mesokit.observe.shared.estimate import Estimate, fit
+from mesokit.observe.shared.estimate import Estimate, fit, noted
 from mesokit.observe.shared.protocol import Observable
 from mesokit.observe.shared.result import Comparison, Result
 from mesokit.observe.shared.shells import Array, ShellAccumulator, shell_edges, shell_volumes
@@ -326,20 +326,17 @@ def _pipe(acc: RadialProfileAccumulator, velocity: Estimate) -> Fitted:
     parabola = fit(velocity, basis, acc.crowd * acc.inside())
     c0, c2 = parabola.value
     push, coefficients = setting.acceleration(acc.case)[acc.axis], setting.transport(acc.case)
-    nu, error = parabola.scalar(-push / (4 * c2), np.array([0, push / (4 * c2**2)]))
-    short = acc.short_run(5.78 * nu / radius**2)  # the first zero of J0, squared
-    notes = filter(None, [setting.caveat(acc.case), short])
-    found = [
-        Comparison(
-            "viscosity from curvature", nu, error,
-            coefficients.viscosity if coefficients else np.nan, "a^2/tau",
-            "; ".join(notes) or "whatever the slip",
-        )
-    ]  # fmt: skip
+    curved = np.array([0, push / (4 * c2**2)])
+    nu, error = parabola.scalar(-push / (4 * c2), curved, over=(c2, np.eye(2)[1]))
+    known = coefficients.viscosity if coefficients else np.nan
+    slowest = known if np.isnan(nu) else nu
+    short = acc.short_run(5.78 * slowest / radius**2)  # the first zero of J0, squared
+    note = noted(nu, setting.caveat(acc.case), short) or "whatever the slip"
+    found = [Comparison("viscosity from curvature", nu, error, known, "a^2/tau", note)]
     share = 1 + radius**2 * c2 / c0
     gradient = np.array([-(radius**2) * c2 / c0**2, radius**2 / c0])
-    value, error = parabola.scalar(100 * share, 100 * gradient)
-    note = short or "no slip"
+    value, error = parabola.scalar(100 * share, 100 * gradient, over=(c0, np.eye(2)[0]))
+    note = noted(value, short) or "no slip"
     found.append(
         Comparison("slip at the wall", value, error, 0.0, "% of the centre velocity", note)
     )

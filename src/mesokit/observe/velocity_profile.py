@@ -11,7 +11,7 @@ from mesokit.case.component import component, param, tag
 from mesokit.geometry.solids.solids import slit_of
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.protocol import method_of
-from mesokit.observe.shared.estimate import Estimate, fit, of_ratio
+from mesokit.observe.shared.estimate import Estimate, fit, noted, of_ratio
 from mesokit.observe.shared.profile import (
     Array,
     Profile,
@@ -184,16 +184,18 @@ def _poiseuille(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
     parabola = fit(velocity, basis, mass * acc.inside())
     c0, _, c2 = parabola.value
     push = setting.acceleration(acc.case)[acc.component]
-    nu, error = parabola.scalar(-push / (2 * c2), np.array([0, 0, push / (2 * c2**2)]))
+    value, error = parabola.scalar(
+        -push / (2 * c2), np.array([0, 0, push / (2 * c2**2)]), over=(c2, np.eye(3)[2])
+    )
+    short = acc.short_run(acc.expected_viscosity() if np.isnan(value) else value)
     found = [
         Comparison(
             "viscosity from curvature",
-            nu,
+            value,
             error,
             acc.expected_viscosity(),
             VISCOSITY,
-            "; ".join(filter(None, [setting.caveat(acc.case), acc.short_run(nu)]))
-            or "whatever the slip",
+            noted(value, setting.caveat(acc.case), short) or "whatever the slip",
         )
     ]
     quarter = acc.edges[-1] ** 2 / 4
@@ -201,7 +203,7 @@ def _poiseuille(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
     centre, slip = c0 - wall, c0 + quarter * c2 - wall
     share = slip / centre
     gradient = np.array([1 - share, 0, quarter]) / centre
-    value, error = parabola.scalar(100 * share, 100 * gradient)
+    value, error = parabola.scalar(100 * share, 100 * gradient, over=(centre, np.eye(3)[0]))
     found.append(
         Comparison(
             "slip at the walls",
@@ -209,7 +211,7 @@ def _poiseuille(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
             error,
             0.0,
             "% of the centre velocity",
-            acc.short_run(nu) or "no slip",
+            noted(value, short) or "no slip",
         )
     )
     return basis @ parabola.value, found
@@ -260,7 +262,7 @@ def _kolmogorov(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
     wave = fit(velocity, basis, mass)
     amplitude = wave.value[1]
     nu = force.amplitude / (amplitude * k**2)
-    value, error = wave.scalar(nu, np.array([0, -nu / amplitude]))
+    value, error = wave.scalar(nu, np.array([0, -nu / amplitude]), over=(amplitude, np.eye(2)[1]))
     return basis @ wave.value, [
         Comparison(
             "viscosity from amplitude",
@@ -268,7 +270,7 @@ def _kolmogorov(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
             error,
             acc.expected_viscosity(),
             VISCOSITY,
-            setting.caveat(acc.case) or "steady",
+            noted(value, setting.caveat(acc.case)) or "steady",
         )
     ]
 

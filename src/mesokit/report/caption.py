@@ -120,21 +120,21 @@ def _wrapped(text: str, width: float) -> list[str]:
 
 def _caution(c: Comparison) -> str:
     """What must be known to read a deviation, or why there is none."""
-    if c.approximate or not c.steady or "lower bound" in c.note or c.expected != c.expected:
+    unknown = c.measured != c.measured or c.expected != c.expected
+    if unknown or c.approximate or not c.steady or "lower bound" in c.note:
         return c.note
     return ""
 
 
 def _line(c: Comparison, shared: Sequence[str]) -> str:
-    unit = symbols(c.unit)
-    unit = unbroken(unit)
+    unit = "" if c.measured != c.measured else unbroken(symbols(c.unit))
     text, note = f"{c.what}: {with_error(c.measured, c.error)} {unit}".rstrip(), _caution(c)
     note = "" if note in shared and not c.approximate else note
     note = "approximate" if note in shared else note
     said = []
     if c.expected == c.expected and (c.expected or c.error > 0):
         said.append(f"theory {c.expected:.4g}")
-        if c.approximate and c.expected:
+        if c.approximate and c.percent == c.percent:
             said[0] += f", {two_digits(c.percent, sign='+')} %"
         elif c.deviation == c.deviation:
             said[0] += f", {c.deviation:+.1f} s.e."

@@ -63,7 +63,7 @@ class Reporter:
         self.stream = sys.stderr if stream is None else stream
         self.quiet, self.seconds = quiet, seconds
         self.total = self.particles = self.first = self.last = 0
-        self.phase = ""
+        self.phase = self.line = ""  # what is done, and the last that was said of how far it is
         self.fresh = False  # nothing measured yet, or only the compiler
         self.started = self.began = 0.0  # time of the start, and of the first measured step
         self.next = 0.0  # time of the next line
@@ -131,7 +131,10 @@ class Reporter:
         else:
             self.next = now + self.seconds
             done = (step - self.first) / max(self.total - self.first, 1)
-            self._say(f"{self.phase}: {100 * done:3.0f} %, {self.words(step)}")
+            line = f"{self.phase}: {100 * done:3.0f} %, {self.words(step)}"
+            if line != self.line:  # there is news
+                self._say(line)
+            self.line = line
 
     def tell(self, line: str) -> None:
         """Say a line that stays, above the bar if there is one."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from mesokit.case.describe.digits import two_digits
-from mesokit.observe.shared.result import Comparison, Result, with_error
+from mesokit.observe.shared.result import Comparison, Result, in_percent, with_error
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -53,7 +53,7 @@ def cells(c: Comparison) -> tuple[str, str, str, str, str, str]:
     if math.isfinite(c.deviation):
         deviation = f"{c.deviation:+.1f} s.e."
         if math.isfinite(c.percent) and c.expected:
-            deviation += f" ({c.percent:+.1f} %)"
+            deviation += f" ({in_percent(c.percent)})"
     elif c.approximate and math.isfinite(c.percent):
         expected, deviation = f"about {expected}", f"{two_digits(c.percent, sign='+')} %"
     return c.what, with_error(c.measured, c.error), expected, c.unit, deviation, c.note

@@ -68,6 +68,8 @@ class Goal(NamedTuple):
     def said(self, result: Result) -> str:
         """How well the number is known now, in words."""
         number = self.found(result)
+        if math.isnan(number.measured):
+            return f"{self.observable}: {number.what} is undetermined ({number.note})"
         if self.relative and number.measured:
             share = 100 * number.error / abs(number.measured)
             return f"{self.observable}: {number.what} is known to {share:.3g} %"

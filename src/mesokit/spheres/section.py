@@ -35,13 +35,14 @@ class Spheres:
     hard: ClassVar[bool] = True  # none may lie on another
     bytes_each: ClassVar[int] = 350  # of memory: states, lists, queue
 
-    number: int | None = param(None, doc="how many", ge=1, le=MOST_PARTICLES)
+    number: int | None = param(None, doc="how many", symbol="N", ge=1, le=MOST_PARTICLES)
     density: float | None = param(
         None, doc="number per area or volume", unit="1/a^d", gt=0, le=1e15
     )
     packing_fraction: float | None = param(
         None,
         doc="part of the box that they fill (0.3 unless a number or density is given)",
+        symbol=r"\phi",
         gt=0,
         lt=1,
     )
@@ -50,7 +51,10 @@ class Spheres:
     )
     kT: float = param(1.0, doc="thermal energy of the start", unit="kT", ge=0, le=1e9)
     gravity: Many[float] = param(
-        (), doc="acceleration of all, one number for each axis (none unless said)", unit="a/time^2"
+        (),
+        doc="acceleration of all, one number for each axis (none unless said)",
+        symbol="g",
+        unit="a/time^2",
     )
     start: SphereStart = param(LatticeStart(), doc="where they are at first")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import itertools
 import json
+import math
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,6 +19,9 @@ from mesokit.errors import CaseError
 
 RANGE = re.compile(r"\s*([^:,\s]+):([^:,\s]+):(\d+)(:log)?\s*")
 FORM = "expected KEY=VALUE,VALUE,... or KEY=FIRST:LAST:NUMBER, such as fluid.timestep=0.05:0.2:4"
+
+
+MOST = 100_000  # runs of a study
 
 
 @dataclass(frozen=True)
@@ -128,6 +132,8 @@ def grid(axes: Sequence[Axis]) -> list[dict[str, Any]]:
     """
     keys = [key for axis in axes for key in axis.keys]
     for key in keys:
+        if key == "run.seed":
+            raise CaseError("vary run.seed: expected seeds of the study (--seeds), not a key")
         if keys.count(key) > 1:
             raise CaseError(f"vary {key}: given twice")
     points = itertools.product(*axes)
@@ -141,6 +147,10 @@ def _values(key: str, text: str) -> list[Any]:
             first, last, number = float(found[1]), float(found[2]), int(found[3])
         except ValueError:
             raise CaseError(f"vary {key}={text.strip()}: {FORM}") from None
+        if not math.isfinite(last - first):
+            raise CaseError(f"vary {key}={text.strip()}: expected two numbers, not that far apart")
+        if number > MOST:
+            raise CaseError(f"vary {key}={text.strip()}: expected at most {MOST} values")
         if found[4] and not (first > 0 and last > 0):
             raise CaseError(f"vary {key}={text.strip()}: a logarithmic range begins above 0")
         space = np.geomspace if found[4] else np.linspace

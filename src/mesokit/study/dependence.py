@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,13 +26,27 @@ from mesokit.statistics import Fit, weighted_line
 
 FITS = ("line", "power")
 BENT = 0.01  # part of its height by which a straight line may miss a point
-DECADE = 8.0  # last over first value beyond which an axis is logarithmic
+EVEN = 0.02  # part by which ratios of neighbours may differ in a geometric sequence
+DECADE = 8.0  # largest over smallest value from which the other axis is logarithmic too
+WILD = 10.0  # median error bars: one that is longer does not set the axis
+MARGIN = 0.05  # of an axis, at either end
+NAMED = 3  # points that a legend names
+TICKS = 6  # of values within a decade, each of which has its own
+
+
+class Theory(NamedTuple):
+    """What is expected (n,), nan where nothing is, at many places (n,) of a curve."""
+
+    x: Array
+    expected: Array
 
 
 class Curve(NamedTuple):
     """Points (n,) of one curve, what is expected there (nan where nothing is), and its name.
 
-    `theory` is what the expectation is, in a few words.
+    `theory` is what the expectation is, in a few words. `between` gives it between the points as
+    well, for an axis that is logarithmic or not, or None where it cannot. `seeds` are rows (m, 3)
+    of place, value and error: the runs that a point was pooled from.
     """
 
     label: str
@@ -40,6 +55,8 @@ class Curve(NamedTuple):
     error: Array
     expected: Array
     theory: str = "theory"
+    between: Callable[[bool], Theory | None] | None = None
+    seeds: Array = np.empty((0, 3))
 
 
 def draw(
@@ -47,7 +64,7 @@ def draw(
     x: tuple[str, str],
     y: tuple[str, str],
     fit: str | None = None,
-    log: bool | None = None,
+    log: bool | str | None = None,
     note: str = "",
 ) -> Any:
     """A figure of several curves.
@@ -57,54 +74,160 @@ def draw(
     curves: what is drawn.
     x, y: name and unit of each axis.
     fit: "line" or "power", fitted to each curve.
-    log: whether axes are logarithmic; where values span a decade or a power is fitted unless said.
+    log: which axes are logarithmic: "x", "y", "x,y", True for both, False for none. Unless said, x
+        is where its values are a geometric sequence, and y if it is then above zero everywhere and
+        spans a decade; both are for a power.
     note: what the points are, for the legend.
 
-    Raises CaseError for another fit, or one without enough points.
+    Raises CaseError for another fit, or one without enough points, and for a logarithmic axis of
+    values that are not above zero.
     """
     import matplotlib as mpl
 
     from mesokit.report.notebook import ShownFigure
 
+    scales = logarithmic(curves, fit, log)
     with mpl.rc_context(STYLE):
         figure = ShownFigure(figsize=(WIDTH, HEIGHT), layout="constrained")
         ax = figure.subplots()
-        wide = all(_spans(curve.x) for curve in curves)
-        if log or (log is None and (wide or fit == "power")):
-            ax.set_xscale("log")
-        if log or (log is None and fit == "power"):
-            ax.set_yscale("log")
+        for set_scale, logs in zip((ax.set_xscale, ax.set_yscale), scales, strict=True):
+            set_scale("log" if logs else "linear")
         for number, curve in enumerate(curves):
-            _draw(ax, curve, number, note, fit)
+            _draw(ax, curve, number, note, scales)
+            if fit is not None:
+                _draw_fit(ax, curve, number, fit)
+        _leave_out_wild(ax, curves, scales[1])
         for axis in (ax.xaxis, ax.yaxis):
             if axis.get_scale() == "log":
                 sparse_logarithm(axis, *axis.get_view_interval())
+        places = np.unique(np.concatenate([curve.x for curve in curves]))
+        if scales[0] and len(places) <= TICKS and places[-1] < 10 * places[0]:
+            ax.set_xticks(places, [f"{place:g}" for place in places])
+            ax.set_xticks([], minor=True)
         ax.set_xlabel(labelled(*x))
         ax.set_ylabel(labelled(y[0], y[1]))
         ax.legend(loc="best")
         return figure
 
 
-def _draw(ax: Any, curve: Curve, number: int, note: str, fit: str | None) -> None:
-    colour = COLOURS[number % len(COLOURS)]
+def logarithmic(
+    curves: Sequence[Curve], fit: str | None = None, log: bool | str | None = None
+) -> tuple[bool, bool]:
+    """Whether either axis is logarithmic, as `draw` says.
+
+    Raises CaseError for other axes, and for a number that is not above zero on such an axis.
+    """
+    if isinstance(log, str):
+        named = [word.strip() for word in log.split(",")]
+        if not {*named} <= {"x", "y"}:
+            raise CaseError(f"log = {show(log)}: expected x, y or x,y")
+        chosen = "x" in named, "y" in named
+    elif log is not None:
+        chosen = bool(log), bool(log)
+    else:
+        wide = all(geometric(curve.x) for curve in curves)
+        chosen = (True, True) if fit == "power" else (wide, wide and _spans_a_decade(curves))
+    for name, logs, each in zip("xy", chosen, ("x", "value"), strict=True):
+        values = np.concatenate([getattr(curve, each) for curve in curves])
+        values = values[np.isfinite(values)]
+        if log is not None and logs and len(values) and values.min() <= 0:
+            raise CaseError(
+                f"log = {show(name)}: {values.min():g} is among its values; expected all above 0"
+            )
+    return chosen
+
+
+def geometric(x: Array) -> bool:
+    """Whether values (n,), three or more, have one ratio from each to the next.
+
+    >>> [geometric(np.array(x)) for x in ([1, 2, 4.0], [1, 2, 3.0], [1, 10.0], [0, 1, 10.0])]
+    [True, False, False, False]
+    """
+    x = np.unique(x)
+    if len(x) < 3 or x[0] <= 0:
+        return False
+    ratios = x[1:] / x[:-1]
+    return bool(np.ptp(np.log(ratios)) <= EVEN * np.log(ratios).mean())
+
+
+def _spans_a_decade(curves: Sequence[Curve]) -> bool:
+    """Whether measured and expected numbers are above zero, and of very different size."""
+    values = np.concatenate([np.concatenate([c.value, c.expected]) for c in curves])
+    values = values[np.isfinite(values)]
+    return bool(len(values) and values.min() > 0 and values.max() >= DECADE * values.min())
+
+
+def _draw(ax: Any, curve: Curve, number: int, note: str, scales: tuple[bool, bool]) -> None:
+    colour, marker = COLOURS[number % len(COLOURS)], MARKERS[number % len(MARKERS)]
     words = ", ".join(filter(None, [curve.label, note]))
     look = {"mfc": "white", "color": colour, "ms": 5, "capsize": 2, "zorder": 3}
-    label = f"{words}, $\\pm$ one standard error"
-    marker = MARKERS[number % len(MARKERS)]
+    label = rf"{words}, $\pm$ one standard error"
     ax.errorbar(curve.x, curve.value, curve.error, fmt=marker, label=label, **look)
+    if len(curve.seeds):
+        dots = {"ms": 2.5, "alpha": 0.55, "color": colour, "zorder": 2.5}
+        label = ", ".join(filter(None, [curve.label, "each run"]))
+        ax.plot(*curve.seeds[:, :2].T, "o", label=label, **dots)
+    _say(ax, curve, np.isnan(curve.value), "undetermined at")
     known = np.isfinite(curve.expected)
     if known.any():
         label = f"{curve.theory}, {curve.label}" if curve.label else curve.theory
         look = {"ls": LINES[number % len(LINES)], "color": "black", "lw": 1.3, "zorder": 2}
-        x, expected = curve.x[known], curve.expected[known]
-        if not _straight(ax, x, expected):  # between the points nobody has asked theory
-            look |= {"ls": "", "marker": "_", "ms": 14, "mew": 1.3}
+        x, expected = curve.x, curve.expected
+        if not _straight(x[known], expected[known], scales):
+            between = curve.between(scales[0]) if curve.between else None
+            if between is not None:
+                x, expected = between
+            else:  # straight pieces, which no theory says
+                look |= {"ls": ":", "lw": 0.8, "marker": "_", "ms": 14, "mew": 1.3}
+                label = f"{label} at the points"
         ax.plot(x, expected, label=label, **look)
-    if fit is not None:
-        found = fitted(curve, fit)
-        space = np.geomspace if fit == "power" else np.linspace
-        at = space(curve.x.min(), curve.x.max(), 200)
-        ax.plot(at, found(at), "--", color=colour, lw=1.1, label=found.legend, zorder=1)
+        known = np.isfinite(expected)
+        alone = known & ~np.append(known[1:], False) & ~np.append(False, known[:-1])
+        ax.plot(x[alone], expected[alone], "_", ms=14, mew=1.3, color="black", zorder=2)
+
+
+def _draw_fit(ax: Any, curve: Curve, number: int, fit: str) -> None:
+    found, colour = fitted(curve, fit), COLOURS[number % len(COLOURS)]
+    space = np.geomspace if fit == "power" else np.linspace
+    at = space(curve.x.min(), curve.x.max(), 200)
+    ax.plot(at, found(at), "--", color=colour, lw=1.1, label=found.legend, zorder=1)
+
+
+def _leave_out_wild(ax: Any, curves: Sequence[Curve], logs: bool) -> None:
+    """Let the axis show the other numbers where a few error bars are longer than all of these."""
+    rows = [np.stack([c.x, c.value, c.error], axis=1) for c in curves]
+    value, error = np.concatenate([*rows, *(c.seeds for c in curves)])[:, 1:].T
+    finite = np.isfinite(value) & np.isfinite(error)
+    if not finite.any():
+        return
+    most = WILD * float(np.median(error[finite]))
+    calm = np.isfinite(value) & ~(error > most)
+    bars = np.nan_to_num(np.where(calm, error, 0.0))
+    ends = [(value - bars)[calm], (value + bars)[calm], *(c.expected for c in curves)]
+    shown = np.concatenate(ends)
+    shown = shown[np.isfinite(shown) & ((shown > 0) | (not logs))]
+    if not len(shown) or not (error[finite & ~calm] > np.ptp(shown)).any():
+        return
+    low, high = (np.log(shown) if logs else shown)[[shown.argmin(), shown.argmax()]]
+    margin = MARGIN * (high - low)
+    limits = np.array([low - margin, high + margin])
+    ax.set_ylim(*(np.exp(limits) if logs else limits))
+    for curve in curves:
+        _say(ax, curve, curve.error > most, "error bar beyond the axis:")
+
+
+def _say(ax: Any, curve: Curve, some: Any, what: str) -> None:
+    """Name points of a curve in the legend."""
+    if not some.any():
+        return
+    points = zip(curve.x[some], curve.value[some], curve.error[some], strict=True)
+    words = [
+        f"{x:g}" if np.isnan(value) else f"{with_error(value, error)} at {x:g}"
+        for x, value, error in itertools.islice(points, NAMED)
+    ]
+    words += [f"{some.sum() - NAMED} more"] * bool(some.sum() > NAMED)
+    of = f"{curve.label}, " * bool(curve.label)
+    ax.plot([], [], " ", label=f"{of}{what} {', '.join(words)}")
 
 
 class Fitted(NamedTuple):
@@ -165,19 +288,14 @@ def fitted(curve: Curve, kind: str) -> Fitted:
     return Fitted(curve.label, kind, found, f"y = {first} {sign} {second} x")
 
 
-def _straight(ax: Any, x: Array, y: Array) -> bool:
+def _straight(x: Array, y: Array, scales: tuple[bool, bool]) -> bool:
     """Whether points (n,) of a curve lie on a line in these axes; one alone does not."""
     if len(x) < 2:
         return False
     if np.ptp(y) <= BENT * abs(y).max():
         return True
-    scales = ax.get_xscale(), ax.get_yscale()
-    if any(s == "log" and (z <= 0).any() for s, z in zip(scales, (x, y), strict=True)):
+    if any(logs and (z <= 0).any() for logs, z in zip(scales, (x, y), strict=True)):
         return False
-    u, v = (np.log(z) if s == "log" else z for s, z in zip(scales, (x, y), strict=True))
+    u, v = (np.log(z) if logs else z for logs, z in zip(scales, (x, y), strict=True))
     on_it = np.interp(u, [u[0], u[-1]], [v[0], v[-1]])
     return len(x) > 2 and bool(abs(v - on_it).max() <= BENT * np.ptp(v))
-
-
-def _spans(x: Array) -> bool:
-    return len(x) > 1 and bool(x.min() > 0) and bool(x.max() / x.min() >= DECADE)

@@ -18,6 +18,7 @@ from mesokit.report.document.record import citation, install, origin_rows, timin
 from mesokit.report.document.template import render
 from mesokit.report.table import SUSPICIOUS
 from mesokit.study.axes import Axis
+from mesokit.study.dependence import Theory
 from mesokit.study.names import called
 from mesokit.study.numbers import numbers, point_words, words_of
 from mesokit.study.plan import Base, Planned, by_point, short_names
@@ -50,6 +51,11 @@ class Studied(Protocol):
 
     def table(self) -> list[Pooled]:
         """Every compared number at every point."""
+
+    def theory_between(
+        self, rows: Sequence[Pooled], keys: Sequence[str], log: bool
+    ) -> Theory | None:
+        """What is expected between the points of a curve."""
 
 
 class RunRow(NamedTuple):
@@ -146,10 +152,12 @@ def _figures(study: Studied, rows: Sequence[Pooled]) -> list[Picture]:
     words_of_key = called(some.files.case, study.keys[0])
     for name in names:
         each = find_rows(rows, name)
-        runs = f"mean of {each[0].runs} runs" if each[0].runs > 1 else "one run"
+        runs = f"{each[0].runs} runs pooled" if each[0].runs > 1 else "one run"
         notes = dict.fromkeys(row.number.note for row in each if row.number.note)
         words = f"{each[0].number.what} against {study.keys[0]}, {runs} at each point"
-        figure = plot(rows, study.axes, study.keys[0], name, words_of_key)
+        figure = plot(
+            rows, study.axes, study.keys[0], name, words_of_key, between=study.theory_between
+        )
         found.append(Picture(name, drawn(figure), "; ".join([words, *list(notes)[:2]]) + "."))
     return found
 

@@ -53,11 +53,13 @@ class StudyReporter(Reporter):
 
     def amount(self, steps: int) -> str:
         """How much there is to do."""
-        return f"{self.runs - self.ended} of {self.runs} runs"
+        return f"{self.runs - self.ended} of {self.runs} runs to do"
 
     def words(self, step: int) -> str:
         """Runs that have ended, the rate and the time left."""
-        rate, ended = self.rate.steps_per_second, f"{self.ended} of {self.runs} runs"
+        rate, ended = self.rate.steps_per_second, f"{self.ended} of {self.runs} runs have ended"
+        if step >= self.total:
+            return f"{ended}, the last results and figures are being written"
         if not rate:
             return ended
         left = duration_text((self.total - step) / rate)

@@ -1,4 +1,4 @@
-"""Runs on the cores of this machine: processes of their own, each for one run after another."""
+"""Runs on the cores of this machine: in processes of their own, or in this one."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from typing import Any
 
 from mesokit.io.run_directory import RunDirectory
 from mesokit.running.record import note_failed
+from mesokit.study.work import carry
 
 LOST = "its process ended"  # killed from outside, or for want of memory
 
@@ -101,3 +102,27 @@ class Processes:
             worker.stdin.close()
             worker.wait()
             worker.stdout.close()
+
+
+class Here:
+    """No worker but this process, one run after another, for parts that only a script defines.
+
+    A signal ends the run in hand, and the study with it.
+    """
+
+    places = 1
+
+    def __init__(self, threads: int = 1) -> None:
+        self.threads = threads
+
+    def submit(self, path: Path) -> Future[str]:
+        """Carry the run in a folder to its end, before this returns."""
+        done: Future[str] = Future()
+        done.set_result(carry(str(path), self.threads))
+        return done
+
+    def stop(self) -> None:
+        """Nothing is in hand."""
+
+    def close(self) -> None:
+        """Nothing is open."""

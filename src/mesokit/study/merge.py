@@ -9,7 +9,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from mesokit.case.component import show
 from mesokit.errors import RunError
@@ -63,17 +63,43 @@ def merge(runs: Sequence[str | Path], output: str | Path) -> RunFiles:
         raise RunError(f"merge: {len(runs)} run: expected two or more")
     files = [RunFiles(run) for run in runs]
     _require_alike(files)
-    pooled, steps = measured(files[0].directory, files[0].case)
-    record = [_record(files[0], steps)]
-    for each in files[1:]:
-        more, steps = measured(each.directory, each.case)
-        for name, accumulator in pooled.items():
-            pool(name, accumulator, more[name])
-        record.append(_record(each, steps))
-    results = [result_of(one, files[0].case) for one in pooled.values()]
+    together = pooled(files)
+    for why in together.refused.values():
+        raise why
+    record = [_record(*each) for each in zip(files, together.steps, strict=True)]
     told = dict.fromkeys(words for one in files for words in one.provenance.get("warnings", ()))
     own = {"merged": record, "warnings": list(told)}
-    return _write(files[0].case, results, own, output)
+    return _write(files[0].case, together.results, own, output)
+
+
+class Together(NamedTuple):
+    """What observables say of the samples of several runs, which of them cannot be pooled and why,
+    and the step that each run has come to."""
+
+    results: list[Result]
+    refused: dict[str, RunError]
+    steps: list[int]
+
+
+def pooled(runs: Sequence[RunFiles]) -> Together:
+    """The observables of runs of one case, with the samples of all.
+
+    Raises CheckpointError for a run without the checkpoint that holds its samples.
+    """
+    accumulators, step = measured(runs[0].directory, runs[0].case)
+    refused, steps = {}, [step]
+    for run in runs[1:]:
+        more, step = measured(run.directory, run.case)
+        steps.append(step)
+        for name in [name for name in accumulators if name not in refused]:
+            try:
+                pool(name, accumulators[name], more[name])
+            except RunError as error:
+                refused[name] = error
+    results = [
+        result_of(a, runs[0].case) for name, a in accumulators.items() if name not in refused
+    ]
+    return Together(results, refused, steps)
 
 
 def _write(

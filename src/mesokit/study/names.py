@@ -1,4 +1,4 @@
-"""What the keys of a case are called in pictures."""
+"""What the keys of a case and measured numbers are called in pictures."""
 
 from __future__ import annotations
 
@@ -7,6 +7,16 @@ from typing import Any
 
 LONGEST = 36  # letters of an explanation beside a name
 VECTOR = "one number for each axis"  # explains no meaning
+# what a number is, at the beginning of its name: no conditions, which follow in some names
+SYMBOLS = {
+    "viscosity": r"\nu", "storage modulus": "G'", "loss modulus": "G''", "permeability": "k",
+    "diffusion coefficient": "D", "mean polar order": r"\varphi", "susceptibility": r"\chi",
+    "drag coefficient": "C_D", "lift coefficient": "C_L", "shear rate": r"\dot\gamma",
+    "mean square radius of gyration": r"\langle R_g^2 \rangle", "sound speed": "c",
+    "mean temperature": "k_BT", "pressure": "p", "Reynolds number": r"\mathrm{Re}",
+    "sound attenuation": r"\Gamma", "relaxation time": r"\tau",
+}  # fmt: skip
+CONDITIONS = "from|along|of|at|up to|in"
 
 
 def called(case: Any, key: str) -> tuple[str, str]:
@@ -14,8 +24,8 @@ def called(case: Any, key: str) -> tuple[str, str]:
 
     >>> from mesokit import Box, Case, Molecule, Run
     >>> case = Case(run=Run(steps=1), box=Box([8, 8]))
-    >>> called(case, "fluid.collision.angle"), called(case, "fluid.density")
-    (('rotation angle', 'degrees'), ('density (particles per cell)', '1/a^2'))
+    >>> called(case, "fluid.collision.angle"), called(case, "fluid.mass")
+    (('rotation angle $\\\\alpha$', 'degrees'), ('mass of a particle', 'm'))
     >>> called(case, "run.checkpoint_minutes")[1]
     'minutes'
     """
@@ -34,7 +44,23 @@ def called(case: Any, key: str) -> tuple[str, str]:
         return key, ""
     unit = str((field.json_schema_extra or {}).get("unit", "")).replace("time", "tau")
     unit = unit.replace("1/a^d", f"1/a^{case.box.dimension}")
-    return _words(last.replace("_", " "), field.description or "") + of, unit
+    name, symbol = last.replace("_", " "), (field.json_schema_extra or {}).get("symbol")
+    words = _words(name, field.description or "")
+    if symbol:
+        words = f"{name if '(' in words else words} ${symbol}$"
+    return words + of, unit
+
+
+def with_symbol(what: str) -> str:
+    """The name of a measured number, and its symbol where it has one.
+
+    >>> with_symbol("viscosity from curvature"), with_symbol("viscosity over theory")
+    ('viscosity from curvature $\\\\nu$', 'viscosity over theory')
+    """
+    for name, symbol in SYMBOLS.items():
+        if re.fullmatch(rf"{re.escape(name)}( ({CONDITIONS})\b.*)?", what):
+            return f"{what} ${symbol}$"
+    return what
 
 
 def _words(name: str, explanation: str) -> str:

@@ -5,8 +5,11 @@ from __future__ import annotations
 import contextlib
 import copy
 import functools
+import itertools
+import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,16 +17,16 @@ from typing import Any, NamedTuple
 from mesokit.case import toml
 from mesokit.case.case import Case
 from mesokit.case.component import show
-from mesokit.errors import CaseError, RunError
+from mesokit.errors import CaseError, CheckpointError, RunError
 from mesokit.io import checkpoint
 from mesokit.io.open import RunFiles
 from mesokit.io.run_directory import RunDirectory
 from mesokit.method.protocol import method_of
 from mesokit.observe.shared.named import keyed
-from mesokit.observe.shared.result import Comparison
+from mesokit.observe.shared.result import Comparison, Result
 from mesokit.running.longer import longer
-from mesokit.study.axes import Axis, grid
-from mesokit.study.merge import different_key, flat
+from mesokit.study.axes import MOST, Axis, grid
+from mesokit.study.merge import different_key, flat, pooled
 
 
 @dataclass(frozen=True)
@@ -77,11 +80,25 @@ class Planned:
         return max(steps)
 
 
+Compared = tuple[tuple[str, str, Comparison], ...]  # each with its result, and its key there
+
+
 class Numbers(NamedTuple):
-    """Compared numbers, each with its result and its key there, and steps after the warm-up."""
+    """Compared numbers, and steps after the warm-up."""
 
     steps: int
-    compared: tuple[tuple[str, str, Comparison], ...]
+    compared: Compared
+
+
+def pooled_numbers(runs: Sequence[Planned]) -> Compared:
+    """The compared numbers of runs with several seeds, from the samples of all.
+
+    Those that cannot be pooled have no value, and a note that says why.
+    """
+    if len(runs) == 1:
+        return runs[0].numbers.compared
+    stamps = (tuple(_stamps(RunDirectory(run.path))) for run in runs)
+    return _pooled_numbers(tuple(run.path for run in runs), *stamps)
 
 
 # A study asks for these again and again; files that are as they were need not be read again.
@@ -93,12 +110,38 @@ def _ended(path: Path, *stamps: Any) -> bool:
 @functools.lru_cache(maxsize=10_000)
 def _numbers(path: Path, *stamps: Any) -> Numbers:
     files = RunFiles(path)
-    compared = (
-        (name, key, comparison)
-        for name, result in files.results.items()
+    results = files.results
+    in_order = (results[o.label] for o in files.case.observe if o.label in results)
+    return Numbers(files.case.run.steps, _compared(in_order))
+
+
+@functools.lru_cache(maxsize=10_000)
+def _pooled_numbers(paths: tuple[Path, ...], *stamps: Any) -> Compared:
+    files = [RunFiles(path) for path in paths]
+    try:
+        together = pooled(files)
+    except CheckpointError as error:
+        return _unknown(files[0].results.values(), str(error))
+    found = _compared(together.results)
+    for name, why in together.refused.items():
+        found += _unknown([files[0][name]], str(why))
+    return found
+
+
+def _compared(results: Iterable[Result]) -> Compared:
+    return tuple(
+        (result.name, key, comparison)
+        for result in results
         for key, comparison in keyed(result.comparisons).items()
     )
-    return Numbers(files.case.run.steps, tuple(compared))
+
+
+def _unknown(results: Iterable[Result], why: str) -> Compared:
+    """Numbers that are not known, and why."""
+    return tuple(
+        (name, key, Comparison(c.what, math.nan, math.nan, c.expected, c.unit, why))
+        for name, key, c in _compared(results)
+    )
 
 
 def _stamps(run: RunDirectory) -> list[Any]:
@@ -120,6 +163,9 @@ def planned(axes: Sequence[Axis], seeds: Sequence[int], folder: Path) -> list[Pl
     >>> [run.path.as_posix() for run in runs][:2]
     ['study/runs/kT=1/seed=1', 'study/runs/kT=1/seed=2']
     """
+    number = math.prod(len(axis.values) for axis in axes) * len(seeds)
+    if number > MOST:
+        raise CaseError(f"{number} runs: expected at most {MOST} in a study")
     keys = [key for axis in axes for key in axis.keys]
     names = dict(zip(keys, short_names(keys), strict=True))
     runs = []
@@ -127,10 +173,9 @@ def planned(axes: Sequence[Axis], seeds: Sequence[int], folder: Path) -> list[Pl
         words = [f"{names[key]}={_safe(value)}" for key, value in point.items()]
         place = folder / "runs" / ",".join(words) if words else folder / "runs"
         runs += [Planned(point, seed, place / f"seed={seed}") for seed in seeds]
-    paths = [run.path for run in runs]
-    for run in runs:
-        if paths.count(run.path) > 1:
-            raise CaseError(f"{run.path}: two runs would have this name; a value is there twice")
+    for path, times in Counter(run.path for run in runs).items():
+        if times > 1:
+            raise CaseError(f"{path}: two runs would have this name; a value is there twice")
     return runs
 
 
@@ -181,7 +226,7 @@ class Base:
         try:
             for key, value in point.items():
                 toml.override(data, key, value)
-            data.setdefault("run", {})["seed"] = seed
+            toml.override(data, "run.seed", seed)
             return Case.from_data(data, self.folder)
         except CaseError as error:
             words = ", ".join(f"{key} = {value}" for key, value in point.items())
@@ -231,9 +276,6 @@ def _require_same(run: Planned, case: Case) -> None:
 
 
 def by_point(runs: Sequence[Planned]) -> Iterator[list[Planned]]:
-    """The runs of each point, that is all its seeds."""
-    points: list[Mapping[str, Any]] = []
-    for run in runs:
-        if run.point not in points:
-            points.append(run.point)
-            yield [other for other in runs if other.point == run.point]
+    """The runs of each point, that is all its seeds, which follow one another."""
+    for _, group in itertools.groupby(runs, key=lambda run: run.point):
+        yield list(group)

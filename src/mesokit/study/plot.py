@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import functools
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,8 @@ from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError
 from mesokit.observe.shared.result import Comparison
 from mesokit.study.axes import Axis
-from mesokit.study.dependence import Curve, draw
+from mesokit.study.dependence import Curve, Theory, draw
+from mesokit.study.names import with_symbol
 from mesokit.study.plan import short_names
 from mesokit.study.table import Pooled
 
@@ -25,21 +27,32 @@ def plot(
     number: str,
     called: tuple[str, str] | None = None,
     fit: str | None = None,
-    log: bool | None = None,
+    log: bool | str | None = None,
+    between: Between | None = None,
 ) -> Any:
     """A figure with error bars, what is expected, and a fit; a curve for each other value.
 
     `rows` are the table of a study, `axes` what it varies, `key` what the number is drawn against,
-    which is `called` so, in a unit.
+    which is `called` so, in a unit; `between` gives theory between the points.
     Raises CaseError for a number that is not there, or values that are no numbers.
     """
-    drawn, first = curves_of(rows, axes, key, number), find_rows(rows, number)[0]
-    note = f"mean of {first.runs} runs" if first.runs > 1 else "one run each"
-    named = first.number.what, first.number.unit
+    drawn, first = curves_of(rows, axes, key, number, between), find_rows(rows, number)[0]
+    note = f"{first.runs} runs pooled" if first.runs > 1 else "one run each"
+    named = with_symbol(first.number.what), first.number.unit
     return draw(drawn, x=called or (key, ""), y=named, fit=fit, log=log, note=note)
 
 
-def curves_of(rows: Sequence[Pooled], axes: Sequence[Axis], key: str, number: str) -> list[Curve]:
+# of the rows of a curve, the keys of its axis, and whether that is logarithmic
+Between = Callable[[Sequence[Pooled], Sequence[str], bool], Theory | None]
+
+
+def curves_of(
+    rows: Sequence[Pooled],
+    axes: Sequence[Axis],
+    key: str,
+    number: str,
+    between: Between | None = None,
+) -> list[Curve]:
     """One number of the table against a key that is varied: a curve for each other value.
 
     Raises CaseError as `plot` does.
@@ -53,7 +66,8 @@ def curves_of(rows: Sequence[Pooled], axes: Sequence[Axis], key: str, number: st
         others = [(names[other], row.point[other]) for other in keys if other not in linked]
         label = ", ".join(f"{name} = {_word(value)}" for name, value in others)
         curves.setdefault(label, []).append(row)
-    return [_curve(label, key, group) for label, group in curves.items()]
+    together = [key, *(other for other in linked if other != key)]
+    return [_curve(label, together, group, between) for label, group in curves.items()]
 
 
 def drawable(rows: Sequence[Pooled], axes: Sequence[Axis]) -> list[str]:
@@ -80,14 +94,30 @@ def find_rows(rows: Sequence[Pooled], name: str) -> list[Pooled]:
     return [row for row in rows if row.name == fits[0]]
 
 
-def _curve(label: str, key: str, rows: list[Pooled]) -> Curve:
+def _curve(label: str, keys: Sequence[str], rows: list[Pooled], between: Between | None) -> Curve:
+    key = keys[0]
     values = [row.point[key] for row in rows]
     if not all(isinstance(v, int | float) for v in values):
         raise CaseError(f"{key} = {show(values[0])}: only numbers can be drawn against")
     order = np.argsort(values)
     numbers = [rows[i].number for i in order]
     value, error, expected = np.array([(n.measured, n.error, n.expected) for n in numbers]).T
-    return Curve(label, np.array(values, float)[order], value, error, expected, _theory(numbers))
+    seeds = [
+        (float(row.point[key]), one.measured, one.error)
+        for row in rows
+        for one in row.each
+        if row.runs > 1 and np.isfinite(one.measured)
+    ]
+    return Curve(
+        label,
+        np.array(values, float)[order],
+        value,
+        error,
+        expected,
+        _theory(numbers),
+        between and functools.partial(between, rows, keys),
+        np.array(seeds).reshape(-1, 3),
+    )
 
 
 def _theory(numbers: Sequence[Comparison]) -> str:

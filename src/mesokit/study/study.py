@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,12 +19,12 @@ from mesokit.method.protocol import summary_of
 from mesokit.ranks.world import world
 from mesokit.running.cores import usable_cores
 from mesokit.study import table as tables
-from mesokit.study.axes import Axis
+from mesokit.study.axes import MOST, Axis
+from mesokit.study.between import theory_between
 from mesokit.study.cluster import Cluster
-from mesokit.study.dependence import Fitted, fitted
+from mesokit.study.dependence import Fitted, Theory, fitted
 from mesokit.study.drive import StudyReporter, Workers, drive, reporter_for
-from mesokit.study.here import Here
-from mesokit.study.local import Processes
+from mesokit.study.local import Here, Processes
 from mesokit.study.merge import merge
 from mesokit.study.names import called
 from mesokit.study.numbers import numbers, words_of
@@ -122,15 +122,20 @@ class Study(Shown):
             if not isinstance(vary, list):
                 raise CaseError("vary: expected [[vary]], in double brackets")
             axes = [Axis.from_table(each) for each in vary]
-            base = Base.of(file.parent / given, data.get("set"))
+            settings = data.get("set", {})
+            if not isinstance(settings, Mapping):
+                raise CaseError(f"set = {show(settings)}: expected a table [set]")
+            base = Base.of(file.parent / given, dict(_settings(settings)))
+            folder = data.get("folder", str(base.folder))
+            if not isinstance(folder, str):
+                raise CaseError(f"folder = {show(folder)}: expected the name of a folder")
+            base.folder = Path(folder)
+            self.path = path if path.is_dir() else Path(output or path.stem)
+            self._set(base, axes, _seeds(data.get("seeds", 1), base))
+            if not path.is_dir():
+                self._make()
         except CaseError as error:
             raise CaseError(f"{file}: {error}") from None
-        if "folder" in data:
-            base.folder = Path(data["folder"])
-        self.path = path if path.is_dir() else Path(output or path.stem)
-        self._set(base, axes, _seeds(data.get("seeds", 1), base))
-        if not path.is_dir():
-            self._make()
         return self
 
     def _set(self, base: Base, axes: list[Axis], seeds: list[int]) -> None:
@@ -145,7 +150,7 @@ class Study(Shown):
         if self.path.is_dir() and any(self.path.iterdir()) and not (self.path / FILE).exists():
             raise RunError(f"{self.path}: folder is not empty, and holds no study")
         if (self.path / FILE).exists():
-            ours = [run.path for run in self.runs]
+            ours = {run.path for run in self.runs}
             for run in Study.open(self.path).runs:
                 if run.path not in ours:
                     raise RunError(
@@ -281,13 +286,23 @@ class Study(Shown):
         fit : "line" or "power", optional
             Fit y = a + b x, or y = a x^b, to each curve.
         look : optional
-            `log`, whether the axes are logarithmic (by the values unless said).
+            `log`, which axes are logarithmic: "x", "y", "x,y", True for both, False for none.
+            Unless said, x is where its values are a geometric sequence, and y with it where numbers
+            above zero span a decade.
 
-        Raises CaseError for a key or number that is not there, with the nearest one.
+        Raises CaseError for a key or number that is not there, with the nearest one, and for a
+        logarithmic axis of values that are not above zero.
         """
         key = self.key(x)
         case = self.base.case(self.runs[0].point, self.runs[0].seed)
-        return plot(self.table(), self.axes, key, y, called(case, key), fit, **look)
+        look = {"fit": fit, "between": self.theory_between} | look
+        return plot(self.table(), self.axes, key, y, called(case, key), **look)
+
+    def theory_between(
+        self, rows: Sequence[Pooled], keys: Sequence[str], log: bool
+    ) -> Theory | None:
+        """What is expected of a number between its points, None where that cannot be had."""
+        return theory_between(self.base, self.runs, rows, keys, log)
 
     def fit(self, x: str, y: str, kind: str) -> list[Fitted]:
         """Fit y = a + b x ("line") or y = a x^b ("power") to each curve that `plot` draws.
@@ -323,12 +338,12 @@ class Study(Shown):
         names = drawable(self.table(), self.axes)
         return [self.save_picture(self.keys[0], name) for name in names]
 
-    def save_picture(self, x: str, y: str, fit: str | None = None) -> Path:
-        """Draw one number against one varied value into a file of the folder."""
+    def save_picture(self, x: str, y: str, fit: str | None = None, **look: Any) -> Path:
+        """Draw one number against one varied value into a file of the folder, as `plot` does."""
         from mesokit.report import save_figure
         from mesokit.report.finish.origin import Origin
 
-        figure, names = self.plot(x, y, fit), short_names(self.keys)
+        figure, names = self.plot(x, y, fit, **look), short_names(self.keys)
         title = self.base.case(self.runs[0].point, self.runs[0].seed).title
         figure.origin = Origin(", ".join(filter(None, [title, f"study {self.path.name}"])))
         number = next(row.name for row in find_rows(self.table(), y))
@@ -399,10 +414,22 @@ def require_one_process() -> None:
         raise CaseError(f"Study: not on {ranks} ranks; expected one process, no mpiexec")
 
 
+def _settings(table: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Values of [set] by their key paths; `run.steps = 9` without quotes is a table in a table."""
+    for key, value in table.items():
+        if isinstance(value, Mapping) and "." not in key:
+            yield from ((f"{key}.{inner}", each) for inner, each in value.items())
+        else:
+            yield key, value
+
+
 def _seeds(given: Any, base: Base) -> list[int]:
     """Which seeds: so many from that of the case on, or as listed."""
     if isinstance(given, int) and not isinstance(given, bool) and given >= 1:
-        first = base.data.get("run", {}).get("seed", 1)
+        if given > MOST:
+            raise CaseError(f"seeds = {given}: expected at most {MOST}")
+        run = base.data.get("run")
+        first = run.get("seed", 1) if isinstance(run, Mapping) else 1
         return [first + i for i in range(given)] if isinstance(first, int) else [1]
     whole = isinstance(given, Sequence) and all(type(seed) is int for seed in given)
     if not whole or not given or len(set(given)) < len(given):

@@ -1,4 +1,4 @@
-"""What the runs of a study say together: every compared number, pooled over the seeds."""
+"""What the runs of a study say together: every compared number, from the samples of all seeds."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from mesokit.io.atomic import replacing
 from mesokit.io.optional import package
 from mesokit.observe.shared.result import Comparison
 from mesokit.statistics import ChiSquare, chi_square
-from mesokit.study.plan import Planned, by_point
+from mesokit.study.plan import Planned, by_point, pooled_numbers
 
 
 @dataclass(frozen=True)
@@ -26,9 +26,9 @@ class Pooled:
     ----------
     point: the values that are varied, by key path.
     observable, key: which number, such as "velocity-profile" and "viscosity-from-curvature".
-    number: its mean over the seeds with the standard error that follows from the runs' own error
-        bars, and what is expected.
-    runs: how many seeds it is the mean of.
+    number: from the samples of all seeds, as `mesokit.merge` pools them, and what is expected.
+    each: the same number of each seed alone.
+    runs: how many seeds are pooled.
     scatter: the standard error of the mean that follows from how the seeds scatter, nan for one.
     seeds: chi-square of the seeds against their mean, by their own error bars; None where these
         are not all known or there is one seed only. A small p says that error bars are too small,
@@ -39,6 +39,7 @@ class Pooled:
     observable: str
     key: str
     number: Comparison
+    each: tuple[Comparison, ...]
     runs: int
     scatter: float
     seeds: ChiSquare | None
@@ -78,54 +79,41 @@ def table(runs: Iterable[Planned]) -> list[Pooled]:
 
 
 def _of_point(runs: Sequence[Planned]) -> Iterator[Pooled]:
-    numbers: dict[tuple[str, str], list[tuple[Comparison, float]]] = {}
+    each: dict[tuple[str, str], list[Comparison]] = {}
     for run in runs:
-        steps, compared = run.numbers
-        for name, key, comparison in compared:
-            numbers.setdefault((name, key), []).append((comparison, steps))
-    for (name, key), each in numbers.items():
-        number, scatter, seeds = pooled([c for c, _ in each], [float(s) for _, s in each])
-        yield Pooled(runs[0].point, name, key, number, len(each), scatter, seeds)
+        for name, key, comparison in run.numbers.compared:
+            each.setdefault((name, key), []).append(comparison)
+    lengths = [float(run.numbers.steps) for run in runs]
+    for name, key, number in pooled_numbers(runs):
+        seeds = each.get((name, key), [])
+        weights = lengths if len(seeds) == len(runs) else [1.0] * len(seeds)
+        yield Pooled(
+            runs[0].point, name, key, number, tuple(seeds), len(runs), *scattered(seeds, weights)
+        )
 
 
-def pooled(
+def scattered(
     each: Sequence[Comparison], weights: Sequence[float]
-) -> tuple[Comparison, float, ChiSquare | None]:
-    """One number of several runs: their mean, its error by scatter, chi-square about it.
+) -> tuple[float, ChiSquare | None]:
+    """How one number of several runs scatters: the standard error of its mean, and chi-square.
 
-    Weights are the lengths of the runs, not their own error bars: these are estimates, too, which
+    Weights of the mean are the lengths of the runs. The error bars of the runs are estimates that
     run low where the value does, and would pull the mean.
 
     >>> runs = [Comparison("slip", 1.0, 0.3, 0.9), Comparison("slip", 2.0, 0.4, 0.9)]
-    >>> number, scatter, seeds = pooled(runs, [100, 100])
-    >>> print(number), scatter, round(seeds.chi2, 3)
-    slip: 1.50(25), expected 0.9000: +2.4 standard errors, +66.7 %
-    (None, 0.5, 4.34)
+    >>> spread, seeds = scattered(runs, [100, 100])
+    >>> spread, round(seeds.chi2, 3)
+    (0.5, 4.34)
     """
-    share = np.array(weights) / np.sum(weights)
-    values, errors = (np.array([getattr(c, n) for c in each]) for n in ("measured", "error"))
-    mean = float(share @ values)
-    error = float(np.sqrt(share**2 @ errors**2))
     n = len(each)
-    spread = float(np.sqrt(share**2 @ (values - mean) ** 2 * n / (n - 1))) if n > 1 else math.nan
-    known = n > 1 and np.isfinite(values).all() and np.isfinite(errors).all() and errors.min() > 0
-    seeds = chi_square(values, np.full(n, mean), errors, fitted=1) if known else None
-    first = each[0]
-    expected = float(share @ np.array([c.expected for c in each]))
-    notes = [c.note for c in each]
-    early = next((c.note for c in each if not c.steady), "")
-    note = first.note if len({*notes}) == 1 or first.approximate else _shared(notes)
-    note = early or note
-    return Comparison(first.what, mean, error, expected, first.unit, note), spread, seeds
-
-
-def _shared(notes: Sequence[str]) -> str:
-    """What the notes of several runs say alike, up to the numbers in them."""
-    each = [note.split("; ") for note in notes]
-    alike = [part for part in each[0] if part and all(part in parts for parts in each)]
-    if any("lower bound" in note for note in notes):
-        alike.append("error bar is a lower bound")
-    return "; ".join(dict.fromkeys(alike))
+    if n < 2:
+        return math.nan, None
+    share = np.array(weights) / np.sum(weights)
+    values, errors = (np.array([getattr(c, name) for c in each]) for name in ("measured", "error"))
+    mean = float(share @ values)
+    spread = float(np.sqrt(share**2 @ (values - mean) ** 2 * n / (n - 1)))
+    known = np.isfinite(values).all() and np.isfinite(errors).all() and errors.min() > 0
+    return spread, chi_square(values, np.full(n, mean), errors, fitted=1) if known else None
 
 
 def dataframe(rows: Sequence[Pooled]) -> Any:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import difflib
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from mesokit.case.component import nearest, one_of
+from mesokit.case.component import nearest, one_of, show
 from mesokit.case.describe.keys import Key, keys_of, parts_of
 from mesokit.case.describe.schema import schema
 from mesokit.errors import CaseError
+
+NEAR = 0.75  # likeness of two words, one of which may be a slip of the pen
+MOST = 4  # paths that an error names
 
 
 class Explanation(NamedTuple):
@@ -58,8 +63,7 @@ def explain(path: str = "") -> list[Explanation]:
         places.sort(key=lambda place: place.path.count("."), reverse=True)
         places = list({id(place.node): place for place in places}.values())  # where it is nearest
     if not places:
-        sections = [p for name in whole["properties"] for p in _inside(start, name, definitions)]
-        sections = [section for section in sections if len(section.tables) == 1]
+        sections = _sections(start, definitions)
         places = [p for section in sections for p in _inside(section, first, definitions)]
     if not places:
         raise _unknown(path, first, start, definitions)
@@ -73,6 +77,13 @@ def explain(path: str = "") -> list[Explanation]:
         where, *said = _explained(place, definitions)
         paths.setdefault((said[0], tuple(said[1])), []).append(where)
     return [Explanation(", ".join(where), *said) for said, where in paths.items()]
+
+
+def _sections(start: Place, definitions: Any) -> list[Place]:
+    """The sections of a case that are one table each."""
+    names = start.node["properties"]
+    places = [place for name in names for place in _inside(start, name, definitions)]
+    return [place for place in places if len(place.tables) == 1]
 
 
 def _inside(place: Place, word: str, definitions: Any) -> Iterator[Place]:
@@ -144,11 +155,33 @@ def _unknown(path: str, word: str, place: Place, definitions: Any) -> CaseError:
     known += [key for table in place.tables.values() for key in table["properties"]]
     if not place.path:
         known += [p.path.rpartition(".")[2] for p in _everywhere(place, definitions)]
+        tables = (table for p in _sections(place, definitions) for table in p.tables.values())
+        known += [key for table in tables for key in table["properties"]]
     known = list(dict.fromkeys(known))
     if not known:
         return CaseError(f"{path}: {place.path} has no keys inside")
     deeper = [] if not place.path else _deeper(place, word, definitions)
     if deeper:
         return CaseError(f"{path}: unknown key; did you mean {one_of(deeper)}?")
-    hint = nearest(word, known) or f"; valid here: {', '.join(known)}"
-    return CaseError(f"{path}: unknown key{hint}")
+    if place.path:
+        hint = nearest(word, known) or f"; valid here: {', '.join(known)}"
+        return CaseError(f"{path}: unknown key{hint}")
+    mentioned = _mentioned(place, definitions)
+    close = difflib.get_close_matches(word, [*known, *mentioned], 1, NEAR)
+    if not close:
+        return CaseError(f"{path}: unknown key; mesokit explain lists the sections of a case")
+    if close[0] in known:
+        return CaseError(f"{path}: unknown key; did you mean {one_of(close)}?")
+    where = ", ".join(mentioned[close[0]][:MOST])
+    return CaseError(f"{path}: no key of a case; {show(close[0])} is explained at {where}")
+
+
+def _mentioned(start: Place, definitions: Any) -> dict[str, list[str]]:
+    """The keys of parts, and the words by which these are described, each with its paths."""
+    found: dict[str, dict[str, None]] = {}
+    for place in _everywhere(start, definitions):
+        for key in place.node.get("properties", ()):
+            found.setdefault(key, {})[f"{place.path}.{key}"] = None
+        for word in re.findall(r"[a-z]{5,}", place.node.get("description", "").lower()):
+            found.setdefault(word, {})[place.path] = None
+    return {word: sorted(paths, key=lambda path: path.count(".")) for word, paths in found.items()}

@@ -97,6 +97,7 @@ def _plain(node: Schema) -> Schema:
         if len(made.get(key, ())) == 1:
             made = {**made.pop(key)[0], **made}
     _settle_default(made)
+    made.pop("symbol", None)  # of figures
     if made.get("unit"):
         made["description"] = f"{made['description']} [{made['unit']}]"
     else:

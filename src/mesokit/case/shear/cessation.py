@@ -20,7 +20,9 @@ class Cessation(InStages):
     """
 
     rule: Literal["cessation"] = tag("cessation")
-    rate: float = param(doc="shear rate before it ceases", unit="1/time", ge=-1e6, le=1e6)
+    rate: float = param(
+        doc="shear rate before it ceases", symbol=r"\dot\gamma", unit="1/time", ge=-1e6, le=1e6
+    )
     stop: float = param(doc="time of shear", unit="time", gt=0, le=1e9)
 
     def stages(self) -> tuple[float, Ramp, Ramp | None]:

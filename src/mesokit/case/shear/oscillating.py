@@ -23,8 +23,10 @@ class OscillatingShear(ShearHistory):
     """
 
     rule: Literal["oscillating"] = tag("oscillating")
-    rate: float = param(doc="largest shear rate", unit="1/time", ge=-1e6, le=1e6)
-    frequency: float = param(doc="angular frequency", unit="1/time", gt=0, le=1e6)
+    rate: float = param(
+        doc="largest shear rate", symbol=r"\dot\gamma_0", unit="1/time", ge=-1e6, le=1e6
+    )
+    frequency: float = param(doc="angular frequency", symbol=r"\omega", unit="1/time", gt=0, le=1e6)
 
     @property
     def largest(self) -> float:

@@ -20,7 +20,9 @@ class StartUp(InStages):
     """
 
     rule: Literal["start-up"] = tag("start-up")
-    rate: float = param(doc="shear rate after the start", unit="1/time", ge=-1e6, le=1e6)
+    rate: float = param(
+        doc="shear rate after the start", symbol=r"\dot\gamma", unit="1/time", ge=-1e6, le=1e6
+    )
     start: float = param(0.0, doc="time of rest before it", unit="time", ge=0, le=1e9)
 
     def stages(self) -> tuple[float, Ramp, Ramp | None]:

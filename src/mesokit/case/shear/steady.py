@@ -17,7 +17,7 @@ class SteadyShear(ShearHistory):
     """
 
     rule: Literal["steady"] = tag("steady")
-    rate: float = param(doc="shear rate", unit="1/time", ge=-1e6, le=1e6)
+    rate: float = param(doc="shear rate", symbol=r"\dot\gamma", unit="1/time", ge=-1e6, le=1e6)
 
     steady: ClassVar[bool] = True
 

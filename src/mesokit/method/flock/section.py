@@ -48,11 +48,16 @@ class Flock:
     """Birds that fly at one speed, as the mean of those in reach, and err (Vicsek et al. 1995)."""
 
     density: float | None = param(
-        None, doc="birds per cell (2 unless a number is given)", unit="1/a^d", gt=0, le=1e15
+        None,
+        doc="birds per cell (2 unless a number is given)",
+        symbol=r"\rho",
+        unit="1/a^d",
+        gt=0,
+        le=1e15,
     )
-    number: int | None = param(None, doc="birds in all, in place of the density", ge=1)
+    number: int | None = param(None, doc="birds in all, in place of the density", symbol="N", ge=1)
     radius: float = param(1.0, doc="reach of a bird's sight", unit="a", gt=0)
-    speed: float = param(0.5, doc="of all birds", unit="a/time", gt=0, le=1e6)
+    speed: float = param(0.5, doc="of all birds", symbol="v", unit="a/time", gt=0, le=1e6)
     timestep: float = param(1.0, doc="time of a step", ge=1e-9, le=1e6)
     noise: Noise = param(AngularNoise(), doc="what keeps birds from flying as the others do")
     order: Literal["synchronous", "original"] = param(

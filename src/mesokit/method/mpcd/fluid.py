@@ -30,13 +30,16 @@ class Fluid:
     density: float = param(
         NOT_GIVEN,
         doc="particles per cell (10 unless said)",
+        symbol="n",
         unit="1/a^d",
         gt=0,
         le=1e12,
         validate_default=False,
         unless_said=10.0,
     )
-    timestep: float = param(0.1, doc="time between two collisions", ge=1e-6, le=1e3)
+    timestep: float = param(
+        0.1, doc="time between two collisions", symbol=r"\Delta t", ge=1e-6, le=1e3
+    )
     kT: float = param(1.0, doc="thermal energy", ge=1e-6, le=1e6)
     mass: float = param(
         NOT_GIVEN,

@@ -28,7 +28,7 @@ class Molecule:
     """What every particle of the fluid is a bead of: chains, rings or stars of beads and bonds."""
 
     topology: links.Topology = param("chain", doc="how the beads are linked")
-    length: int = param(2, doc="beads of a molecule", ge=2, le=1000)
+    length: int = param(2, doc="beads of a molecule", symbol="N", ge=2, le=1000)
     arms: int | None = param(None, doc="arms of a star, all of one length", ge=1)
     bond: Bond = param(doc="potential of the bonds")
     bending: Angle | None = param(None, doc="stiffness of two bonds in a row (none unless said)")

@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from mesokit.statistics import Blocks, plateau_error
 
 Array = NDArray[np.floating[Any]]
+SURE = 2.0  # standard errors from zero, within which nothing is divided by a number
+DIVISOR = "its divisor is within two standard errors of zero"
 
 
 class Estimate(NamedTuple):
@@ -37,9 +39,22 @@ class Estimate(NamedTuple):
         residuals, weights = self.residuals @ matrix.T, per_block(self.weights)
         return Estimate(matrix @ self.value, residuals, weights, self.falling)
 
-    def scalar(self, value: float | Array, gradient: Array) -> tuple[float, float]:
-        """A function of the value (n,), given what it is and its gradient: value and error."""
+    def scalar(
+        self,
+        value: float | Array,
+        gradient: Array,
+        over: tuple[float | Array, Array] | None = None,
+    ) -> tuple[float, float]:
+        """A function of the value (n,), given what it is and its gradient: value and error.
+
+        `over` is the number that a quotient divides by, and the gradient of that number. Within two
+        standard errors of zero the quotient has neither value nor error: both are nan.
+        """
         error = plateau_error(self.residuals @ gradient, per_block(self.weights), self.falling)
+        if over is not None:
+            divisor, spread = self.scalar(*over)
+            if abs(divisor) < SURE * spread:
+                return np.nan, np.nan
         return float(value), float(error)
 
 
@@ -63,6 +78,15 @@ def fit(estimate: Estimate, basis: Array, weight: Array) -> Estimate:
     """Least squares coefficients (p,) of the basis (n, p) with weights (n,)."""
     root = np.sqrt(weight)[:, None]
     return estimate.linear(np.linalg.pinv(basis * root) * root.T)
+
+
+def noted(value: float, *notes: str) -> str:
+    """The notes of a number as one, the first of which says why a quotient has no value.
+
+    >>> noted(0.7, "", "steady"), noted(np.nan, "steady")
+    ('steady', 'its divisor is within two standard errors of zero; steady')
+    """
+    return "; ".join(filter(None, [DIVISOR * bool(np.isnan(value)), *notes]))
 
 
 def per_block(weights: Array) -> Array:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.floating[Any]]
 FIGURES = "mesokit.report"  # by their names: results know nothing of how they are drawn
 TABLES = "mesokit.io.tables"  # and written
+EXACT = 2.0**-52  # of a value: an error below is that of rounding
 NOT_STEADY = "not steady"  # how the note of a comparison begins, where that is so
 
 
@@ -32,7 +33,8 @@ class Comparison:
     Parameters
     ----------
     what: what was measured, in words, such as "viscosity from curvature".
-    measured, error: value and standard error; the error is 0 for what must hold exactly.
+    measured, error: value and standard error; the error is 0 for what must hold exactly. Both are
+        nan where the run does not determine the number, such as a quotient whose divisor may be 0.
     expected: the theory, nan where there is none.
     unit: of all three.
     note: what the theory assumes, or what the estimate is. One that starts with "approximate" says
@@ -66,7 +68,7 @@ class Comparison:
     @property
     def deviation(self) -> float:
         """(measured - expected) in standard errors; nan without an error bar or an exact theory."""
-        if self.approximate or not self.steady or not self.error > 0:
+        if self.approximate or not self.steady or not self.error > EXACT * abs(self.measured):
             return math.nan
         return (self.measured - self.expected) / self.error
 
@@ -93,7 +95,8 @@ class Comparison:
         return 100 * difference / abs(self.expected) if self.expected else math.nan
 
     def __str__(self) -> str:
-        text = f"{self.what}: {with_error(self.measured, self.error)} {self.unit}".rstrip()
+        unit = "" if math.isnan(self.measured) else self.unit
+        text = f"{self.what}: {with_error(self.measured, self.error)} {unit}".rstrip()
         if not math.isnan(self.expected):
             text += (
                 f", expected {self.expected:.4g}"
@@ -103,7 +106,7 @@ class Comparison:
         if math.isfinite(self.deviation):
             text += f": {self.deviation:+.1f} standard errors"
             if math.isfinite(self.percent):
-                text += f", {self.percent:+.1f} %"
+                text += f", {in_percent(self.percent)}"
         elif self.approximate and math.isfinite(self.percent):
             text += f": {two_digits(self.percent, sign='+')} %"
         if self.note and (not math.isfinite(self.deviation) or "lower bound" in self.note):
@@ -122,11 +125,20 @@ def with_error(value: float, error: float) -> str:
     >>> with_error(0.6666536, 6.7e-7), with_error(6.7e-7, 1e-8)
     ('0.66665360(67)', '6.70(10)e-07')
 
+    An error that is only that of rounding is none; what has no value is not determined.
+
+    >>> with_error(1.95, 7.6e-19), with_error(math.nan, math.nan)
+    ('1.950', 'undetermined')
+
     A whole number of which no error is known is a count.
 
     >>> with_error(2.0, math.nan)
     '2'
     """
+    if math.isnan(value):
+        return "undetermined"
+    if error <= EXACT * abs(value):
+        error = 0.0
     if math.isnan(error) and value % 1 == 0:
         return f"{value:.0f}"
     if value == 0 and not error > 0:
@@ -144,6 +156,16 @@ def with_error(value: float, error: float) -> str:
         return f"{value:.{digits}f}({error * 10.0**digits:.0f})"
     scaled = with_error(value / 10.0**power, error / 10.0**power)
     return f"{scaled}e{power:+03d}"
+
+
+def in_percent(percent: float) -> str:
+    """A deviation in percent: one decimal, or two digits of what one decimal would hide.
+
+    >>> in_percent(-12.34), in_percent(0.00731), in_percent(0.0)
+    ('-12.3 %', '+0.0073 %', '+0.0 %')
+    """
+    hidden = 0 < abs(percent) < 0.05
+    return f"{two_digits(percent, sign='+') if hidden else f'{percent:+.1f}'} %"
 
 
 @dataclass(frozen=True, eq=False)

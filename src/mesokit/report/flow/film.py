@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 SCALED = 24  # frames that the colours are chosen from
 DPI = {".mp4": 160, ".gif": 100}
-FASTEST = 100.0  # frames per second
+SLOWEST, FASTEST = 0.1, 100.0  # frames per second
 
 
 @dataclass(frozen=True)
@@ -96,8 +96,8 @@ def animate(
     ending = path.suffix.lower()
     if ending not in ENCODERS:
         raise CaseError(f"output = {show(str(path))}: expected a name that ends in .mp4 or .gif")
-    if not isinstance(fps, numbers.Real) or not 0 < fps <= FASTEST:
-        raise CaseError(f"fps = {show(fps)}: expected a number above 0, at most {FASTEST:g}")
+    if not isinstance(fps, numbers.Real) or not SLOWEST <= fps <= FASTEST:
+        raise CaseError(f"fps = {show(fps)}: expected a number from {SLOWEST:g} to {FASTEST:g}")
     kind = kind or method_of(case).picture or "speed"
     panels = panels_of(kind, case, view.colour)
     found = sources(case, results, trajectory, view)

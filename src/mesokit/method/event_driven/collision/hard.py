@@ -20,7 +20,7 @@ class HardCollision(SphereCollision):
 
     rule: Literal["hard"] = tag("hard")
     restitution: float = param(
-        1.0, doc="normal velocity after a collision over minus that before", ge=0, le=1
+        1.0, doc="normal velocity after a collision over minus that before", symbol="e", ge=0, le=1
     )
 
     @property

@@ -25,7 +25,12 @@ class AngularNoise(Noise):
 
     rule: Literal["angular"] = tag("angular")
     strength: float = param(
-        2.0, doc="width of the range of directions: 2 pi is all", unit="rad", ge=0, le=2 * math.pi
+        2.0,
+        doc="width of the range of directions: 2 pi is all",
+        symbol=r"\eta",
+        unit="rad",
+        ge=0,
+        le=2 * math.pi,
     )
 
     def kernel(self) -> Angular:

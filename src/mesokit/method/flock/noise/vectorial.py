@@ -26,7 +26,9 @@ class VectorialNoise(Noise):
     (2004))."""
 
     rule: Literal["vectorial"] = tag("vectorial")
-    strength: float = param(0.5, doc="length of the random vector for each bird", ge=0, le=1)
+    strength: float = param(
+        0.5, doc="length of the random vector for each bird", symbol=r"\eta", ge=0, le=1
+    )
 
     def kernel(self) -> Vectorial:
         """Parameters for the scalar functions below."""

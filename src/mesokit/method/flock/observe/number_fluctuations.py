@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
+from mesokit import theory
 from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Either
 from mesokit.errors import CaseError
-from mesokit.method.flock.observe.protocol import FlockObservable, blind, open_box, within
+from mesokit.method.flock.observe.protocol import (
+    FlockObservable,
+    blind,
+    mean_heading,
+    open_box,
+    within,
+)
 from mesokit.observe.shared.estimate import of_mean
-from mesokit.observe.shared.protocol import BlockAccumulator
+from mesokit.observe.shared.protocol import State, pack, unpack
 from mesokit.observe.shared.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -24,6 +33,8 @@ LARGEST = 0.25  # side of the largest squares unless said, in the shortest lengt
 FITTED = 4  # of the largest, whose exponent is fitted
 FEWEST = 3  # sides for an exponent
 ORDERED = 0.8  # exponent of large ordered flocks in 2D
+IN_ORDER = 0.5  # polar order from which a flock is ordered
+AT_RANDOM = 1.5  # times the order of directions at random, up to which it is disordered
 MOST = 2**24  # squares
 
 
@@ -33,7 +44,7 @@ class NumberFluctuations(FlockObservable):
 
     Without order it is the root of the mean number; in ordered flocks it grows faster: giant number
     fluctuations (Toner and Tu, Phys. Rev. Lett. 75, 4326 (1995)). The exponent is fitted to the
-    four largest sides.
+    four largest sides, and compared with 0.8 (2D) or 1/2 by the polar order of the same samples.
     """
 
     quantity: Literal["number-fluctuations"] = tag("number-fluctuations")
@@ -71,8 +82,8 @@ class NumberFluctuations(FlockObservable):
         return NumberFluctuationsAccumulator(self, case)
 
 
-class NumberFluctuationsAccumulator(BlockAccumulator):
-    """Block averages of the variances, about the mean that is known."""
+class NumberFluctuationsAccumulator:
+    """Block averages of the variances, about the mean that is known, and of the polar order."""
 
     def __init__(self, observable: NumberFluctuations, case: Case) -> None:
         observable.check(case)
@@ -80,11 +91,27 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
         self.sides = observable.all_sides(case)
         self.size = np.array(case.box.size, float)
         self.mean = case.particles * np.array(self.sides) ** len(self.size) / self.size.prod()
-        self.blocks = Blocks(len(self.sides))
+        self.blocks, self.order = Blocks(len(self.sides)), Blocks()
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks, order=self.order)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`, in which earlier versions had no order."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        if order := unpack(state, "order"):
+            self.order = Blocks.from_state(order)
+
+    def pool(self, other: NumberFluctuationsAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.blocks.pool(other.blocks)
+        self.order.pool(other.order)
 
     def observe(self, engine: Any) -> None:
         """Take one sample."""
         places = engine.positions()
+        self.order.add(mean_heading(engine.headings())[0])
         self.blocks.add(
             [
                 ((counted(places, side, self.size) - mean) ** 2).mean()
@@ -114,7 +141,7 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
             theory="birds at random",
             comparisons=tuple(found),
             samples=self.blocks.count,
-            extra={"sides": np.array(self.sides), "guide": math.nan if self.random else self.slope},
+            extra={"sides": np.array(self.sides), "guide": self.giant},
         )
 
     @property
@@ -124,9 +151,16 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
         return blind(flock.noise, self.case.box.dimension) and flock.cohesion is None
 
     @property
-    def slope(self) -> float:
-        """The exponent of large ordered flocks, nan in 3D."""
-        return ORDERED if self.case.box.dimension == 2 else math.nan
+    def giant(self) -> float:
+        """The exponent of large ordered flocks in 2D, nan where this is none."""
+        ordered = not self.random and float(self.order.mean()) >= IN_ORDER
+        return ORDERED if ordered and self.case.box.dimension == 2 else math.nan
+
+    @property
+    def disordered(self) -> bool:
+        """Whether the order is about as small as that of directions at random."""
+        chance = theory.disordered_order(self.case.particles, self.case.box.dimension)
+        return float(self.order.mean()) <= AT_RANDOM * chance
 
     def comparisons(self) -> list[Comparison]:
         """The exponent: slope of the logarithms, by least squares."""
@@ -139,13 +173,20 @@ class NumberFluctuationsAccumulator(BlockAccumulator):
             return []
         at = np.where(use, variance.value, 1.0)
         slope = 0.5 * float(weight @ np.log(at))
-        expected, note = math.nan, "1/2 without order"
+        # of birds at random, a fixed number of which is in the box
+        share = np.minimum(self.mean / case.particles, 1.0)
+        with np.errstate(divide="ignore"):
+            root = 0.5 * float(weight[use] @ np.log(self.mean * (1 - share))[use])
+        order = f"polar order {float(self.order.mean()):.2g}"
         if self.random:
-            share = self.mean / case.particles
-            expected = 0.5 * float(weight @ np.log(self.mean * (1 - share)))
-            note = "birds at random"
-        elif case.box.dimension == 2:
-            expected, note = self.slope, "approximate: large ordered flocks (Toner and Tu 1995)"
+            expected, note = root, "birds at random"
+        elif self.disordered:
+            expected, note = root, f"approximate: disordered flocks, {order}"
+        elif math.isfinite(self.giant):
+            expected = self.giant
+            note = f"approximate: large ordered flocks (Toner and Tu 1995), {order}"
+        else:
+            expected, note = math.nan, f"no theory for this flock, {order}"
         measured = variance.scalar(slope, 0.5 * weight / at)
         return [Comparison("exponent of number fluctuations", *measured, expected, "", note)]
 

@@ -38,7 +38,9 @@ class SRD(CollisionRule):
     """
 
     rule: Literal["srd"] = tag("srd")
-    angle: float = param(130.0, doc="rotation angle", unit="degrees", gt=0, le=180)
+    angle: float = param(
+        130.0, doc="rotation angle", symbol=r"\alpha", unit="degrees", gt=0, le=180
+    )
     angle_distribution: Literal["fixed", "uniform"] = param(
         "fixed", doc="'uniform' draws the angle of each cell from [0, 360), in 2D only"
     )

@@ -43,7 +43,9 @@ class SRDPlusA(CollisionRule):
     """
 
     rule: Literal["srd+a"] = tag("srd+a")
-    angle: float = param(130.0, doc="rotation angle", unit="degrees", gt=0, le=180)
+    angle: float = param(
+        130.0, doc="rotation angle", symbol=r"\alpha", unit="degrees", gt=0, le=180
+    )
 
     conserves: ClassVar[tuple[str, ...]] = ("mass", "momentum", "energy", "angular momentum")
     needs_energy: ClassVar[bool] = True

@@ -16,7 +16,7 @@ class Uniform(Force):
 
     rule: Literal["uniform"] = tag("uniform")
     acceleration: Many[float] = param(
-        doc="one number for each axis", unit="a/time^2", min_length=2, max_length=3
+        doc="one number for each axis", symbol="g", unit="a/time^2", min_length=2, max_length=3
     )
 
     @property

@@ -17,7 +17,7 @@ class Polymer:
     """
 
     number: int = param(1, doc="molecules of this kind", ge=1)
-    length: int = param(1, doc="beads of a molecule; 1: monomers", ge=1, le=1000)
+    length: int = param(1, doc="beads of a molecule; 1: monomers", symbol="N", ge=1, le=1000)
     topology: links.Topology = param("chain", doc="how the beads are linked")
     arms: int | None = param(None, doc="arms of a star, all of one length", ge=1)
     name: str | None = param(

@@ -18,4 +18,6 @@ class Pull(Chosen):
     (0.5, 0.0)
     """
 
-    force: Many[float] = param(doc="one number for each axis", unit="kT/a", min_length=2)
+    force: Many[float] = param(
+        doc="one number for each axis", symbol="F", unit="kT/a", min_length=2
+    )

@@ -47,6 +47,7 @@ class SpringDashpot(ContactLaw):
     restitution: float | None = param(
         None,
         doc="normal velocity after over before a collision (0.8 unless said)",
+        symbol="e",
         gt=0,
         le=1,
     )
