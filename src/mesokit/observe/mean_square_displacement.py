@@ -15,9 +15,10 @@ from mesokit.case.describe.hints import Either
 from mesokit.engine import Particles
 from mesokit.method.protocol import method_of
 from mesokit.observe.shared.estimate import Estimate
+from mesokit.observe.shared.fitted import fitted_number
 from mesokit.observe.shared.origins import GROUPS, Origins
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
-from mesokit.observe.shared.result import Array, Comparison, Result, with_error
+from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.observe.shared.slope import Slope, late_slope
 
 if TYPE_CHECKING:
@@ -202,13 +203,10 @@ class MeanSquareDisplacementAccumulator:
         value, error = slope.value * scale, slope.error * scale
         expected, note = self.theory.coefficient()
         what = "diffusion coefficient"
-        if error >= abs(value):
-            why = f"undetermined: {with_error(value, error)}, the error is as large as the value"
-            return Comparison(what, math.nan, math.nan, math.nan, "a^2/tau", why)
         if self.theory.grows() or not slope.straight:
             way = "grows" if slope.growth > 0 else "falls"
             why = "" if self.theory.grows() else ": no straight line yet, a larger max_lag"
             decade = "error bar with its change in a decade of lags"
             rest = note.removeprefix("approximate: ")
             note = "; ".join(filter(None, (f"approximate: {way} with the lag{why}", decade, rest)))
-        return Comparison(what, value, error, expected, "a^2/tau", note)
+        return fitted_number(what, value, error, expected, "a^2/tau", note)
