@@ -100,7 +100,7 @@ class TestWallsOfSoftSpheres:
 
     @pytest.mark.parametrize("spread", [0.0, 0.3])
     def test_a_heap_weighs_what_its_spheres_do(self, spread):
-        """And what they gain of momentum is missing on the floor."""
+        """What they gain of momentum is missing on the floor; by chance, it is counted."""
         run = soft_run(
             [12, 20], 400, 1000, [WallForce()], [Plates("y")], number=40, gravity=[0, -1],
             kinds=[SphereKind(spread=spread)], start=PouredStart(), kT=0,
@@ -108,9 +108,9 @@ class TestWallsOfSoftSpheres:
         (result,) = observed(run)
         (force,), mass = result.comparisons, run.engine.masses().sum()
         assert force.expected == pytest.approx(-mass, rel=1e-12)
-        means = run.accumulators["wall-force"].blocks.mean()
+        gained = run.accumulators["wall-force"].blocks.mean()[-1] if force.approximate else 0.0
         # but for half a step of forces at each end
-        assert force.measured + means[-1] == pytest.approx(-mass, rel=1e-3)
+        assert force.measured + gained == pytest.approx(-mass, rel=1e-3)
 
     def test_spheres_that_fall_are_not_weighed(self):
         run = soft_run(

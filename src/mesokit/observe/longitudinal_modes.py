@@ -10,6 +10,7 @@ from mesokit import theory
 from mesokit.case.component import component, tag
 from mesokit.method.mpcd.expected import setting
 from mesokit.observe.shared.decay import fit_curve, normalised
+from mesokit.observe.shared.fitted import fitted_number
 from mesokit.observe.shared.modes import SHOWN, Array, Modes, ModesAccumulator
 from mesokit.observe.shared.result import Comparison, Result
 
@@ -114,9 +115,10 @@ class LongitudinalModesAccumulator(ModesAccumulator):
             # c^2 is proportional to the kT that this run started with
             error = 0.5 * setting.with_start(self.case, 2 * error, value, runs)
             note = setting.caveat(self.case)
-            found.append(Comparison(f"sound speed {at}", value, error, expected, "a/tau", note))
+            what = f"sound speed {at}"
+            found.append(fitted_number(what, value, error, expected, "a/tau", note))
             slope = np.array([2 / k**2, 0, 0, 0])
             value, error = fitted.scalar(2 * damping / k**2, slope)
             what = f"sound attenuation {at}"
-            found.append(Comparison(what, value, error, known, "a^2/tau", note))
+            found.append(fitted_number(what, value, error, known, "a^2/tau", note))
         return found

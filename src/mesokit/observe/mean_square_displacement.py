@@ -14,10 +14,12 @@ from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Either
 from mesokit.engine import Particles
 from mesokit.method.protocol import method_of
-from mesokit.observe.shared.estimate import Estimate, fit
+from mesokit.observe.shared.estimate import Estimate
+from mesokit.observe.shared.fitted import fitted_number
 from mesokit.observe.shared.origins import GROUPS, Origins
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Array, Comparison, Result
+from mesokit.observe.shared.slope import Slope, late_slope
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -47,6 +49,9 @@ class Displacement(Protocol):
 
     def diffusive_from(self) -> float:
         """The lag from which on the displacement is a straight line, inf if never."""
+
+    def grows(self) -> bool:
+        """Whether D grows with the lag: in 2D where all momentum is kept."""
 
     def level_from(self) -> float:
         """The lag from which on the displacement no longer grows, inf if it always does."""
@@ -145,16 +150,15 @@ class MeanSquareDisplacementAccumulator:
         self.origins.pool(other.origins)
 
     def result(self) -> Result:
-        """The curve and the slope of its late part."""
+        """The curve and its slope where it is a straight line."""
         steps = self.origins.sampled() * self.observable.every
         moved = self.origins.estimate()
         time = steps * self.timestep
         curve = None
         comparisons: list[Comparison] = []
-        first = self.theory.diffusive_from()
-        late = time >= first if first else steps > 0
-        if late.sum() >= 3:
-            curve, comparisons = self.fit_diffusion(time, moved, late)
+        slope = late_slope(time, moved, self.theory.diffusive_from(), self.theory.grows())
+        if slope is not None:
+            curve, comparisons = slope.line, [self.diffusion(slope)]
         expected = self.theory.expected(steps)
         level = time >= self.theory.level_from()
         if level.any() and expected is not None:
@@ -193,20 +197,16 @@ class MeanSquareDisplacementAccumulator:
         what = "mean square displacement at the longest lag"
         return Comparison(what, *moved.scalar(last @ moved.value, last), math.nan, "a^2", note)
 
-    def fit_diffusion(
-        self,
-        time: Array,
-        moved: Estimate,
-        late: NDArray[np.bool_],
-    ) -> tuple[Array, list[Comparison]]:
-        """Straight line through the late part, weighted by 1/t^2 as the errors grow like t."""
-        basis = np.stack([np.ones_like(time), time], axis=1)
-        weight = np.where(late, 1 / np.maximum(time, time[late][0]) ** 2, 0)
-        line = fit(moved, basis, weight)
+    def diffusion(self, slope: Slope) -> Comparison:
+        """The diffusion coefficient beside theory, or why it is not known."""
         scale = 1 / (2 * len(self.axes))
-        value, error = line.scalar(line.value[1] * scale, np.array([0.0, scale]))
+        value, error = slope.value * scale, slope.error * scale
         expected, note = self.theory.coefficient()
         what = "diffusion coefficient"
-        return np.where(late, basis @ line.value, np.nan), [
-            Comparison(what, value, error, expected, "a^2/tau", note)
-        ]
+        if self.theory.grows() or not slope.straight:
+            way = "grows" if slope.growth > 0 else "falls"
+            why = "" if self.theory.grows() else ": no straight line yet, a larger max_lag"
+            decade = "error bar with its change in a decade of lags"
+            rest = note.removeprefix("approximate: ")
+            note = "; ".join(filter(None, (f"approximate: {way} with the lag{why}", decade, rest)))
+        return fitted_number(what, value, error, expected, "a^2/tau", note)

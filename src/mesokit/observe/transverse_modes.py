@@ -20,6 +20,7 @@ from mesokit.method.mpcd.expected.molecules import (
 from mesokit.method.mpcd.molecule import FLUID
 from mesokit.observe.shared.bonded_decay import BondedLaw, fit_bonded
 from mesokit.observe.shared.decay import fit_curve, normalised
+from mesokit.observe.shared.fitted import fitted_number
 from mesokit.observe.shared.modes import SHOWN, Array, Modes, ModesAccumulator, transverse_units
 from mesokit.observe.shared.result import Comparison, Result
 
@@ -163,7 +164,7 @@ class TransverseModesAccumulator(ModesAccumulator):
             ):  # fmt: skip
                 number, spread = fitted.scalar(float(value), np.array(gradient))
                 name = f"{what} at k = {k:.4g}/a"
-                found.append(Comparison(name, number, spread, float(expected), unit, note))
+                found.append(fitted_number(name, number, spread, float(expected), unit, note))
         return found
 
     def deviations(self) -> list[Comparison]:
@@ -215,5 +216,5 @@ class TransverseModesAccumulator(ModesAccumulator):
             nu, error = fitted.scalar(fitted.value[0] / k**2, np.array([1 / k**2, 0]))
             expected = coefficients.viscosity if coefficients else np.nan
             what, note = f"viscosity at k = {k:.4g}/a", setting.caveat(self.case)
-            found.append(Comparison(what, nu, error, expected, "a^2/tau", note))
+            found.append(fitted_number(what, nu, error, expected, "a^2/tau", note))
         return found

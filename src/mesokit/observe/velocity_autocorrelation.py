@@ -120,7 +120,7 @@ class VelocityAutocorrelationAccumulator:
     def result(self) -> Result:
         """The curve with molecular chaos and the hydrodynamic tail."""
         total, axes = self.origins.estimate(), len(self.axes)
-        kept = Estimate(total.value / axes, total.residuals / axes, total.weights)
+        kept = total.divided(axes)
         steps = self.origins.sampled() * self.observable.every
         time = steps * self.timestep
         expected, tail = self.theory.expected(steps), self.theory.tail(time)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
-from mesokit.observe.shared.estimate import of_mean
+from mesokit.observe.shared.estimate import Array, Estimate, of_mean
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Comparison, Result
 from mesokit.statistics import Blocks
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from mesokit.engine import RunningSpheres
 
 
+ROUNDING = 1e-12  # of a force
 STILL = 1e-3  # of the weight that their momentum may grow by in a unit of time
 
 
@@ -90,33 +91,65 @@ class WallForceAccumulator:
     def result(self) -> Result:
         """Forces, and their sum along the axis of gravity."""
         axes = np.array(self.case.box.axes)
+        forces = self.forces() if self.blocks.count else of_mean(self.blocks)
+        shape = len(self.names), len(axes)
         return Result(
             quantity="wall-force",
             drawing="curve",
             name=self.name,
             x={"surface": np.array(self.names), "component": axes},
-            value=self.blocks.mean()[: self.taken].reshape(len(self.names), -1),
-            error=self.blocks.error()[: self.taken].reshape(len(self.names), -1),
+            value=forces.value[: self.taken].reshape(shape),
+            error=exact(forces)[: self.taken].reshape(shape),
             label="force on a surface",
             units={"value": "m a/tau^2", "surface": "", "component": ""},
-            comparisons=tuple(self.comparisons()) if self.blocks.count else (),
+            comparisons=tuple(self.comparisons(forces)) if self.blocks.count else (),
             samples=self.blocks.count,
         )
 
-    def comparisons(self) -> list[Comparison]:
+    def steady(self, axis: int) -> bool:
+        """Whether the spheres gain no momentum along an axis, but for what is there by chance."""
+        found, section = of_mean(self.blocks), self.case.spheres
+        mass, gained = self.taken, self.taken + 1 + axis
+        g = section.gravity[axis] if section.gravity else 0.0
+        least = max(float(found.error[gained]), STILL * float(found.value[mass]) * abs(g))
+        return abs(float(found.value[gained])) <= least
+
+    def forces(self) -> Estimate:
+        """All means of the blocks; forces with the momentum that spheres gained by chance.
+
+        What a surface has not taken by the end of the run is still in the spheres. Of several
+        surfaces each has the share by which its force falls as the momentum grows.
+        """
+        found, d = of_mean(self.blocks), self.case.box.dimension
+        matrix = np.eye(len(found.value))
+        for k in filter(self.steady, range(d)):
+            gained = found.residuals[:, self.taken + 1 + k]
+            if (square := float(gained @ gained)) > 0:
+                chosen = np.arange(k, self.taken, d)
+                shares = -(found.residuals[:, chosen].T @ gained) / square
+                matrix[chosen, self.taken + 1 + k] = shares
+        return found.linear(matrix)
+
+    def comparisons(self, forces: Estimate) -> list[Comparison]:
         """The force on all walls along each axis of gravity: the weight, if the spheres gain no
         momentum on average."""
-        section, box, found = self.case.spheres, self.case.box, of_mean(self.blocks)
-        mass, gained = float(found.value[self.taken]), found.value[self.taken + 1 :]
-        listed = []
-        for axis, g in zip(box.axes, section.gravity, strict=False):
+        section, box = self.case.spheres, self.case.box
+        mass, listed = float(forces.value[self.taken]), []
+        for k, (axis, g) in enumerate(zip(box.axes, section.gravity, strict=False)):
             if g:
-                k = box.index(axis)
-                chosen = np.zeros(len(found.value))
-                chosen[k : self.taken : box.dimension] = 1.0
-                value, error = found.scalar(float(chosen @ found.value), chosen)
-                still = abs(gained[k]) <= max(error, STILL * mass * abs(g))
-                note = "the weight" if still else "approximate: they gain momentum meanwhile"
+                chosen = np.zeros((1, len(forces.value)))
+                chosen[0, k : self.taken : box.dimension] = 1.0
+                total = forces.linear(chosen)
+                note = "approximate: they gain momentum meanwhile"
+                if self.steady(k):
+                    note = "the weight; with the momentum that spheres gained by chance"
                 what = f"force on all walls along {axis}"
+                value, error = float(total.value[0]), float(exact(total)[0])
                 listed.append(Comparison(what, value, error, mass * g, "m a/tau^2", note))
         return listed
+
+
+def exact(found: Estimate) -> Array:
+    """Standard errors, 0 where they are rounding."""
+    error = found.error
+    return np.where(error <= ROUNDING * np.abs(found.value), 0.0, error)

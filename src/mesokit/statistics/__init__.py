@@ -1,6 +1,6 @@
 """Running averages, correlations and fits, each with an honest error bar, in bounded memory."""
 
-from mesokit.statistics.blocking import blocking_error, plateau_error
+from mesokit.statistics.blocking import blocking_error, plateau, plateau_error
 from mesokit.statistics.blocks import Blocks
 from mesokit.statistics.fit import (
     ChiSquare,
@@ -39,6 +39,7 @@ __all__ = [
     "dominant_frequency",
     "mean_frequency",
     "mean_spectrum",
+    "plateau",
     "plateau_error",
     "ratio",
     "spectrum",

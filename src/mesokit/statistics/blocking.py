@@ -55,6 +55,21 @@ def plateau_error(
     >>> [round(float(plateau_error(back_and_forth, np.ones(256), way)), 4) for way in (False, True)]
     [0.0626, 0.0]
     """
+    return plateau(residuals, weights, falling)[0]
+
+
+def plateau(
+    residuals: ArrayLike, weights: ArrayLike, falling: bool = False
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Standard error as `plateau_error` gives it, and whether merging blocks changed it no more.
+
+    Parameters and errors: those of `plateau_error`. Returns two arrays (*shape).
+    Source: Flyvbjerg and Petersen (1989).
+
+    >>> drift = np.linspace(-1, 1, 64) / 64
+    >>> [bool(plateau(series, np.ones(64))[1]) for series in (drift, np.tile([1.0, -1.0], 32))]
+    [False, True]
+    """
     residuals, weights = np.asarray(residuals, float), np.asarray(weights, float)
     if residuals.ndim == 0 or weights.ndim == 0 or len(residuals) != len(weights):
         raise ValueError(
@@ -66,6 +81,7 @@ def plateau_error(
         number, error = _level(residuals, weights)
         error = np.where(number > FEWEST_BLOCKS - _SLACK, error, np.nan)
         climbing = np.isfinite(error)
+        reached = np.zeros_like(climbing)
         while len(residuals) > FEWEST_MERGED and climbing.any():
             residuals, weights = merge_pairs(residuals), merge_pairs(weights)
             slack = 1 / np.sqrt(2 * (number - 1))
@@ -73,9 +89,10 @@ def plateau_error(
             moves = merged > error * (1 + slack)
             if falling:
                 moves |= merged < error * (1 - slack)
+            reached |= climbing & ~moves
             climbing &= (number > FEWEST_MERGED - _SLACK) & moves
             error = np.where(climbing, merged, error)
-    return np.asarray(error)
+    return np.asarray(error), np.asarray(reached)
 
 
 def _level(

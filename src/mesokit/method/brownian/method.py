@@ -60,6 +60,10 @@ class Displacement:
         """From the first step on."""
         return 0.0
 
+    def grows(self) -> bool:
+        """Never: they do not know of one another."""
+        return False
+
     def level_from(self) -> float:
         """Never: nothing holds them."""
         return float("inf")

@@ -32,7 +32,7 @@ class Displacement:
         if not chosen:
             raise CaseError("mean-square-displacement: every axis is closed by a wall")
         self.axes = tuple(case.box.index(axis, "components") for axis in chosen)
-        self.length, self.number = 1, case.particles
+        self.case, self.length, self.number = case, 1, case.particles
         self.timestep = case.spheres.timestep
         self.diffusion, self.memory = enskog(case)
 
@@ -55,6 +55,11 @@ class Displacement:
     def diffusive_from(self) -> float:
         """When the velocity is forgotten."""
         return DECAYED * self.memory if math.isfinite(self.memory) else 0.0
+
+    def grows(self) -> bool:
+        """In 2D, where neither walls nor heating take momentum."""
+        kept = not (self.case.walls or self.case.spheres.heating)
+        return self.case.box.dimension == 2 and kept and self.number > 1
 
     def level_from(self) -> float:
         """Never: nothing holds them."""

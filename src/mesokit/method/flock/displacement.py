@@ -72,6 +72,10 @@ class Displacement:
             return self.timestep
         return LATE * self.timestep / -math.log(self.memory)
 
+    def grows(self) -> bool:
+        """Not known: birds keep no momentum."""
+        return False
+
     def level_from(self) -> float:
         """Never in a periodic box."""
         return float("inf")

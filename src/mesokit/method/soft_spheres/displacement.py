@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from mesokit.errors import CaseError
+from mesokit.method.protocol import method_of
 from mesokit.spheres.wall.solids import closed_axes
 from mesokit.statistics import spread_ids
 
@@ -28,7 +29,8 @@ class Displacement:
         if not chosen:
             raise CaseError("mean-square-displacement: every axis is closed by a wall")
         self.axes = tuple(case.box.index(axis, "components") for axis in chosen)
-        self.length, self.number = 1, case.particles
+        self.case, self.length, self.number = case, 1, case.particles
+        self.timestep = method_of(case).timestep(case)
 
     def beads(self, wanted: int) -> Integers:
         """Numbers (n, 1) of so many spheres, evenly spread."""
@@ -45,6 +47,12 @@ class Displacement:
     def diffusive_from(self) -> float:
         """Not known: what is measured is taken as it is."""
         return 0.0
+
+    def grows(self) -> bool:
+        """In 2D, where neither walls nor a bath take momentum."""
+        case, bath = self.case, self.case.spheres.thermostat
+        kept = not case.walls and (bath is None or bath.decay(self.timestep) == 1.0)
+        return case.box.dimension == 2 and kept and self.number > 1
 
     def level_from(self) -> float:
         """Never: nothing holds them."""

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.statistics import Blocks, plateau_error
+from mesokit.statistics import Blocks, plateau, plateau_error
 
 Array = NDArray[np.floating[Any]]
 SURE = 2.0  # standard errors from zero, within which nothing is divided by a number
@@ -22,22 +22,41 @@ DIVISOR = "its divisor is within two standard errors of zero"
 
 class Estimate(NamedTuple):
     """`value` (*shape), what each block adds to its deviation (blocks, *shape), block weights, and
-    whether one block may take back what another has added (see `plateau_error`)."""
+    whether one block may take back what another has added (see `plateau_error`).
+
+    Blocks are of time, or groups of particles. With groups, `in_time` is the same value in blocks
+    of time: those see what all particles do together, groups see what outlasts the run."""
 
     value: Array
     residuals: Array
     weights: Array
     falling: bool = False
+    in_time: Estimate | None = None
 
     @property
     def error(self) -> Array:
-        """Standard error, (*shape)."""
-        return plateau_error(self.residuals, self.weights, self.falling)
+        """Standard error, (*shape): of blocks, or the one of groups and time that counts."""
+        groups = plateau_error(self.residuals, self.weights, self.falling)
+        if self.in_time is None:
+            return groups
+        return of_both(groups, *plateau(self.in_time.residuals, self.in_time.weights))
+
+    def divided(self, number: float) -> Estimate:
+        """The value divided by a number."""
+        return self._replace(
+            value=self.value / number,
+            residuals=self.residuals / number,
+            in_time=None if self.in_time is None else self.in_time.divided(number),
+        )
 
     def linear(self, matrix: Array) -> Estimate:
         """The linear combinations `matrix` (p, n) of a value of shape (n,)."""
-        residuals, weights = self.residuals @ matrix.T, per_block(self.weights)
-        return Estimate(matrix @ self.value, residuals, weights, self.falling)
+        return self._replace(
+            value=matrix @ self.value,
+            residuals=self.residuals @ matrix.T,
+            weights=per_block(self.weights),
+            in_time=None if self.in_time is None else self.in_time.linear(matrix),
+        )
 
     def scalar(
         self,
@@ -50,12 +69,24 @@ class Estimate(NamedTuple):
         `over` is the number that a quotient divides by, and the gradient of that number. Within two
         standard errors of zero the quotient has neither value nor error: both are nan.
         """
-        error = plateau_error(self.residuals @ gradient, per_block(self.weights), self.falling)
+        error = self.linear(gradient[None]).error[0]
         if over is not None:
             divisor, spread = self.scalar(*over)
             if abs(divisor) < SURE * spread:
                 return np.nan, np.nan
         return float(value), float(error)
+
+
+def of_both(groups: Array, times: Array, reached: NDArray[np.bool_]) -> Array:
+    """Standard error, given that of groups of particles and that of blocks of time.
+
+    The larger counts. Where blocks of time have reached a plateau at less than half of the error of
+    groups, groups are anticorrelated by what is conserved, and blocks of time count.
+
+    >>> of_both(np.array([1.0, 1.0, 1.0]), np.array([2.0, 0.1, 0.1]), np.array([True, True, False]))
+    array([2. , 0.1, 1. ])
+    """
+    return np.where(reached & (times < groups / 2), times, np.fmax(groups, times))
 
 
 def of_mean(blocks: Blocks, falling: bool = False) -> Estimate:

@@ -14,15 +14,16 @@ from mesokit.observe.shared.protocol import State
 Array = NDArray[np.floating[Any]]
 POINTS = 16  # kept per level; lags are at most 1/8 apart
 GROUPS = 32  # of particles, for the error bars
+BLOCKS = 32  # of time, for the same
 
 
 class Origins:
     """Averages over particles and origins of a function of a quantity at two times.
 
     Level l remembers every 2^l-th sample, POINTS of them: lags 0 to 15, 16, 18 ... 30, 32, 36 ...
-    Nothing is averaged in time, every value is exact. Particles fall into groups whose averages
-    over the whole run are independent but for what they do to each other's surroundings: they
-    give the error bars.
+    Nothing is averaged in time, every value is exact. Error bars come from the scatter between
+    groups of particles, and from that between blocks of time, to which a product belongs by the
+    later of its two times (see `Estimate`).
 
     Parameters
     ----------
@@ -50,11 +51,17 @@ class Origins:
             ]
         )
         self.sums = np.zeros((len(self.lags), self.groups))
+        self.block_length = 1  # samples
+        self.in_time = np.zeros((2, BLOCKS, len(self.lags)))  # sums and counts of blocks
         self.counts = np.zeros(len(self.lags), np.int64)
 
     def add(self, sample: Array, product: Any) -> None:
         """Add a sample (particles, dimension); `product(old, new)` gives (particles,)."""
         sample = sample[: self.particles]
+        if self.added == BLOCKS * self.block_length:
+            self.in_time[:, : BLOCKS // 2] = self.in_time[:, ::2] + self.in_time[:, 1::2]
+            self.in_time[:, BLOCKS // 2 :] = 0
+            self.block_length *= 2
         self._average(0, product(sample, sample))
         index = 1
         for level in range(len(self.memory)):
@@ -72,8 +79,10 @@ class Origins:
         self.added += 1
 
     def _average(self, index: int, values: Array) -> None:
-        self.sums[index] += values.reshape(-1, self.groups).mean(axis=0)
+        means = values.reshape(-1, self.groups).mean(axis=0)
+        self.sums[index] += means
         self.counts[index] += 1
+        self.in_time[:, self.added // self.block_length, index] += means.mean(), 1
 
     @property
     def count(self) -> int:
@@ -102,7 +111,7 @@ class Origins:
         return np.all([one.counts > 0 for one in (self, *self.others)], axis=0)
 
     def estimate(self) -> Estimate:
-        """Value at each lag that has been reached, with the groups in place of blocks of time."""
+        """Value at each lag that has been reached, in groups of particles and in blocks of time."""
         reached = self._reached()
         systems = (self, *self.others)
         means = np.concatenate([(o.sums[reached] / o.counts[reached, None]).T for o in systems])
@@ -110,7 +119,18 @@ class Origins:
         weights = np.concatenate([np.tile(o.counts[reached], (o.groups, 1)) for o in systems])
         share = weights / weights.mean(axis=0)
         value = (means * share).mean(axis=0)
-        return Estimate(value, (means - value) * share / len(means), share)
+        return Estimate(
+            value, (means - value) * share / len(means), share, in_time=self._in_time(value)
+        )
+
+    def _in_time(self, value: Array) -> Estimate:
+        """The same in blocks of time: those of several systems one after the other."""
+        reached = self._reached()
+        sums, counts = np.concatenate(
+            [one.in_time[:, : -(-one.added // one.block_length)] for one in (self, *self.others)],
+            axis=1,
+        )[:, :, reached]
+        return Estimate(value, (sums - value * counts) / counts.sum(axis=0), counts)
 
     def state(self) -> State:
         """All it has to remember."""
@@ -118,6 +138,8 @@ class Origins:
             "memory": self.memory,
             "sums": self.sums.copy(),
             "counts": self.counts.copy(),
+            "in_time": self.in_time.copy(),
+            "block_length": np.array(self.block_length),
             "count": np.array(self.added),
         }
 
@@ -125,4 +147,5 @@ class Origins:
         """Go on from `state()`."""
         self.memory[:] = state["memory"]
         self.sums[:], self.counts[:] = state["sums"], state["counts"]
-        self.added = int(state["count"])
+        self.in_time[:] = state["in_time"]
+        self.added, self.block_length = int(state["count"]), int(state["block_length"])

@@ -127,6 +127,13 @@ class Displacement:
         variance = found.centre_variance if self.of == "centres" else float(found.variance.mean())
         return np.where(late, 2 * len(self.axes) * variance, np.nan)
 
+    def grows(self) -> bool:
+        """In 2D, where momentum spreads and neither walls nor a random solvent take it."""
+        case, rule = self.case, self.case.fluid.collision
+        random = self.dissolved and case.solutes is not None and case.solutes.solvent == "random"
+        spreads = rule.acts and "momentum" in rule.conserves
+        return case.box.dimension == 2 and spreads and not (case.walls or random)
+
     def level_from(self) -> float:
         """The lag from which on it no longer grows: in traps, if that is known, else inf."""
         found = held(self.case, self.kind) if self.trapped else None

@@ -1,0 +1,58 @@
+"""Error bars of averages over particles: what all do together, and what is conserved, counts."""
+
+import numpy as np
+import pytest
+
+from mesokit.observe.shared.origins import BLOCKS, Origins
+
+SEEDS = 40
+
+
+def product(old, new):
+    return np.einsum("ij,ij->i", old, new)
+
+
+def runs(make, samples, longest=4):
+    """Values and errors (seeds, lags) of an autocorrelation."""
+    found = []
+    for seed in range(SEEDS):
+        rng, origins = np.random.default_rng(seed), Origins(64, 2, longest)
+        for sample in make(rng, samples):
+            origins.add(sample, product)
+        estimate = origins.estimate()
+        found.append((estimate.value, estimate.error))
+    values, errors = np.swapaxes(found, 0, 1)
+    return values, errors
+
+
+def in_one_bath(rng, samples):
+    """Velocities whose temperature all share; it changes slowly."""
+    common = 0.0
+    for _ in range(samples):
+        common = 0.9 * common + np.sqrt(1 - 0.81) * rng.normal()
+        yield np.exp(0.2 * common) * rng.normal(size=(64, 2))
+
+
+def of_one_energy(rng, samples):
+    """Velocities whose squares add up to the same in all samples but for a little noise."""
+    for _ in range(samples):
+        v = rng.normal(size=(64, 2))
+        yield v * np.sqrt(128 * (1 + 0.001 * rng.normal()) / (v**2).sum())
+
+
+@pytest.mark.parametrize("make", [in_one_bath, of_one_energy])
+def test_they_are_the_scatter_of_seeds(make):
+    values, errors = runs(make, 1000)
+    root = values.std(axis=0, ddof=1) / np.sqrt((errors**2).mean(axis=0))
+    # the scatter of 40 is known to 11 %, and blocks of time to some 10 %
+    assert (root > 0.65).all() and (root < 1.35).all()
+
+
+def test_blocks_of_time_are_bounded_and_hold_every_product():
+    origins = Origins(8, 1, 5)
+    for step in range(1, 300):
+        origins.add(np.full((8, 1), float(step)), product)
+        sums, counts = origins.in_time
+        assert sums.shape == (BLOCKS, len(origins.lags))
+        np.testing.assert_array_equal(counts.sum(axis=0), origins.counts)
+        np.testing.assert_array_equal(sums.sum(axis=0), origins.sums.mean(axis=1))
