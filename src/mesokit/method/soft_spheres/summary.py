@@ -38,7 +38,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     rows: list[Row] = [
         ("spheres", f"{case.particles:,}".replace(",", " "), ""),
         ("packing fraction", number(phi), ""),
-        ("timestep", number(step, "time"), "" if section.timestep else "unless said"),
+        ("timestep", number(step, "tau"), "" if section.timestep else "unless said"),
     ]
     numbers: dict[str, Any] = {"packing_fraction": phi, "timestep": step}
     reach, density = section.reach(box), case.particles / box.volume
@@ -48,11 +48,11 @@ def summary(case: Case, threads: int | None = None) -> Summary:
         overlap = section.pair.overlap_of(mass, speed) / reach
         numbers |= {"contact_time": time, "steps_per_contact": time / step, "overlap": overlap}
         rows += [
-            ("contact time", number(time, "time"), "of the lightest two"),
+            ("contact time", number(time, "tau"), "of the lightest two"),
             ("steps per contact", number(time / step), ""),
             (
                 "collision speed",
-                number(speed, "a/time"),
+                number(speed, "a/tau"),
                 "thermal, or after a fall through the box",
             ),
             ("overlap", number(overlap, "diameters"), "expected at that speed"),

@@ -34,6 +34,17 @@ def transport(case: Case) -> theory.Transport | None:
         return None
 
 
+def solvent(case: Case) -> theory.Transport | None:
+    """Transport coefficients of a fluid of single particles without the solutes that are in it."""
+    fluid = case.fluid
+    if case.solutes is None or fluid.mixed or fluid.molecule is not None or fluid.grid_shift < 1:
+        return None
+    try:
+        return fluid.collision.transport(gas(case)) if fluid.collision.acts else None
+    except ValueError:
+        return None
+
+
 def gas(case: Case) -> Gas:
     """What the theory of a fluid is a function of."""
     fluid = case.fluid
