@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.observe.shared.result import Result
-from mesokit.report.style import COLOURS, LINES, MARKERS, labelled, legend_above
+from mesokit.report.style import COLOURS, LINES, MARKERS, labelled, legend_above, lettered
 
 SHOWN = 12  # bodies in one figure
 MORE = 1.7  # inches for each further row
@@ -55,6 +55,8 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     if timed:
         panels.append(parts[-1].subplots())
         _in_time(panels[-1], result, forces, int(solids[0]))
+    if len(panels) > 1:
+        lettered(panels)
     handles: dict[str, Any] = {}
     for panel in panels[: len(panels) - timed]:
         found, labels = panel.get_legend_handles_labels()
