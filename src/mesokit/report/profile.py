@@ -54,7 +54,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     raised = result.extra.get("raised")
     if raised is not None:
         percent = float(result.extra["raised_by"])
-        label = f"with 2D fluctuations: viscosity up to +{percent:.1f} %"
+        label = f"2D fluctuations: viscosity up to +{percent:.1f} %"
         ax.fill_between(x, raised, result.expected, color=COLOURS[2], alpha=0.3, lw=0, label=label)
     if result.fit is not None:
         ax.plot(x, result.fit, "--", color=COLOURS[1], lw=1.3, label="fit", zorder=4)

@@ -123,7 +123,7 @@ def animate(
     reaches = [max(panel.reach(flow, shown) for flow in flows) for panel in panels]
     how = "projection" if all(panel.NEEDS in AT_ONCE for panel in panels) else "mean"
     notes = [section.note(how), note(panels, flows[0], clear), legend_of(panels)]
-    notes += [f"means of {number} frames"] if number > 1 else []
+    notes += [f"flow: mean of {number} frames"] if number > 1 else []
     notes += [first.spheres.note] if first.spheres else []
     solutes = frames_of(case, trajectory, source.axes)
     if solutes:
