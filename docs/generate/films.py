@@ -8,7 +8,9 @@ from __future__ import annotations
 import dataclasses
 import sys
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from PIL import Image
@@ -27,7 +29,7 @@ class Film(NamedTuple):
     settings: dict[str, str]
     observe: tuple[Any, ...] = ()
     width: float = 4.4  # inches
-    drawn: dict[str, Any] = {}
+    drawn: Mapping[str, Any] = MappingProxyType({})
 
 
 FILMS = {
