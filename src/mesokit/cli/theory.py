@@ -137,7 +137,7 @@ def _show_theory(given: dict[str, Any], figure: dict[str, Any]) -> None:
     if given["dimension"] == 3 and found.mean_free_path < 1:
         stirred = number(beads.stirring, "a^2/tau")
         after = next(i for i, row in enumerate(rows) if row[0] == "Schmidt number")
-        word = "with the flow that a particle stirs up, in a large box"
+        word = "with hydrodynamic backflow, in a large box"
         rows.insert(after, ("  in a fluid", stirred, word))
     for chain in chains:
         rows += rows_of(chain, beads, frequencies)

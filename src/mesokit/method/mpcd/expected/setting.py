@@ -77,8 +77,8 @@ def mean_free_path(case: Case) -> float:
     return float(case.fluid.timestep * (case.fluid.kT / case.fluid.mass) ** 0.5)
 
 
-STIRRED = "the flow that a particle stirs up adds 10 to 30 %, in 2D more"
-STIRRING = "molecular chaos and the flow that a particle stirs up, in this box"
+STIRRED = "hydrodynamic backflow adds 10 to 30 %, in 2D more"
+STIRRING = "molecular chaos and hydrodynamic backflow, in this box"
 
 
 def chaos(case: Case, off: str) -> str:
