@@ -16,7 +16,7 @@ import mesokit
 from mesokit import Box, Case, CaseError, HardSpheres, Plates, Run, RunError, Simulation, Trajectory
 from mesokit.cli import main
 from mesokit.report.flow import KINDS, animate, disks, picture
-from mesokit.report.flow.colouring import COLOURS, MOST
+from mesokit.report.flow.colouring import COLOURS, MOST, in_film
 from mesokit.report.flow.moving_plates import plates_at
 from mesokit.report.flow.shaded import PALE, SHADE, Balls, shaded
 from mesokit.report.flow.solids import Section
@@ -235,14 +235,15 @@ class TestColours:
         assert dots.get_xydata().tolist() == [[1, 2]]
         assert crosses.get_xydata().tolist() == [[3, 2]]
 
-    def test_speeds_of_a_gas_that_cools_are_on_a_logarithmic_scale(self, case_of):
+    def test_a_film_of_a_gas_that_cools_has_a_logarithmic_scale(self, case_of):
         """Else all but the first frame would have one colour, or each frame a scale of its own."""
         places, hot = np.array([[[1, 2], [3, 2]]] * 2, float), np.array([[3, 0], [4, 0]], float)
-        for factor, scale in ((0.25, "log"), (0.5, "linear")):
+        for factor, colour in ((0.25, "log-speed"), (0.5, None)):
             frames = frames_of(places, velocity=np.array([hot, factor * hot]))
-            figure = picture(case_of((9, 5), number=2), {}, frames)
-            assert figure.axes[1].get_ylabel().startswith("speed  [")
-            assert figure.axes[1].get_yscale() == scale
+            assert in_film(frames, None) == colour and in_film(frames, "spin") == "spin"
+        figure = picture(case_of((9, 5), number=2), {}, frames, colour="log-speed")
+        assert figure.axes[1].get_ylabel().startswith("speed  [")
+        assert figure.axes[1].get_yscale() == "log"
         low, high = self.numbers(case_of((9, 5), number=2), frames, "log-speed")[2]
         assert high / low == pytest.approx(1000)
         figure = picture(case_of((9, 5), number=2), {}, frames, colour="relative-speed")

@@ -175,16 +175,19 @@ COLOURS: dict[str, Colouring] = {
 }
 
 
-def _changes(reader: TrajectoryReader | State) -> bool:
-    """Whether speeds change by more than MUCH from the first frame to the last."""
+def in_film(reader: TrajectoryReader | None, colour: str | None) -> str | None:
+    """The colour of a film, whose scale is the same in all frames: unless said logarithmic where
+    speeds change by more than MUCH from the first frame to the last."""
+    if colour or reader is None or reader.diameter is None or "velocity" not in reader.fields:
+        return colour
     ends = [np.asarray(reader[k]["velocity"], float) for k in (0, len(reader) - 1)]
     first, last = (float((v**2).sum(axis=1).mean()) for v in ends)
-    return not MUCH**-2 < last / first < MUCH**2 if first > 0 else last > 0
+    changes = not MUCH**-2 < last / first < MUCH**2 if first > 0 else last > 0
+    return "log-speed" if changes else None
 
 
 def chosen(case: Case, reader: TrajectoryReader | State, colour: str | None) -> Colouring | None:
-    """The colouring of that name; unless said speeds, else kinds, else none. Where spheres cool
-    down or heat up by much, the scale of speeds is logarithmic, and the same for all frames.
+    """The colouring of that name; unless said speeds, else kinds, else none.
 
     Raises CaseError for an unknown one, RunError where the trajectory lacks what it needs.
     """
@@ -192,7 +195,7 @@ def chosen(case: Case, reader: TrajectoryReader | State, colour: str | None) -> 
         several = len(np.unique(reader.species)) > 1
         colour = "kind" if several else None
         if "velocity" in reader.fields:
-            colour = "log-speed" if _changes(reader) else "speed"
+            colour = "speed"
         return None if colour is None else COLOURS[colour]
     if colour not in COLOURS:
         known = list(COLOURS)

@@ -20,6 +20,7 @@ from mesokit.report.caption import rounded, symbols
 from mesokit.report.finish.origin import origin_of
 from mesokit.report.finish.saving import foot_strip
 from mesokit.report.flow.beads import BeadFrames, frames_of
+from mesokit.report.flow.colouring import in_film
 from mesokit.report.flow.encode import ENCODERS, Pixels
 from mesokit.report.flow.kinds import Panel, legend_of, panels_of, usual
 from mesokit.report.flow.quiet import averaged, note, smooth, smoothing
@@ -102,7 +103,8 @@ def animate(
         raise CaseError(f"output = {show(str(path))}: expected a name that ends in .mp4 or .gif")
     if not isinstance(fps, numbers.Real) or not 0 < fps <= FASTEST:
         raise CaseError(f"fps = {show(fps)}: expected a number above 0, at most {FASTEST:g}")
-    found = sources(case, results, trajectory, view)
+    seen = view._replace(colour=in_film(trajectory, view.colour))
+    found = sources(case, results, trajectory, seen)
     kind = kind or usual(case, found, "speed", in_time=True)
     panels = panels_of(kind, case, view.colour)
     source = choose_one(found, {panel.NEEDS for panel in panels}, kind)
