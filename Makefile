@@ -9,7 +9,7 @@ BIN := .venv/bin
 endif
 READY := .venv/ready
 
-.PHONY: help demo test test-long test-all durations quick lint check site tutorials sketches bench \
+.PHONY: help demo test test-long test-all durations quick lint check site tutorials sketches films bench \
   validate parts clean
 help:
 	@echo "make demo      run a channel flow and draw it with the theory"
@@ -22,6 +22,7 @@ help:
 	@echo "make site      write the documentation as a site: build/site/index.html"
 	@echo "make tutorials run the notebooks of docs/tutorials and store what they show"
 	@echo "make sketches  draw the sketches of the guide"
+	@echo "make films     make the films of README"
 	@echo "make bench     measure the speed, side by side with LAMMPS"
 	@echo "make validate  write docs/validation: measured against theory, law by law"
 	@echo "make parts     compile the parts that a wheel brings, for this Python and system"
@@ -80,6 +81,9 @@ tutorials: $(READY)
 
 sketches: $(READY)
 	@$(BIN)/python docs/generate/sketches.py
+
+films: $(READY)
+	@$(BIN)/python docs/generate/films.py
 
 bench: $(READY)
 	@$(BIN)/python -m benchmarks

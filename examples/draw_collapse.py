@@ -10,6 +10,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from mesokit import Box, Case, HardCollision, HardSpheres, Plates, Run, RunError, Simulation, theory
+from mesokit.report.style import STYLE, lettered
 
 LENGTH = 1000.0  # of the box: those that part fly on until the end
 GAP = 1.0  # between grains, and to the wall, at the start
@@ -71,9 +72,9 @@ def main():
             ax.text(ended + 0.2, 0.3, "collapse", fontsize=9)
         what = "below" if off < 0 else "above"
         ax.set_title(f"$e = {law * (1 + off):.3f}$, {what} {law:.4f}", fontsize=10)
-        ax.set(xlabel=r"time / $\tau$", xlim=(0, 8), ylim=(1e-5, 5))
-        ax.set_ylabel("way to its place in a pile / diameter")
-    axes[1].legend(fontsize=8)
+        ax.set(xlabel=r"time  [$\tau$]", xlim=(0, 8), ylim=(1e-5, 5))
+        ax.set_ylabel("way to its place in a pile  [$d$]")
+    axes[1].legend()
     for number, mark in zip(NUMBERS, "osD^", strict=True):
         law = theory.collapse_restitution(number)
         found = [outcome(number, law * (1 + off)) for off in OFF]
@@ -99,9 +100,11 @@ def main():
         xlim=(0.67, 1.33),
         ylim=(5, 5000),
     )
-    axes[2].legend(fontsize=8, loc="upper right", title="on a wall: law", title_fontsize=8)
+    axes[2].legend(loc="upper right", title="on a wall: law", title_fontsize=8)
+    lettered(axes)
     figure.savefig("collapse_1d.png", dpi=150)
 
 
 if __name__ == "__main__":
+    plt.rcParams.update(STYLE)
     main()

@@ -14,6 +14,7 @@ from matplotlib.collections import PatchCollection
 from matplotlib.patches import Circle
 
 from mesokit import Case, Simulation
+from mesokit.report.style import STYLE, lettered
 
 CASE = Path(__file__).with_name("column.toml")
 
@@ -44,13 +45,15 @@ def main():
     heights = np.array([0.0, *(0.5 * (y[1:] + y[:-1]))])
     for height, force in zip(heights, forces, strict=True):  # as wide as the force is large
         left.plot([places[0][0]] * 2, [height - 0.3, height + 0.3], "k-", lw=force / forces[0] * 6)
-    left.set(aspect="equal", xlim=(0, case.box.size[0]), ylabel="height / diameter", xticks=[])
+    left.set(aspect="equal", xlim=(0, case.box.size[0]), ylabel="height  [$d$]", xticks=[])
     right.plot(weights, heights, color="0.7", lw=3, label="theory: $(N - i)\\,m g$")
     right.plot(forces, heights, "ko", mfc="white", ms=5, label="measured")
-    right.set(xlabel="force of a contact / $m a/\\tau^2$", xlim=(0, None), ylim=(-0.6, n + 0.6))
+    right.set(xlabel="force of a contact  [$m\\,a/\\tau^2$]", xlim=(0, None), ylim=(-0.6, n + 0.6))
     right.legend()
+    lettered([left, right])
     figure.savefig("column.png", dpi=150)
 
 
 if __name__ == "__main__":
+    plt.rcParams.update(STYLE)
     main()

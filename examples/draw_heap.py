@@ -12,6 +12,7 @@ from matplotlib.collections import PatchCollection
 from matplotlib.patches import Circle
 
 from mesokit import Box, Case, Plates, Run, Simulation, SoftSpheres, SphereKind, SpringDashpot
+from mesokit.report.style import STYLE, lettered
 
 WIDE, HIGH, LENGTH = 40, 16, 110
 FRICTIONS = (0.05, 0.2, 0.4, 0.8)  # between grains, and with the floor
@@ -79,7 +80,7 @@ def main():
         print(f"friction {friction}: {measured[-1][0]:.1f} +- {measured[-1][1]:.1f} degrees")
     for k in range(len(FRICTIONS) - 1):
         axes[f"heap {k}"].tick_params(labelbottom=False)
-    axes[f"heap {len(FRICTIONS) - 1}"].set_xlabel("$x$ / diameter")
+    axes[f"heap {len(FRICTIONS) - 1}"].set_xlabel("$x$  [$d$]")
     ax = axes["angles"]
     ax.errorbar(
         FRICTIONS, *np.transpose(measured), fmt="o", color="black", mfc="white",
@@ -91,11 +92,12 @@ def main():
     )
     ax.set(
         xlabel=r"friction $\mu$",
-        ylabel="angle of the flanks / degrees",
+        ylabel="angle of the flanks  [degrees]",
         xlim=(0, 0.9),
         ylim=(0, 45),
     )
-    ax.legend(fontsize=8)
+    ax.legend()
+    lettered([*axes.values()])
     figure.savefig("heap.png", dpi=150)
 
 
@@ -107,9 +109,10 @@ def panel(ax, places, diameters, friction):
     ax.add_collection(
         PatchCollection(circles, facecolors=[str(s) for s in shades], edgecolors="none")
     )
-    ax.set(xlim=(0, LENGTH), ylim=(0, 18), aspect="equal", ylabel="$y$ / diameter")
+    ax.set(xlim=(0, LENGTH), ylim=(0, 18), aspect="equal", ylabel="$y$  [$d$]")
     ax.set_title(rf"$\mu = {friction:g}$, {len(places)} disks", fontsize=10, loc="left")
 
 
 if __name__ == "__main__":
+    plt.rcParams.update(STYLE)
     main()

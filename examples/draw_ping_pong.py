@@ -24,6 +24,7 @@ from mesokit import (
     SurfaceContact,
     theory,
 )
+from mesokit.report.style import STYLE, lettered
 
 E, G, HEIGHT, STEP = 0.8, 1.0, 1.0, 0.01
 CONTACT_TIME = 0.3  # long, so that one sees what it does
@@ -85,7 +86,7 @@ def main():
         ax.plot(*flights(), color="0.65", lw=2.5, label="theory, no contact time")
         ax.plot(time, height, color="black", lw=0.9, label="measured")
         ax.axvline(end, color="black", ls=":", lw=1)
-        ax.set(xlabel=r"time / $\sqrt{h/g}$", ylabel="height / $h$", ylim=(0, 1.05), xlim=(0, 15))
+        ax.set(xlabel=r"time  [$\sqrt{h/g}$]", ylabel="height  [$h$]", ylim=(0, 1.05), xlim=(0, 15))
         ax.set_title(name, fontsize=10)
         inset = ax.inset_axes((0.52, 0.45, 0.45, 0.3))
         inset.plot(*flights(), color="0.65", lw=2.5)
@@ -99,7 +100,7 @@ def main():
         axes[2].semilogy(
             count[new], energy[new], mark, ms=4, mfc="white", color="black", label=name
         )
-    axes[0].legend(fontsize=8, loc="upper right")
+    axes[0].legend(loc="upper right")
     n = np.arange(0, 46)
     axes[2].semilogy(n, E ** (2.0 * n), color="0.65", lw=2.5, zorder=0, label="theory: $e^{2n}$")
     axes[2].axhline(
@@ -108,9 +109,11 @@ def main():
     axes[2].set(
         xlabel="bounces $n$", ylabel="energy over that of the start", xlim=(0, 46), ylim=(1e-9, 2)
     )
-    axes[2].legend(fontsize=8)
+    axes[2].legend()
+    lettered(axes)
     figure.savefig("ping_pong.png", dpi=150)
 
 
 if __name__ == "__main__":
+    plt.rcParams.update(STYLE)
     main()

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from mesokit import Box, Case, HertzLaw, Run, Simulation, SoftSpheres, SpringDashpot, theory
+from mesokit.report.style import STYLE, lettered
 
 K, SPEED, MASS = 1e4, 1.0, 0.5  # stiffness, closing speed, reduced mass of two grains of mass 1
 DAMPING = 40.0
@@ -99,16 +100,18 @@ def main():
             ax.plot(data[0][shown], data[1][shown], style, label=name, zorder=2, **looks)
     axes[0].plot([], [], color="0.75", lw=4, label="theory")
     time = "time since the first touch"
-    axes[0].set(xlabel=time, ylabel="overlap $x$ / $10^{-3}$ diameters", xlim=(0, None))
-    axes[1].set(xlabel=time, ylabel="force $F$ / $m a/\\tau^2$", xlim=(0, None))
-    axes[2].set(xlabel="overlap $x$ / $10^{-3}$ diameters", ylabel="force $F$ / $m a/\\tau^2$")
+    axes[0].set(xlabel=time, ylabel=r"overlap $x$  [$10^{-3}\,d$]", xlim=(0, None))
+    axes[1].set(xlabel=time, ylabel="force $F$  [$m\\,a/\\tau^2$]", xlim=(0, None))
+    axes[2].set(xlabel=r"overlap $x$  [$10^{-3}\,d$]", ylabel="force $F$  [$m\\,a/\\tau^2$]")
     for ax in axes:
         ax.axhline(0, color="black", lw=0.6)
-    axes[0].set_xlabel(time + r" / $\tau$")
-    axes[1].set_xlabel(time + r" / $\tau$")
+    axes[0].set_xlabel(time + r"  [$\tau$]")
+    axes[1].set_xlabel(time + r"  [$\tau$]")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=5)
+    lettered(axes)
     figure.savefig("two_grains.png", dpi=150)
 
 
 if __name__ == "__main__":
+    plt.rcParams.update(STYLE)
     main()

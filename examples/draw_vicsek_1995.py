@@ -13,6 +13,7 @@ import numpy as np
 
 from mesokit import Case, Simulation
 from mesokit.report.flow.birds import colours
+from mesokit.report.style import STYLE
 
 TRAIL = 20  # steps
 PANELS = {  # side of the box, noise, steps before it is drawn
@@ -77,4 +78,5 @@ def main():
 
 
 if __name__ == "__main__":
+    plt.rcParams.update(STYLE)
     main()

@@ -31,6 +31,7 @@ from mesokit import (
     SpringDashpot,
     theory,
 )
+from mesokit.report.style import COLOURS, STYLE
 from mesokit.spheres.kinds import ball_volume
 
 SHORT = "--short" in sys.argv  # a quick try
@@ -42,7 +43,7 @@ FRACTIONS = {
     3: (4.7e-4, 1e-2, 0.1, 0.3, 0.45, 0.6, 0.68, 0.71, 0.725),
 }
 LEAST = 200  # steps of soft spheres, or collisions of all, in one measurement
-COLOURS = {"event-driven": "#1b4f8a", "soft": "#c1491d"}
+HUES = {"event-driven": COLOURS[0], "soft": COLOURS[1]}
 LOOKS = ("-", "--", ":")  # of contact times
 
 
@@ -185,12 +186,12 @@ def gases(figure_axes, lines):
         lines.append("")
         ax.errorbar(
             fractions, [c.value for c in hard], [c.error for c in hard], fmt="o-", ms=4,
-            color=COLOURS["event-driven"], label="event-driven",
+            color=HUES["event-driven"], label="event-driven",
         )  # fmt: skip
         for times, look, contact_time in zip(soft, LOOKS, CONTACT_TIMES, strict=True):
             ax.errorbar(
                 fractions, [c.value for c in times], [c.error for c in times], fmt="s", ms=3,
-                ls=look, color=COLOURS["soft"], label=f"soft, contact time {contact_time:g}",
+                ls=look, color=HUES["soft"], label=f"soft, contact time {contact_time:g}",
             )  # fmt: skip
             at = crossing(fractions, hard, times)
             lines.append(
@@ -201,9 +202,9 @@ def gases(figure_axes, lines):
             lines[-1] += f" Ratio of costs from {max(ratios):.0f} to {min(ratios):.2g}."
         lines.append("")
         ax.set(xscale="log", yscale="log", xlabel="packing fraction")
-        ax.set_title(f"gas, {dimension}D", fontsize=10)
-    figure_axes[2].set_ylabel(r"$\mu$s per grain and $d\,\sqrt{m/kT}$")
-    figure_axes[3].legend(fontsize=7, frameon=False)
+        ax.set_title(f"gas, {dimension}D")
+    figure_axes[2].set_ylabel(r"cost  [$\mu$s per grain and $d\,\sqrt{m/kT}$]")
+    figure_axes[3].legend()
 
 
 def beds(ax, lines):
@@ -218,11 +219,11 @@ def beds(ax, lines):
             (("event-driven", "event-driven"), ("soft", "soft"))
         ):
             ax.plot(
-                times, mean[:, column], ls=look, color=COLOURS[name],
+                times, mean[:, column], ls=look, color=HUES[name],
                 label=f"{label}, contact time {contact_time:g}",
             )  # fmt: skip
             low, high = (mean + sign * error for sign in (-1, 1))
-            ax.fill_between(times, low[:, column], high[:, column], color=COLOURS[name], alpha=0.2)
+            ax.fill_between(times, low[:, column], high[:, column], color=HUES[name], alpha=0.2)
         for k in range(4, len(mean), 5):
             cells = [rounded(Cost(*pair)) for pair in zip(mean[k], error[k], strict=True)]
             lines.append(f"| {contact_time:g} | {times[k]:g} | " + " | ".join(cells) + " |")
@@ -230,10 +231,10 @@ def beds(ax, lines):
         if len(above):
             lines.append(f"| {contact_time:g} | {times[above[0]]:g} | first dearer | |")
     lines.append("")
-    ax.set(yscale="log", xlabel=r"time, $\sqrt{d/g}$")
-    ax.set_ylabel(r"$\mu$s per grain and $\sqrt{d/g}$")
-    ax.set_title("grains that fall and come to rest, 2D", fontsize=10)
-    ax.legend(fontsize=7, frameon=False)
+    ax.set(yscale="log", xlabel=r"time  [$\sqrt{d/g}$]")
+    ax.set_ylabel(r"cost  [$\mu$s per grain and $\sqrt{d/g}$]")
+    ax.set_title("grains that fall and come to rest, 2D")
+    ax.legend()
 
 
 def main():
@@ -247,8 +248,10 @@ def main():
         ax.grid(alpha=0.3, lw=0.5)
     Path("which_method.md").write_text("\n".join(lines))
     print("\n".join(lines))
+    lettered(axes)
     figure.savefig("which_method.png", dpi=150)
 
 
 if __name__ == "__main__":
+    plt.rcParams.update(STYLE)
     main()

@@ -19,6 +19,7 @@ import numpy as np
 
 import mesokit
 from mesokit import Comparison
+from mesokit.report.style import COLOURS, STYLE, lettered
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -28,7 +29,7 @@ FOLDER = ROOT / "docs" / "validation"
 RUNS = ROOT / "build" / "validation"  # runs that `kept` keeps
 SHORT = "--short" in sys.argv  # a quick try: a fiftieth of the steps, nothing is written to docs
 ANGLE = math.degrees(2.27)  # the angle at which the 3D viscosity is quoted in the literature
-BLUE, RED, GREEN, PURPLE, GREY = "#1b4f8a", "#c1491d", "#2a7f4f", "#7a3b8f", "#444444"
+BLUE, RED, GREEN, PURPLE, _, GREY = COLOURS
 
 UNITS = {  # of labels that are only words
     ("time",): r"\tau",
@@ -42,13 +43,7 @@ UNITS = {  # of labels that are only words
     ("K for a bond length of 2", "K"): "kT/a^2",
 }
 
-plt.rcParams.update(
-    {
-        "font.size": 10, "legend.frameon": False, "legend.fontsize": 9, "xtick.direction": "in",
-        "ytick.direction": "in", "xtick.top": True, "ytick.right": True, "lines.markersize": 4,
-        "errorbar.capsize": 2, "savefig.dpi": 150,
-    }
-)  # fmt: skip
+plt.rcParams.update(STYLE | {"savefig.dpi": 150})
 
 
 def sources() -> str:
@@ -175,11 +170,8 @@ class Page:
 def finish(fig: Any) -> None:
     """Letters for panels, and units for labels."""
     panels = [ax for ax in fig.axes if ax.axison and not hasattr(ax, "_colorbar")]
-    for ax, letter in zip(panels, "abcdefghijkl", strict=False):
-        if len(panels) > 1:
-            title = ax.get_title()
-            ax.set_title("")
-            ax.set_title(" ".join(filter(None, (f"({letter})", title))), loc="left", fontsize=10)
+    lettered(panels)
+    for ax in panels:
         for axis in (ax.xaxis, ax.yaxis):
             label = axis.get_label().get_text()
             unit = next((u for words, u in UNITS.items() if label in words), "")

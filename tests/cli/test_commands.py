@@ -97,7 +97,7 @@ class TestCheck:
         capsys.readouterr()
         assert ends("check", "poiseuille.toml", "--threads", "1") == 0
         out = capsys.readouterr().out
-        for words in ("grid_shift = 1.0", "0.7584 a^2/time", "Reynolds", "Mach", "1 thread,"):
+        for words in ("grid_shift = 1.0", "0.7584 a^2/tau", "Reynolds", "Mach", "1 thread,"):
             assert words in out
 
     def test_what_it_shows_is_a_case(self, capsys: Captured) -> None:

@@ -86,7 +86,13 @@ def test_pictures_and_films_are_files_of_the_run(capsys: Captured) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words", "status"),
     [
-        (["plot", "run", "--region", "0:1,0:1"], "--region: only for a picture of the flow", 2),
+        (
+            ["plot", "run", "--result", "flow-frames", "--region", "0:1,0:1"],
+            "--region: only for a picture of the flow",
+            2,
+        ),
+        (["plot", "run", "--region", "0:1,0:1"], "at least 2 bins along each axis", 2),
+        (["animate", "run", "--average", "7"], "average = 7: expected a whole number", 2),
         (["plot", "run", "--kind", "swirl"], "kind = 'swirl': expected 'quiver'", 2),
         (["plot", "run", "--kind", "speed", "--region", "0:5"], "two numbers for each axis", 2),
         (["plot", "run", "--kind", "speed", "--region", "a:5,0:1"], "expected x0:x1,y0:y1", 2),

@@ -1,6 +1,7 @@
 """Everything that the README and the guide tell users to type works."""
 
 import contextlib
+import importlib.util
 import io
 import json
 import re
@@ -25,6 +26,7 @@ PAGES = [
     "docs/methods/brownian.md",
     "docs/methods/event_driven.md",
     "docs/methods/flock.md",
+    "docs/methods/mpcd.md",
     "docs/methods/soft_spheres.md",
     "docs/methods/spheres.md",
     "docs/methods/which_method.md",
@@ -109,6 +111,19 @@ sys.path.insert(0, "")
 for script in json.load(sys.stdin):
     exec(compile(script, script.splitlines()[0], "exec"), {"__name__": "__main__"})
 """
+
+
+def test_films_of_the_front_page_are_made_from_examples() -> None:
+    """By one command, and small enough for a repository."""
+    spec = importlib.util.spec_from_file_location("films", ROOT / "docs" / "generate" / "films.py")
+    assert spec is not None and spec.loader is not None
+    films = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(films)
+    shown = re.findall(r"images/film-(\w+)\.gif", (ROOT / "README.md").read_text())
+    assert sorted(shown) == sorted(films.FILMS)
+    for name, film in films.FILMS.items():
+        Case.from_toml(ROOT / "examples" / f"{film.example}.toml", film.settings)
+        assert (ROOT / "docs" / "images" / f"film-{name}.gif").stat().st_size < films.LARGEST
 
 
 def test_make_targets_exist() -> None:

@@ -166,7 +166,8 @@ def test_plates_have_panels_of_their_own_and_no_torques(make_case):
     *panels, in_time = plot(result).axes
     solids = [[label.get_text() for label in ax.get_xticklabels()] for ax in panels]
     assert solids == 2 * [["post"]] + 2 * [["plates-1-lower", "plates-1-upper"]]
-    assert panels[1].get_title().endswith("about (8, 4)")
+    assert panels[1].get_title("left").startswith("(b) torque")
+    assert panels[1].get_title("left").endswith("about (8, 4)")
     assert "post" in in_time.get_ylabel()
     (right,) = in_time.child_axes  # the coefficient of the same force
     drag = next(c.measured for c in result.comparisons if c.what == "drag coefficient of post")
@@ -206,7 +207,7 @@ def test_formulas_in_words_are_set_as_formulas(text):
 
 
 def test_momentum_of_a_driven_flow_has_its_theory(make_case):
-    """And number and size of the momentum have panels of their own."""
+    """And a number of particles that stays needs no panel."""
     from mesokit import Conservation, Plates, Uniform
     from mesokit.method.mpcd.expected.setting import transport
 
@@ -221,9 +222,10 @@ def test_momentum_of_a_driven_flow_has_its_theory(make_case):
     np.testing.assert_allclose(result.expected[:, 2], 0, atol=1e-12)
     figure = plot(result)
     labels = [ax.get_ylabel() for ax in figure.axes]
-    assert labels[0].endswith("$N$") and "|change|" in labels[2] and "flow" in labels[4]
-    assert not labels[1].startswith("momentum\nchange")
-    assert figure.axes[1].get_legend().get_texts()[-1].get_text() == "theory"
+    assert len(labels) == 3 and "the flow" in labels[2]
+    assert labels[0].startswith("momentum") and not labels[0].startswith("momentum\nchange")
+    assert f"$N = {case.particles}$" in figure.axes[0].get_title("left")
+    assert figure.axes[0].get_legend().get_texts()[-1].get_text() == "theory"
 
 
 def test_a_mode_that_has_reached_noise_ends_with_its_theory():
@@ -350,13 +352,13 @@ def test_conserved_quantities_with_a_potential_have_their_total():
     figure = plot(energies(np.linspace(0, 20, 60)))
     figure.draw_without_rendering()
     labels = [ax.yaxis.label.get_window_extent() for ax in figure.axes]
-    assert len(labels) == 6
+    assert len(labels) == 4
     for above, below in itertools.pairwise(labels):
         assert not above.overlaps(below)
     assert all(box.x0 >= 0 and box.y0 >= 0 and box.y1 <= figure.bbox.y1 for box in labels)
-    parts, total = figure.axes[3:5]
+    parts, total = figure.axes[1:3]
     assert [text.get_text() for text in parts.get_legend().get_texts()] == ["kinetic", "potential"]
-    assert "total" in total.get_ylabel() and r"m\,a/\tau" in figure.axes[1].get_ylabel()
+    assert "total" in total.get_ylabel() and r"m\,a/\tau" in figure.axes[0].get_ylabel()
     np.testing.assert_allclose(total.lines[0].get_ydata(), 0, atol=1e-12)
 
 
@@ -414,3 +416,53 @@ def test_events_of_one_duration_are_one_bar(lasted):
     edges, density, _ = events.histogram()
     assert len(density) == 1 and density[0] * np.diff(edges)[0] == pytest.approx(1)
     assert 0.05 < np.diff(edges)[0] / lasted[0] < 0.2
+
+
+def test_colours_differ_in_grey_and_are_dark_on_white():
+    from mesokit.report.style import COLOURS
+
+    def lightness(colour):  # CIELAB, from 0 to 100
+        rgb = np.array([int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)])
+        linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+        return 116 * float(linear @ [0.2126, 0.7152, 0.0722]) ** (1 / 3) - 16
+
+    found = sorted(map(lightness, COLOURS))
+    assert min(np.diff(found)) > 6 and found[-1] < 63
+
+
+def test_noise_about_a_constant_fills_half_of_the_panel():
+    x = np.arange(20) + 0.5
+    value = 7.0 + 0.02 * np.cos(x)
+    result = Result(
+        "density-profile", "density-profile", {"y": x}, value, np.full(20, 0.004), "density",
+        {"value": "", "y": "a"}, expected=np.full(20, 7.0), samples=9, drawing="profile",
+    )  # fmt: skip
+    low, high = plot(result).axes[0].get_ylim()
+    assert 0.4 < np.ptp(value) / (high - low) < 0.8
+
+
+@pytest.mark.parametrize(("number", "low"), [(2, True), (12, False)])
+def test_few_numbers_fill_no_page(number, low):
+    from mesokit.report.style import HEIGHT
+
+    x = np.array([f"part {k}" for k in range(number)])
+    value = np.ones(number)
+    result = Result("q", "q", {"by": x}, value, 0.1 * value, "pressure", {"value": ""}, samples=9)
+    figure = plot(result)
+    assert (figure.get_figheight() < 0.7 * HEIGHT) == low
+    assert figure.axes[0].get_xlabel() == ""
+
+
+def test_what_is_not_known_of_molecules_has_no_panel():
+    """Under shear the centre along the flow."""
+    names = np.array(["gyration", "x", "vx"])
+    value = np.random.default_rng(2).normal(size=(30, 2, 3))
+    value[..., 1] = np.nan
+    result = Result(
+        "molecule-tracks", "tracks",
+        {"time": np.arange(30.0), "molecule": np.arange(2), "component": names}, value,
+        np.nan * value, "molecules", {"time": "tau", "gyration": "a", "x": "a", "vx": "a/tau"},
+        samples=30, extra={"axis": "x", "ideal_gyration": np.nan}, drawing="tracks",
+    )  # fmt: skip
+    labels = [ax.get_ylabel() for ax in plot(result).axes]
+    assert len(labels) == 2 and not any("centre" in label for label in labels)

@@ -17,13 +17,15 @@ from mesokit.io import h5md
 from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.report import save_figure
-from mesokit.report.flow import KINDS, picture, solids, speed
+from mesokit.report.flow import KINDS, picture, quiver, solids, speed
+from mesokit.report.flow import vorticity as turning
 from mesokit.report.flow.data import Flow
+from mesokit.report.flow.quiet import averaged, smooth, smoothing
 from mesokit.report.flow.quiver import arrows
 from mesokit.report.flow.region import Region, region_of
 from mesokit.report.flow.setting import Setting
 from mesokit.report.flow.source import sources
-from mesokit.report.flow.vorticity import smoothing, vorticity
+from mesokit.report.flow.vorticity import vorticity
 
 SIZE = (12, 10)
 OF_FLUIDS = [kind for kind in KINDS if kind not in ("disks", "flock")]
@@ -159,7 +161,7 @@ class TestNumbers:
 
 
 class TestNoise:
-    """Vorticity is smoothed until it stands out of the noise, if anything does."""
+    """What shows a velocity is smoothed until it stands out of the noise, if anything does."""
 
     def noisy(self, size, noise):
         flow = exact(
@@ -171,24 +173,56 @@ class TestNoise:
 
     def test_a_clear_flow_stays_as_it_is(self):
         flow = self.noisy(20, 0.001)
-        assert smoothing([flow], Region((0.0, 0.0), flow.size)) == (0.0, True)
+        for panel in (turning, speed, quiver):
+            assert smoothing([panel], [flow], Region((0.0, 0.0), flow.size)) == (0.0, True)
 
     def test_a_noisy_one_is_smoothed(self):
         flow = self.noisy(20, 0.3)
         region = Region((0.0, 0.0), flow.size)
-        width, clear = smoothing([flow], region)
+        width, clear = smoothing([turning], [flow], region)
         assert clear and 0 < width <= 3
         y = np.arange(40) + 0.5
         expected = -2 * np.pi / 20 * np.cos(2 * np.pi * y / 20)
-        found = vorticity(replace(flow, smoothing=width))[8:40, 5:35]
+        found = vorticity(smooth(flow, width))[8:40, 5:35]
         assert np.std(found - expected[5:35]) < 0.5 * np.std(expected)
         assert np.std(vorticity(flow)[8:40, 5:35] - expected[5:35]) > np.std(expected)
+
+    def test_so_is_a_map_of_its_speed(self):
+        flow = self.noisy(20, 0.6)
+        region = Region((0.0, 0.0), flow.size)
+        width, clear = smoothing([speed], [flow], region)
+        assert clear and 0 < width <= 3
+        true = abs(np.sin(2 * np.pi * (np.arange(40) + 0.5) / 20))
+        off = [np.std((f.speed - true)[8:40, 5:35]) for f in (flow, smooth(flow, width))]
+        assert off[1] < 0.5 * off[0]
+
+    def test_a_film_averages_until_there_is_a_flow(self):
+        """A quarter of the frames at most; clear ones are shown as they are."""
+        rng, region = np.random.default_rng(5), Region((0.0, 0.0), (48.0, 40.0))
+        true = self.noisy(20, 0.0).velocity
+
+        class Frames:
+            def __init__(self, noise):
+                self.kicks = noise * rng.normal(size=(64, *true.shape))
+
+            def flow(self, frames):
+                shape, few = true.shape, np.sqrt(len(frames))
+                example = self.kicks.std() / few * rng.normal(size=shape)
+                velocity = true + self.kicks[frames].mean(axis=0)
+                return replace(exact(shape[:2], lambda x, y: (x, y)), velocity=velocity,
+                               noise=example)  # fmt: skip
+
+        numbers = [
+            averaged([speed], Frames(noise), np.arange(64), region) for noise in (0.05, 0.2, 0.3, 9)
+        ]
+        assert numbers[0] == 1 and 1 < numbers[1] < numbers[2] < 16 and numbers[3] == 16
+        assert averaged([speed], Frames(9), np.arange(3), region) == 1
 
     def test_noise_alone_is_said_to_be_noise(self, make_case):
         case = make_case((16, 16), observe=[FRAMES], density=5)
         results = results_of(case, 20, FakeFluid(case))
-        note = picture(case, results, kind="vorticity").texts[0].get_text()
-        note += picture(case, results, kind="vorticity").texts[1].get_text()
+        texts = picture(case, results, kind="vorticity").texts
+        note = " ".join(text.get_text() for text in texts)
         assert "noise" in note and "longer" in note
 
     def test_halves_of_the_frames_know_the_noise(self, make_case):

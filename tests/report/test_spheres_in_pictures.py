@@ -16,7 +16,7 @@ import mesokit
 from mesokit import Box, Case, CaseError, HardSpheres, Plates, Run, RunError, Simulation, Trajectory
 from mesokit.cli import main
 from mesokit.report.flow import KINDS, animate, disks, picture
-from mesokit.report.flow.colouring import COLOURS, MOST
+from mesokit.report.flow.colouring import COLOURS, MOST, in_film
 from mesokit.report.flow.moving_plates import plates_at
 from mesokit.report.flow.shaded import PALE, SHADE, Balls, shaded
 from mesokit.report.flow.solids import Section
@@ -235,15 +235,19 @@ class TestColours:
         assert dots.get_xydata().tolist() == [[1, 2]]
         assert crosses.get_xydata().tolist() == [[3, 2]]
 
-    def test_speeds_of_a_gas_that_cools_are_relative(self, case_of):
-        """Else all but the first frame would have one colour."""
+    def test_a_film_of_a_gas_that_cools_has_a_logarithmic_scale(self, case_of):
+        """Else all but the first frame would have one colour, or each frame a scale of its own."""
         places, hot = np.array([[[1, 2], [3, 2]]] * 2, float), np.array([[3, 0], [4, 0]], float)
-        for factor, label in ((0.25, "speed over"), (0.5, "speed  [")):
+        for factor, colour in ((0.25, "log-speed"), (0.5, None)):
             frames = frames_of(places, velocity=np.array([hot, factor * hot]))
-            figure = picture(case_of((9, 5), number=2), {}, frames)
-            assert figure.axes[1].get_ylabel().startswith(label)
-            words = " ".join(text.get_text() for text in figure.texts)
-            assert ("root mean square speed $0.88$" in words) == (label == "speed over")
+            assert in_film(frames, None) == colour and in_film(frames, "spin") == "spin"
+        figure = picture(case_of((9, 5), number=2), {}, frames, colour="log-speed")
+        assert figure.axes[1].get_ylabel().startswith("speed  [")
+        assert figure.axes[1].get_yscale() == "log"
+        low, high = self.numbers(case_of((9, 5), number=2), frames, "log-speed")[2]
+        assert high / low == pytest.approx(1000)
+        figure = picture(case_of((9, 5), number=2), {}, frames, colour="relative-speed")
+        assert "rms speed $1.8$" in " ".join(text.get_text() for text in figure.texts)
         _, fills, (low, high) = self.numbers(case_of((9, 5), number=2), frames, "relative-speed")
         usual = np.sqrt(12.5)
         np.testing.assert_allclose(

@@ -80,7 +80,7 @@ def test_the_format_of_all_results(files):
         (["--output", "x.pdf"], "there are many pictures; add --result NAME"),
         (["--result", "velocity-profil"], "did you mean 'velocity-profile'?"),
         (["--result", "conservation", "--kind", "speed"], "not with --kind"),
-        (["--at", "3"], "--at: only for a picture of the flow"),
+        (["--result", "conservation", "--at", "3"], "--at: only for a picture of the flow"),
     ],
 )
 def test_options_without_a_meaning_together(files, words, said, capsys):

@@ -103,14 +103,14 @@ def rows_of(chain: Chain, beads: Beads, frequencies: tuple[float, ...]) -> list[
         (f"chains of {chain.length}", f"K = {K:.4g} kT/a^2", SAME),
         ("mean square bond", number(square, "a^2"), "Boltzmann"),
         ("end to end, squared", number((chain.length - 1) * square, "a^2"), "ideal chain"),
-        ("slowest mode time", number(float(times.mode[0]), "time"), ROUSE),
-        ("slowest stress time", number(float(times.stress[0]), "time"), "half of it"),
+        ("slowest mode time", number(float(times.mode[0]), "tau"), ROUSE),
+        ("slowest stress time", number(float(times.stress[0]), "tau"), "half of it"),
         *_hydrodynamic(chain, beads, math.sqrt(square)),
         ("modulus", number(modulus, force), "kT for each molecule in a volume"),
-        ("viscosity of bonds", number(bonds / beads.mass_density, "a^2/time"), "slow flow"),
+        ("viscosity of bonds", number(bonds / beads.mass_density, "a^2/tau"), "slow flow"),
         (
             "kinematic viscosity",
-            number((beads.eta + bonds) / beads.mass_density, "a^2/time"),
+            number((beads.eta + bonds) / beads.mass_density, "a^2/tau"),
             "with the bonds",
         ),
     ]
@@ -132,4 +132,4 @@ def _hydrodynamic(chain: Chain, beads: Beads, bond: float) -> list[Row]:
     except ValueError:  # bonds shorter than beads are large
         return []
     note = "approximate: Zimm, one chain in a simple fluid"
-    return [("with hydrodynamics", number(float(zimm.mode[0]), "time"), note)]
+    return [("with hydrodynamics", number(float(zimm.mode[0]), "tau"), note)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -21,6 +21,9 @@ from mesokit.cli.commands import (
 from mesokit.cli.completion import colours, kinds
 from mesokit.cli.words import say
 from mesokit.errors import CaseError
+
+if TYPE_CHECKING:
+    from mesokit.io.open import RunFiles
 
 KIND = "quiver, streamlines, particles, density, speed, vorticity, four, disks or flock"
 FILE = click.Path(dir_okay=False, path_type=Path)
@@ -78,7 +81,7 @@ CHOICES: Sequence[Callable[[Any], Any]] = (
         "--colour",
         shell_complete=colours,
         metavar="NAME",
-        help="Of spheres: speed, relative-speed, spin, neighbours, psi6 or kind.  [speed]",
+        help="Of spheres: speed, log-speed, relative-speed, spin, neighbours, psi6, kind.  [speed]",
     ),
 )
 
@@ -101,17 +104,16 @@ def _choices(command: Any) -> Any:
 def plot(run: Path, output: Path | None, width: float | None, **given: Any) -> None:
     """Draw the results of RUN again, one of them, or with --kind a picture of the flow.
 
-    Of spheres a --region or a --colour is enough to ask for one.
+    Options of a picture without --kind draw the usual kind for which the run has kept all.
     """
     import mesokit
-    from mesokit.method.protocol import method_of
 
     kind, name = given.pop("kind"), given.pop("result")
     ending = f".{given.pop('kind_of_file') or 'png'}"
     require_run(run)
     files = mesokit.open(run)
     if kind is None and name is None and any(value is not None for value in given.values()):
-        kind = method_of(files.case).picture or None
+        kind = _usual(files, "four", given, given["window"] is not None)
     _require_one(kind, name, output, given)
     if not files.ended and files.results:
         say(f"{run}: the run {files.state}; what is drawn is so far")
@@ -146,29 +148,51 @@ def _require_one(kind: str | None, name: str | None, output: Path | None, given:
         )
 
 
+def _usual(files: RunFiles, first: str, choices: Any, in_time: bool) -> str:
+    """The kind of picture that a run has kept enough for."""
+    from mesokit.report.flow import usual
+    from mesokit.report.flow.source import sources
+    from mesokit.report.flow.view import View
+
+    found = sources(files.case, files.results, files.trajectory, View(**choices))
+    return usual(files.case, found, first, in_time)
+
+
 @cli.command()
 @click.argument("run", type=RUN)
 @click.option(
     "--kind",
     shell_complete=kinds,
-    help=f"What is drawn: {KIND}.  [that of the method, else speed]",
+    help=f"What is drawn: {KIND}.  [what the run has kept]",
 )
 @_choices
 @click.option("--fps", type=Finite(), default=15.0, help="Frames shown per second.  [15]")
+@click.option(
+    "--average",
+    type=click.IntRange(1),
+    metavar="N",
+    help="Frames that each picture is the mean of.  [as few as lift the flow above its noise]",
+)
 @click.option("--output", type=FILE, help="MP4 or GIF (RUN/flow-KIND.mp4 unless said).")
 @click.option("--quiet", is_flag=True, help="No progress; errors only.")
 def animate(
-    run: Path, kind: str | None, fps: float, output: Path | None, quiet: bool, **choices: Any
+    run: Path,
+    kind: str | None,
+    fps: float,
+    average: int | None,
+    output: Path | None,
+    quiet: bool,
+    **choices: Any,
 ) -> None:
     """Make a film of the flow in RUN, from its flow-frames or its trajectory."""
     import mesokit
-    from mesokit.method.protocol import method_of
     from mesokit.report.progress import FilmReporter
 
     require_run(run)
     files = mesokit.open(run)
-    kind = kind or method_of(files.case).picture or "speed"
+    kind = kind or _usual(files, "speed", choices, in_time=True)
     output = output or files.directory.flow_file(kind, ".mp4")
-    film = files.animate(output, kind, fps=fps, progress=FilmReporter(quiet), **choices)
+    shown = {"fps": fps, "average": average, "progress": FilmReporter(quiet)}
+    film = files.animate(output, kind, **shown, **choices)
     if not quiet:
         click.echo(film.path)

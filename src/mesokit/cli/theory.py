@@ -119,15 +119,15 @@ def _show_theory(given: dict[str, Any], figure: dict[str, Any]) -> None:
     known = origins(given["rule"], given["dimension"], distribution, given["thermostat"])
     for name, field, unit in (
         ("mean free path", "mean_free_path", "a"),
-        ("kinematic viscosity", "viscosity", "a^2/time"),
-        ("  kinetic", "viscosity_kinetic", "a^2/time"),
-        ("  collisional", "viscosity_collisional", "a^2/time"),
+        ("kinematic viscosity", "viscosity", "a^2/tau"),
+        ("  kinetic", "viscosity_kinetic", "a^2/tau"),
+        ("  collisional", "viscosity_collisional", "a^2/tau"),
         ("dynamic viscosity", "dynamic_viscosity", "m/(a^(d-2) time)"),
-        ("self-diffusion", "diffusion", "a^2/time"),
+        ("self-diffusion", "diffusion", "a^2/tau"),
         ("Schmidt number", "schmidt", ""),
-        ("thermal diffusivity", "thermal_diffusivity", "a^2/time"),
-        ("speed of sound", "sound_speed", "a/time"),
-        ("sound attenuation", "sound_attenuation", "a^2/time"),
+        ("thermal diffusivity", "thermal_diffusivity", "a^2/tau"),
+        ("speed of sound", "sound_speed", "a/tau"),
+        ("sound attenuation", "sound_attenuation", "a^2/tau"),
     ):
         rows.append((name, number(getattr(found, field), unit), known[field].source))
         rows.append(("", "", f"holds: {known[field].holds}"))
@@ -135,9 +135,9 @@ def _show_theory(given: dict[str, Any], figure: dict[str, Any]) -> None:
     if any(springs) or (lengths and figure["draw"] != "springs"):
         chains = chains_of(beads, lengths, *springs)
     if given["dimension"] == 3 and found.mean_free_path < 1:
-        stirred = number(beads.stirring, "a^2/time")
+        stirred = number(beads.stirring, "a^2/tau")
         after = next(i for i, row in enumerate(rows) if row[0] == "Schmidt number")
-        word = "with the flow that a particle stirs up, in a large box"
+        word = "with hydrodynamic backflow, in a large box"
         rows.insert(after, ("  in a fluid", stirred, word))
     for chain in chains:
         rows += rows_of(chain, beads, frequencies)

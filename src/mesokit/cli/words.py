@@ -11,11 +11,11 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 SILENT = 2.0  # seconds
-READING = "reading the case (what looks at solids is compiled the first time)"
+READING = "reading the case"
 
 
 def say(text: str) -> None:
-    """Write a line on standard error; if it is full or gone, nobody can be told."""
+    """Write a line on standard error, if it is open and has room."""
     import click
 
     with contextlib.suppress(OSError):

@@ -33,7 +33,7 @@ class FlowRate(Observable):
 
     The superficial velocity U is the momentum of the fluid over its density and the volume of the
     box; the flow rate is U times the cross-section of the box. Where a uniform force drives the
-    fluid along that axis, the permeability is nu U/g with the viscosity of theory.
+    fluid along that axis, the permeability is nu U/g with the theoretical viscosity.
     """
 
     quantity: Literal["flow-rate"] = tag("flow-rate")
@@ -181,7 +181,7 @@ class FlowRateAccumulator:
                     abs(scale) * error,
                     scale * known,
                     "a^2",
-                    "; ".join(filter(None, [name, "viscosity of theory", short])),
+                    "; ".join(filter(None, [name, "theoretical viscosity", short])),
                 )
             )
         return found

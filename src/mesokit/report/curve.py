@@ -46,7 +46,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         if result.expected is not None and np.isfinite(result.expected[at]).any():
             of = ", ".join(str(result.x[name][k]) for name, k in zip(others, chosen, strict=True))
             theory = mathematics(", ".join(filter(None, [f"theory: {result.theory}", of])))
-            look = {"color": COLOURS[i] if of else "black", "ls": LINES[i]}
+            look = {"color": "black", "ls": LINES[i]}
             if x.dtype.kind in "US":  # no line joins names
                 dash = {"ls": "none", "marker": "_", "ms": 24, "mew": 1.2, "color": look["color"]}
                 ax.plot(places, result.expected[at], label=theory, zorder=1, **dash)
@@ -57,6 +57,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     if x.dtype.kind in "US":
         ax.set_xticks(places, [str(name) for name in x])
         ax.set_xlim(-0.5, len(x) - 0.5)  # so that names stay within
-    ax.set_xlabel(labelled(axis, result.units.get(axis, "")))
+    else:  # names say themselves what they are
+        ax.set_xlabel(labelled(axis, result.units.get(axis, "")))
     ax.set_ylabel(labelled(result.label, result.units.get("value", "")))
     legend_above(ax)

@@ -14,6 +14,7 @@ from mesokit.report.flow import density, quiver, speed
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.field_source import FieldSource
 from mesokit.report.flow.kinds import Panel
+from mesokit.report.flow.quiet import note, smooth, smoothing
 from mesokit.report.flow.region import region_of
 from mesokit.report.flow.setting import Setting
 from mesokit.report.flow.solids import Section
@@ -39,11 +40,13 @@ def draw(result: Result, ax: Any, case: Case | None) -> Any:
     panels: tuple[Panel, ...] = (speed, quiver)
     if flow.density is not None:
         panels, flow = (density,), _ranged(flow, setting)
+    width, clear = smoothing(panels, [flow], region)
+    flow = smooth(flow, width)
     reaches = [panel.reach(flow, region) for panel in panels]
     if ax is None:
         from mesokit.report.flow.canvas import Canvas
 
-        notes = [section.note(), _note(result, flow)]
+        notes = [section.note(), _note(result, flow), note(panels, flow, clear)]
         drawn = Canvas(panels, [flow] * len(panels), reaches, region, section, notes=notes)
         drawn.show([flow] * len(panels))
         figure, ax = drawn.figure, drawn.axes[0]

@@ -73,6 +73,8 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
     "clusters": flocks.draw_clusters,
 }
 MAPS = ("map", "frames")
+FEW, FLAT = 4, ("tensor", "moduli")  # places of a curve that fill no page; what has few numbers
+LOW = 0.6  # of the usual height, of a figure of few numbers
 LEAST_HEIGHT, LEAST_FONT = 0.7, 0.75  # of the usual, however narrow a figure is
 
 
@@ -105,11 +107,18 @@ def plot(
         if result.drawing in MAPS:
             return field.draw(result, None, case)
         text = compared(result.comparisons, wide)
-        height = HEIGHT * max(wide / WIDTH, LEAST_HEIGHT) + LINE * len(text.splitlines())
+        height = HEIGHT * max(wide / WIDTH, LEAST_HEIGHT) * (LOW if _few(result) else 1.0)
+        height += LINE * len(text.splitlines())
         figure = ShownFigure(figsize=(wide, height), layout="constrained")
         DRAW[result.drawing](result, figure, None)
         below(figure, text)
         return figure
+
+
+def _few(result: Result) -> bool:
+    """Whether a figure has too few numbers to fill a page."""
+    places = next(iter(result.x.values()), ())
+    return result.drawing in FLAT or (result.drawing == "curve" and len(places) <= FEW)
 
 
 def fonts(width: float) -> dict[str, float]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.observe.shared.result import Result
-from mesokit.report.style import COLOURS, LINES, MARKERS, labelled, legend_above
+from mesokit.report.style import COLOURS, LINES, MARKERS, labelled, lettered
 
 SHOWN = 12  # bodies in one figure
 MORE = 1.7  # inches for each further row
@@ -55,6 +55,8 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     if timed:
         panels.append(parts[-1].subplots())
         _in_time(panels[-1], result, forces, int(solids[0]))
+    if len(panels) > 1:
+        lettered(panels)
     handles: dict[str, Any] = {}
     for panel in panels[: len(panels) - timed]:
         found, labels = panel.get_legend_handles_labels()
@@ -138,7 +140,7 @@ def _in_time(ax: Any, result: Result, columns: list[int], body: int) -> None:
         ax.plot(time, series[:, k], lw=1, label=_symbol(name), **style)
     ax.set_xlabel(labelled("time $t$", "tau"))
     ax.set_ylabel(labelled(f"force on {result.x['body'][body]}", result.units["fx"]))
-    legend_above(ax)
+    ax.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=len(columns), borderaxespad=0.2)
     if count > 1:
         ax.set_xlim(time[0], time[-1])
     scale = result.extra.get("coefficient", np.nan)

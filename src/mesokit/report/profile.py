@@ -54,8 +54,8 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     raised = result.extra.get("raised")
     if raised is not None:
         percent = float(result.extra["raised_by"])
-        label = f"2D fluctuations: viscosity +{percent:.1f} %"
-        ax.plot(x, raised, ":", color=COLOURS[2], lw=2, label=label, zorder=3)
+        label = f"2D fluctuations: viscosity up to +{percent:.1f} %"
+        ax.fill_between(x, raised, result.expected, color=COLOURS[2], alpha=0.3, lw=0, label=label)
     if result.fit is not None:
         ax.plot(x, result.fit, "--", color=COLOURS[1], lw=1.3, label="fit", zorder=4)
     ax.set_ylabel(labelled(result.label, result.units["value"]))
@@ -70,8 +70,8 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         residuals.plot(x, deviation, "o", mfc="white", color=COLOURS[0], ms=2 if many else 3)
         if raised is not None and result.expected is not None:
             with np.errstate(divide="ignore", invalid="ignore"):
-                beside = (raised - result.expected) / result.error
-            residuals.plot(x, beside, ":", color=COLOURS[2], lw=2)
+                lower = (raised - result.expected) / result.error
+            residuals.fill_between(x, lower, 0 * x, color=COLOURS[2], alpha=0.3, lw=0)
         residuals.set_ylabel("deviation\n[std. errors]")
         finite = abs(deviation[np.isfinite(deviation)]) if deviation is not None else np.zeros(0)
         reach = max(3.5, 1.15 * finite.max()) if len(finite) else 3.5
@@ -93,6 +93,6 @@ def _frame(ax: Any, result: Result) -> None:
     if np.isfinite(error).any():
         bar = 2 * float(np.nanmedian(error))
     away = abs(result.value[np.isfinite(result.value)] - level)
-    half = max(1.1 * (float(away.max(initial=0.0)) + bar), 0.015 * abs(level))
+    half = max(1.5 * (float(away.max(initial=0.0)) + bar), 1e-3 * abs(level))
     if half > 0:
         ax.set_ylim(level - half, level + half)

@@ -1,4 +1,4 @@
-"""Time series of what should be conserved: what changed since the first sample."""
+"""Time series of what should be conserved."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ ROW = 1.25  # inches of a panel
 
 
 def draw(result: Result, figure: Any, ax: Any) -> None:
-    """Number, momentum, energy and temperature in time; in given axes the temperature alone.
+    """Momentum, energy and temperature in time; in given axes the temperature alone.
 
-    Where momentum is conserved its change since the first sample is drawn, which is round-off.
-    With a potential energy that and the kinetic one share a panel, and their sum has its own.
+    A number of particles that stays is a line above the panels. Where momentum is conserved its
+    change since the first sample is drawn, which is round-off. With a potential energy that and the
+    kinetic one share a panel, and their sum has its own.
     """
     time, names = result.x["time"], [str(name) for name in result.x["component"]]
     if ax is not None:
@@ -27,18 +28,23 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         ax.set_xlabel(labelled("time $t$", result.units["time"]))
         return
     bound = "potential_energy" in names
-    rows = 6 if bound else 5
+    number = result.value[:, names.index("number")]
+    counted = int((number != number[:1]).any())
+    rows = 3 + bound + counted
     figure.set_figheight(figure.get_figheight() + ROW * rows - HEIGHT)
     panels = figure.subplots(rows, 1, sharex=True)
-    panels[0].plot(time, result.value[:, names.index("number")], color=COLOURS[0], lw=1)
-    panels[0].set_ylabel("particles\n$N$")
-    panels[0].ticklabel_format(axis="y", useOffset=False)
+    if counted:
+        panels[0].plot(time, number, color=COLOURS[0], lw=1)
+        panels[0].set_ylabel("particles\n$N$")
+        panels[0].ticklabel_format(axis="y", useOffset=False)
+    elif len(number):
+        panels[0].set_title(f"$N = {number[0]:.0f}$ particles at all times", loc="left", fontsize=9)
     momenta = [i for i, name in enumerate(names) if name.startswith("momentum")]
-    _momentum(result, panels[1], panels[2], momenta)
+    _momentum(result, panels[counted], momenta)
     kinds = ("kinetic", "potential") if bound else ("kinetic",)
     energies = [result.value[:, names.index(f"{kind}_energy")] for kind in kinds]
     if bound:
-        _energies(result, panels[3], energies)
+        _energies(result, panels[counted + 1], energies)
     total = np.sum(energies, axis=0)
     first = total[0] if len(total) and total[0] else 1.0
     words = f"{'total' if bound else 'kinetic'} energy\nrel. change"
@@ -67,8 +73,8 @@ def _energies(result: Result, ax: Any, energies: list[Any]) -> None:
     _beside(ax)
 
 
-def _momentum(result: Result, above: Any, below: Any, columns: list[int]) -> None:
-    """Its components above, how far all of it has moved from the first sample below."""
+def _momentum(result: Result, ax: Any, columns: list[int]) -> None:
+    """Its components, or how far they have moved from the first sample where they should not."""
     time, names = result.x["time"], [str(name) for name in result.x["component"]]
     expected, unit = result.expected, result.units[names[columns[0]]]
     value = result.value[:, columns]
@@ -86,10 +92,8 @@ def _momentum(result: Result, above: Any, below: Any, columns: list[int]) -> Non
     if flows and expected is not None:
         known = [i for i in columns if np.isfinite(expected[:, i]).any()]
         curves += [(time, expected[:, i], theory) for i in known]
-    _scaled(above, "momentum" if flows else "momentum\nchange", curves, unit)
-    size = np.linalg.norm(change, axis=1)
-    _scaled(below, "momentum\n|change|", [(time, size, {})], unit)
-    _beside(above)
+    _scaled(ax, "momentum" if flows else "momentum\nchange", curves, unit)
+    _beside(ax)
 
 
 def _constant(expected: Any, columns: list[int]) -> bool:
@@ -159,7 +163,7 @@ def _temperature(result: Result, ax: Any, index: int) -> None:
         level = float(np.nanmean(expected[:, index]))
         reach = 1.6 * max(float(np.nanmax(abs(value - level))), 1e-3 * abs(level))
         ax.set_ylim(level - reach, level + reach)
-    words = "$k_BT$, flow\ncounted" if result.extra.get("driven") else "temperature\n$k_BT$"
+    words = "$k_BT$ with\nthe flow" if result.extra.get("driven") else "temperature\n$k_BT$"
     ax.set_ylabel(labelled(words, result.units[str(result.x["component"][index])]))
     ax.ticklabel_format(axis="y", useOffset=False)
     _beside(ax)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from mesokit.report.caption import mathematics, symbols
@@ -12,8 +12,9 @@ WIDTH, HEIGHT = 6.4, 4.8  # inches
 WIDER = 1.1  # than axes are before margins are taken away, what a legend above may be
 MARKERS = "osD^v<>pP*X"
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)))
+LETTERS = "abcdefghijkl"  # of panels
 # dark enough for white paper, and each of its own grey
-COLOURS = ("#1b4f8a", "#c1491d", "#2a7f4f", "#7a3b8f", "#8a6d1b", "#444444")
+COLOURS = ("#1b4f8a", "#d4552a", "#1f7346", "#57206b", "#bd8f1c", "#222222")
 STYLE: Any = {
     "text.usetex": False,  # users' settings apply but for this: TeX may not be there
     "font.size": 10,
@@ -45,6 +46,15 @@ def looks() -> Iterator[tuple[Any, str]]:
 def labelled(label: str, unit: str) -> str:
     """An axis label with its unit."""
     return f"{mathematics(label)}  [{symbols(unit)}]" if unit else mathematics(label)
+
+
+def lettered(panels: Sequence[Any]) -> None:
+    """Letters (a), (b), ... before the titles of several panels, or in their place."""
+    for letter, ax in zip(LETTERS, panels, strict=False):
+        if len(panels) > 1:
+            title = next(filter(None, map(ax.get_title, ("left", "center"))), "")
+            ax.set_title("")
+            ax.set_title(f"({letter}) {title}".rstrip(), loc="left", fontsize=10)
 
 
 def legend_above(ax: Any, columns: int = 3) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mesokit.observe.shared.result import Result
-from mesokit.report.style import COLOURS, MARKERS, labelled
+from mesokit.report.style import COLOURS, MARKERS, labelled, lettered
 
 SYMBOLS = {
     "stress": r"$\sigma_{\alpha\beta}$",
@@ -41,6 +41,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
     drawn = figure.subplots(1, len(panels), squeeze=False)[0]
     for axes, (chosen, title) in zip(drawn, panels, strict=True):
         _panel(axes, result, chosen, title)
+    lettered(list(drawn))
     _legend(figure, drawn)
 
 

@@ -50,7 +50,7 @@ class Displacement:
 
     def coefficient(self) -> tuple[float, str]:
         """D of Enskog, which is not exact."""
-        return self.diffusion, "approximate: Enskog, without what neighbours remember"
+        return self.diffusion, "approximate: Enskog: neglects velocity correlations"
 
     def diffusive_from(self) -> float:
         """When the velocity is forgotten."""

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from mesokit.engine import Array, Integers
 
 COARSE = 0.5  # memories between two samples, beyond which the sum over them is no integral
-NOTE = "approximate: Enskog, without what neighbours remember"
+NOTE = "approximate: Enskog: neglects velocity correlations"
 
 
 class EnskogMemory(VelocityMemory):

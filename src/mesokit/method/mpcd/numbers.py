@@ -19,6 +19,8 @@ Row = tuple[str, str, str]  # what, its value, and a word on it
 class Derived(Shown):
     """What follows from a case. Lengths in cells; None where there is no formula.
 
+    `transport` holds the coefficients of the whole fluid, `solvent` those of a fluid without the
+    solutes that are in it.
     `flow_speed` is the largest velocity that theory expects of the steady flow, `flow_bound` that
     of the empty channel where obstacles stand in the flow and nobody knows its speed beforehand,
     `flow_size` the size across it, `reynolds` both over the viscosity (in a round pipe the mean
@@ -33,7 +35,9 @@ class Derived(Shown):
 
     particles: int
     particle_steps: int
+    mean_free_path: float
     transport: theory.Transport | None
+    solvent: theory.Transport | None
     flow: str
     flow_speed: float | None
     flow_bound: float | None
@@ -52,19 +56,23 @@ class Derived(Shown):
     warnings: tuple[str, ...]
 
     def fluid_rows(self) -> list[Row]:
-        """Transport coefficients in words, none without a theory."""
-        known = self.transport
+        """Transport coefficients in words; the mean free path alone without a theory."""
+        known, of = self.transport or self.solvent, ""
+        path = ("mean free path", number(self.mean_free_path, "a"), "")
         if known is None:
-            return []
+            return [path]
         parts = (
             f"kinetic {known.viscosity_kinetic:.4g}, collisional {known.viscosity_collisional:.4g}"
         )
+        if self.transport is None:
+            of = "without the solutes"
+            parts = f"{of}; {parts}"
         return [
-            ("mean free path", number(known.mean_free_path, "a"), ""),
-            ("kinematic viscosity", number(known.viscosity, "a^2/time"), parts),
-            ("self-diffusion", number(known.diffusion, "a^2/time"), ""),
-            ("Schmidt number", number(known.schmidt), ""),
-            ("speed of sound", number(known.sound_speed, "a/time"), ""),
+            path,
+            ("kinematic viscosity", number(known.viscosity, "a^2/tau"), parts),
+            ("self-diffusion", number(known.diffusion, "a^2/tau"), of),
+            ("Schmidt number", number(known.schmidt), of),
+            ("speed of sound", number(known.sound_speed, "a/tau"), of),
         ]
 
     def flow_rows(self, timestep: float | None = None) -> list[Row]:
@@ -76,11 +84,11 @@ class Derived(Shown):
                 most = number(self.flow_bound * self.flow_size / self.transport.viscosity)
                 rows.append(("Reynolds number", "not known", f"{most} without obstacles"))
         elif self.flow_speed:
-            rows = [
-                ("flow speed", number(self.flow_speed, "a/time"), self.flow),
-                ("Reynolds number", number(self.reynolds), self._reynolds_of()),
-                ("Mach number", number(self.mach), ""),
-            ]
+            rows = [("flow speed", number(self.flow_speed, "a/tau"), self.flow)]
+            if self.reynolds is not None:
+                rows.append(("Reynolds number", number(self.reynolds), self._reynolds_of()))
+            if self.mach is not None:
+                rows.append(("Mach number", number(self.mach), ""))
         else:
             return []
         if self.steady_time is not None:

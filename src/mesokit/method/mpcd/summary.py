@@ -46,7 +46,7 @@ def _particle_rows(case: Case, numbers: Derived) -> list[Row]:
         rows.append(("molecules", number_of, f"{molecule.topology}s of {molecule.length}"))
     if numbers.relaxation_time is not None:
         steps = f"slowest mode, Rouse; {round(numbers.relaxation_time / case.fluid.timestep)} steps"
-        rows.append(("relaxation time", number(numbers.relaxation_time, "time"), steps))
+        rows.append(("relaxation time", number(numbers.relaxation_time, "tau"), steps))
     if numbers.substeps is not None:
         how = molecule.propagation if molecule is not None else "verlet"
         rows.append(("sub-steps", str(numbers.substeps), how))

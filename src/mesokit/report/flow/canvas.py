@@ -156,6 +156,8 @@ def _ticks(bar: Any, scale: Scale, most: int) -> None:
         bar.set_ticks(range(len(scale.names)), labels=scale.names)
         bar.ax.minorticks_off()
         return
+    if scale.logarithmic:
+        return
     bar.ax.locator_params(nbins=most)
     if bar.orientation == "horizontal":  # a power beside the bar would stand over its numbers
         bar.ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))

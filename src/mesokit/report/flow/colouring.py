@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 REACH = 1.2  # times the sum of their radii: how far neighbours are apart at most
 MUCH = 3.0  # times, by which speeds change
+DECADES = 3  # that a logarithmic scale of speeds shows
 MOST = 12  # neighbours with a colour of their own
 
 
@@ -58,7 +59,7 @@ def speed(now: Frame) -> Array:
 
 
 def relative(now: Frame) -> Array:
-    """Over the root mean square of all."""
+    """Over the root mean square of the frame."""
     found, usual = speed(now), _usual(now)
     return found / usual if usual > 0 else found
 
@@ -69,7 +70,7 @@ def _usual(now: Frame) -> float:
 
 def _told(now: Frame) -> str:
     """The speed that relative ones are of."""
-    return f"root mean square speed ${rounded(_usual(now), 2)}$ {symbols('a/tau')}"
+    return f"rms speed ${rounded(_usual(now), 2)}$ {symbols('a/tau')}"
 
 
 def spin(now: Frame) -> Array:
@@ -113,8 +114,13 @@ def _speeds(case: Case, reach: float) -> Scale:
     return Scale(0.0, reach, "viridis", labelled("speed", "a/tau"))
 
 
+def _decades(case: Case, reach: float) -> Scale:
+    label = labelled("speed", "a/tau")
+    return Scale(10.0**-DECADES * reach, reach, "viridis", label, logarithmic=True)
+
+
 def _relative(case: Case, reach: float) -> Scale:
-    return Scale(0.0, reach, "viridis", "speed over the root mean square of all")
+    return Scale(0.0, reach, "viridis", "speed / rms speed of the frame")
 
 
 def _spins(case: Case, reach: float) -> Scale:
@@ -160,6 +166,7 @@ def _steps(colours: Any, names: list[str], label: str) -> Scale:
 
 COLOURS: dict[str, Colouring] = {
     "speed": Colouring(speed, _speeds, ("velocity",)),
+    "log-speed": Colouring(speed, _decades, ("velocity",)),
     "relative-speed": Colouring(relative, _relative, ("velocity",), tells=_told),
     "spin": Colouring(spin, _spins, ("spin",)),
     "neighbours": Colouring(neighbours, _counts, all=True, counted=True),
@@ -168,16 +175,19 @@ COLOURS: dict[str, Colouring] = {
 }
 
 
-def _changes(reader: TrajectoryReader | State) -> bool:
-    """Whether speeds change by more than MUCH from the first frame to the last."""
+def in_film(reader: TrajectoryReader | None, colour: str | None) -> str | None:
+    """The colour of a film, whose scale is the same in all frames: unless said logarithmic where
+    speeds change by more than MUCH from the first frame to the last."""
+    if colour or reader is None or reader.diameter is None or "velocity" not in reader.fields:
+        return colour
     ends = [np.asarray(reader[k]["velocity"], float) for k in (0, len(reader) - 1)]
     first, last = (float((v**2).sum(axis=1).mean()) for v in ends)
-    return not MUCH**-2 < last / first < MUCH**2 if first > 0 else last > 0
+    changes = not MUCH**-2 < last / first < MUCH**2 if first > 0 else last > 0
+    return "log-speed" if changes else None
 
 
 def chosen(case: Case, reader: TrajectoryReader | State, colour: str | None) -> Colouring | None:
-    """The colouring of that name; unless said speeds, else kinds, else none. Where spheres cool
-    down or heat up by much, no scale is for all frames: speeds are then relative.
+    """The colouring of that name; unless said speeds, else kinds, else none.
 
     Raises CaseError for an unknown one, RunError where the trajectory lacks what it needs.
     """
@@ -185,7 +195,7 @@ def chosen(case: Case, reader: TrajectoryReader | State, colour: str | None) -> 
         several = len(np.unique(reader.species)) > 1
         colour = "kind" if several else None
         if "velocity" in reader.fields:
-            colour = "relative-speed" if _changes(reader) else "speed"
+            colour = "speed"
         return None if colour is None else COLOURS[colour]
     if colour not in COLOURS:
         known = list(COLOURS)

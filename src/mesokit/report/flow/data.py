@@ -64,7 +64,7 @@ class Flow:
     noise: as the velocity, but without the flow: an example of its noise, or None.
     sure: bins (nx, ny) that are mostly fluid, which the colours are chosen from, None for all.
     lowest: density at which its colours start.
-    smoothing: width over which the velocity is smoothed before its slope is taken, in bins.
+    smoothing: width over which the velocity has been smoothed, in bins.
     beads: of solutes, drawn over all, or None.
     bonds: ends (m, 2, 2) of those between the `particles`, or None.
     spheres: at the end of the time, or None.

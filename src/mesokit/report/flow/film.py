@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import numbers
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,14 +16,15 @@ from numpy.typing import NDArray
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.io.atomic import replacing
-from mesokit.method.protocol import method_of
 from mesokit.report.caption import rounded, symbols
 from mesokit.report.finish.origin import origin_of
 from mesokit.report.finish.saving import foot_strip
 from mesokit.report.flow.beads import BeadFrames, frames_of
+from mesokit.report.flow.colouring import in_film
 from mesokit.report.flow.encode import ENCODERS, Pixels
-from mesokit.report.flow.kinds import panels_of, quieted
-from mesokit.report.flow.region import frames_in, region_of
+from mesokit.report.flow.kinds import Panel, legend_of, panels_of, usual
+from mesokit.report.flow.quiet import averaged, note, smooth, smoothing
+from mesokit.report.flow.region import Region, frames_in, region_of
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import AT_ONCE, Source, choose_one, sources
 from mesokit.report.flow.view import View
@@ -66,6 +67,7 @@ def animate(
     path: str | Path,
     kind: str | None = None,
     fps: float = 15.0,
+    average: int | None = None,
     progress: Reporter | None = None,
     run: str = "",
     **choices: Any,
@@ -76,8 +78,11 @@ def animate(
     ----------
     case, results, trajectory: of the run.
     path: the file, which ends in .mp4 or .gif.
-    kind: as for `picture`; unless said that of the method, such as "disks", else "speed".
+    kind: as for `picture`; unless said the first of these for which the run has kept frames: that
+        of the method, such as "disks", "speed", "density", "particles".
     fps: frames shown per second.
+    average: how many frames, one after another, each picture of a flow is the mean of. Unless said
+        as few as lift the flow above its noise, at most a quarter of them.
     progress: what tells how it goes (nothing does unless said).
     run: its name, for the line below the film and the metadata of the file.
     choices: `region`, `window`, `axes`, `at` and `colour`, as for `picture`.
@@ -98,9 +103,10 @@ def animate(
         raise CaseError(f"output = {show(str(path))}: expected a name that ends in .mp4 or .gif")
     if not isinstance(fps, numbers.Real) or not SLOWEST <= fps <= FASTEST:
         raise CaseError(f"fps = {show(fps)}: expected a number from {SLOWEST:g} to {FASTEST:g}")
-    kind = kind or method_of(case).picture or "speed"
+    seen = view._replace(colour=in_film(trajectory, view.colour))
+    found = sources(case, results, trajectory, seen)
+    kind = kind or usual(case, found, "speed", in_time=True)
     panels = panels_of(kind, case, view.colour)
-    found = sources(case, results, trajectory, view)
     source = choose_one(found, {panel.NEEDS for panel in panels}, kind)
     frames = frames_in(source.time, view.window)
     whole = np.intersect1d(frames, source.whole)
@@ -110,23 +116,27 @@ def animate(
     shown = region_of(view.region, first.axes, first.size)
     from mesokit.report.flow.canvas import Canvas
 
-    some = frames[np.unique(np.linspace(0, len(frames) - 1, SCALED).astype(int))]
-    flows = [source.flow(np.array([frame])) for frame in some]
-    width, note = quieted(panels, flows, shown)
-    flows = [replace(flow, smoothing=width) for flow in flows]
+    number = _averaged(average, panels, source, frames, shown)
+    means = np.lib.stride_tricks.sliding_window_view(frames, number)
+    some = np.unique(np.linspace(0, len(means) - 1, SCALED).astype(int))
+    flows = [source.flow(mean) for mean in means[some]]
+    width, clear = smoothing(panels, flows, shown)
+    flows = [smooth(flow, width) for flow in flows]
     reaches = [max(panel.reach(flow, shown) for flow in flows) for panel in panels]
     how = "projection" if all(panel.NEEDS in AT_ONCE for panel in panels) else "mean"
-    notes = [section.note(how), note(flows[0]), *(f.spheres.note for f in [first] if f.spheres)]
+    notes = [section.note(how), note(panels, flows[0], clear), legend_of(panels)]
+    notes += [f"flow: mean of {number} frames"] if number > 1 else []
+    notes += [first.spheres.note] if first.spheres else []
     solutes = frames_of(case, trajectory, source.axes)
     if solutes:
-        first = replace(first, beads=solutes.at(source.time[frames[0]]))
+        first = replace(first, beads=solutes.at(source.time[means[0][-1]]))
     drawn = Canvas(panels, [first] * len(panels), reaches, shown, section, True, notes)
     drawn.figure.set_dpi(DPI[ending])
     progress = progress or FilmReporter(quiet=True)
-    progress.start(len(frames), case.particles, "drawing")
+    progress.start(len(means), case.particles, "drawing")
     origin = origin_of(case, run)
     foot = foot_strip(origin, drawn.figure.get_size_inches()[0], DPI[ending])
-    pictures = _pictures(drawn, source, frames, progress, width, solutes)
+    pictures = _pictures(drawn, source, means, progress, width, solutes)
     whole_pictures = (np.concatenate([picture, foot]) for picture in pictures)
     try:
         with replacing(path) as temporary:
@@ -134,23 +144,45 @@ def animate(
             ENCODERS[ending](temporary, whole_pictures, float(fps), origin.metadata(ending[1:]))
     finally:
         progress.finish()
-    return Film(path, len(frames), float(fps))
+    return Film(path, len(means), float(fps))
+
+
+def _averaged(
+    given: int | None,
+    panels: Sequence[Panel],
+    source: Source,
+    frames: NDArray[np.int64],
+    region: Region,
+) -> int:
+    """How many frames each picture is the mean of. Raises CaseError for a number that cannot be."""
+    if all(panel.NEEDS in AT_ONCE for panel in panels):
+        if given not in (None, 1):
+            raise CaseError(f"average = {show(given)}: particles are shown as they are at one time")
+        return 1
+    if given is None:
+        return averaged(panels, source, frames, region)
+    if not isinstance(given, int) or not 0 < given <= len(frames):
+        raise CaseError(
+            f"average = {show(given)}: expected a whole number of frames from 1 to {len(frames)}"
+        )
+    return given
 
 
 def _pictures(
     drawn: Canvas,
     source: Source,
-    frames: NDArray[np.int64],
+    means: NDArray[np.int64],
     progress: Reporter,
     width: float,
     solutes: BeadFrames | None,
 ) -> Iterator[Pixels]:
-    """The pictures of a film, one by one."""
+    """The pictures of a film, one by one: each the mean of a row of frames, at its end."""
     canvas: Any = drawn.figure.canvas
-    for done, frame in enumerate(frames, start=1):
-        beads = solutes.at(source.time[frame]) if solutes else None
-        flow = replace(source.flow(np.array([frame])), smoothing=width, beads=beads)
-        stamp = f"$t = {rounded(source.time[frame])}$ {symbols('tau')}"
+    for done, mean in enumerate(means, start=1):
+        now = source.time[mean[-1]]
+        beads = solutes.at(now) if solutes else None
+        flow = replace(smooth(source.flow(mean), width), beads=beads)
+        stamp = f"$t = {rounded(now)}$ {symbols('tau')}"
         if flow.spheres is not None and flow.spheres.tells:
             stamp += f", {flow.spheres.tells}"
         drawn.show([flow] * len(drawn.panels), stamp)

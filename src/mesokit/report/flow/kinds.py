@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
 from mesokit.case.component import nearest, one_of, show
@@ -24,6 +24,7 @@ from mesokit.report.flow.scale import Scale
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
+    from mesokit.report.flow.source import Found
 
 
 class Panel(Protocol):
@@ -59,14 +60,25 @@ KINDS: dict[str, tuple[Panel, ...]] = {
 }
 
 
-def quieted(
-    panels: Sequence[Panel], flows: Sequence[Flow], region: Region
-) -> tuple[float, Callable[[Flow], str]]:
-    """How wide velocities are smoothed for slopes of these panels, and what to say of it."""
-    if vorticity not in panels:
-        return 0.0, lambda flow: ""
-    width, clear = vorticity.smoothing(flows, region)
-    return width, lambda flow: vorticity.note(flow, clear)
+def legend_of(panels: Sequence[Panel]) -> str:
+    """What lines in the panels mean that no bar of colours tells."""
+    return vorticity.SAID if vorticity in panels else ""
+
+
+def usual(case: Case, found: Found, first: str, in_time: bool) -> str:
+    """The kind of picture unless another is chosen: the first for which a run has kept all.
+
+    That of the method, then `first`, then what needs less. Where nothing is enough it is the first
+    of these, whose refusal says what to add to the case.
+    """
+    wanted = [method_of(case).picture or first, first, "speed", "density", "particles"]
+    for kind in wanted:
+        needs = {panel.NEEDS for panel in KINDS[kind]}
+        drawn = [source for source in found if len(source.time) or not in_time]
+        alone = any(needs <= source.gives for source in drawn)
+        if alone or (not in_time and all(any(n in s.gives for s in drawn) for n in needs)):
+            return kind
+    return wanted[0]
 
 
 def panels_of(kind: str, case: Case, colour: str | None = None) -> tuple[Panel, ...]:

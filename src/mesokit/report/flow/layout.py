@@ -12,6 +12,7 @@ PAGE, TALLEST = 6.4, 5.2  # widest figure with one panel in a row; height of all
 WIDE_PAGE = 8.2  # widest figure with several
 LOWEST = 0.35  # panel with room for its label
 LEFT, BOTTOM, TOP = 0.72, 0.56, 0.34
+BARE = 0.12  # above a panel without title and key
 GAP = 0.3  # on the right of a panel without a colour bar
 BAR, BAR_ROOM = 0.14, 0.98  # colour bar on the right, with its numbers and label
 APART = 0.2  # more of it where another panel follows, whose ticks would stand at the label
@@ -87,6 +88,8 @@ def layout(
     scale = min(room / columns / extent[0], TALLEST / min(rows, 2) / extent[1])
     width, height = scale * extent[0], max(LOWEST, scale * extent[1])
     top = FLAT_ROOM if flat and (any(bars) or count > 1) else TOP
+    if count == 1 and all(bars) and not flat:
+        top = BARE
     if count > 1 and width < KEY_BESIDE:
         top += KEY_ROOM
     panels = [

@@ -16,7 +16,8 @@ ENOUGH = 99.5  # percent of the bins that the colours span; the few beyond are n
 class Scale:
     """Colours (a name or a map of Matplotlib) from `low` to `high`, and what they show.
 
-    `names`: of whole numbers from 0, each of which has a colour of its own.
+    `names`: of whole numbers from 0, each of which has a colour of its own. `logarithmic`: numbers
+    below `low` have the colour of `low`.
     """
 
     low: float
@@ -24,12 +25,15 @@ class Scale:
     colours: Any
     label: str
     names: tuple[str, ...] = ()
+    logarithmic: bool = False
 
     def mappable(self) -> Any:
         """What Matplotlib draws a colour bar of."""
         from matplotlib.cm import ScalarMappable
-        from matplotlib.colors import Normalize
+        from matplotlib.colors import LogNorm, Normalize
 
+        if self.logarithmic:
+            return ScalarMappable(LogNorm(self.low, self.high, clip=True), self.colours)
         return ScalarMappable(Normalize(self.low, self.high), self.colours)
 
 

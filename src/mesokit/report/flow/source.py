@@ -151,7 +151,7 @@ def choose(found: Found, needs: str, kind: str, in_time: bool) -> Source:
         return fitting[0]
     kept = "only their mean over the whole run" if fitting else "none of them"
     raise RunError(
-        f"kind = {show(kind)}: it needs {WORDS[needs]}{' in time' * in_time}, and the run kept "
+        f"{kind}: this picture needs {WORDS[needs]}{' in time' * in_time}, and the run kept "
         f"{found.lack(needs, kept)}"
     )
 
@@ -167,6 +167,6 @@ def choose_one(found: Found, needs: set[str], kind: str) -> Source:
     for need in sorted(needs):
         choose(found, need, kind, in_time=True)
     raise RunError(
-        f"kind = {show(kind)}: its panels need frames at the same times; "
+        f"{kind}: the panels of this film need frames at the same times; "
         f"add to the case and run it again: {FRAMES} with particles > 0"
     )

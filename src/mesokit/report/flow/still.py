@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesokit.method.protocol import method_of
 from mesokit.report.caption import rounded
 from mesokit.report.flow.beads import frames_of
 from mesokit.report.flow.data import Flow
-from mesokit.report.flow.kinds import Panel, panels_of, quieted
+from mesokit.report.flow.kinds import Panel, legend_of, panels_of, usual
+from mesokit.report.flow.quiet import note, smooth, smoothing
 from mesokit.report.flow.region import frames_in, region_of
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import AT_ONCE, choose, sources
@@ -38,7 +38,8 @@ def picture(
     ----------
     case, results, trajectory: of the run; a `State` of its engine is a trajectory of one frame.
     kind: "quiver", "streamlines", "particles", "density", "speed", "vorticity", "four", of
-        spheres "disks", of birds "flock"; unless said that of the method, else "four".
+        spheres "disks", of birds "flock"; unless said that of the method, else "four", or what the
+        run has kept enough for.
     choices: the rest.
     region: ((x0, x1), (y0, y1)) in cells, the whole box unless said.
     window: (t0, t1), the times averaged over, all unless said.
@@ -58,25 +59,26 @@ def picture(
     2
     """
     view = View(**choices)
-    window, kind = view.window, kind or method_of(case).picture or "four"
+    window, found = view.window, sources(case, results, trajectory, view)
+    kind = kind or usual(case, found, "four", in_time=window is not None)
     panels = panels_of(kind, case, view.colour)
-    found = sources(case, results, trajectory, view)
     chosen = [choose(found, panel.NEEDS, kind, window is not None) for panel in panels]
     section = Section(case, chosen[0].axes, view.at)
     flows = [source.flow(frames_in(source.time, window)) for source in chosen]
     shown = region_of(view.region, flows[0].axes, flows[0].size)
     from mesokit.report.flow.canvas import Canvas
 
-    width, note = quieted(panels, flows, shown)
+    width, clear = smoothing(panels, flows, shown)
     solutes = frames_of(case, trajectory, chosen[0].axes)
     beads = solutes.at(window and window[1]) if solutes else None
-    flows = [replace(flow, smoothing=width, beads=beads) for flow in flows]
+    flows = [replace(smooth(flow, width), beads=beads) for flow in flows]
     reaches = [panel.reach(flow, shown) for panel, flow in zip(panels, flows, strict=True)]
     averaged = [f for f, panel in zip(flows, panels, strict=True) if panel.NEEDS not in AT_ONCE]
     mean = _mean(averaged[0], window) if averaged else ""
     when = rf"solutes at $t = {rounded(beads.time)}\,\tau$" if beads else ""
     how = "projection" if all(panel.NEEDS in AT_ONCE for panel in panels) else "mean"
-    notes = [section.note(how), mean, note(flows[0]), _few(case, panels, flows), when]
+    notes = [section.note(how), mean, note(panels, flows[0], clear), legend_of(panels)]
+    notes += [_few(case, panels, flows), when]
     notes += [text for flow in flows for text in _spheres(flow)]
     if any(panel.NEEDS == "headings" for panel in panels):
         notes.append(rf"at $t = {rounded(flows[0].time, 6)}\,\tau$")

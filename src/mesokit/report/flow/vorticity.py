@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,8 +17,7 @@ NEEDS = "velocity"
 TITLE = "vorticity"
 LEVEL = 0.4  # of the largest: where the lines run
 SMOOTH = 1.5  # bins
-WIDTHS = (0.0, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0)  # of smoothing against noise, in bins
-CLEAR = 2.5  # times the noise: what a picture should show
+SAID = f"lines at {LEVEL:g} of the largest, dashed where it is negative"
 
 
 def vorticity(flow: Flow) -> Array:
@@ -31,9 +28,6 @@ def vorticity(flow: Flow) -> Array:
     """
     velocity = flow.velocity
     assert velocity is not None
-    if flow.smoothing:
-        parts = (smoothed(velocity[..., k], flow.periodic, flow.smoothing) for k in range(2))
-        velocity = np.stack(list(parts), axis=-1)
     h = spacing(flow, velocity)
     turning = _slope(velocity[..., 1], 0, h[0], flow.periodic[0])
     turning -= _slope(velocity[..., 0], 1, h[1], flow.periodic[1])
@@ -52,42 +46,6 @@ def reach(flow: Flow, region: Region) -> float:
     """The largest vorticity of either sign in the region."""
     values = flow.surely(vorticity(flow))
     return reach_of(values[region.bins(flow.size, values.shape)])
-
-
-def smoothing(flows: Sequence[Flow], region: Region) -> tuple[float, bool]:
-    """Least width of smoothing, in bins, that lifts the vorticity above its noise.
-
-    And whether even the widest did: one eighth of the shorter side of the map, at most WIDTHS[-1].
-    """
-    known = [flow for flow in flows if flow.noise is not None]
-    if not known:
-        return 0.0, True
-    assert known[0].velocity is not None
-    widest, width = max(1.0, min(known[0].velocity.shape[:2]) / 8), 0.0
-    for width in (w for w in WIDTHS if w <= widest):
-        wide = [replace(flow, smoothing=width) for flow in known]
-        signal = np.median([reach(flow, region) for flow in wide])
-        noise = np.median([reach(replace(flow, velocity=flow.noise), region) for flow in wide])
-        if signal >= CLEAR * noise:
-            return width, True
-    return width, False
-
-
-def note(flow: Flow, clear: bool) -> str:
-    """What was done about the noise, and what is left to the user."""
-    assert flow.velocity is not None
-    said = []
-    if flow.smoothing:
-        width = flow.smoothing * max(spacing(flow, flow.velocity))
-        said.append(f"velocity smoothed over {width:.3g} a before its slopes are taken")
-    said.append(f"lines at {LEVEL:g} of the largest, dashed where it is negative")
-    if not clear:
-        fine = " and bins_per_cell = 1" * (min(spacing(flow, flow.velocity)) < 1)
-        said.append(
-            f"hardly above the noise: a longer run, or flow-frames with a longer window{fine}, "
-            "would show more"
-        )
-    return "; ".join(said)
 
 
 def scale(flow: Flow, reach: float) -> Scale:

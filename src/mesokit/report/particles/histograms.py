@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mesokit.observe.shared.result import Result
-from mesokit.report.style import COLOURS
+from mesokit.report.style import COLOURS, lettered
 
 NOISY = 0.3  # relative error above which a ratio says nothing
 LABELS = {"speed": r"|\mathbf{v}|", "number": "particles in a cell"}
@@ -28,6 +28,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         panels[1, k].set_xlabel(_label(result, k))
         panels[0, k].set_ylabel(result.label if k == 0 else "")
     panels[1, 0].set_ylabel("measured\n/ theory")
+    lettered(list(panels[0]))
     handles, labels = panels[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=len(handles))
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from mesokit.observe.shared.result import Result
 from mesokit.report.caption import mathematics
-from mesokit.report.style import COLOURS, MARKERS, labelled, legend_above
+from mesokit.report.style import COLOURS, LINES, MARKERS, labelled, legend_above
 
 SYMBOLS = {
     "shear stress": r"$\sigma_{xy}$",
@@ -28,7 +28,8 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         return
     figure.set_figheight(figure.get_figheight() + MORE)
     rate, shear, normal = figure.subplots(3, 1, sharex=True, height_ratios=[1, 3, 2])
-    rate.plot(result.x["time"], result.extra["rate"], color=COLOURS[5], lw=1.2)
+    step = {"drawstyle": "steps-mid", "color": COLOURS[5], "lw": 1.2}
+    rate.plot(result.x["time"], result.extra["rate"], **step)
     rate.set_ylabel(labelled(r"$\dot\gamma$", "1/tau"))
     _curves(result, shear, names[:-1])
     _curves(result, normal, names[-1:], first=len(names) - 1)
@@ -57,7 +58,9 @@ def _curves(result: Result, ax: Any, names: list[str], first: int = 0) -> None:
             zorder=2,
         )
         if result.expected is not None:
-            label = mathematics(f"theory: {result.theory}") if k == 0 else None
-            ax.plot(time, result.expected[:, k], color="black", lw=1.2, label=label, zorder=3)
+            of = f" of {SYMBOLS[name]}" if len(names) > 1 else ""
+            label = mathematics(f"theory: {result.theory}{of}") if first == 0 else None
+            look: Any = {"color": "black", "lw": 1.2, "ls": LINES[k - first], "zorder": 3}
+            ax.plot(time, result.expected[:, k], label=label, **look)
     ax.axhline(0, color="0.7", lw=0.7, zorder=1)
     ax.set_ylabel(labelled(SYMBOLS[names[0]], result.units["value"]))

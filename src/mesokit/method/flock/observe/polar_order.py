@@ -151,7 +151,7 @@ class PolarOrderAccumulator:
             return Known(order, square, cumulant, why)
         crowd = noise.crowd(d, number) if all_see_all(case) else None
         if crowd is None:
-            return Known(why="no theory but simulation")
+            return Known(why="no analytical theory")
         if math.isnan(crowd.many):
             return Known(why="all see all: order and disorder are both stable")
         if math.isnan(crowd.mean_square):

@@ -34,6 +34,17 @@ def transport(case: Case) -> theory.Transport | None:
         return None
 
 
+def solvent(case: Case) -> theory.Transport | None:
+    """Transport coefficients of a fluid of single particles without the solutes that are in it."""
+    fluid = case.fluid
+    if case.solutes is None or fluid.mixed or fluid.molecule is not None or fluid.grid_shift < 1:
+        return None
+    try:
+        return fluid.collision.transport(gas(case)) if fluid.collision.acts else None
+    except ValueError:
+        return None
+
+
 def gas(case: Case) -> Gas:
     """What the theory of a fluid is a function of."""
     fluid = case.fluid
@@ -66,8 +77,8 @@ def mean_free_path(case: Case) -> float:
     return float(case.fluid.timestep * (case.fluid.kT / case.fluid.mass) ** 0.5)
 
 
-STIRRED = "the flow that a particle stirs up adds 10 to 30 %, in 2D more"
-STIRRING = "molecular chaos and the flow that a particle stirs up, in this box"
+STIRRED = "hydrodynamic backflow adds 10 to 30 %, in 2D more"
+STIRRING = "molecular chaos and hydrodynamic backflow, in this box"
 
 
 def chaos(case: Case, off: str) -> str:
