@@ -28,7 +28,7 @@ def warn_outside(
     size = np.array(box.size, float)
     beyond = (positions < -ROUNDING * size) | (positions > (1 + ROUNDING) * size)
     beyond[:, [axis in without for axis in box.axes]] = False
-    outside = beyond.any(axis=1)
+    outside = np.asarray(beyond.any(axis=1))
     if outside.any():
         row = int(np.argmax(outside))
         warnings.warn(

@@ -32,7 +32,7 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
     """All frames, with box, masses, kinds, molecules, bonds and what is known of them."""
     from mesokit import __version__
 
-    with made(path) as file:
+    with made(path) as (file, check):
         head = file.create_group("h5md")
         head.attrs["version"] = np.array([1, 1], np.int32)
         head.create_group("author").attrs["name"] = "unknown"
@@ -52,6 +52,7 @@ def write(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:
         bonds = file.create_dataset("connectivity/bonds", data=particles.bonds)
         bonds.attrs["particles_group"] = group.ref
         for now in moments:
+            check()
             edges = np.diag(particles.size)
             edges[1, 0] = now.tilt
             _append(box, "edges", edges, now)

@@ -258,19 +258,17 @@ class MoleculeHistogramAccumulator:
         bond = free_bond(case, kind)
         if bond is None or self.mean is None:
             return None
-        ends = ends_at_rest(case, kind)
         if self.component:
             from scipy.special import ndtr
 
-            assert ends is not None
+            ends = ends_at_rest(case, kind, bond)
             middle = (self.mean[-1] - self.mean[0])[self.axis]
             return np.asarray(ndtr((edges - middle) / (ends / d) ** 0.5))
         if not self.as_at_rest():
             return None
         if of == "gyration":
             return theory.gyration_cdf(edges, modes_at_rest(case, kind), bond, d)
-        assert ends is not None
-        return theory.end_to_end_cdf(edges, ends, d)
+        return theory.end_to_end_cdf(edges, ends_at_rest(case, kind, bond), d)
 
     def as_at_rest(self) -> bool:
         """Whether ideal molecules have the shape that they have at rest."""

@@ -91,7 +91,7 @@ class MoleculeSizeAccumulator(MoleculeTensorAccumulator):
         squares = [theory.mean_square_gyration(modes_at_rest(self.case, self.kind), bond)]
         added = [gyration(mean[None])[0]]
         if len(self.parts) > 1:
-            squares.append(ends_at_rest(self.case, self.kind))
+            squares.append(ends_at_rest(self.case, self.kind, bond))
             added.append(np.outer(mean[-1] - mean[0], mean[-1] - mean[0]))
         return np.array(squares)[:, None, None] / d * np.eye(d) + np.array(added)
 

@@ -43,7 +43,7 @@ def theory_between(
         for k, (low, high) in enumerate(itertools.pairwise(rows)):
             for point in _points(low.point, high.point, keys, log):
                 found = [_expected(base, point, low, memory) for memory in memories[k : k + 2]]
-                alike = np.isclose(*found, rtol=ALIKE, atol=0)
+                alike = np.isclose(found[0], found[1], rtol=ALIKE, atol=0)
                 x.append(float(point[key]))
                 expected.append(found[0] if alike else np.nan)
             x.append(float(high.point[key]))

@@ -77,10 +77,10 @@ class Mesh(FromFile):
         contents = self.contents
         try:
             mesh = trimesh.load(io.BytesIO(contents), file_type=kind, force="mesh")
-            faces = len(mesh.faces)
+            number = len(mesh.faces)
         except Exception:  # each format has its own words for a damaged file
-            faces = 0
-        if faces == 0:
+            number = 0
+        if number == 0:
             raise self.wrong(f"expected a triangle mesh in {kind.upper()} format")
         if not mesh.is_watertight:
             raise self.wrong(

@@ -122,7 +122,7 @@ def _places(case: Case, key: str, given: Any) -> Array:
     far = (np.abs(places / np.array(case.box.size)) >= MOST_BOXES).any(axis=1)
     _refuse(key, places, far, "is 2^30 boxes away or more")
     if not case.flock.start.run:  # where birds have flown out of the box
-        warn_outside(key, places, case.box, closed_axes(case.walls))
+        warn_outside(key, np.asarray(places, float), case.box, closed_axes(case.walls))
     return places
 
 

@@ -70,9 +70,9 @@ def ideal_sizes(case: Case, kind: int | str, group: Group) -> tuple[float, float
         return math.nan, math.nan
     square = theory.mean_square_gyration(modes_at_rest(case, kind), bond)
     square += float((mean**2).sum()) / len(mean)
-    ends = ends_at_rest(case, kind) if molecule.topology == "chain" else None
-    if ends is None:
+    if molecule.topology != "chain":
         return square, math.nan
+    ends = ends_at_rest(case, kind, bond)
     return square, ends + float(((mean[-1] - mean[0]) ** 2).sum())
 
 

@@ -187,11 +187,9 @@ def bond_at_rest(case: Case, kind: int | str = 1) -> float:
     return float(np.mean(modes.eigenvalues[1:] / slow.eigenvalues[1:]))
 
 
-def ends_at_rest(case: Case, kind: int | str = 1) -> float | None:
-    """Mean square end-to-end distance of chains at rest; None without a theory."""
-    bond, modes = free_bond(case, kind), modes_at_rest(case, kind)
-    if bond is None:
-        return None
+def ends_at_rest(case: Case, kind: int | str, bond: float) -> float:
+    """Mean square end-to-end distance of chains at rest, by that of a free bond."""
+    modes = modes_at_rest(case, kind)
     across = modes.vectors[-1, 1:] - modes.vectors[0, 1:]
     return bond * float((across**2 / modes.eigenvalues[1:]).sum())
 
