@@ -216,7 +216,7 @@ class TestHowSolutesDiffuse:
 def test_rouse_is_approximate_where_beads_drag_one_another_along():
     molecule = Molecule(length=2, bond=Harmonic(K=1 / 20))
     for timestep, word in (
-        (0.1, "approximate: Rouse; beads drag"),
+        (0.1, "approximate: Rouse neglects hydrodynamic interactions"),
         (1.0, "Rouse"),
         (1.2, "approximate: Rouse; bonds turn by 0.54 rad"),
     ):
