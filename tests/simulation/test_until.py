@@ -43,11 +43,14 @@ def test_goal_that_is_met(short):
     assert simulation.case.run.steps == 60
 
 
-def test_limit(short):
-    """What cannot be reached in time is said."""
+@pytest.mark.parametrize(
+    ("number", "words"), [("slip", "known to"), ("viscosity", "is undetermined")]
+)
+def test_limit(short, number, words):
+    """What cannot be reached in time is said, also of a number that the run does not determine."""
     simulation = Simulation(short, threads=1)
-    with pytest.warns(UserWarning, match="known to .* after 90 steps: more is needed"):
-        simulation.run(37 + 90, until="velocity-profile.viscosity=0.001%")
+    with pytest.warns(UserWarning, match=f"{words} .* after 90 steps: more is needed"):
+        simulation.run(37 + 90, until=f"velocity-profile.{number}=0.001%")
     assert simulation.case.run.steps == 90 and simulation.step == 127
 
 

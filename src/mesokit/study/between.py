@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -43,7 +44,7 @@ def theory_between(
         for k, (low, high) in enumerate(itertools.pairwise(rows)):
             for point in _points(low.point, high.point, keys, log):
                 found = [_expected(base, point, low, memory) for memory in memories[k : k + 2]]
-                alike = np.isclose(found[0], found[1], rtol=ALIKE, atol=0)
+                alike = math.isclose(found[0], found[1], rel_tol=ALIKE)
                 x.append(float(point[key]))
                 expected.append(found[0] if alike else np.nan)
             x.append(float(high.point[key]))

@@ -55,11 +55,11 @@ def with_symbol(what: str) -> str:
     """The name of a measured number, and its symbol where it has one.
 
     >>> with_symbol("viscosity from curvature"), with_symbol("viscosity over theory")
-    ('viscosity from curvature $\\\\nu$', 'viscosity over theory')
+    ('viscosity $\\\\nu$ from curvature', 'viscosity over theory')
     """
     for name, symbol in SYMBOLS.items():
         if re.fullmatch(rf"{re.escape(name)}( ({CONDITIONS})\b.*)?", what):
-            return f"{what} ${symbol}$"
+            return f"{name} ${symbol}${what[len(name) :]}"
     return what
 
 
