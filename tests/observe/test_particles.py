@@ -29,24 +29,26 @@ def kept_by(case):
     )
 
 
-@pytest.mark.parametrize("size", [(12, 12), (6, 6, 6)])
-def test_displacement_and_diffusion(make_case, size):
+# in 2D the flow that a particle stirs up makes D grow with the lag: the error bar holds a decade
+@pytest.mark.parametrize(("size", "most"), [((12, 12), 0.2), ((6, 6, 6), 0.05)])
+def test_displacement_and_diffusion(make_case, size, most):
     case = make_case(size, timestep=1.0)
     result = watched(case, MeanSquareDisplacement(every=2, max_lag=100), kept_by(case), 150)
     assert list(result.x["time"][:3]) == [0, 2, 4]
     assert np.nanmax(np.abs(result.deviation)) < 4.5
     found = result.comparisons[0]
-    assert abs(found.deviation) < 4 and found.error < 0.05 * found.expected
+    assert found.error < most * found.expected
+    assert abs(found.measured - found.expected) < 4 * found.error
 
 
 def test_wrong_diffusion_is_seen(make_case):
-    case = make_case((12, 12), timestep=1.0)
+    case = make_case((6, 6, 6), timestep=1.0)
     result = watched(case, MeanSquareDisplacement(every=2, max_lag=100), kept_by(case) + 0.2, 150)
     assert result.comparisons[0].deviation > 5
 
 
 def test_error_is_that_of_repeated_runs(make_case):
-    case = make_case((6, 6), timestep=1.0)
+    case = make_case((4, 3, 3), timestep=1.0)
     runs = [
         watched(case, MeanSquareDisplacement(every=2, max_lag=40), 0.2, 40, seed)
         for seed in range(20)

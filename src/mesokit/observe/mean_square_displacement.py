@@ -204,7 +204,7 @@ class MeanSquareDisplacementAccumulator:
         expected, note = self.theory.coefficient()
         what = "diffusion coefficient"
         if self.theory.grows() or not slope.straight:
-            way = "grows" if slope.growth > 0 else "falls"
+            way = "grows" if self.theory.grows() or slope.growth > 0 else "falls"
             why = "" if self.theory.grows() else ": no straight line yet, a larger max_lag"
             decade = "error bar with its change in a decade of lags"
             rest = note.removeprefix("approximate: ")
