@@ -152,6 +152,20 @@ def test_bad_case_is_refused(
 
 
 @pytest.mark.parametrize(
+    ("method", "section"),
+    [("event-driven", "spheres"), ("soft-spheres", "spheres"), ("flock", "flock")],
+)
+def test_check_tells_how_much_memory_is_missing(method, section, tmp_path, capsys):
+    file = tmp_path / "large.toml"
+    run = f'[run]\nsteps = 1\nmethod = "{method}"\n'
+    file.write_text(f"{run}[box]\nsize = [60000, 60000]\n[{section}]\nnumber = 2100000000\n")
+    with pytest.raises(SystemExit) as end:
+        main(["check", str(file)])
+    assert not end.value.code
+    assert "B of memory, this machine has" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
     ("method", "section"), [("event-driven", HardSpheres), ("soft-spheres", SoftSpheres)]
 )
 def test_more_than_the_memory_is_refused_where_a_run_begins(method, section):

@@ -48,11 +48,17 @@ def run_warnings(case: Case, memory: int, trajectory: int) -> Iterator[str]:
                 f"({size_text(free)} are free here); raise trajectory.every or set "
                 "trajectory.subset"
             )
-    available = _machine_memory()
-    if available and memory > 0.9 * available:
+    if not has_memory(memory):
         yield (
-            f"the run needs {size_text(memory)} of memory, this machine has {size_text(available)}"
+            f"the run needs {size_text(memory)} of memory, this machine has "
+            f"{size_text(_machine_memory() or 0)}"
         )
+
+
+def has_memory(needed: float) -> bool:
+    """Whether this machine, and what the system grants this process, has so many bytes."""
+    available = _machine_memory()
+    return not available or needed <= 0.9 * available
 
 
 def require_memory(key: str, given: Any, needed: float) -> None:
@@ -73,6 +79,10 @@ def _usual(part: Any, name: str) -> Any:
 
 def _machine_memory() -> int | None:
     try:
-        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    except (AttributeError, ValueError, OSError):
+        import resource  # where there is none, nothing of the following is
+
+        there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+        granted, _ = resource.getrlimit(resource.RLIMIT_AS)
+    except (ImportError, AttributeError, ValueError, OSError):
         return None
+    return there if granted == resource.RLIM_INFINITY else min(there, granted)

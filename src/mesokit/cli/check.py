@@ -38,15 +38,18 @@ def check(
 ) -> None:
     """Check CASE, show it with all defaults, what follows from it, and what to mind."""
     from mesokit.case.kind import has_run
+    from mesokit.case.warnings import has_memory
     from mesokit.method.protocol import method_of, summary_of
 
     with patience(READING):
         full = read(case, settings)
         method = method_of(full)
-        with naming(case):
-            full = method.prepared(full, {})
-            method.first_state(full, {})
         summary = summary_of(full, threads)
+        if has_memory(summary.memory):  # else it warns of that
+            with naming(case):
+                full = method.prepared(full, {})
+                method.first_state(full, {})
+            summary = summary_of(full, threads)
     if axes is not None and picture is None:
         raise CaseError("--axes: only for a picture; add --picture")
     drawn = None if picture is None else _draw(full, case, picture, axes)

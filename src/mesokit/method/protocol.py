@@ -26,12 +26,14 @@ Row = tuple[str, str, str]  # what, its value, and a word on it
 
 class Summary(NamedTuple):
     """What follows from a case before it runs: a table for `mesokit check`, warnings, about how
-    many seconds the run takes, and the same as plain numbers by name, for scripts."""
+    many seconds the run takes, the same as plain numbers by name, for scripts, and about how many
+    bytes of memory it takes."""
 
     rows: tuple[Row, ...]
     warnings: tuple[str, ...]
     seconds: float
     numbers: Mapping[str, Any] = MappingProxyType({})
+    memory: float = 0.0
 
     def record(self) -> dict[str, Any]:
         """What `mesokit check --json` prints of it."""
@@ -209,4 +211,5 @@ def summary_of(case: Case, threads: int | None = None) -> Summary:
             rows.append((name, duration_text(seconds), f"estimate: of all, {cores} threads"))
         else:
             rows.append((name, value, "estimate: of each" if name == "memory" else note))
-    return Summary(tuple(rows), one.warnings, seconds, {**one.numbers, "replicas": number})
+    numbers = {**one.numbers, "replicas": number}
+    return Summary(tuple(rows), one.warnings, seconds, numbers, one.memory * number)

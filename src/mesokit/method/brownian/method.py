@@ -110,7 +110,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     warnings = [*run_warnings(case, memory, stored)]
     if step > 0.5 * min(case.box.size):
         warnings.append(f"brownian.timestep: a step is {step:.3g} long, more than half of the box")
-    return Summary(tuple(rows), tuple(warnings), seconds)
+    return Summary(tuple(rows), tuple(warnings), seconds, memory=memory)
 
 
 def first_state(case: Case, arrays: Mapping[str, Any]) -> Array | None:

@@ -62,7 +62,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
         rows.append(("trajectory", size_text(stored), "estimate"))
     warnings = [*run_warnings(case, memory, stored), *_warnings(case, in_reach)]
     numbers = {"birds": case.particles, "density": density, "birds_in_reach": in_reach}
-    return Summary(tuple(rows), tuple(warnings), seconds, numbers)
+    return Summary(tuple(rows), tuple(warnings), seconds, numbers, memory)
 
 
 def ball(dimension: int, radius: float) -> float:

@@ -26,7 +26,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     ]
     if numbers.trajectory:
         rows.append(("trajectory", size_text(numbers.trajectory), "estimate"))
-    return Summary(tuple(rows), numbers.warnings, numbers.seconds, numbers.record())
+    return Summary(tuple(rows), numbers.warnings, numbers.seconds, numbers.record(), numbers.memory)
 
 
 def _memory_word(case: Case, numbers: Derived) -> str:

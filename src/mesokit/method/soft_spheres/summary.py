@@ -66,7 +66,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     if stored:
         rows.append(("trajectory", size_text(stored), "estimate"))
     warnings = (*run_warnings(case, memory, stored), *_warnings(case, numbers))
-    return Summary(tuple(rows), warnings, seconds, numbers)
+    return Summary(tuple(rows), warnings, seconds, numbers, memory)
 
 
 def _contacts(case: Case, numbers: dict[str, Any]) -> Iterator[Row]:
