@@ -115,7 +115,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
     return Derived(**{**vars(numbers), "warnings": tuple(cautions(case, numbers, across))})
 
 
-def _cells_bytes(case: Case, beads: int) -> int:
+def _cells_bytes(case: Case, beads: int) -> float:
     """Memory of the cells for each thread; of a random solvent few are ever touched."""
     cells, each = case.box.volume, BYTES[f"cell {case.box.dimension}D"]
     if case.solutes is None or case.solutes.solvent != "random":

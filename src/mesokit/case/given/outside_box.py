@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Collection
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ ROUNDING = 1e-5  # of the box: files keep places as float32
 
 def warn_outside(
     key: str,
-    positions: NDArray[np.float64],
+    positions: NDArray[Any],
     box: Box,
     without: Collection[str] = (),
     first: int = 0,
@@ -28,7 +29,7 @@ def warn_outside(
     size = np.array(box.size, float)
     beyond = (positions < -ROUNDING * size) | (positions > (1 + ROUNDING) * size)
     beyond[:, [axis in without for axis in box.axes]] = False
-    outside = beyond.any(axis=1)
+    outside = np.asarray(beyond.any(axis=1))
     if outside.any():
         row = int(np.argmax(outside))
         warnings.warn(
