@@ -9,7 +9,7 @@ CHILD = {"signal.SIGALRM", "signal.SIGKILL", "signal.alarm"}  # by which a proce
 # The files that may use some of it: what they use
 HOMES = {
     "running/cores.py": {"os.sched_getaffinity"},
-    "case/warnings.py": {"os.sysconf"},
+    "case/warnings.py": {"os.sysconf", "resource"},
     "kernels/ahead.py": {"os.fork", "os.sched_getaffinity"} | CHILD,
     "kernels/made_of.py": {"ExternalFunction"},
     "kernels/store.py": {"/proc", "os.getuid"},

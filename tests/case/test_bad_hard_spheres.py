@@ -162,7 +162,7 @@ def test_check_tells_how_much_memory_is_missing(method, section, tmp_path, capsy
     with pytest.raises(SystemExit) as end:
         main(["check", str(file)])
     assert not end.value.code
-    assert "GB of memory, this machine has" in capsys.readouterr().out
+    assert "B of memory, this machine has" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -37,7 +37,8 @@ LJ = {RULE: 'rule = "lennard-jones"', "{ contact = { restitution = 0.8 } }": "{}
 # name: (what is replaced by what in the good case, what the message must say)
 BAD: dict[str, tuple[dict[str, str], tuple[str, ...]]] = {
     "misspelt method": ({'"soft-spheres"': '"soft-sphere"'}, ("run.method", "'soft-spheres'")),
-    "section of another method": ({"[spheres]": "[fluid]"}, ("fluid: unknown key",)),
+    "section of another method": ({"[spheres]": "[fluid]"},
+                                  ("fluid: unknown key", "a section of 'mpcd' (run.method)")),
     "misspelt key": ({"number = 30": "nunber = 30"}, ("spheres.nunber", "'number'")),
     "key of event-driven": ({"timestep = 0.0002": 'collision = { rule = "hard" }'},
                             ("spheres.collision: unknown key",)),

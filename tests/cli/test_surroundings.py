@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -84,3 +85,16 @@ def test_names_that_are_not_text(folder: Path) -> None:
     (Path(place) / "case.toml").write_text(SMALL + wall)
     ended = process(Path(place), "mesokit check case.toml")
     assert ended.returncode == 0, ended.stderr.decode()
+
+
+def test_a_folder_whose_name_is_no_text(folder: Path) -> None:
+    """Its figures and its report say so with a question mark."""
+    place = os.fsdecode(os.fsencode(folder) + b"/named\xfe")
+    os.mkdir(place)
+    (Path(place) / "case.toml").write_text(SMALL)
+    for command in ("run case.toml --output .out --quiet", "report .out"):
+        arguments = [word.replace(".out", os.fsdecode(b"out\xff")) for word in command.split()]
+        ended = process(Path(place), "mesokit " + shlex.join(arguments))
+        assert ended.returncode == 0, ended.stderr.decode()
+    page = Path(place, os.fsdecode(b"out\xff"), "report.html").read_text(encoding="utf-8")
+    assert "out?" in page

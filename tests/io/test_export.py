@@ -214,6 +214,28 @@ def test_a_universe_has_all_that_the_run_has(mixed):
     np.testing.assert_allclose(found, mixed.engine.velocities(EVERYONE), atol=1e-5)
 
 
+@pytest.mark.parametrize("warmup, every, steps", [(7, 3, 9), (5, 4, 8), (11, 20, 15)])
+def test_times_of_a_dcd(warmup, every, steps, tmp_path):
+    """Also where frames do not begin at a multiple of the steps between them, and of one alone."""
+    import MDAnalysis
+
+    case = Case(
+        run=Run(steps, warmup=warmup),
+        box=Box([6, 6]),
+        fluid=Fluid(density=2, timestep=0.3),
+        trajectory=Trajectory(every=every),
+    )
+    simulation = Simulation(case, output=tmp_path / "run", threads=1)
+    simulation.run()
+    files = mesokit.open(tmp_path / "run")
+    wanted = [0.3 * step for step in range(warmup, warmup + steps + 1, every)]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        top, path = (str(files.export(tmp_path / f"a.{end}")) for end in ("gsd", "dcd"))
+        times = [float(now.time) for now in MDAnalysis.Universe(top, path).trajectory]
+    assert times == pytest.approx(wanted, rel=1e-5)
+
+
 @pytest.mark.parametrize("ending", ["h5md", "dcd", "xtc", "trr", "data"])
 def test_files_of_mdanalysis(ending, mixed, tmp_path):
     """Read again by themselves, or beside a GSD file that says what the particles are."""

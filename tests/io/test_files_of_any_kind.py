@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mesokit.case.array_file import array_in_file, array_of_contents
+from mesokit.case.given.array_file import array_in_file, array_of_contents
 from mesokit.cli import main
 
 FLUID = "[run]\nsteps = 4\n[box]\nsize = [9, 8]\n"

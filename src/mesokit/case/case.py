@@ -11,7 +11,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from mesokit import method as methods
 from mesokit.case import checks, toml
 from mesokit.case.box import Box
-from mesokit.case.component import build, component, known_keys, nearest, param, show
+from mesokit.case.component import (
+    build,
+    component,
+    known_keys,
+    nearest,
+    one_of,
+    param,
+    show,
+)
 from mesokit.case.describe.shown import Shown
 from mesokit.case.log import Log
 from mesokit.case.registry import FAMILIES
@@ -222,11 +230,22 @@ def _by_field(made: type[Case], data: dict[str, Any]) -> dict[str, Any]:
     return values
 
 
+def _methods_with(key: str) -> list[str]:
+    """The methods of which that is a section, as a file or as Python calls it."""
+    own = {name: case_class(name) for name in methods.METHODS}
+    return [
+        name for name, made in own.items() if key in (*made._fields(), *made._method.keys.values())
+    ]
+
+
 def _require_sections(made: type[Case], given: Mapping[str, Any], where: str = "") -> None:
     """Raise CaseError for what is no section of a case of this method."""
     method, known = made._method, made._fields()
     for key in given:
         if key not in known:
             names = [method.keys.get(name, name) for name in known] if not where else known
-            hint = nearest(key, names) or f"; valid here: {', '.join(names)}"
+            if others := _methods_with(key):
+                hint = f"; a section of {one_of(others)} (run.method)"
+            else:
+                hint = nearest(key, names) or f"; valid here: {', '.join(names)}"
             raise CaseError(f"{where}{key}: unknown key of method {show(method.name)}{hint}")

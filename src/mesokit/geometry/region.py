@@ -43,8 +43,9 @@ class Part(NamedTuple):
 
     def moved(self, by: Vector) -> Part:
         """The same elsewhere."""
-        place = tuple(x + dx for x, dx in zip(self.numbers[:3], _three(by), strict=True))
-        return self._replace(numbers=place + self.numbers[3:])
+        x, y, z, *others = self.numbers
+        dx, dy, dz = _three(by)
+        return Part(self.kind, (x + dx, y + dy, z + dz, *others), self.sign, self.samples)
 
     def repeats(self, axis: int) -> bool:
         """Whether it is its own image beyond the ends of an axis."""

@@ -45,11 +45,11 @@ def write_frames(path: Path, particles: Particles, moments: Iterable[Moment]) ->
     frames = iter(moments)
     first = next(frames)
     second = next(frames, None)
-    interval = second.time - first.time if second else 1.0
+    every, interval = _spacing(first, second)
     known = [first, *([second] if second else [])]
     form = FRAMES["." + path.name.removeprefix(".").removesuffix(".tmp").rpartition(".")[2]]
     made = _empty(particles, velocities=first.velocity is not None)
-    counted = {"dt": interval, "istart": round(first.time / interval)}  # a DCD has no times
+    counted = {"dt": interval, "nsavc": every, "istart": first.step}  # a DCD has no times
     options = counted if form == "DCD" else {}
     with (
         _quiet(),
@@ -60,6 +60,13 @@ def write_frames(path: Path, particles: Particles, moments: Iterable[Moment]) ->
         for now in (*known, *frames):
             _set(made, particles, now)
             writer.write(made.atoms)
+
+
+def _spacing(first: Moment, second: Moment | None) -> tuple[int, float]:
+    """Steps and time from a frame to the next; of one alone, a step and its time."""
+    if second is not None:
+        return second.step - first.step, second.time - first.time
+    return 1, first.time / first.step if first.step else 1.0
 
 
 def write_last(path: Path, particles: Particles, moments: Iterable[Moment]) -> None:

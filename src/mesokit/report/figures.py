@@ -111,6 +111,8 @@ def plot(
         height += LINE * len(text.splitlines())
         figure = ShownFigure(figsize=(wide, height), layout="constrained")
         DRAW[result.drawing](result, figure, None)
+        for one in figure.axes:
+            _around_one_place(one)
         below(figure, text)
         return figure
 
@@ -119,6 +121,15 @@ def _few(result: Result) -> bool:
     """Whether a figure has too few numbers to fill a page."""
     places = next(iter(result.x.values()), ())
     return result.drawing in FLAT or (result.drawing == "curve" and len(places) <= FEW)
+
+
+def _around_one_place(ax: Any) -> None:
+    """Give a logarithmic axis that has data at one place alone limits around it."""
+    for name, ends in (("x", ax.dataLim.intervalx), ("y", ax.dataLim.intervaly)):
+        low, high = (float(end) for end in ends)
+        if getattr(ax, f"get_{name}scale")() == "log" and 0 < low == high:
+            getattr(ax, f"set_autoscale{name}_on")(False)  # which would warn of it
+            getattr(ax, f"set_{name}lim")(low / 2, 2 * high)
 
 
 def fonts(width: float) -> dict[str, float]:

@@ -16,6 +16,7 @@ from mesokit.report.document.links import link_to
 from mesokit.report.document.pictures import Picture, drawn
 from mesokit.report.document.record import citation, install, origin_rows, timing_rows, when
 from mesokit.report.document.template import render
+from mesokit.report.finish.origin import as_text
 from mesokit.report.table import SUSPICIOUS
 from mesokit.study.axes import Axis
 from mesokit.study.dependence import Theory
@@ -73,7 +74,7 @@ class RunRow(NamedTuple):
 def write_report(study: Studied, path: str | Path | None = None) -> Path:
     """Write the report of a study, `report.html` in its folder unless said. Raises RunError."""
     path = Path(path) if path is not None else RunDirectory(study.path).report_file
-    write_text(path, page(study, path))
+    write_text(path, as_text(page(study, path)))
     return path
 
 

@@ -86,8 +86,8 @@ class Mesh(FromFile):
             raise self.wrong(
                 "the mesh is not watertight: it has holes or loose triangles; close it first"
             )
-        faces = _one_way(np.asarray(mesh.faces))
-        return _bodies(self.scale * np.asarray(mesh.vertices, float)[faces], faces)
+        triangles = _one_way(np.asarray(mesh.faces))
+        return _bodies(self.scale * np.asarray(mesh.vertices, float)[triangles], triangles)
 
     def grid(self, room: Room) -> Grid:
         """Its signed distance, positive outside."""

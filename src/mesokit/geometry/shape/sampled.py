@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from mesokit.case.array_file import array_of_contents
 from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Either
+from mesokit.case.given.array_file import array_of_contents
 from mesokit.errors import CaseError
 from mesokit.geometry.samples.distances import Floats, Grid, checked, extent
 from mesokit.geometry.samples.from_file import FromFile

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mesokit.case.amounts import count_text, duration_text, number, size_text
-from mesokit.case.array_file import EXPECTED, array_in_file
 from mesokit.case.component import show
-from mesokit.case.outside_box import warn_outside
+from mesokit.case.given.array_file import EXPECTED, array_in_file
+from mesokit.case.given.outside_box import warn_outside
 from mesokit.case.trajectory import Group, Kind, stored_bytes
 from mesokit.case.warnings import run_warnings
 from mesokit.errors import CaseError

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.array_file import EXPECTED, array_in_file
 from mesokit.case.component import show
-from mesokit.case.outside_box import warn_outside
+from mesokit.case.given.array_file import EXPECTED, array_in_file
+from mesokit.case.given.outside_box import warn_outside
 from mesokit.errors import CaseError, MesokitError
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.contact import MARGIN

@@ -17,6 +17,7 @@ from mesokit.report.document.conservation import changes
 from mesokit.report.document.pictures import figures, films_of, pictures_of_flow
 from mesokit.report.document.record import citation, install, origin_rows, timing_rows, when
 from mesokit.report.document.template import render
+from mesokit.report.finish.origin import as_text
 from mesokit.report.table import SUSPICIOUS
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ def write_report(files: Files, path: str | Path | None = None, films: bool = Fal
     'report.html'
     """
     path = Path(path) if path is not None else RunDirectory(files.path).report_file
-    write_text(path, page(files, path, films))
+    write_text(path, as_text(page(files, path, films)))
     return path
 
 

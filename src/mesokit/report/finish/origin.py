@@ -46,6 +46,15 @@ class Origin(NamedTuple):
         return {key: text for key, text in known.get(kind, {}).items() if text}
 
 
+def as_text(name: str) -> str:
+    """A text that any file can hold: bytes of names of files that are no text are question marks.
+
+    >>> as_text("run" + chr(0xdcff))
+    'run?'
+    """
+    return name.encode("utf-8", "replace").decode("utf-8")
+
+
 def origin_of(case: Case, run: str = "") -> Origin:
     """Where figures of a case come from, and of which run."""
-    return Origin(case.title, run, case.run.seed, digest(case.to_toml()))
+    return Origin(case.title, as_text(run), case.run.seed, digest(case.to_toml()))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.component import show
-from mesokit.case.outside_box import warn_outside
+from mesokit.case.given.outside_box import warn_outside
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.spheres.made import Made

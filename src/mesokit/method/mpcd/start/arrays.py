@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.array_file import EXPECTED, array_in_file, is_plain
-from mesokit.case.outside_box import warn_outside
+from mesokit.case.given.array_file import EXPECTED, array_in_file, is_plain
+from mesokit.case.given.outside_box import warn_outside
 from mesokit.errors import CaseError, MesokitError
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import solids_of

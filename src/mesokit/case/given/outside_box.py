@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Collection
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ ROUNDING = 1e-5  # of the box: files keep places as float32
 
 def warn_outside(
     key: str,
-    positions: NDArray[np.float64],
+    positions: NDArray[Any],
     box: Box,
     without: Collection[str] = (),
     first: int = 0,
