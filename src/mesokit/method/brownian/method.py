@@ -126,7 +126,7 @@ def first_state(case: Case, arrays: Mapping[str, Any]) -> Array | None:
     except (OSError, ValueError, TypeError):
         raise CaseError(f"{key}: expected an array of numbers") from None
     if arrays and file is not None:
-        raise CaseError(f"{key}: not with an array of positions beside")
+        raise CaseError(f"{key}: not with an array of positions")
     shape = case.particles, case.box.dimension
     if found.shape != shape or not np.isfinite(found).all():
         raise CaseError(f"{key}: expected finite numbers of shape {shape}, not {found.shape}")
