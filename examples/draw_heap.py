@@ -97,7 +97,7 @@ def main():
         ylim=(0, 45),
     )
     ax.legend()
-    lettered([*axes.values()])
+    lettered([*(axes[f"heap {k}"] for k in range(len(FRICTIONS))), ax])
     figure.savefig("heap.png", dpi=150)
 
 

@@ -31,7 +31,7 @@ from mesokit import (
     SpringDashpot,
     theory,
 )
-from mesokit.report.style import COLOURS, STYLE
+from mesokit.report.style import COLOURS, STYLE, lettered
 from mesokit.spheres.kinds import ball_volume
 
 SHORT = "--short" in sys.argv  # a quick try

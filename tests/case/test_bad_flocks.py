@@ -235,7 +235,7 @@ STARTS = {
     "no such particles": ({"file": "c.gsd"}, "flock.start.file"),
     "a run and positions": (
         {"run": ".", "positions": "case.toml"},
-        "not with flock.start.run beside",
+        "not with flock.start.run",
     ),
     "headings twice": (
         {"velocities": "v.npy", "headings": "aligned"},

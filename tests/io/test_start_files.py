@@ -329,7 +329,7 @@ def test_two_states_are_refused():
         with pytest.raises(CaseError, match=r"fluid.start.file = .*: not with (run|positions)"):
             make_case(start=Start(file="a.gsd", **other))
     case = make_case(start=Start(file="a.gsd"))
-    with pytest.raises(CaseError, match="not with an array of positions beside"):
+    with pytest.raises(CaseError, match="not with an array of positions"):
         first_state(case, positions=np.zeros((640, 2)))
 
 

@@ -329,5 +329,5 @@ class TestOctant:
         with pytest.raises(CaseError, match="not with bending"):
             dataclasses.replace(self.OCTANT, bending=Bending(kappa=1.0))
         case = make_case((6, 6), density=5, molecule=self.OCTANT)
-        with pytest.raises(CaseError, match=r"conformation = 'octant': no effect beside positions"):
+        with pytest.raises(CaseError, match=r"conformation = 'octant': no effect with positions"):
             first_state(case, positions=np.zeros((180, 2)))

@@ -72,7 +72,7 @@ def test_a_mixture_has_no_domains(make_case):
 def test_what_it_cannot_tell_is_refused(make_case):
     with pytest.raises(CaseError, match=r"0 fluid\.species; expected 2"):
         make_case(SIZE, [DomainSize()])
-    with pytest.raises(CaseError, match="not beside a wall"):
+    with pytest.raises(CaseError, match="not with walls"):
         make_case(SIZE, [DomainSize()], species=TWO, walls=[Plates(axis="y")])
     with pytest.raises(CaseError, match=r"largest = 0\.1: expected 0\.1309"):
         make_case(SIZE, [DomainSize(largest=0.1)], species=TWO)

@@ -261,8 +261,8 @@ def test_resistances_of_rings_and_stars():
     ("observable", "parts", "said"),
     [
         (RadialDistribution(), {"shear_rate": 0.1}, "not under box.shear_rate"),
-        (RadialDistribution(), {"walls": (Plates(axis="y"),)}, "not beside a wall"),
-        (StructureFactor(), {"walls": (Plates(axis="y"),)}, "not beside a wall"),
+        (RadialDistribution(), {"walls": (Plates(axis="y"),)}, "not with walls"),
+        (StructureFactor(), {"walls": (Plates(axis="y"),)}, "not with walls"),
         (StructureFactor(), {"shear_rate": 0.1}, "not under box.shear_rate"),
         (StructureFactor(of="chains"), {}, "needs molecules"),
         (StructureFactor(largest=0.1), {}, "largest = 0.1: expected 0.7854"),

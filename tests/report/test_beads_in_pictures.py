@@ -11,9 +11,10 @@ from mesokit import WCA, Harmonic, Plates
 from mesokit.errors import RunError
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.solutes import Polymer, Solutes
-from mesokit.report.flow import picture
+from mesokit.report.flow import animate, picture, usual
 from mesokit.report.flow.beads import BeadFrames
 from mesokit.report.flow.fluid_bonds import FluidBonds
+from mesokit.report.flow.source import sources
 from mesokit.report.style import COLOURS
 
 RING = Polymer(topology="ring", length=4)
@@ -182,3 +183,22 @@ def test_bonds_of_the_fluid_are_drawn_where_they_are_few(number, drawn):
     )  # fmt: skip
     axes = picture(case, {}, frames, "particles").axes[0]
     assert bool(axes.collections) == drawn
+
+
+def test_a_film_of_a_run_that_kept_solutes_alone_shows_them(tmp_path):
+    """And a picture: the usual kinds need velocities that are not there."""
+    case = make_case(SIZE, density=2, solutes=SOLUTES)
+    film = animate(case, {}, trajectory(case, WHOLE, WHOLE + 0.5, WHOLE + 1), tmp_path / "a.gif")
+    assert film.frames == 3
+    assert len(picture(case, {}, trajectory(case, WHOLE)).axes) == 1
+    with pytest.raises(RunError, match="this picture needs velocities, and the run kept none"):
+        picture(case, {}, trajectory(case, WHOLE), "speed")
+    with pytest.raises(RunError, match=r'^speed: this picture needs velocities in time.*"flow-fr'):
+        animate(case, {}, None, tmp_path / "b.gif")
+
+
+def test_kinds_that_a_run_has_kept_come_first():
+    case = make_case(SIZE, density=2, observe=MAPS)
+    found = sources(case, results_of(case), None)
+    assert usual(case, found, "four", in_time=False) == "speed"  # it kept no particles
+    assert usual(case, found[1:], "four", in_time=False) == "density"

@@ -466,3 +466,15 @@ def test_what_is_not_known_of_molecules_has_no_panel():
     )  # fmt: skip
     labels = [ax.get_ylabel() for ax in plot(result).axes]
     assert len(labels) == 2 and not any("centre" in label for label in labels)
+
+
+def test_frames_and_the_map_of_their_mean_are_drawn_once(make_case):
+    from flows import FRAMES, MAPS, results_of
+
+    from mesokit.report.figures import drawn_once
+
+    case = make_case((6, 6), observe=[FRAMES, *MAPS])
+    results = results_of(case, 6)
+    assert [r.name for r in drawn_once(results.values())] == ["velocity-field", "density-field"]
+    del results["velocity-field"]
+    assert [r.name for r in drawn_once(results.values())] == ["flow-frames", "density-field"]

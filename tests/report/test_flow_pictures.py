@@ -381,6 +381,7 @@ class TestRefusals:
             ({"window": (900, 901)}, "no frame in it; there are 4, from t = "),
             ({"axes": ("x", "z")}, "axes = \\['x', 'z'\\]: expected two of x, y"),
             ({"at": 3}, "at = 3: a 2D box has no third axis"),
+            ({"average": 3}, "average = 3: only of films; a picture has a window"),
         ],
     )
     def test_choices(self, rotation, choices, words):

@@ -15,5 +15,5 @@ class Log:
 
     every: int = param(doc="steps between two lines, from step 0 of the warm-up on", ge=1)
     columns: tuple[str, ...] = param(
-        (), doc="what is told beside step and time (what is usual for the method unless said)"
+        (), doc="what is written with step and time (the usual columns of the method unless said)"
     )

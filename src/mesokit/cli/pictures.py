@@ -179,7 +179,6 @@ def animate(
     run: Path,
     kind: str | None,
     fps: float,
-    average: int | None,
     output: Path | None,
     quiet: bool,
     **choices: Any,
@@ -192,7 +191,6 @@ def animate(
     files = mesokit.open(run)
     kind = kind or _usual(files, "speed", choices, in_time=True)
     output = output or files.directory.flow_file(kind, ".mp4")
-    shown = {"fps": fps, "average": average, "progress": FilmReporter(quiet)}
-    film = files.animate(output, kind, **shown, **choices)
+    film = files.animate(output, kind, fps=fps, progress=FilmReporter(quiet), **choices)
     if not quiet:
         click.echo(film.path)

@@ -232,7 +232,7 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         """
         from mesokit.report.flow import CHOICES, animate
 
-        require_known(choices, [*CHOICES, "fps", "average", "progress"])
+        require_known(choices, [*CHOICES, "fps", "progress"])
         name = self.path.resolve().name
         return animate(self.case, self.results, self.trajectory, path, kind, run=name, **choices)
 

@@ -41,7 +41,7 @@ class EquationOfState(Observable):
     def check(self, case: Case) -> None:
         """Raise CaseError where there is no pressure of a uniform fluid."""
         if case.walls or case.spheres.gravity:
-            raise CaseError("equation-of-state: not beside a wall or with gravity")
+            raise CaseError("equation-of-state: not with walls or gravity")
         if not case.spheres.collision.elastic:
             raise CaseError("equation-of-state: expected collisions that keep energy")
         if case.particles < 2:

@@ -36,7 +36,7 @@ class HexaticOrder(Observable):
         if case.box.dimension != 2:
             raise CaseError("hexatic-order: expected disks in 2D")
         if case.walls:
-            raise CaseError("hexatic-order: not beside a wall; expected a periodic box")
+            raise CaseError("hexatic-order: not with walls; expected a periodic box")
         if case.particles < 4:
             raise CaseError(f"hexatic-order: {case.particles} disks; expected 4 at least")
 

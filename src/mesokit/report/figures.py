@@ -27,6 +27,7 @@ from mesokit.report.finish.origin import origin_of
 from mesokit.report.finish.saving import save_figure
 from mesokit.report.finish.several import add
 from mesokit.report.flow.layout import page_width
+from mesokit.report.flow.source import axes_of
 from mesokit.report.molecules import histogram, tracks
 from mesokit.report.particles import (
     cooling,
@@ -179,7 +180,7 @@ def save_all(
     width: float | None = None,
     run: str = "",
 ) -> list[Path]:
-    """Draw each result that has samples into `folder`/name.png; returns the files.
+    """Draw each result of `drawn_once` into `folder`/name.png; returns the files.
 
     `run` is the name of the run, that of the folder unless said.
     """
@@ -187,6 +188,12 @@ def save_all(
     name = run or folder.resolve().name
     return [
         save(r, folder / f"{r.name}{ending}", case, width=width, run=name)
-        for r in results
-        if r.samples
+        for r in drawn_once(results)
     ]
+
+
+def drawn_once(results: Iterable[Result]) -> list[Result]:
+    """Those that have samples, without frames whose mean is that of a map among them."""
+    found = [result for result in results if result.samples]
+    maps = [set(axes_of(r)) for r in found if r.drawing == "map" and "component" in r.x]
+    return [r for r in found if r.drawing != "frames" or set(axes_of(r)) not in maps]

@@ -78,5 +78,5 @@ class Seen(Shown):
         """Write a film of the flow so far (MP4 or GIF by its ending)."""
         from mesokit.report.flow import CHOICES, animate
 
-        require_known(choices, [*CHOICES, "fps", "average", "progress"])
+        require_known(choices, [*CHOICES, "fps", "progress"])
         return animate(self.case, self.results, None, path, kind, run=self._name, **choices)

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from mesokit.study.table import Pooled
 
 FILE, CASE = "study.toml", "case.toml"
-HEAD = "# A study of mesokit: what it varies; its case is beside it, its runs are in runs/.\n"
+HEAD = "# A study of mesokit: what it varies; its case lies in this folder, its runs in runs/.\n"
 
 
 class Study(Shown):

@@ -124,7 +124,7 @@ def first_state(case: Case, arrays: Mapping[str, Any]) -> Array | None:
     if not arrays and file is None:
         return None
     if arrays and file is not None:
-        raise CaseError(f"{key}: not with an array of positions beside")
+        raise CaseError(f"{key}: not with an array of positions")
     shape = case.particles, case.box.dimension
     try:
         given = arrays["positions"] if file is None else array_in_file(file, "positions", shape)

@@ -70,7 +70,7 @@ def _birds(case: Case) -> Iterator[str]:
     if cohesion is not None and cohesion.attraction > given.radius:
         yield (
             f"flock.cohesion.attraction = {show(cohesion.attraction)}: beyond flock.radius = "
-            f"{show(given.radius)}, where nobody is seen; expected less"
+            f"{show(given.radius)}, beyond which birds do not interact; expected less"
         )
 
 

@@ -22,7 +22,7 @@ class Cohesion:
     Gregoire, Chate and Tu, Physica D 181, 157 (2003), there among Voronoi neighbours.
     """
 
-    strength: float = param(1.0, doc="weight beside that of the headings", gt=0, le=1e3)
+    strength: float = param(1.0, doc="weight relative to the headings", gt=0, le=1e3)
     core: float = param(0.2, doc="birds nearer than this are fled from", unit="a", ge=0)
     equilibrium: float = param(0.5, doc="distance that is sought", unit="a", gt=0)
     attraction: float = param(0.8, doc="from here on attraction is full", unit="a", gt=0)

@@ -71,9 +71,7 @@ class Flock:
     @model_validator(mode="after")
     def _number_or_density(self) -> Flock:
         if self.number is not None and self.density is not None:
-            raise ValueError(
-                f"number = {show(self.number)}: not with density beside; leave one out"
-            )
+            raise ValueError(f"number = {show(self.number)}: not with density; leave one out")
         return self
 
     def birds(self, box: Box) -> int:

@@ -46,9 +46,9 @@ def first_state(case: Case, arrays: Mapping[str, Any]) -> FirstState:
     given = [*whole, *(name for name in keys if getattr(start, name) is not None)]
     for key in given:
         if arrays and (key in whole or key in arrays):
-            raise CaseError(f"flock.start.{key}: not with arrays beside")
+            raise CaseError(f"flock.start.{key}: not with arrays")
         if whole and key != whole[0]:
-            raise CaseError(f"flock.start.{key}: not with flock.start.{whole[0]} beside")
+            raise CaseError(f"flock.start.{key}: not with flock.start.{whole[0]}")
     for key in given:
         where = f"flock.start.{key} = {show(getattr(start, key), 500)}"
         try:
@@ -68,7 +68,7 @@ def first_state(case: Case, arrays: Mapping[str, Any]) -> FirstState:
             raise CaseError(f"{where}: {error}") from None
     positions, velocities = found.get("positions"), found.get("velocities")
     if velocities is not None and start.headings != "random":
-        raise CaseError("flock.start.headings: not with velocities beside; leave it out")
+        raise CaseError("flock.start.headings: not with velocities; leave it out")
     return FirstState(
         drawn_places(case) if positions is None else _places(case, keys["positions"], positions),
         drawn_headings(case)

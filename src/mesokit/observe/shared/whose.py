@@ -92,6 +92,6 @@ def periodic_all_over(case: Case, what: str) -> None:
     if case.box.sheared:
         raise CaseError(f"{what}: not under box.shear_rate, whose images slide")
     if case.walls:
-        raise CaseError(f"{what}: not beside a wall; expected a box without any")
+        raise CaseError(f"{what}: not with walls; expected a box without any")
     if case.box.open:
         raise CaseError(f"{what}: not in an open box; expected a periodic one")

@@ -49,13 +49,12 @@ def embedded(data: bytes, ending: str) -> str:
 
 
 def figures(results: Iterable[Result], case: Case) -> list[Picture]:
-    """A figure of each result that has samples."""
-    from mesokit.report.figures import plot
+    """A figure of each result that has samples, of equal ones one."""
+    from mesokit.report.figures import drawn_once, plot
 
     return [
         Picture(result.name, drawn(plot(result, case=case)), caption(result))
-        for result in results
-        if result.samples
+        for result in drawn_once(results)
     ]
 
 

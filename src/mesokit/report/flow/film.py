@@ -67,7 +67,6 @@ def animate(
     path: str | Path,
     kind: str | None = None,
     fps: float = 15.0,
-    average: int | None = None,
     progress: Reporter | None = None,
     run: str = "",
     **choices: Any,
@@ -81,11 +80,11 @@ def animate(
     kind: as for `picture`; unless said the first of these for which the run has kept frames: that
         of the method, such as "disks", "speed", "density", "particles".
     fps: frames shown per second.
-    average: how many frames, one after another, each picture of a flow is the mean of. Unless said
-        as few as lift the flow above its noise, at most a quarter of them.
     progress: what tells how it goes (nothing does unless said).
     run: its name, for the line below the film and the metadata of the file.
-    choices: `region`, `window`, `axes`, `at` and `colour`, as for `picture`.
+    choices: `region`, `window`, `axes`, `at` and `colour`, as for `picture`; `average`, how many
+        frames, one after another, each picture of a flow is the mean of: unless said as few as lift
+        the flow above its noise, at most a quarter of them.
 
     Raises CaseError for an ending or a choice that there is not, RunError where the run kept no
     frames or the file cannot be written. Whatever goes wrong, an old file stays as it was.
@@ -116,7 +115,7 @@ def animate(
     shown = region_of(view.region, first.axes, first.size)
     from mesokit.report.flow.canvas import Canvas
 
-    number = _averaged(average, panels, source, frames, shown)
+    number = _averaged(view.average, panels, source, frames, shown)
     means = np.lib.stride_tricks.sliding_window_view(frames, number)
     some = np.unique(np.linspace(0, len(means) - 1, SCALED).astype(int))
     flows = [source.flow(mean) for mean in means[some]]

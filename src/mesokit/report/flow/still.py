@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mesokit.case.component import show
+from mesokit.errors import CaseError
 from mesokit.report.caption import rounded
 from mesokit.report.flow.beads import frames_of
 from mesokit.report.flow.data import Flow
@@ -59,6 +61,8 @@ def picture(
     2
     """
     view = View(**choices)
+    if view.average is not None:
+        raise CaseError(f"average = {show(view.average)}: only of films; a picture has a window")
     window, found = view.window, sources(case, results, trajectory, view)
     kind = kind or usual(case, found, "four", in_time=window is not None)
     panels = panels_of(kind, case, view.colour)

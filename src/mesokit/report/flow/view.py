@@ -10,7 +10,8 @@ from mesokit.report.flow.region import Ranges
 class View(NamedTuple):
     """Which part of the box is shown: a region, a window of time, a plane and where it lies.
 
-    `colour` says what the colours of spheres mean.
+    `colour` says what the colours of spheres mean, `average` how many frames each picture of a film
+    is the mean of.
     """
 
     region: Ranges | None = None
@@ -18,6 +19,7 @@ class View(NamedTuple):
     axes: tuple[str, str] | None = None
     at: float | None = None
     colour: str | None = None
+    average: int | None = None
 
 
 CHOICES = View._fields

@@ -28,7 +28,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         (axis, f"centre ${axis}$"),
         (f"v{axis}", f"velocity $v_{axis}$"),
     ]
-    known = np.asarray(np.isfinite(result.value).any(axis=(0, 1)))  # under shear no place along the flow is
+    known = np.any(np.isfinite(result.value), axis=(0, 1)).tolist()  # no place along sheared flow
     rows = [(name, label) for name, label in wanted if name in names and known[names.index(name)]]
     figure.set_figheight(figure.get_figheight() + MORE * (len(rows) - 2) / 3)
     panels = figure.subplots(len(rows), 1, sharex=True)

@@ -45,6 +45,6 @@ def among_solids(case: Case, diameters: Array, closed: tuple[bool, ...]) -> Arra
         if not len(left):
             return places
     raise CaseError(
-        f"spheres: no room found for {len(left)} of {len(diameters)} at random places beside the "
+        f"spheres: no room found for {len(left)} of {len(diameters)} at random places outside the "
         "solids; expected fewer or smaller"
     )

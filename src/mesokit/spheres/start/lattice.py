@@ -50,7 +50,7 @@ class LatticeStart(SphereStart):
         """Raise CaseError where neighbours would overlap, or solids are in the way."""
         if any(not wall.closed_axes for wall in case.walls):
             raise CaseError(
-                f"spheres.start.rule = {show(self.rule)}: not beside solids other than plates; "
+                f"spheres.start.rule = {show(self.rule)}: not with solids other than plates; "
                 "expected 'random'"
             )
         section, box = case.spheres, case.box

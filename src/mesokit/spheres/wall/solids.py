@@ -52,7 +52,7 @@ def _motion(key: str, surface: Surface, dimension: int) -> None:
         if given > 0 and getattr(contact, other) == 0:
             raise CaseError(
                 f"{key}.contact.{here} = {show(given)}: a vibration has an amplitude and a "
-                f"frequency; expected {key}.contact.{other} beside"
+                f"frequency; expected {key}.contact.{other} as well"
             )
 
 

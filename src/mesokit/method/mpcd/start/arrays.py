@@ -85,7 +85,7 @@ def _once(where: str, given: Start, **arrays: Any) -> None:
         for key in ("run", "file", name):
             said = getattr(given, key)
             if array is not None and said is not None:
-                raise CaseError(f"{where}.{key} = {said!r}: not with an array of {name} beside")
+                raise CaseError(f"{where}.{key} = {said!r}: not with an array of {name}")
 
 
 def _no_conformation(case: Case) -> None:
@@ -93,7 +93,7 @@ def _no_conformation(case: Case) -> None:
     molecule = case.fluid.molecule
     if molecule is not None and molecule.conformation != "thermal":
         raise CaseError(
-            f"fluid.molecule.conformation = {molecule.conformation!r}: no effect beside positions "
+            f"fluid.molecule.conformation = {molecule.conformation!r}: no effect with positions "
             "to start from; leave it out"
         )
 

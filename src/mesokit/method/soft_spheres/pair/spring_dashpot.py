@@ -69,7 +69,7 @@ class SpringDashpot(ContactLaw):
     @model_validator(mode="after")
     def _one_way(self) -> SpringDashpot:
         if self.stiffness is None and self.damping is not None:
-            raise ValueError("expected a stiffness beside the damping")
+            raise ValueError("expected a stiffness with the damping")
         if self.stiffness is not None and self.contact_time is not None:
             raise ValueError("expected a contact time or a stiffness, not both")
         if self.damping is not None and self.restitution is not None:
