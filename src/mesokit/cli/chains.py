@@ -104,8 +104,12 @@ def rows_of(chain: Chain, beads: Beads, frequencies: tuple[float, ...]) -> list[
         ("mean square bond", number(square, "a^2"), "Boltzmann"),
         ("end to end, squared", number((chain.length - 1) * square, "a^2"), "ideal chain"),
         ("slowest mode time", number(float(times.mode[0]), "time"), ROUSE),
-        ("slowest stress time", number(float(times.stress[0]), "time"), "half of it"),
         *_hydrodynamic(chain, beads, math.sqrt(square)),
+        (
+            "slowest stress time",
+            number(float(times.stress[0]), "time"),
+            "half of Rouse's",
+        ),
         ("modulus", number(modulus, force), "kT for each molecule in a volume"),
         ("viscosity of bonds", number(bonds / beads.mass_density, "a^2/time"), "slow flow"),
         (
@@ -132,4 +136,4 @@ def _hydrodynamic(chain: Chain, beads: Beads, bond: float) -> list[Row]:
     except ValueError:  # bonds shorter than beads are large
         return []
     note = "approximate: Zimm, one chain in a simple fluid"
-    return [("with hydrodynamics", number(float(zimm.mode[0]), "time"), note)]
+    return [("mode time with hydrodynamics", number(float(zimm.mode[0]), "time"), note)]
