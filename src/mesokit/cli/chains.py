@@ -136,4 +136,4 @@ def _hydrodynamic(chain: Chain, beads: Beads, bond: float) -> list[Row]:
     except ValueError:  # bonds shorter than beads are large
         return []
     note = "approximate: Zimm, one chain in a simple fluid"
-    return [("mode time with hydrodynamics", number(float(zimm.mode[0]), "time"), note)]
+    return [("with hydrodynamics", number(float(zimm.mode[0]), "time"), note)]
