@@ -45,8 +45,8 @@ def late_slope(time: Array, curve: Estimate, first: float, grows: bool = False) 
     first: the lag from which on the curve may be a straight line; lag 0 is never used.
     grows: whether theory expects the slope to change for ever, slowly.
 
-    Where it is seen to, or nowhere agrees with the slope at later lags, the growth over a decade of lags
-    is part of the error.
+    Where it is seen to, or nowhere agrees with the slope at later lags, the growth over a decade of
+    lags is part of the error.
 
     >>> time, noise = np.arange(65.0), np.random.default_rng(1).normal(size=(65, 32)).cumsum(axis=0)
     >>> bent = time + np.expm1(-time)  # free flight at first
