@@ -213,10 +213,10 @@ class TestHowSolutesDiffuse:
         assert np.isnan(found) and note == "no theory of a fluid with solutes"
 
 
-def test_rouse_is_approximate_where_beads_drag_one_another_along():
+def test_rouse_is_approximate_where_beads_stir_up_a_flow():
     molecule = Molecule(length=2, bond=Harmonic(K=1 / 20))
     for timestep, word in (
-        (0.1, "approximate: Rouse neglects hydrodynamic interactions"),
+        (0.1, "approximate: Rouse; flow that a bead stirs up"),
         (1.0, "Rouse"),
         (1.2, "approximate: Rouse; bonds turn by 0.54 rad"),
     ):

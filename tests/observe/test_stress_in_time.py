@@ -150,3 +150,20 @@ def test_nothing_is_known_before_a_period_is_over(sheared):
     assert "no whole period of the shear (60 steps)" in said
     result = measured(case, 30, lambda step: 1.0).result()
     assert result.value.shape == (0, 3) and result.comparisons == ()
+
+
+def test_a_warm_up_leaves_out_windows_and_shifts_none(sheared):
+    """Windows that no sample has seen are missing; the others keep their times and values."""
+    case = sheared(StartUp(rate=0.2), 30)
+    case = dataclasses.replace(case, run=Run(steps=30, warmup=20))
+    accumulator, fluid = OBSERVE.accumulator(case), FakeFluid(case)
+    fluid.totals = lambda: (fluid.n, np.zeros(2), 0.0)
+    for step in range(21, 51):
+        fluid.step, whole = step, np.zeros((2, 2))
+        whole[0, 1] = step // 10
+        fluid.stress = {"kinetic": 0.25 * whole, "collisional": 0.75 * whole}
+        accumulator.observe(fluid)
+    result = accumulator.result()
+    shear = result.value[:, 0]
+    np.testing.assert_allclose(shear, [2.1, 3.1, 4.1], rtol=1e-12)  # the last step belongs to both
+    np.testing.assert_allclose(result.x["time"], [2.5, 3.5, 4.5])

@@ -189,7 +189,7 @@ class StressInTimeAccumulator:
                 [one.counts[:shortest] == self.samples_of_window for one in every], axis=0
             )
             rows = np.flatnonzero(whole)
-            sums = np.stack([one.sums[rows] / self.samples_of_window for one in every])
+            sums = np.stack([one.sums[:shortest] / self.samples_of_window for one in every])
             weights = np.ones(len(every), np.int64)
         if not len(rows):
             return rows, Estimate(np.zeros(0), np.zeros((0, 0)), weights.astype(float))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from mesokit.method.protocol import method_of
 from mesokit.observe.shared.protocol import Accumulator
 from mesokit.observe.shared.result import NOT_STEADY, Comparison, Result, with_error
+from mesokit.observe.shared.short_run import bounded
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -19,8 +20,9 @@ DRIFTS = 5.0  # standard errors between both halves of the samples: the flow sti
 
 
 def result_of(accumulator: Accumulator, case: Case) -> Result:
-    """What an accumulator says, with comparisons marked where the flow had not built up."""
-    result = accumulator.result()
+    """What an accumulator says, with comparisons marked where the flow had not built up, or where
+    the run is too short for error bars."""
+    result = bounded(accumulator.result(), accumulator)
     observable = next((one for one in case.observe if one.label == result.name), None)
     if observable is None or not observable.of_built_up_flow:
         return result
