@@ -204,7 +204,7 @@ class MeanSquareDisplacementAccumulator:
         expected, note = self.theory.coefficient()
         what = "diffusion coefficient"
         if slope.growth:
-            way = "grows" if self.theory.grows() or slope.growth > 0 else "falls"
+            way = "grows" if slope.growth > 0 else "falls"
             short = not (slope.straight or self.theory.grows())
             why = ": no straight line yet, a larger max_lag" if short else ""
             decade = "error bar with its change in a decade of lags"
