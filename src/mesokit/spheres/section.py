@@ -21,6 +21,7 @@ from mesokit.spheres.start.lattice import LatticeStart
 USUAL_FRACTION = 0.3  # of the box that spheres fill, unless anything is said
 MOST_PARTICLES = 2**31 - 1  # numbers of random words are 32-bit
 AMOUNTS = ("number", "density", "packing_fraction")
+ONE = SphereKind(1.0)
 STRONGEST = 1e9  # gravity beyond which it is a slip of the pen
 
 
@@ -47,7 +48,7 @@ class Spheres:
         lt=1,
     )
     kinds: Many[SphereKind] = param(
-        (SphereKind(),), doc="their kinds, in the order of their numbers", min_length=1
+        (ONE,), doc="their kinds, in the order of their numbers", min_length=1
     )
     kT: float = param(1.0, doc="thermal energy of the start", unit="kT", ge=0, le=1e9)
     gravity: Many[float] = param(
@@ -66,8 +67,11 @@ class Spheres:
 
     @model_validator(mode="after")
     def _diameters(self) -> Spheres:
-        """Kinds without a diameter have the usual one."""
-        kinds = tuple(kind.filled_in(self.usual_diameter) for kind in self.kinds)
+        """Kinds without a diameter have the usual one, and so has the kind that is there unless
+        kinds are said."""
+        usual = self.usual_diameter
+        unsaid = ONE if usual == ONE.diameter else SphereKind(usual)
+        kinds = tuple(unsaid if kind is ONE else kind.filled_in(usual) for kind in self.kinds)
         object.__setattr__(self, "kinds", kinds)  # of a frozen dataclass, while it is made
         return self
 

@@ -97,6 +97,11 @@ def _potential(case: Case) -> None:
     section = case.spheres
     if isinstance(section.pair, ContactLaw):
         return
+    if section.speed is not None:
+        raise CaseError(
+            f"spheres.speed = {show(section.speed)}: only for laws of contact; with a potential "
+            "give spheres.timestep"
+        )
     kinds, scale = section.kinds, section.scale(case.box)
     if any(kind.spread for kind in kinds) or len({kind.diameter for kind in kinds}) > 1:
         raise CaseError("spheres.kinds: a potential acts between spheres of one diameter alone")
