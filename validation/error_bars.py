@@ -224,8 +224,8 @@ def make(methods: list[str] | None = None) -> int:
         f"error bars are right. The scatter of {SEEDS} seeds is itself known to "
         f"{100 / np.sqrt(2 * (SEEDS - 1)):.0f} %. A curve has the root of the mean square over its "
         "values, a method that over its numbers and curves. Numbers whose error bar most "
-        "runs call a lower bound do not count in it. In 2D the error bar of D holds its growth over a decade "
-        "of lags."
+        "runs call a lower bound do not count in it. In 2D the error bar of D holds its growth over "
+        "a decade of lags."
     )
     known = {scene.method for scene in SCENES}
     if unknown := set(methods or ()) - known:

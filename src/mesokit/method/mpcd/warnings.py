@@ -74,7 +74,7 @@ def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
                 f"by {phase:.2g} rad in each (above {COARSE:g}): its swings read up to "
                 f"{25 * phase**2:.2g} % too large"
             )
-    if fluid.molecule is not None:
+    if fluid.molecule is not None and spring_of(fluid.molecule) is not None:
         turns = swing_of_flight(case)
         if turns > FAST:
             yield (
