@@ -211,7 +211,7 @@ def rows_of(scene: Scene, runs: list[dict[str, Any]]) -> list[Row]:
                 continue
             value, error, bound = zip(*(one["numbers"][key] for one in per_seed), strict=True)
             if np.isfinite(found := float(root(value, error))):
-                rows.append(Row(scene.name, label, key, found, 1, np.mean(bound) > 0.5))
+                rows.append(Row(scene.name, label, key, found, 1, 2 * sum(bound) > SEEDS))
     return rows
 
 
@@ -223,9 +223,9 @@ def make(methods: list[str] | None = None) -> int:
         "of the seeds over the root mean square of the error bars that the runs quote, 1 where "
         f"error bars are right. The scatter of {SEEDS} seeds is itself known to "
         f"{100 / np.sqrt(2 * (SEEDS - 1)):.0f} %. A curve has the root of the mean square over its "
-        "values, a method that over its numbers and curves. Numbers whose error bar most "
-        "runs call a lower bound do not count in it. In 2D the error bar of D holds its growth over "
-        "a decade of lags."
+        "values, a method that over its numbers and curves. Numbers whose error bar most runs call "
+        "a lower bound do not count in it. In 2D the error bar of D holds its growth over a decade "
+        "of lags."
     )
     known = {scene.method for scene in SCENES}
     if unknown := set(methods or ()) - known:
