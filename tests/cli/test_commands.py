@@ -240,6 +240,8 @@ def test_theory_knows_fluids_of_chains(capsys: Captured) -> None:
     )  # fmt: skip
     stirring = theory.self_diffusion(3, free.diffusion, free.viscosity, 10)
     times = theory.rouse_times(theory.linear_modes(10), 1 / stirring, K=0.5)
+    rows = list(said)  # a time of modes with one of modes, half of it after both
+    assert rows.index("with hydrodynamics") == rows.index("slowest mode time") + 1
     assert float(said["slowest mode time"].split()[0]) == pytest.approx(times.mode[0], rel=1e-3)
     bonds = times.stress.sum() / 10  # kT per molecule, over the mass density
     assert float(said["viscosity of bonds"].split()[0]) == pytest.approx(bonds, rel=1e-3)

@@ -104,8 +104,12 @@ def rows_of(chain: Chain, beads: Beads, frequencies: tuple[float, ...]) -> list[
         ("mean square bond", number(square, "a^2"), "Boltzmann"),
         ("end to end, squared", number((chain.length - 1) * square, "a^2"), "ideal chain"),
         ("slowest mode time", number(float(times.mode[0]), "time"), ROUSE),
-        ("slowest stress time", number(float(times.stress[0]), "time"), "half of it"),
         *_hydrodynamic(chain, beads, math.sqrt(square)),
+        (
+            "slowest stress time",
+            number(float(times.stress[0]), "time"),
+            "half of Rouse's",
+        ),
         ("modulus", number(modulus, force), "kT for each molecule in a volume"),
         ("viscosity of bonds", number(bonds / beads.mass_density, "a^2/time"), "slow flow"),
         (
