@@ -213,7 +213,7 @@ class TestHowSolutesDiffuse:
         assert np.isnan(found) and note == "no theory of a fluid with solutes"
 
 
-def test_rouse_is_approximate_where_beads_drag_one_another_along():
+def test_rouse_is_approximate_where_beads_stir_up_a_flow():
     molecule = Molecule(length=2, bond=Harmonic(K=1 / 6))
     for timestep, word in ((0.1, "approximate"), (1.0, "Rouse")):
         case = make_case((8, 8, 8), timestep=timestep, molecule=molecule)

@@ -249,7 +249,7 @@ def rouse_note(case: Case) -> str:
     if case.solutes is not None and case.fluid.molecule is not None:
         return setting.caveat(case)
     if case.solutes is None and setting.mean_free_path(case) < 1:
-        return "approximate: Rouse; beads drag one another along"
+        return "approximate: Rouse; flow that a bead stirs up moves its neighbours too"
     if case.solutes is not None:
         return "approximate: Rouse; beads that share a cell lose less momentum than apart"
     return "Rouse; beads with the friction of free particles"
