@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from mesokit.method.protocol import method_of
 from mesokit.observe.shared.protocol import Accumulator
 from mesokit.observe.shared.result import NOT_STEADY, Comparison, Result
+from mesokit.observe.shared.short_run import bounded
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -16,8 +17,9 @@ MATTERS = 0.5  # of the standard error: a missing part that is larger is told
 
 
 def result_of(accumulator: Accumulator, case: Case) -> Result:
-    """What an accumulator says, with comparisons marked where the flow had not built up."""
-    result, method = accumulator.result(), method_of(case)
+    """What an accumulator says, with comparisons marked where the flow had not built up, or where
+    the run is too short for error bars."""
+    result, method = bounded(accumulator.result(), accumulator), method_of(case)
     observable = next((one for one in case.observe if one.label == result.name), None)
     if method.build_up is None or observable is None or not observable.of_built_up_flow:
         return result
