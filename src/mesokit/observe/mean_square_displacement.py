@@ -203,9 +203,10 @@ class MeanSquareDisplacementAccumulator:
         value, error = slope.value * scale, slope.error * scale
         expected, note = self.theory.coefficient()
         what = "diffusion coefficient"
-        if self.theory.grows() or not slope.straight:
+        if slope.growth:
             way = "grows" if slope.growth > 0 else "falls"
-            why = "" if self.theory.grows() else ": no straight line yet, a larger max_lag"
+            short = not (slope.straight or self.theory.grows())
+            why = ": no straight line yet, a larger max_lag" if short else ""
             decade = "error bar with its change in a decade of lags"
             rest = note.removeprefix("approximate: ")
             note = "; ".join(filter(None, (f"approximate: {way} with the lag{why}", decade, rest)))

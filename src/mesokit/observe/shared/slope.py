@@ -17,8 +17,9 @@ from mesokit.observe.shared.estimate import Estimate, fit
 
 Array = NDArray[np.floating[Any]]
 FEWEST = 3  # points of a fit
-AGREE = 2.5  # standard errors of the difference of two slopes that agree
+AGREE = 3.0  # standard errors of the difference of two slopes that agree
 DECADE = math.log(10.0)
+SEEN = 2.0  # standard errors of a change of the slope that counts where theory expects one
 
 
 class Slope(NamedTuple):
@@ -42,10 +43,10 @@ def late_slope(time: Array, curve: Estimate, first: float, grows: bool = False) 
     time: (n,) lags, ascending.
     curve: its value (n,) and how that scatters.
     first: the lag from which on the curve may be a straight line; lag 0 is never used.
-    grows: whether the slope is known to change for ever, slowly.
+    grows: whether theory expects the slope to change for ever, slowly.
 
-    Where it grows, or nowhere agrees with the slope at later lags, the growth over a decade of lags
-    is part of the error.
+    Where it is seen to, or nowhere agrees with the slope at later lags, the growth over a decade of
+    lags is part of the error.
 
     >>> time, noise = np.arange(65.0), np.random.default_rng(1).normal(size=(65, 32)).cumsum(axis=0)
     >>> bent = time + np.expm1(-time)  # free flight at first
@@ -72,9 +73,8 @@ def late_slope(time: Array, curve: Estimate, first: float, grows: bool = False) 
     straight = len(value) == 1 or chosen < len(value) - 1
     errors = curve.linear(slopes).error
     spread = _scatter(off[chosen, chosen:], noise[chosen, chosen:], errors[chosen:])
-    growth = 0.0
-    if grows or not straight:
-        growth = DECADE * _bend(time, curve, use if straight else windows[-2])
+    bend, unsure = _bend(time, curve, use if straight else windows[-2])
+    growth = DECADE * bend if not straight or (grows and bend > SEEN * unsure) else 0.0
     return Slope(
         float(value[chosen]),
         float(np.sqrt(errors[chosen] ** 2 + spread + growth**2)),
@@ -111,13 +111,15 @@ def _scatter(off: Array, noise: Array, errors: Array) -> float:
     return max(0.0, float((weight * (off**2 - noise**2)).sum() / weight.sum()))
 
 
-def _bend(time: Array, curve: Estimate, use: NDArray[np.bool_]) -> float:
-    """By how much the slope changes while the lag grows by a factor of e: a + b t + c t ln t.
+def _bend(time: Array, curve: Estimate, use: NDArray[np.bool_]) -> tuple[float, float]:
+    """By how much the slope changes while the lag grows by a factor of e, and the standard error of
+    that: c of a + b t + c t ln t.
 
     The scale of time is that of the lags, which leaves c as it is.
     """
     if use.sum() <= FEWEST:
-        return 0.0
+        return 0.0, math.inf
     t = time / time[use].max()
     basis = np.stack([np.ones_like(t), t, t * np.log(np.where(t > 0, t, 1.0))], axis=1)
-    return float(_row(t, basis, use, 2) @ curve.value) / float(time[use].max())
+    row = _row(t, basis, use, 2) / time[use].max()
+    return curve.scalar(row @ curve.value, row)
