@@ -15,7 +15,7 @@ NAMES = (
     "conservation", "round_flows", "drag", "wakes", "solids_at_rest", "solids_inside",
     "bonded_modes", "viscoelastic", "polymer_diffusion", "colloids", "pooled_runs",
     "random_numbers", "demix", "flocks", "hard_spheres", "soft_spheres",
-    "liquid", "freezing",
+    "liquid", "freezing", "error_bars",
 )  # fmt: skip
 
 
