@@ -349,8 +349,9 @@ class TestSolutesAmongMolecules:
 
     def test_both_are_measured(self, ended):
         fluid, chain = (ended[f"size-{kind}"].comparisons for kind in ("fluid", "chain"))
-        assert [c.expected for c in fluid] == pytest.approx([0.75 / 4, 0.75])
-        assert [c.expected for c in chain] == pytest.approx([1.5 * 8 / 36, 1.5])
+        # sub-steps add less than 0.3 %
+        assert [c.expected for c in fluid] == pytest.approx([0.75 / 4, 0.75], rel=3e-3)
+        assert [c.expected for c in chain] == pytest.approx([1.5 * 8 / 36, 1.5], rel=3e-3)
         assert all(c.measured > 0 for c in (*fluid, *chain))
         square = (ended.engine.bond_vectors()[:24] ** 2).sum(axis=1)
         assert 0.3 < ended["bond-length"].comparisons[0].measured / square.mean() < 3

@@ -16,7 +16,7 @@ from mesokit import (
     SphereKind,
     SpringDashpot,
 )
-from mesokit.errors import CaseError
+from mesokit.errors import CaseError, RunError
 
 
 def observed(size, steps, walls=(), warmup=0, **spheres):
@@ -31,6 +31,33 @@ def observed(size, steps, walls=(), warmup=0, **spheres):
     simulation.run()
     found = simulation["contact-stress"]
     return {c.what: c for c in found.comparisons}, found
+
+
+def test_spheres_that_still_fall_are_not_compared_with_their_weight():
+    gravity, pair = [0.0, -1.0], SpringDashpot(0.3, contact_time=0.01, friction=0.5)
+    start = RandomStart()
+    for warmup, steady in ((0, False), (60_000, True)):
+        said, _ = observed(
+            [12.0, 20.0], 400, [Plates("y")], warmup, number=40, start=start, gravity=gravity,
+            kT=0.01, pair=pair,
+        )  # fmt: skip
+        flux = said["flux along gravity over weight"]
+        assert flux.steady == steady
+        assert (abs(flux.measured - 1) < 0.1) == steady
+
+
+@pytest.mark.parametrize("speed", [3.0, 40.0])
+def test_a_sphere_that_passes_a_wall_ends_the_run(speed):
+    """Contacts that are far too soft: no sphere may leave without a word."""
+    case = Case(
+        run=Run(4000, method="soft-spheres"), box=Box([12.0, 20.0]), walls=[Plates("y")],
+        spheres=SoftSpheres(
+            number=40, kT=speed**2, start=RandomStart(),
+            pair=SpringDashpot(0.3, contact_time=4.0, friction=0.5), timestep=0.01,
+        ),
+    )  # fmt: skip
+    with pytest.raises(RunError, match="centre of a sphere has passed a wall by"):
+        Simulation(case, threads=1).run()
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -9,8 +9,15 @@ from scipy.stats import chi2
 
 from mesokit import (
     Disk,
+    Harmonic,
+    MagneticField,
+    MeanSquareDisplacement,
     MoleculeHistogram,
+    MoleculeSize,
+    NormalModes,
+    Polymer,
     ResidenceTime,
+    Solutes,
     TransitTime,
     TranslocationTime,
     Uniform,
@@ -213,6 +220,28 @@ def test_near_a_solid_of_a_name(make_case):
     accumulator = observable.accumulator(case)
     places = np.array([[[14.2, 10.0]], [[13.8, 10.0]], [[30.0, 26.5]]])
     np.testing.assert_array_equal(accumulator.within(places), [False, True, True])
+
+
+@pytest.mark.parametrize(
+    ("observable", "known"),
+    [
+        (MeanSquareDisplacement(of="centres"), False),
+        (NormalModes(), False),
+        (MoleculeSize(), True),
+    ],
+)
+def test_a_magnetic_field_leaves_shapes_alone_and_motion_without_a_theory(
+    make_case, observable, known
+):
+    chains = {"polymers": (Polymer(5, length=4),), "bond": Harmonic(K=1.5), "solvent": "random"}
+    turned, quiet = (
+        observable.accumulator(
+            make_case((20, 20), [observable], solutes=Solutes(**chains, magnetic=field))
+        ).result()
+        for field in ([MagneticField([0.0, 0.0, 30.0])], ())
+    )
+    assert quiet.expected is not None and np.isfinite(quiet.expected).all()
+    assert (turned.expected is not None and np.isfinite(turned.expected).all()) == known
 
 
 @pytest.mark.parametrize(("kept", "looks", "width"), [(0.5, 4, 40), (0.9, 1, 120), (0.9, 20, 200)])

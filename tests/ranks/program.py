@@ -49,7 +49,7 @@ def kept(engine, folder, case, root):
     """A checkpoint of an engine."""
     replica = SimpleNamespace(engine=engine, accumulators={})
     arrays = {f"engine/{name}": v for name, v in engine.state().items()}
-    measured.keep(folder, case, {"step": engine.step}, arrays, root)
+    measured.keep(folder, case, {"step": engine.step, "looked": False}, arrays, root)
     return replica
 
 

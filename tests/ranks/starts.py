@@ -94,16 +94,16 @@ def watched(seen):
     """Meanwhile note which rows are read of files."""
     load, snapshot, earlier = arrays._load, first_state.read_snapshot, EarlierRows._folded
 
-    def read(path):
+    def read(*given):
         seen[:] = True
-        return snapshot(path)
+        return snapshot(*given)
 
     def folded(self, first, last):
         seen[first:last] = True
         return earlier(self, first, last)
 
-    def loaded(key, name, path):
-        found = load(key, name, path)
+    def loaded(*given):
+        found = load(*given)
         if not isinstance(found, np.memmap):
             seen[:] = True
         return Watched(found, seen)

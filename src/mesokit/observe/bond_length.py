@@ -86,7 +86,7 @@ class BondLengthAccumulator(MoleculeTensorAccumulator):
         case = self.case
         force = case.fluid.force
         falling = force.acts and force.uniform(case.box.dimension) is not None
-        at_rest = not setting.driven(case) or (setting.isothermal(case) and falling)
+        at_rest = not setting.flowing(case) or (setting.isothermal(case) and falling)
         if case.walls or not at_rest:
             return np.nan
         solutes = None if of_fluid(case, self.kind) else case.solutes

@@ -10,15 +10,17 @@ import numpy as np
 from mesokit import theory
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
+from mesokit.method.protocol import method_of
 from mesokit.observe.shared.estimate import of_mean
 from mesokit.observe.shared.protocol import BlockAccumulator, Observable
-from mesokit.observe.shared.result import Comparison, Result
+from mesokit.observe.shared.result import NOT_STEADY, Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 PARTS = ("motion", "forces")
+LANDED = 0.1  # of the weight: a bed whose flux is nearer to it has landed
 
 
 @component
@@ -113,8 +115,19 @@ class ContactStressAccumulator(BlockAccumulator):
             ratio, error = found.scalar(flux / weight, gradient)
             alike = len(self.case.spheres.kinds) == 1 and self.case.spheres.kinds[0].spread == 0
             note = "" if alike else "approximate: those on the floor of mean size"
+            note = "; ".join(filter(None, (self.falling(ratio), note)))
             listed.append(Comparison("flux along gravity over weight", ratio, error, 1.0, "", note))
         return listed
+
+    def falling(self, ratio: float) -> str:
+        """That samples began while spheres fell, where the flux is not yet near the weight."""
+        assert self.floor is not None
+        k, g, _ = self.floor
+        step, had = method_of(self.case).timestep(self.case), self.case.run.warmup
+        need = math.ceil(2 * math.sqrt(2 * self.case.box.size[k] / abs(g)) / step)
+        if had >= need or abs(ratio - 1) < LANDED:
+            return ""
+        return f"{NOT_STEADY}: a fall and a rise take {need} steps before samples, had {had}"
 
     def hard(self) -> float:
         """Compressibility of hard spheres, nan of spheres that lose energy or attract."""

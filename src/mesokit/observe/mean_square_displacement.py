@@ -159,6 +159,11 @@ class MeanSquareDisplacementAccumulator:
         slope = late_slope(time, moved, self.theory.diffusive_from(), self.theory.grows())
         if slope is not None:
             curve, comparisons = slope.line, [self.diffusion(slope)]
+        elif len(time) > 1 and math.isfinite(first := self.theory.diffusive_from()):
+            why = f"undetermined: fewer than three lags from {first:.3g} to {time[-1]:.3g} tau"
+            known = self.theory.coefficient()[0]
+            what, unit = "diffusion coefficient", "a^2/tau"
+            comparisons = [Comparison(what, math.nan, math.nan, known, unit, why)]
         expected = self.theory.expected(steps)
         level = time >= self.theory.level_from()
         if level.any() and expected is not None:

@@ -23,6 +23,7 @@ from mesokit.method.mpcd.expected.molecules import (
 )
 from mesokit.observe.shared.decay import fit_curve, normalised
 from mesokit.observe.shared.estimate import noted
+from mesokit.observe.shared.molecule_tensor import ENOUGH
 from mesokit.observe.shared.protocol import Observable, State, pack, unpack
 from mesokit.observe.shared.result import Comparison, Result
 from mesokit.observe.transverse_modes import FEWEST, LOWEST, decaying
@@ -105,7 +106,7 @@ class NormalModesAccumulator:
 
     def undisturbed(self) -> bool:
         """Whether theory of a fluid at rest without walls applies."""
-        return not (self.case.walls or setting.driven(self.case))
+        return not (self.case.walls or setting.flowing(self.case))
 
     def result(self) -> Result:
         """The decay of each mode, its relaxation time and its mean square."""
@@ -138,6 +139,8 @@ class NormalModesAccumulator:
         """Relaxation times of theory, and what to say of them."""
         if not self.undisturbed():
             return None, "no theory of molecules in a flow or between walls"
+        if setting.magnetic(self.case):
+            return None, setting.MAGNETIC
         return mode_times_of(self.case, self.observable.kind)
 
     def comparisons(self) -> list[Comparison]:
@@ -146,6 +149,11 @@ class NormalModesAccumulator:
         times, note = self.times()
         kind = self.observable.kind
         spring = springs_of(self.case, kind) if self.undisturbed() else None
+        times_of_run = self.relaxations()
+        short = ""
+        if 0 < times_of_run < ENOUGH:
+            run = f"the run has {times_of_run:.2g} relaxation times"
+            short = f"error bar is a lower bound: {run}"
         for p, correlator in enumerate(self.correlators[:SHOWN]):
             measured = self.relaxation_time(correlator)
             if measured is not None:
@@ -156,17 +164,28 @@ class NormalModesAccumulator:
             square = correlator.correlation()
             if len(square.value):
                 d = self.case.box.dimension
+                value, error = d * float(square.value[0]), d * float(square.error[0])
+                if short:  # independent components tell what blocks of time do not see
+                    seen = len(self.beads) * d * (1 + 0.5 * times_of_run)
+                    error = max(error, value * (2 / seen) ** 0.5)
                 found.append(
                     Comparison(
                         f"mean square of mode {p + 1}",
-                        d * float(square.value[0]),
-                        d * float(square.error[0]),
+                        value,
+                        error,
                         d * self.mean_square(spring.k * self.eigenvalues[p]) if spring else np.nan,
                         "a^2",
-                        "equipartition, as sub-steps swing",
+                        "; ".join(filter(None, ("equipartition, as sub-steps swing", short))),
                     )
                 )
         return found
+
+    def relaxations(self) -> float:
+        """How many relaxation times of the slowest mode the run lasts; 0 where it is not known."""
+        measured = self.relaxation_time(self.correlators[0])
+        if measured is None or not measured[0] > 0:
+            return 0.0
+        return self.correlators[0].count * self.interval() / measured[0]
 
     def mean_square(self, stiffness: float) -> float:
         """Of a mode along one axis: equipartition, and what sub-steps of velocity Verlet add."""

@@ -166,6 +166,8 @@ class VelocityDistributionAccumulator(BlockAccumulator):
         found = []
         for k, name in enumerate((f"v_{AXES[self.axis]}", "speed")):
             probability = chi_square.joined(self.probability[k], self.of[k])
+            if len(probability) < 2:  # too few in a sample to tell classes apart
+                continue
             expected, spread = self._degrees(k, probability)
             found.append(
                 Comparison(

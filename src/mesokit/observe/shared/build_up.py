@@ -26,7 +26,7 @@ def result_of(accumulator: Accumulator, case: Case) -> Result:
     observable = next((one for one in case.observe if one.label == result.name), None)
     if observable is None or not observable.of_built_up_flow:
         return result
-    note = _too_early(accumulator, result, case, observable.every) or _drift(accumulator)
+    note = _too_early(accumulator, result, case, observable.every) or _drift(accumulator, result)
     if not note:
         return result
     return dataclasses.replace(
@@ -51,16 +51,17 @@ def _too_early(accumulator: Accumulator, result: Result, case: Case, every: int)
     return f"{NOT_STEADY}: the flow needs {build_up.need} steps before samples, had {build_up.had}"
 
 
-def _drift(accumulator: Accumulator) -> str:
+def _drift(accumulator: Accumulator, result: Result) -> str:
     """That both halves of the samples differ by more than they scatter."""
     blocks = getattr(accumulator, "blocks", None)
     halves = []
     for part in blocks.halves() if blocks is not None else ():
         half: Any = copy.copy(accumulator)
         half.blocks = part
-        halves.append({c.what: c for c in half.result().comparisons if math.isfinite(c.expected)})
+        halves.append({c.what: c for c in half.result().comparisons})
     first, second = halves or ({}, {})
-    for what in [what for what in first if what in second]:
+    known = [c.what for c in result.comparisons if math.isfinite(c.measured + c.expected)]
+    for what in [what for what in known if what in first and what in second]:
         one, other = first[what], second[what]
         apart = abs(one.measured - other.measured)
         if apart > DRIFTS * math.hypot(one.error, other.error) > 0:
@@ -76,5 +77,9 @@ def _of_theory(comparison: Comparison) -> list[str]:
 
 
 def _is_off(comparison: Comparison, share: float) -> bool:
-    """Whether the part that is missing would be seen."""
-    return share * abs(comparison.expected) > MATTERS * comparison.error > 0
+    """Whether the part that is missing would be seen; of few samples, whose error is unknown,
+    whether it is more than a twentieth."""
+    missing = share * abs(comparison.expected)
+    if not comparison.error > 0:
+        return share > 0.05 and missing > 0
+    return missing > MATTERS * comparison.error

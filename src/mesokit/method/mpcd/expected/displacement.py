@@ -94,6 +94,8 @@ class Displacement:
             return self.level(steps * fluid.timestep)
         if self.ballistic():
             return len(self.axes) * fluid.kT / self.mass * (steps * fluid.timestep) ** 2
+        if self.dissolved and setting.magnetic(self.case):
+            return None
         if alone is None or not set(self.axes) <= set(setting.quiet_axes(self.case)):
             return None
         d, dt, kT, mass = len(self.axes), fluid.timestep, fluid.kT, self.mass
@@ -194,6 +196,8 @@ class Displacement:
         nothing, alone = float("nan"), self.alone()
         note = setting.chaos(self.case, setting.STIRRED)
         solutes, molecule = self.case.solutes, self.molecule
+        if self.dissolved and setting.magnetic(self.case):
+            return nothing, setting.MAGNETIC
         if solutes is not None and alone is None:
             if not self.dissolved or self.case.fluid.molecule is not None:
                 return nothing, setting.caveat(self.case)

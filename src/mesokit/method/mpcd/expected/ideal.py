@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
 
 def undisturbed(case: Case) -> bool:
-    """Whether nothing drives the molecules, and no wall is in their way."""
-    return not (case.walls or setting.driven(case))
+    """Whether molecules are in equilibrium at rest, and no wall is in their way."""
+    return not (case.walls or setting.flowing(case))
 
 
 def mean_shape(case: Case, kind: int | str, group: Group) -> NDArray[np.float64] | None:
@@ -106,7 +106,8 @@ def drift_of(case: Case, group: Group, kind: int | str = 1) -> Drift | None:
     if solutes is None or solutes.solvent != "random" or alone is None or case.walls:
         return None
     place = solutes.index_of(kind)
-    if not solutes.ideal(place) or case.fluid.force.uniform(case.box.dimension) is None:
+    uniform = case.fluid.force.uniform(case.box.dimension) is not None
+    if setting.magnetic(case) or not solutes.ideal(place) or not uniform:
         return None
     mobility = solutes.masses[place] * alone / case.fluid.kT
     single = group.molecule is None

@@ -235,12 +235,23 @@ def with_start(case: Case, error: float, expected: float, runs: int = 1) -> floa
 
 
 def driven(case: Case) -> bool:
-    """Whether anything makes the fluid flow."""
+    """Whether anything makes the fluid flow, or hands it momentum."""
+    return flowing(case) or magnetic(case)
+
+
+def flowing(case: Case) -> bool:
+    """Whether anything makes the fluid flow: a magnetic field leaves it in equilibrium."""
     moving = any(surface.moves for wall in case.walls for surface in wall.surfaces().values())
-    held = case.solutes is not None and bool(
-        case.solutes.pulls or case.solutes.traps or case.solutes.magnetic
-    )
+    held = case.solutes is not None and bool(case.solutes.pulls or case.solutes.traps)
     return bool(case.box.sheared or case.fluid.force.acts or moving or held)
+
+
+MAGNETIC = "no theory of motion in a magnetic field"
+
+
+def magnetic(case: Case) -> bool:
+    """Whether a magnetic field turns the velocities of some beads."""
+    return case.solutes is not None and bool(case.solutes.magnetic)
 
 
 def closed_axes(case: Case) -> set[int]:

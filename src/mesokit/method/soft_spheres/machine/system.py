@@ -32,6 +32,7 @@ from mesokit.method.soft_spheres.machine.solid import MOST
 from mesokit.method.soft_spheres.machine.step import advance, find_forces
 from mesokit.method.soft_spheres.machine.taken import all_taken, in_numbers
 from mesokit.scalar.random import Counter
+from mesokit.spheres.wall.rows import AMPLITUDE, AXIS, KIND, PLACE, PLANE
 
 Array = NDArray[np.float64]
 CELLS = 4_000_000  # at most
@@ -224,6 +225,7 @@ class System:
             raise RunError("places are no numbers any more; expected a shorter timestep")
         if math.isfinite(self.given.fastest):
             self._require_followed()
+        self._require_inside()
         sort(self.grid, bodies.place, self.cell, self.begins, self.order)
         for old, new in zip(bodies, spare, strict=True):
             np.take(old, self.order, axis=0, out=new, mode="clip")
@@ -262,6 +264,19 @@ class System:
                 f"contacts take less than ten steps above {given.fastest:.3g}; expected a shorter "
                 "spheres.timestep, or a larger spheres.speed, from which that follows"
             )
+
+    def _require_inside(self) -> None:
+        """Raise RunError for a sphere whose centre lies behind a plane wall."""
+        places = self.bodies.place[:, :3]
+        for row in self.given.rows:
+            if row[KIND] != PLANE:
+                continue
+            inside = (places - row[PLACE : PLACE + 3]) @ row[AXIS : AXIS + 3] + row[AMPLITUDE]
+            if inside.min() < 0:
+                raise RunError(
+                    f"the centre of a sphere has passed a wall by {-float(inside.min()):.3g}: "
+                    "contacts are too soft for what falls or moves; expected shorter contacts"
+                )
 
     def _carry_springs(self) -> None:
         lists = self.lists
