@@ -47,6 +47,18 @@ def test_same_bits_after_a_stop(kind):
     assert whole.result().samples in (39, 40)  # rates need two looks
 
 
+def test_without_a_collision_no_pressure_is_known():
+    case = hard([EquationOfState(every=10)])
+    accumulator, spheres = EquationOfState(every=10).accumulator(case), FakeSpheres(case)
+    spheres.rates = (0.0, 0.0, 0.0)
+    spheres.collisions = (0, 0, 0)
+    sampled(accumulator, spheres, 5)
+    first, second, rate = accumulator.result().comparisons
+    assert np.isnan([first.measured, second.measured]).all() and rate.measured == 0
+    assert all(c.note == "undetermined: no collision was seen" for c in (first, second, rate))
+    assert np.isnan(rate.deviation)
+
+
 @pytest.mark.parametrize(("depth", "width"), [(0.5, 1.5), (-0.3, 1.2)])
 def test_no_theory_of_hard_spheres_for_those_that_attract_or_repel(depth, width):
     """Collision rates count cores alone, and are no equation of state."""

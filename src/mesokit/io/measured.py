@@ -139,5 +139,8 @@ def fitting(path: Path) -> Iterator[None]:
         yield
     except MesokitError:
         raise
+    except KeyError as error:
+        lacks = f"{error.args[0]} is missing; an earlier version may have written it"
+        raise CheckpointError(f"{path}: does not fit this case: {lacks}") from None
     except Exception as error:
         raise CheckpointError(f"{path}: does not fit this case: {error}") from None

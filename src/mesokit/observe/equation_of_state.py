@@ -91,6 +91,8 @@ class EquationOfStateAccumulator:
         errors = np.array([error for _, error in pressures])
         hard = self.case.spheres.collision.hard
         note = (fluid_note(self.case) or self._note_of_few(expected)) if hard else ""
+        if self.blocks.count and rate[0] == 0:
+            note = "undetermined: no collision was seen"
         listed = [
             Comparison(f"Z by the {name}", *found, expected, "", note)
             for name, found in zip(names, pressures, strict=True)
@@ -122,6 +124,8 @@ class EquationOfStateAccumulator:
             return [none] * (2 if self.equal else 1), none
         found: Estimate = of_mean(self.blocks)
         virial, events, twice = found.value
+        if not events:  # none of these numbers is known then
+            return [(math.nan, math.nan)] * (2 if self.equal else 1), (0.0, math.nan)
         kT = twice / (d * (n - 1))  # momentum is zero
         gradient = np.array([1 / (d * n * kT), 0.0, -virial / (d * n * kT * twice)])
         pressures = [found.scalar(1 + virial / (d * n * kT), gradient)]

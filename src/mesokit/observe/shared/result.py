@@ -23,6 +23,7 @@ Array = NDArray[np.floating[Any]]
 FIGURES = "mesokit.report"  # by their names: results know nothing of how they are drawn
 TABLES = "mesokit.io.tables"  # and written
 EXACT = 2.0**-52  # of a value: an error below is that of rounding
+ROUNDING = 1e-12  # relative: two numbers that differ by less are the same
 NOT_STEADY = "not steady"  # how the note of a comparison begins, where that is so
 
 
@@ -90,6 +91,8 @@ class Comparison:
         -10.0
         """
         difference = self.measured - self.expected
+        if abs(difference) < ROUNDING * abs(self.expected):
+            difference = 0.0
         if not self.steady:
             return math.nan
         return 100 * difference / abs(self.expected) if self.expected else math.nan
