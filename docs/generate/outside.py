@@ -23,7 +23,7 @@ PAGES = {  # file of the repository: page of the site
     "examples/README.md": "examples/index.md",
 }
 STATIC = ("CITATION.cff",)
-LINK = re.compile(r"(\]\()([^)#:\s]*)(#[^)\s]*)?(\))")
+LINK = re.compile(r"""(\]\(|src=")([^)"#:\s]*)(#[^)"\s]*)?(\)|")""")
 GUIDE = "docs/guide.md"
 
 FENCE = re.compile(r"^(```\w+) [\w-]+$", re.MULTILINE)  # blocks that tests know by a name
