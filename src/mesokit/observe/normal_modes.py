@@ -149,11 +149,6 @@ class NormalModesAccumulator:
         times, note = self.times()
         kind = self.observable.kind
         spring = springs_of(self.case, kind) if self.undisturbed() else None
-        times_of_run = self.relaxations()
-        short = ""
-        if 0 < times_of_run < ENOUGH:
-            run = f"the run has {times_of_run:.2g} relaxation times"
-            short = f"error bar is a lower bound: {run}"
         for p, correlator in enumerate(self.correlators[:SHOWN]):
             measured = self.relaxation_time(correlator)
             if measured is not None:
@@ -165,9 +160,12 @@ class NormalModesAccumulator:
             if len(square.value):
                 d = self.case.box.dimension
                 value, error = d * float(square.value[0]), d * float(square.error[0])
-                if short:  # independent components tell what blocks of time do not see
-                    seen = len(self.beads) * d * (1 + 0.5 * times_of_run)
+                times_of_run, short = self.relaxations(correlator), ""
+                if 0 < times_of_run < ENOUGH:  # independent components tell what blocks do not
+                    seen = len(self.beads) * d * (1 + times_of_run)
                     error = max(error, value * (2 / seen) ** 0.5)
+                    run = f"the run has {times_of_run:.2g} relaxation times"
+                    short = f"error bar is a lower bound: {run}"
                 found.append(
                     Comparison(
                         f"mean square of mode {p + 1}",
@@ -180,12 +178,12 @@ class NormalModesAccumulator:
                 )
         return found
 
-    def relaxations(self) -> float:
-        """How many relaxation times of the slowest mode the run lasts; 0 where it is not known."""
-        measured = self.relaxation_time(self.correlators[0])
+    def relaxations(self, correlator: MultipleTau) -> float:
+        """How many relaxation times of a mode the run lasts; 0 where it is not known."""
+        measured = self.relaxation_time(correlator)
         if measured is None or not measured[0] > 0:
             return 0.0
-        return self.correlators[0].count * self.interval() / measured[0]
+        return correlator.count * self.interval() / measured[0]
 
     def mean_square(self, stiffness: float) -> float:
         """Of a mode along one axis: equipartition, and what sub-steps of velocity Verlet add."""
