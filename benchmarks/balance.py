@@ -77,7 +77,7 @@ def one(name: str, limit: float, windows: int) -> dict[str, Any] | None:
     """Run so many times from sort to sort."""
     from mpi4py import MPI
 
-    from mesokit.execute.ranks.engine import Ranks
+    from mesokit.method.mpcd.engine.domains.engine import Ranks
     from mesokit.method.mpcd.start.fluid import start
 
     comm = MPI.COMM_WORLD

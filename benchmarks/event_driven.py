@@ -19,9 +19,9 @@ from typing import NamedTuple
 
 from benchmarks import lammps_peer
 from mesokit import Box, Case, HardSpheres, Run, Simulation
-from mesokit.method.event_driven.machine import system
-from mesokit.running.schedule import Leg
-from mesokit.spheres.kinds import ball_volume
+from mesokit.method.spheres.common.kinds import ball_volume
+from mesokit.method.spheres.hard.engine import system
+from mesokit.run.schedule import Leg
 
 ATOMS = 32_000  # of LAMMPS
 STEPS = 20  # at a time, so that calls from Python do not count

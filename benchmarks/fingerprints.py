@@ -66,7 +66,7 @@ pair = { rule = "wca" }
 def cases() -> Iterator[tuple[str, Any]]:
     """Name and case, cut to some steps with every observable looking at each fourth."""
     from mesokit import Case
-    from mesokit.running.warm import shortened
+    from mesokit.run.warm import shortened
 
     folders = [ROOT / "examples", ROOT / "src" / "mesokit"]
     files = sorted(f for folder in folders for f in folder.rglob("*.toml"))

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from benchmarks import ranks
-from mesokit.execute.ranks.blocks.tree import divided
+from mesokit.method.mpcd.engine.domains.blocks.tree import divided
 
 SIDE, DENSITY, STEPS = 64, 10, 40
 COUNTS = (2, 4, 8, 16)

@@ -57,8 +57,8 @@ def one(name: str, threads: int, steps: int) -> dict[str, Any] | None:
     from mpi4py import MPI
 
     from benchmarks.workloads import case
-    from mesokit.execute.cpu.engine import CPU
-    from mesokit.execute.ranks.engine import Ranks
+    from mesokit.method.mpcd.engine.cpu.engine import CPU
+    from mesokit.method.mpcd.engine.domains.engine import Ranks
     from mesokit.method.mpcd.start.fluid import start
 
     comm = MPI.COMM_WORLD

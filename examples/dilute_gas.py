@@ -10,7 +10,7 @@ import time
 import numpy as np
 
 from mesokit import Box, Case, HardSpheres, Run, Simulation, SoftSpheres, SpringDashpot, theory
-from mesokit.spheres.kinds import ball_volume
+from mesokit.method.spheres.common.kinds import ball_volume
 
 SHORT = "--short" in sys.argv  # a quick try
 FRACTIONS = {2: 1.11e-3, 3: 4.7e-4}  # where the mean free path is 500 radii

@@ -31,8 +31,8 @@ from mesokit import (
     SpringDashpot,
     theory,
 )
+from mesokit.method.spheres.common.kinds import ball_volume
 from mesokit.report.style import COLOURS, STYLE, lettered
-from mesokit.spheres.kinds import ball_volume
 
 SHORT = "--short" in sys.argv  # a quick try
 ROUNDS, SECONDS = (2, 0.05) if SHORT else (8, 0.25)  # of each measurement, in turn

@@ -64,7 +64,7 @@ def flying(monkeypatch):
     """The method `flying-spheres`, whose name is answered."""
     import fake_spheres
 
-    from mesokit import method as methods
+    from mesokit.case import methods
     from mesokit.case.case import case_class
 
     monkeypatch.setitem(methods.METHODS, fake_spheres.NAME, "fake_spheres")

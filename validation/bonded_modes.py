@@ -10,10 +10,10 @@ from common import ANGLE, BLUE, GREY, RED, Page, long, main, plt
 
 import mesokit
 from mesokit import SRD, Box, Case, Comparison, Fluid, Harmonic, MaxwellBoltzmann, Run, theory
-from mesokit.execute.cpu.engine import CPU
+from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.molecule import Molecule
+from mesokit.method.mpcd.observe.shared.modes import transverse_units
 from mesokit.method.mpcd.start.fluid import start
-from mesokit.observe.shared.modes import transverse_units
 
 WAVES = {"1": (1, 0, 0), "sqrt 2": (1, 1, 0), "2": (2, 0, 0)}
 SEEDS = (1, 2, 3, 4)

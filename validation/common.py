@@ -119,7 +119,7 @@ class Page:
 
     def run(
         self, name: str, case: mesokit.Case, positions: Any = None, velocities: Any = None
-    ) -> mesokit.io.open.RunFiles:
+    ) -> mesokit.run.opened.RunFiles:
         """Run a case on one thread, or read the same run from build/validation if it is there.
 
         Long scripts can be stopped and go on; `make clean` makes them begin anew.

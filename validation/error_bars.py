@@ -23,9 +23,9 @@ from mesokit import Case, Simulation
 from mesokit.case.checks import is_offered
 from mesokit.case.toml import override, parse, read
 from mesokit.errors import CaseError
-from mesokit.method.protocol import method_of
 from mesokit.observe import OBSERVABLES
-from mesokit.observe.shared.protocol import Observable
+from mesokit.seam.method import method_of
+from mesokit.seam.observable import Observable
 from mesokit.statistics import spread_ids
 
 SEEDS = 4 if SHORT else 16

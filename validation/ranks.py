@@ -25,10 +25,10 @@ import numpy as np
 from mpi4py import MPI
 
 from mesokit import Case, CaseError, MesokitError, Simulation, report
-from mesokit.ranks import world
-from mesokit.ranks.alone import Alone
-from mesokit.ranks.several import Several, wait
-from mesokit.running.on_ranks import require_ranks
+from mesokit.processes import world
+from mesokit.processes.alone import Alone
+from mesokit.processes.several import Several, wait
+from mesokit.run.on_ranks import require_ranks
 
 ROOT = Path(__file__).parents[1]
 PLACES = "examples/*.toml", "examples/*/*.toml", "src/mesokit/method/mpcd/templates/*.toml"

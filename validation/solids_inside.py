@@ -17,8 +17,8 @@ from common import Page, main
 import mesokit
 from mesokit import Box, Case, CaseError, Fluid, MaxwellBoltzmann, Plates, Run, Surface, Uniform
 from mesokit.case.component import tag_of
-from mesokit.execute.cpu.engine import CPU
 from mesokit.geometry.shape import SHAPES
+from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.start.fluid import start
 
 PARTICLE_STEPS, SHORT = 10**9, 10**6

@@ -12,7 +12,7 @@ from common import BLUE, GREEN, GREY, PURPLE, RED, SHORT, Page, found, long, mea
 from scipy.optimize import curve_fit
 
 from mesokit import Case, Comparison, MeanSquareDisplacement, Result, Stress, theory
-from mesokit.execute.cpu.engine import CPU
+from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.expected.molecules import without_bonds
 from mesokit.method.mpcd.start.fluid import start
 from mesokit.potential.thermal import lengths

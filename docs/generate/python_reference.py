@@ -20,7 +20,11 @@ GROUPS = (  # page, its title, where its names are; the first that fits decides
     (
         "spheres",
         "Event-driven dynamics, soft spheres",
-        ("mesokit.method.event_driven", "mesokit.method.soft_spheres", "mesokit.spheres"),
+        (
+            "mesokit.method.spheres.hard",
+            "mesokit.method.spheres.soft",
+            "mesokit.method.spheres.common",
+        ),
     ),
     ("flock", "Flocks", ("mesokit.method.flock",)),
     ("walls", "Walls", ("mesokit.geometry",)),

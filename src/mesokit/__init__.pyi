@@ -47,16 +47,6 @@ from mesokit.geometry.shape_protocol import Simple as Simple
 from mesokit.geometry.solids.solids import Solids as Solids
 from mesokit.geometry.surface import Surface as Surface
 from mesokit.geometry.surface_contact import SurfaceContact as SurfaceContact
-from mesokit.io.open import RunFiles as RunFiles
-from mesokit.io.open import open as open
-from mesokit.method.event_driven.collision.hard import HardCollision as HardCollision
-from mesokit.method.event_driven.collision.protocol import SphereCollision as SphereCollision
-from mesokit.method.event_driven.collision.square_well import SquareWell as SquareWell
-from mesokit.method.event_driven.collision.viscoelastic import Viscoelastic as Viscoelastic
-from mesokit.method.event_driven.heating.andersen import Andersen as Andersen
-from mesokit.method.event_driven.heating.kicks import Kicks as Kicks
-from mesokit.method.event_driven.heating.protocol import Heating as Heating
-from mesokit.method.event_driven.section import HardSpheres as HardSpheres
 from mesokit.method.flock.cohesion import Cohesion as Cohesion
 from mesokit.method.flock.noise.angular import AngularNoise as AngularNoise
 from mesokit.method.flock.noise.protocol import Noise as Noise
@@ -87,6 +77,36 @@ from mesokit.method.mpcd.field.uniform import Uniform as Uniform
 from mesokit.method.mpcd.fluid import Fluid as Fluid
 from mesokit.method.mpcd.molecule import Molecule as Molecule
 from mesokit.method.mpcd.numbers import Derived as Derived
+from mesokit.method.mpcd.observe.bond_correlation import BondCorrelation as BondCorrelation
+from mesokit.method.mpcd.observe.bond_length import BondLength as BondLength
+from mesokit.method.mpcd.observe.cell_occupancy import CellOccupancy as CellOccupancy
+from mesokit.method.mpcd.observe.density_field import DensityField as DensityField
+from mesokit.method.mpcd.observe.density_gradient import DensityGradient as DensityGradient
+from mesokit.method.mpcd.observe.domain_size import DomainSize as DomainSize
+from mesokit.method.mpcd.observe.dynamic_moduli import DynamicModuli as DynamicModuli
+from mesokit.method.mpcd.observe.flow_frames import FlowFrames as FlowFrames
+from mesokit.method.mpcd.observe.flow_rate import FlowRate as FlowRate
+from mesokit.method.mpcd.observe.forces import Forces as Forces
+from mesokit.method.mpcd.observe.longitudinal_modes import LongitudinalModes as LongitudinalModes
+from mesokit.method.mpcd.observe.molecule_histogram import MoleculeHistogram as MoleculeHistogram
+from mesokit.method.mpcd.observe.molecule_size import MoleculeSize as MoleculeSize
+from mesokit.method.mpcd.observe.molecule_tracks import MoleculeTracks as MoleculeTracks
+from mesokit.method.mpcd.observe.normal_modes import NormalModes as NormalModes
+from mesokit.method.mpcd.observe.probe import Probe as Probe
+from mesokit.method.mpcd.observe.radial_profile import RadialProfile as RadialProfile
+from mesokit.method.mpcd.observe.residence_time import ResidenceTime as ResidenceTime
+from mesokit.method.mpcd.observe.stress import Stress as Stress
+from mesokit.method.mpcd.observe.stress_autocorrelation import (
+    StressAutocorrelation as StressAutocorrelation,
+)
+from mesokit.method.mpcd.observe.stress_in_time import StressInTime as StressInTime
+from mesokit.method.mpcd.observe.surface_profile import SurfaceProfile as SurfaceProfile
+from mesokit.method.mpcd.observe.transit_time import TransitTime as TransitTime
+from mesokit.method.mpcd.observe.translocation_time import TranslocationTime as TranslocationTime
+from mesokit.method.mpcd.observe.transverse_modes import TransverseModes as TransverseModes
+from mesokit.method.mpcd.observe.velocity_field import VelocityField as VelocityField
+from mesokit.method.mpcd.observe.wake import Wake as Wake
+from mesokit.method.mpcd.observe.wall_stress import WallStress as WallStress
 from mesokit.method.mpcd.si import SI as SI
 from mesokit.method.mpcd.si import convert as convert
 from mesokit.method.mpcd.solute.magnetic import MagneticField as MagneticField
@@ -101,71 +121,63 @@ from mesokit.method.mpcd.thermostat.maxwell_boltzmann import MaxwellBoltzmann as
 from mesokit.method.mpcd.thermostat.none import NoThermostat as NoThermostat
 from mesokit.method.mpcd.thermostat.protocol import Thermostat as Thermostat
 from mesokit.method.mpcd.thermostat.rescale import Rescale as Rescale
-from mesokit.method.soft_spheres.pair.hertz import HertzLaw as HertzLaw
-from mesokit.method.soft_spheres.pair.protocol import ContactLaw as ContactLaw
-from mesokit.method.soft_spheres.pair.protocol import PairLaw as PairLaw
-from mesokit.method.soft_spheres.pair.spring_dashpot import SpringDashpot as SpringDashpot
-from mesokit.method.soft_spheres.section import SoftSpheres as SoftSpheres
-from mesokit.method.soft_spheres.thermostat.langevin import Langevin as Langevin
-from mesokit.method.soft_spheres.thermostat.protocol import SoftThermostat as SoftThermostat
-from mesokit.method.soft_spheres.thermostat.rescale import RescaleAll as RescaleAll
-from mesokit.observe.bond_correlation import BondCorrelation as BondCorrelation
-from mesokit.observe.bond_length import BondLength as BondLength
-from mesokit.observe.cell_occupancy import CellOccupancy as CellOccupancy
-from mesokit.observe.cluster_size import ClusterSize as ClusterSize
-from mesokit.observe.collision_rate import CollisionRate as CollisionRate
+from mesokit.method.spheres.common.kinds import SphereKind as SphereKind
+from mesokit.method.spheres.common.observe.cluster_size import ClusterSize as ClusterSize
+from mesokit.method.spheres.common.observe.collision_rate import CollisionRate as CollisionRate
+from mesokit.method.spheres.common.observe.contact_stress import ContactStress as ContactStress
+from mesokit.method.spheres.common.observe.equation_of_state import (
+    EquationOfState as EquationOfState,
+)
+from mesokit.method.spheres.common.observe.free_times import FreeTimes as FreeTimes
+from mesokit.method.spheres.common.observe.granular_temperature import (
+    GranularTemperature as GranularTemperature,
+)
+from mesokit.method.spheres.common.observe.height_in_time import HeightInTime as HeightInTime
+from mesokit.method.spheres.common.observe.height_profile import HeightProfile as HeightProfile
+from mesokit.method.spheres.common.observe.hexatic_order import HexaticOrder as HexaticOrder
+from mesokit.method.spheres.common.observe.kind_temperature import (
+    KindTemperature as KindTemperature,
+)
+from mesokit.method.spheres.common.observe.velocity_cumulant import (
+    VelocityCumulant as VelocityCumulant,
+)
+from mesokit.method.spheres.common.observe.wall_force import WallForce as WallForce
+from mesokit.method.spheres.common.start.from_file import FileStart as FileStart
+from mesokit.method.spheres.common.start.from_run import RunStart as RunStart
+from mesokit.method.spheres.common.start.lattice import LatticeStart as LatticeStart
+from mesokit.method.spheres.common.start.poured import PouredStart as PouredStart
+from mesokit.method.spheres.common.start.protocol import SphereStart as SphereStart
+from mesokit.method.spheres.common.start.random import RandomStart as RandomStart
+from mesokit.method.spheres.hard.collision.hard import HardCollision as HardCollision
+from mesokit.method.spheres.hard.collision.protocol import SphereCollision as SphereCollision
+from mesokit.method.spheres.hard.collision.square_well import SquareWell as SquareWell
+from mesokit.method.spheres.hard.collision.viscoelastic import Viscoelastic as Viscoelastic
+from mesokit.method.spheres.hard.heating.andersen import Andersen as Andersen
+from mesokit.method.spheres.hard.heating.kicks import Kicks as Kicks
+from mesokit.method.spheres.hard.heating.protocol import Heating as Heating
+from mesokit.method.spheres.hard.section import HardSpheres as HardSpheres
+from mesokit.method.spheres.soft.pair.hertz import HertzLaw as HertzLaw
+from mesokit.method.spheres.soft.pair.protocol import ContactLaw as ContactLaw
+from mesokit.method.spheres.soft.pair.protocol import PairLaw as PairLaw
+from mesokit.method.spheres.soft.pair.spring_dashpot import SpringDashpot as SpringDashpot
+from mesokit.method.spheres.soft.section import SoftSpheres as SoftSpheres
+from mesokit.method.spheres.soft.thermostat.langevin import Langevin as Langevin
+from mesokit.method.spheres.soft.thermostat.protocol import SoftThermostat as SoftThermostat
+from mesokit.method.spheres.soft.thermostat.rescale import RescaleAll as RescaleAll
 from mesokit.observe.conservation import Conservation as Conservation
-from mesokit.observe.contact_stress import ContactStress as ContactStress
-from mesokit.observe.density_field import DensityField as DensityField
-from mesokit.observe.density_gradient import DensityGradient as DensityGradient
 from mesokit.observe.density_profile import DensityProfile as DensityProfile
-from mesokit.observe.domain_size import DomainSize as DomainSize
-from mesokit.observe.dynamic_moduli import DynamicModuli as DynamicModuli
-from mesokit.observe.equation_of_state import EquationOfState as EquationOfState
-from mesokit.observe.flow_frames import FlowFrames as FlowFrames
-from mesokit.observe.flow_rate import FlowRate as FlowRate
-from mesokit.observe.forces import Forces as Forces
-from mesokit.observe.free_times import FreeTimes as FreeTimes
-from mesokit.observe.granular_temperature import GranularTemperature as GranularTemperature
-from mesokit.observe.height_in_time import HeightInTime as HeightInTime
-from mesokit.observe.height_profile import HeightProfile as HeightProfile
-from mesokit.observe.hexatic_order import HexaticOrder as HexaticOrder
-from mesokit.observe.kind_temperature import KindTemperature as KindTemperature
-from mesokit.observe.longitudinal_modes import LongitudinalModes as LongitudinalModes
 from mesokit.observe.mean_square_displacement import (
     MeanSquareDisplacement as MeanSquareDisplacement,
 )
-from mesokit.observe.molecule_histogram import MoleculeHistogram as MoleculeHistogram
-from mesokit.observe.molecule_size import MoleculeSize as MoleculeSize
-from mesokit.observe.molecule_tracks import MoleculeTracks as MoleculeTracks
-from mesokit.observe.normal_modes import NormalModes as NormalModes
-from mesokit.observe.probe import Probe as Probe
 from mesokit.observe.radial_distribution import RadialDistribution as RadialDistribution
-from mesokit.observe.radial_profile import RadialProfile as RadialProfile
-from mesokit.observe.residence_time import ResidenceTime as ResidenceTime
-from mesokit.observe.shared.protocol import Observable as Observable
-from mesokit.observe.shared.result import Comparison as Comparison
-from mesokit.observe.shared.result import Result as Result
 from mesokit.observe.snapshots import Snapshots as Snapshots
-from mesokit.observe.stress import Stress as Stress
-from mesokit.observe.stress_autocorrelation import StressAutocorrelation as StressAutocorrelation
-from mesokit.observe.stress_in_time import StressInTime as StressInTime
 from mesokit.observe.structure_factor import StructureFactor as StructureFactor
-from mesokit.observe.surface_profile import SurfaceProfile as SurfaceProfile
 from mesokit.observe.temperature_profile import TemperatureProfile as TemperatureProfile
-from mesokit.observe.transit_time import TransitTime as TransitTime
-from mesokit.observe.translocation_time import TranslocationTime as TranslocationTime
-from mesokit.observe.transverse_modes import TransverseModes as TransverseModes
 from mesokit.observe.velocity_autocorrelation import (
     VelocityAutocorrelation as VelocityAutocorrelation,
 )
-from mesokit.observe.velocity_cumulant import VelocityCumulant as VelocityCumulant
 from mesokit.observe.velocity_distribution import VelocityDistribution as VelocityDistribution
-from mesokit.observe.velocity_field import VelocityField as VelocityField
 from mesokit.observe.velocity_profile import VelocityProfile as VelocityProfile
-from mesokit.observe.wake import Wake as Wake
-from mesokit.observe.wall_force import WallForce as WallForce
-from mesokit.observe.wall_stress import WallStress as WallStress
 from mesokit.potential.bending import Bending as Bending
 from mesokit.potential.fene import FENE as FENE
 from mesokit.potential.harmonic import Harmonic as Harmonic
@@ -176,16 +188,14 @@ from mesokit.potential.protocol import Bond as Bond
 from mesokit.potential.protocol import Pair as Pair
 from mesokit.potential.table import Table as Table
 from mesokit.potential.wca import WCA as WCA
-from mesokit.running.callbacks import Callback as Callback
-from mesokit.running.callbacks import StopRun as StopRun
-from mesokit.running.callbacks import every as every
-from mesokit.simulation import Simulation as Simulation
-from mesokit.spheres.kinds import SphereKind as SphereKind
-from mesokit.spheres.start.from_file import FileStart as FileStart
-from mesokit.spheres.start.from_run import RunStart as RunStart
-from mesokit.spheres.start.lattice import LatticeStart as LatticeStart
-from mesokit.spheres.start.poured import PouredStart as PouredStart
-from mesokit.spheres.start.protocol import SphereStart as SphereStart
-from mesokit.spheres.start.random import RandomStart as RandomStart
+from mesokit.run.callbacks import Callback as Callback
+from mesokit.run.callbacks import StopRun as StopRun
+from mesokit.run.callbacks import every as every
+from mesokit.run.opened import RunFiles as RunFiles
+from mesokit.run.opened import open as open
+from mesokit.run.simulation import Simulation as Simulation
+from mesokit.seam.observable import Observable as Observable
+from mesokit.seam.result import Comparison as Comparison
+from mesokit.seam.result import Result as Result
 from mesokit.study.merge import merge as merge
 from mesokit.study.study import Study as Study

@@ -23,102 +23,69 @@ MODULES = {
 # Files or folders, the longest name that fits decides: which modules of mesokit they may import, at
 # run time, inside functions or for type hints. "=" before a name: that module, not what is in it.
 MPCD = (
-    "case", "errors", "geometry", "kernels", "method.mpcd", "potential", "running.cores", "scalar",
-    "statistics", "theory",
+    "case", "errors", "geometry", "kernels", "method.mpcd", "potential", "processes.cores",
+    "scalar", "seam", "statistics", "theory",
 )  # fmt: skip
 # type hints only, as the test of what is loaded shows
-START = (*MPCD, "execute.cpu.numbers", "ranks.world")
+START = (*MPCD, "processes.world")
+ENGINE = ("case", "errors", "geometry", "loops", "method.mpcd", "potential", "scalar", "seam")
+SPHERES = (
+    "case", "errors", "geometry", "loops", "method.spheres", "observe", "potential",
+    "processes.cores", "scalar", "seam", "statistics", "theory",
+)  # fmt: skip
 ROWS = {
     "__init__.py": (),
     "__main__.py": ("cli",),
     "errors.py": (),
-    "engine.py": (),
-    "simulation.py": (
-        "case", "errors", "io", "=method", "method.protocol", "observe.shared", "ranks", "report",
-        "running",
-    ),
-    "ranks/": ("errors", "ranks"),
-    "ranks/mpiexec.py": ("errors", "ranks", "running.signals"),
-    "running/cores.py": (),
-    "running/compiling.py": ("kernels.kept",),
-    "running/warm.py": ("case", "kernels", "simulation"),
-    "running/signals.py": (),
-    "running/": (
-        "case", "errors", "io", "=method", "method.protocol", "observe.shared", "ranks", "report",
-        "running",
-    ),
     "scalar/": ("scalar",),
     "kernels/": ("kernels",),
     "theory/": ("theory",),
     "statistics/": ("statistics",),
-    "case/": ("case", "errors", "=method", "scalar", "theory"),
+    "case/methods.py": (),
+    "case/": ("case", "errors", "scalar", "theory"),
     "geometry/": ("case", "errors", "geometry", "scalar"),
     "potential/": ("case", "errors", "potential", "scalar", "theory"),
-    "spheres/": ("case", "errors", "geometry", "scalar", "spheres"),
-    "spheres/cost.py": ("case", "spheres", "theory"),
-    "spheres/velocity_memory.py": ("case", "engine", "errors", "spheres"),
-    "spheres/expected/": ("case", "errors", "geometry", "spheres", "theory"),
-    "spheres/start/random.py": ("case", "method.event_driven.grow", "spheres"),
-    "spheres/start/poured.py": ("case", "errors", "method.soft_spheres.settle", "spheres"),
-    "spheres/start/from_file.py": ("case", "errors", "io.snapshot_file", "spheres"),
-    "spheres/start/from_run.py": ("case", "errors", "io.earlier_spheres", "spheres"),
+    "seam/": ("case", "errors", "processes.cores", "seam", "statistics"),
+    "loops/": ("loops", "scalar"),
+    "processes/": ("errors", "processes"),
+    "processes/cores.py": (),
+    "processes/signals.py": (),
     "method/__init__.py": (),
-    "method/protocol.py": ("case", "engine", "=method", "running.cores"),
     "method/mpcd/": MPCD,
-    "method/mpcd/columns.py": (*MPCD, "method.protocol"),
-    "method/mpcd/derived.py": (*MPCD, "method.protocol"),
-    "method/mpcd/summary.py": (*MPCD, "method.protocol"),
     "method/mpcd/start/": START,
-    "method/mpcd/start/first_state.py": (*MPCD, "execute", "io", "ranks"),
-    "method/mpcd/method.py": (
-        *MPCD, "engine", "execute", "io", "method.protocol", "observe", "ranks",
-    ),
-    "method/event_driven/": (
-        "case", "engine", "errors", "geometry", "method.event_driven", "method.protocol",
-        "observe", "scalar", "spheres", "statistics", "theory",
-    ),
+    "method/mpcd/start/first_state.py": (*MPCD, "io", "processes"),
+    "method/mpcd/method.py": (*MPCD, "io", "observe", "processes"),
+    "method/mpcd/engine/": ENGINE,
+    "method/mpcd/engine/domains/messages/mpi.py": (*ENGINE, "processes.cores"),
+    "method/mpcd/observe/": (*MPCD, "observe"),
+    "method/spheres/": SPHERES,
+    "method/spheres/common/start/from_file.py": (*SPHERES, "io.snapshot_file"),
+    "method/spheres/common/start/from_run.py": (*SPHERES, "io.earlier_spheres"),
     "method/flock/": (
-        "case", "engine", "errors", "execute.cpu.threads", "geometry", "io", "method.flock",
-        "method.protocol", "observe", "running.cores", "scalar", "statistics", "theory",
-    ),
-    "method/soft_spheres/": (
-        "case", "engine", "errors", "execute.cells", "execute.cpu.strips.layout",
-        "execute.cpu.threads", "geometry", "method.protocol", "method.soft_spheres", "observe",
-        "potential", "running.cores", "scalar", "spheres", "statistics", "theory",
+        "case", "errors", "geometry", "io", "loops", "method.flock", "observe", "processes.cores",
+        "scalar", "seam", "statistics", "theory",
     ),
     "method/brownian/": (
-        "case", "engine", "errors", "method.brownian", "method.protocol", "observe",
-        "running.cores", "scalar", "statistics",
+        "case", "errors", "method.brownian", "observe", "processes.cores", "scalar", "seam",
+        "statistics",
     ),
-    "execute/ranks/messages/mpi.py": ("execute", "running.cores", "scalar"),
-    "execute/": ("case", "errors", "execute", "geometry", "method.mpcd", "potential", "scalar"),
     "observe/": (
-        "case", "engine", "errors", "geometry", "method.mpcd", "method.protocol", "observe",
-        "statistics", "theory",
+        "case", "errors", "geometry", "method.mpcd", "observe", "seam", "statistics", "theory",
     ),
-    "io/": (
-        "case", "errors", "geometry", "io", "method.protocol", "observe.shared.named",
-        "observe.shared.pooled", "observe.shared.result",
-    ),
-    "io/open.py": (
-        "case", "errors", "io", "method.protocol", "observe.shared.build_up",
-        "observe.shared.named", "observe.shared.result", "report",
-    ),
-    "report/": ("case", "errors", "geometry", "io", "method.protocol", "observe", "report"),
-    "report/flow/state.py": ("case", "method.protocol"),
-    "report/flow/moving_plates.py": ("case", "report", "spheres.wall"),
+    "io/": ("case", "errors", "geometry", "io", "seam"),
+    "report/": ("case", "errors", "geometry", "io", "observe", "report", "seam"),
+    "report/flow/state.py": ("case", "seam"),
+    "report/flow/moving_plates.py": ("case", "method.spheres.common.wall", "report"),
     "report/flow/shaded.py": ("report", "kernels.kernel"),
+    "run/": ("case", "errors", "io", "observe.shared", "processes", "report", "run", "seam"),
+    "run/compiling.py": ("kernels.kept",),
+    "run/warm.py": ("case", "kernels", "run"),
     "study/": (
-        "case", "errors", "io", "method.protocol", "observe.shared", "ranks", "report", "running",
-        "simulation", "statistics", "study",
+        "case", "errors", "io", "observe.shared", "processes", "report", "run", "seam",
+        "statistics", "study",
     ),
-    "cli/": (
-        "case", "cli", "errors", "io", "=method", "method.protocol", "ranks", "report", "running",
-        "simulation", "study",
-    ),
-    "cli/compiled.py": (
-        "case.amounts", "cli", "errors", "kernels", "=method", "ranks", "running.warm",
-    ),
+    "cli/": ("case", "cli", "errors", "io", "processes", "report", "run", "seam", "study"),
+    "cli/compiled.py": ("case", "cli", "errors", "kernels", "processes", "run.warm"),
     "cli/theory.py": ("case", "cli", "errors", "method.mpcd.fluid", "report", "theory"),
     "cli/chains.py": ("case", "errors", "theory"),
     "cli/chain_figures.py": ("cli", "errors", "report", "theory"),
@@ -128,18 +95,18 @@ for _place, _row in ROWS.items():  # what is written as scalar functions is comp
         ROWS[_place] = (*_row, "kernels")
 # what loads modules by names that are data: public names, methods, parts, figures, options
 BY_NAME = {
-    "__init__.py", "method/__init__.py", "case/registry.py", "case/outside.py",
-    "case/describe/shown.py", "observe/shared/result.py", "io/optional.py", "study/work.py",
+    "__init__.py", "case/methods.py", "case/registry.py", "case/outside.py",
+    "case/describe/shown.py", "seam/result.py", "io/optional.py", "study/work.py",
     "geometry/shape/mesh.py", "cli/commands.py", "kernels/made_of.py",
 }  # fmt: skip
 MOST_FILES = 16  # in a folder of machinery; of laws, quantities and pictures there may be more
-LONG = ("theory", "observe", "report/flow", "io")
+LONG = ("theory", "observe", "method/mpcd/observe", "report/flow", "io")
 # module: the only places in the package that import it, at most one once a backend exists
 HOMES = {
     "h5py": ("io/",),
     "gsd": ("io/",),
     "MDAnalysis": ("io/",),
-    "mpi4py": ("ranks/", "execute/ranks/"),
+    "mpi4py": ("processes/", "method/mpcd/engine/domains/"),
     "numba.cuda": (),
 }
 
@@ -201,7 +168,7 @@ def test_files_import_only_what_they_may(imported: dict[str, set[str]]) -> None:
 def test_imports_that_are_forbidden_are_seen() -> None:
     text = "def f():\n    from ..io import open\n    import h5py\nx = numba.cuda.grid"
     found = set(imports("theory/couette.py", ast.walk(ast.parse(text))))
-    assert forbidden("theory/couette.py", found) == {"mesokit.io.open", "h5py", "numba.cuda"}
+    assert forbidden("theory/couette.py", found) == {"mesokit.run.opened", "h5py", "numba.cuda"}
 
 
 def test_every_rule_is_about_a_file() -> None:
@@ -268,7 +235,7 @@ def test_the_rules_see_what_they_should(imported: dict[str, set[str]]) -> None:
 def test_quick_commands_load_nothing_heavy(tmp_path: Path) -> None:
     (tmp_path / "case.toml").write_text("[run]\nsteps = 10\n[box]\nsize = [10, 10]\n")
     commands = [["--help"], ["new", "--help"], ["theory"], ["check", "case.toml"]]
-    heavy = {"h5py", "matplotlib", "mesokit.simulation", "MDAnalysis"}
+    heavy = {"h5py", "matplotlib", "mesokit.run.simulation", "MDAnalysis"}
     program = (
         "import sys; from mesokit.cli import main\n"
         f"for command in {commands!r}:\n"

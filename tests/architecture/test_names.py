@@ -10,8 +10,8 @@ import pytest
 
 from mesokit.case.case import case_class
 from mesokit.case.component import TAGS, is_component, names_of
+from mesokit.case.methods import METHODS
 from mesokit.case.registry import FAMILIES, Family
-from mesokit.method import METHODS
 
 # words that mean something else as well: what a step sums, a primitive of solids, keys of a start
 OTHERS = {"stress", "sampled", "file", "run"}

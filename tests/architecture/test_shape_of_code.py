@@ -43,7 +43,7 @@ def test_many_parameters_are_seen() -> None:
 
 @pytest.mark.parametrize("name", ["step", "advance"])
 def test_the_step_is_on_one_page(name: str, nodes: dict[str, list[ast.AST]]) -> None:
-    [function] = [f for f in functions(nodes["execute/cpu/step.py"]) if f.name == name]
+    [function] = [f for f in functions(nodes["method/mpcd/engine/cpu/step.py"]) if f.name == name]
     assert parameters(function) <= 6
     assert len(function.body) - 1 <= 20  # the docstring is not counted
     assert (function.end_lineno or 0) - function.lineno <= 22

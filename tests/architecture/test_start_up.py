@@ -109,7 +109,7 @@ def require_no_compiler(modules: list[str]) -> None:
     """No library beyond those of cases, and nothing of compiled code but the place for it."""
     assert LIBRARIES & set(modules) == {"numpy", "pydantic"}
     assert of("mesokit.kernels", modules) == {"later"}
-    assert not of("mesokit.execute", modules)
+    assert not of("mesokit.method.mpcd.engine", modules)
 
 
 @pytest.mark.parametrize(
@@ -166,7 +166,7 @@ def test_every_command_is_in_the_module_that_the_table_says() -> None:
     [
         ("mesokit.potential.Bond", "fene"),
         ("mesokit.potential.Bond", "spring"),  # in a file with another
-        ("mesokit.spheres.start.SphereStart", "file"),  # in a file of another name
+        ("mesokit.method.spheres.common.start.SphereStart", "file"),  # in a file of another name
         ("mesokit.observe.Observable", "contact-clusters"),
         ("mesokit.geometry.shape.Wall", "half-space"),
     ],

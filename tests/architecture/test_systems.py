@@ -8,13 +8,13 @@ from collections.abc import Iterable, Iterator
 CHILD = {"signal.SIGALRM", "signal.SIGKILL", "signal.alarm"}  # by which a process ends its child
 # The files that may use some of it: what they use
 HOMES = {
-    "running/cores.py": {"os.sched_getaffinity"},
+    "processes/cores.py": {"os.sched_getaffinity"},
     "case/warnings.py": {"os.sysconf", "resource"},
     "kernels/ahead.py": {"os.fork", "os.sched_getaffinity"} | CHILD,
     "kernels/made_of.py": {"ExternalFunction"},
     "kernels/store.py": {"/proc", "os.getuid"},
     "scalar/system.py": {"time.CLOCK_MONOTONIC", "ctypes", "ExternalFunction"},
-    "execute/ranks/messages/mpi.py": {"ctypes", "ExternalFunction"},
+    "method/mpcd/engine/domains/messages/mpi.py": {"ctypes", "ExternalFunction"},
     "io/run_directory.py": {"/proc"},
 }
 MODULES = {"fcntl", "resource", "pwd", "grp", "termios", "tty", "pty", "posix", "syslog", "ctypes"}

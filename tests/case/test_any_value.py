@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mesokit import Case, CaseError
+from mesokit.case.methods import templates
 from mesokit.case.toml import parse
-from mesokit.method import templates
-from mesokit.method.protocol import method_of
+from mesokit.seam.method import method_of
 
 TEMPLATES = [Path(str(path)) for path in templates().values()]
 

@@ -5,7 +5,7 @@ import dataclasses
 import pytest
 
 from mesokit import Box, Case, CaseError, Run
-from mesokit import method as methods
+from mesokit.case import methods
 from mesokit.case.shear.oscillating import OscillatingShear
 
 GIVEN = {

@@ -17,7 +17,7 @@ from mesokit import (
     Surface,
     SurfaceContact,
 )
-from mesokit.method.protocol import method_of
+from mesokit.seam.method import method_of
 
 GRAINS = {"number": 300, "kT": 1.0}
 FALL = {**GRAINS, "gravity": [0, -1]}

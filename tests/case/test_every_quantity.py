@@ -5,9 +5,9 @@ import dataclasses
 import pytest
 
 from mesokit import Case, CaseError
+from mesokit.case.methods import templates
 from mesokit.case.registry import family_of
-from mesokit.method import templates
-from mesokit.method.protocol import method_of
+from mesokit.seam.method import method_of
 
 TEMPLATES = ["bulk", "poiseuille", "brownian", "flock", "event_driven", "soft_spheres"]
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mesokit.spheres.start.lattice import LatticeStart, nearest
+from mesokit.method.spheres.common.start.lattice import LatticeStart, nearest
 
 LENGTHS = st.floats(3.0, 14.0)
 

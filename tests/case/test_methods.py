@@ -6,9 +6,9 @@ import pickle
 import pytest
 
 from mesokit import Box, Case, CaseError, Fluid, Plates, Run, Simulation, Start
-from mesokit import method as methods
+from mesokit.case import methods
 from mesokit.case.case import case_class
-from mesokit.method.protocol import Method, method_of
+from mesokit.seam.method import Method, method_of
 
 WANDER = """
 import dataclasses

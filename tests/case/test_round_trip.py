@@ -39,10 +39,10 @@ from mesokit import (
     Water,
 )
 from mesokit.case.component import is_component
-from mesokit.method import templates
+from mesokit.case.methods import templates
 from mesokit.method.mpcd.derived import derive
 from mesokit.method.mpcd.numbers import Derived
-from mesokit.method.protocol import method_of
+from mesokit.seam.method import method_of
 
 positive = st.floats(1e-3, 1e3)
 small = st.floats(-1.0, 1.0)

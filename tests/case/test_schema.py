@@ -10,9 +10,9 @@ import pytest
 import mesokit
 from mesokit import CaseError, component, param
 from mesokit.case.describe import keys
+from mesokit.case.methods import templates
 from mesokit.case.registry import FAMILIES
 from mesokit.cli import main
-from mesokit.method import templates
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES = [Path(str(file)) for file in templates().values()]

@@ -15,7 +15,7 @@ from mesokit import (
     Surface,
     SurfaceContact,
 )
-from mesokit.method.protocol import method_of
+from mesokit.seam.method import method_of
 
 GRAINS = {"number": 300}
 SLOPE = {**GRAINS, "gravity": [1, -1]}

@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 from mesokit.case.case import Case
+from mesokit.case.methods import studies, templates
 from mesokit.cli import main
-from mesokit.method import studies, templates
 from mesokit.study.study import Study
 
 Captured = pytest.CaptureFixture[str]
@@ -317,7 +317,7 @@ runpy.run_module("mesokit", run_name="__main__")
 """
 
 
-@pytest.mark.parametrize("module", ["click", "pydantic", "numba", "h5py", "mesokit.simulation"])
+@pytest.mark.parametrize("module", ["click", "pydantic", "numba", "h5py", "mesokit.run.simulation"])
 def test_ctrl_c_while_starting(module: str) -> None:
     Path("case.toml").write_text(SMALL)
     done = subprocess.run(

@@ -14,7 +14,7 @@ import pytest
 
 from mesokit import Case
 from mesokit.cli import main
-from mesokit.method.protocol import method_of
+from mesokit.seam.method import method_of
 from mesokit.study.local import Here
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -5,7 +5,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba import njit
 
-from mesokit.execute.cpu.strips.cell_energy import Column, NotAsked, WithCount, tally, untangled
+from mesokit.method.mpcd.engine.cpu.strips.cell_energy import (
+    Column,
+    NotAsked,
+    WithCount,
+    tally,
+    untangled,
+)
 
 SCALE = 2.0**20
 FASTEST = (2.0**32 / SCALE) ** 0.5

@@ -11,8 +11,8 @@ import pytest
 
 from mesokit import AT, SRD, MaxwellBoltzmann, NoForce, NoThermostat, Plates, Surface, Uniform
 from mesokit.errors import CaseError
-from mesokit.execute.cpu.engine import CPU
 from mesokit.method.mpcd import collision, field, thermostat
+from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.species import Species
 from mesokit.method.mpcd.start.fluid import start
 

@@ -8,11 +8,11 @@ from laboratory import make_case, make_fluid
 
 from mesokit import Species
 from mesokit.errors import RunError
-from mesokit.execute.cpu.engine import CPU
-from mesokit.execute.cpu.numbers import Numbers
-from mesokit.execute.pieces import pieces
-from mesokit.execute.ranks.blocks.region import Region, Space, keys
-from mesokit.execute.ranks.blocks.tree import divided
+from mesokit.method.mpcd.engine.cpu.engine import CPU
+from mesokit.method.mpcd.engine.cpu.numbers import Numbers
+from mesokit.method.mpcd.engine.domains.blocks.region import Region, Space, keys
+from mesokit.method.mpcd.engine.domains.blocks.tree import divided
+from mesokit.method.mpcd.engine.pieces import pieces
 from mesokit.scalar.fixed_point import added_halves, halves, joined
 
 HUGE = 2**20, 2**20

@@ -6,8 +6,8 @@ from kinds import MOLECULES, SHEARED
 from laboratory import assert_same, fingerprint, make_case, make_fluid
 
 from mesokit import Harmonic
-from mesokit.execute.cpu.engine import CPU
-from mesokit.execute.cpu.strips.layout import LANES, STRIPS, places_of_beads
+from mesokit.loops.layout import LANES, STRIPS, places_of_beads
+from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.start.fluid import start
 

@@ -7,8 +7,8 @@ import pytest
 from numba import njit
 from scipy import stats
 
-from mesokit.execute.cpu.strips.layout import LANES, SCRATCH_ROW
-from mesokit.execute.virtual.per_cell import MEAN, NUMBER, ROWS, count_batch
+from mesokit.loops.layout import LANES, SCRATCH_ROW
+from mesokit.method.mpcd.engine.virtual.per_cell import MEAN, NUMBER, ROWS, count_batch
 from mesokit.scalar.elementary import short_exp
 from mesokit.scalar.gamma import gamma_number
 from mesokit.scalar.poisson import poisson_number

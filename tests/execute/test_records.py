@@ -6,10 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba import njit
 
-from mesokit.execute.cpu.collide import put_block
-from mesokit.execute.cpu.stages import add_strip
-from mesokit.execute.cpu.strips import records
-from mesokit.execute.cpu.strips.layout import LANES, QUAD, SCRATCH_ROW, record_length, sums_length
+from mesokit.loops.layout import LANES, QUAD, SCRATCH_ROW, record_length, sums_length
+from mesokit.method.mpcd.engine.cpu.collide import put_block
+from mesokit.method.mpcd.engine.cpu.stages import add_strip
+from mesokit.method.mpcd.engine.cpu.strips import records
 
 CELLS = 12
 

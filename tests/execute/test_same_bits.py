@@ -18,7 +18,7 @@ from kinds import (
 from laboratory import assert_same, make_case, make_fluid
 
 from mesokit import Harmonic, MaxwellBoltzmann, Molecule, StartUp
-from mesokit.execute.cpu.engine import CPU
+from mesokit.method.mpcd.engine.cpu.engine import CPU
 
 STEPS = 110  # more than one re-sorting
 FEWER = 40  # of many sub-steps

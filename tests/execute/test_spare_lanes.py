@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from mesokit import SRD, Box, Case, Fluid, MaxwellBoltzmann, Plates, Run, Uniform
-from mesokit.execute.cpu.engine import CPU
-from mesokit.execute.cpu.strips.layout import LANES
+from mesokit.loops.layout import LANES
+from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.start.fluid import start
 
 

@@ -10,8 +10,8 @@ from numba import njit
 
 from mesokit import Plates, Surface
 from mesokit.case.box import Box, fold, peculiar
-from mesokit.execute.cpu.bounce import bounce
 from mesokit.geometry.protocol import first_hit, touches
+from mesokit.method.mpcd.engine.cpu.bounce import bounce
 from mesokit.scalar.random import Counter
 
 WIDTH, LENGTH = 3, 5

@@ -6,10 +6,10 @@ from laboratory import make_case
 from numba import njit
 
 from mesokit import AT, Plates
-from mesokit.execute.cpu.engine import CPU
-from mesokit.execute.cpu.groups import Now
-from mesokit.execute.cpu.threads import Team
-from mesokit.execute.virtual.stages import top_up_walls
+from mesokit.loops.threads import Team
+from mesokit.method.mpcd.engine.cpu.engine import CPU
+from mesokit.method.mpcd.engine.cpu.groups import Now
+from mesokit.method.mpcd.engine.virtual.stages import top_up_walls
 from mesokit.scalar.fixed_point import ROUNDER_BITS
 from mesokit.scalar.random import Counter
 

@@ -13,11 +13,11 @@ from PIL import Image
 
 from mesokit import Box, Case, CaseError, Disk, Plates, Run, Solids, Sphere
 from mesokit.case.component import tag_of
-from mesokit.execute.cpu.bounce import bounce
 from mesokit.geometry.protocol import homed
 from mesokit.geometry.shape import SHAPES
 from mesokit.geometry.solids.bodies import NOBODY
 from mesokit.geometry.solids.flight import first_meeting
+from mesokit.method.mpcd.engine.cpu.bounce import bounce
 from mesokit.method.mpcd.streaming import fall
 from mesokit.scalar.random import Counter
 

@@ -22,26 +22,24 @@ from mesokit import (
 from mesokit.case import box as boxes
 from mesokit.case.box import Box
 from mesokit.case.shear import protocol as histories
-from mesokit.execute.beads import interactions
-from mesokit.execute.beads.neighbours import nearest_image
-from mesokit.execute.cpu.bounce import bounce
-from mesokit.execute.cpu.grid import Grid, cell_index, in_cell
-from mesokit.execute.cpu.physics import Physics
-from mesokit.execute.cpu.strips import cell_energy
-from mesokit.execute.cpu.strips.terms import read_sums, terms_of
 from mesokit.geometry import cut
 from mesokit.geometry import protocol as solids
 from mesokit.geometry.solids import contact, filled  # noqa: F401  what solids in tables answer
 from mesokit.geometry.solids.bodies import Bodies
 from mesokit.geometry.solids.cut_cube import share_and_depth, share_beyond
 from mesokit.geometry.solids.none import Nothing
-from mesokit.method.event_driven.collision import RULES
-from mesokit.method.event_driven.collision import protocol as spheres
 from mesokit.method.flock.engine.walls import flown
 from mesokit.method.flock.noise import RULES as NOISES
 from mesokit.method.flock.noise import protocol as birds
 from mesokit.method.mpcd import collision, thermostat
 from mesokit.method.mpcd.collision import protocol as rules
+from mesokit.method.mpcd.engine.beads import interactions
+from mesokit.method.mpcd.engine.beads.neighbours import nearest_image
+from mesokit.method.mpcd.engine.cpu.bounce import bounce
+from mesokit.method.mpcd.engine.cpu.grid import Grid, cell_index, in_cell
+from mesokit.method.mpcd.engine.cpu.physics import Physics
+from mesokit.method.mpcd.engine.cpu.strips import cell_energy
+from mesokit.method.mpcd.engine.cpu.strips.terms import read_sums, terms_of
 from mesokit.method.mpcd.field import protocol as fields
 from mesokit.method.mpcd.field import varying
 from mesokit.method.mpcd.field.oscillating import Cosine
@@ -49,9 +47,11 @@ from mesokit.method.mpcd.field.sampled import Nodes
 from mesokit.method.mpcd.field.scheduled import Points
 from mesokit.method.mpcd.streaming import fall, halfway, vector
 from mesokit.method.mpcd.thermostat import protocol as thermostats
-from mesokit.method.soft_spheres.pair import protocol as contacts
-from mesokit.method.soft_spheres.pair.hertz import Hertz as HertzContact
-from mesokit.method.soft_spheres.pair.spring_dashpot import Linear
+from mesokit.method.spheres.hard.collision import RULES
+from mesokit.method.spheres.hard.collision import protocol as spheres
+from mesokit.method.spheres.soft.pair import protocol as contacts
+from mesokit.method.spheres.soft.pair.hertz import Hertz as HertzContact
+from mesokit.method.spheres.soft.pair.spring_dashpot import Linear
 from mesokit.potential import ANGLES, BONDS, PAIRS
 from mesokit.potential import protocol as potentials
 from mesokit.potential.angle import bend

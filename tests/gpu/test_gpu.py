@@ -51,9 +51,9 @@ def modules() -> Iterator[ModuleType]:
 
 # Of these the implementations are loops over lanes of a strip, or over lists: the CPU's own.
 LOOPS = (
-    "mesokit.execute.beads.links",
-    "mesokit.execute.beads.verlet",
-    "mesokit.method.soft_spheres.machine.acting",
+    "mesokit.method.mpcd.engine.beads.links",
+    "mesokit.method.mpcd.engine.beads.verlet",
+    "mesokit.method.spheres.soft.engine.acting",
 )
 
 

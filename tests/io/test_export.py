@@ -27,7 +27,7 @@ from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.method.mpcd.species import Species
 from mesokit.method.mpcd.start.section import Start
-from mesokit.simulation import Simulation
+from mesokit.run.simulation import Simulation
 
 TRIMERS = Molecule(length=3, bond=Harmonic(K=2.0))
 ALL = ("position", "velocity", "image")

@@ -14,8 +14,8 @@ import mesokit
 from mesokit import Box, Case, CaseError, Run, Simulation
 from mesokit.case.trajectory import Trajectory, stored_bytes
 from mesokit.io.snapshot_file import read_snapshot
-from mesokit.spheres.kinds import SphereKind
-from mesokit.spheres.section import Spheres
+from mesokit.method.spheres.common.kinds import SphereKind
+from mesokit.method.spheres.common.section import Spheres
 
 ALL = ("position", "velocity", "spin", "image", "id")
 KINDS = (SphereKind(0.8, density=2.0, spread=0.2, name="small"), SphereKind(1.2, share=0.5))

@@ -7,7 +7,7 @@ from laboratory import make_case
 
 from mesokit import Harmonic
 from mesokit.errors import CaseError
-from mesokit.execute.cpu.engine import CPU
+from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.method.mpcd.start.first_state import first_state
 from mesokit.method.mpcd.start.fluid import start

@@ -13,8 +13,8 @@ import numpy as np
 from mesokit.case.box import Box
 from mesokit.case.case import Case
 from mesokit.case.run import Run
-from mesokit.execute.cpu.engine import CPU
 from mesokit.method.mpcd import collision
+from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.field.uniform import Uniform
 from mesokit.method.mpcd.fluid import Fluid
 from mesokit.method.mpcd.species import Species

@@ -11,8 +11,8 @@ from numba import njit
 from scipy.special import ive
 
 from mesokit import CaseError, Demix, DomainSize, Species, theory
-from mesokit.execute.neighbours.gradient import Field, gradient_at
 from mesokit.method.mpcd.collision.directed import quaternion, turned_by, von_mises
+from mesokit.method.mpcd.engine.cell_gradient import Field, gradient_at
 
 DENSITY = 10
 TWO = (Species(mass=1, density=5), Species(mass=1, density=5))

@@ -3,7 +3,7 @@
 import pytest
 
 from mesokit import Box, Case, HardSpheres, Plates, RandomStart, Run, Simulation, SphereKind
-from mesokit.method.event_driven.collision.square_well import SquareWell
+from mesokit.method.spheres.hard.collision.square_well import SquareWell
 
 
 @pytest.mark.parametrize("depth", [0.7, -0.4])

@@ -25,8 +25,8 @@ from mesokit import (
     theory,
 )  # fmt: skip
 from mesokit.errors import CaseError
-from mesokit.execute.beads.external import external_of, turned
 from mesokit.method.mpcd.derived import derive
+from mesokit.method.mpcd.engine.beads.external import external_of, turned
 
 
 def in_random_solvent(*kinds, size=(12, 12), K=1.0, **parts):

@@ -216,7 +216,7 @@ def test_fast_disks_stay_above_a_vibrating_floor():
 
 def test_a_search_that_fails_ends_the_run_in_a_line():
     program = """
-from mesokit.method.event_driven.machine import walls
+from mesokit.method.spheres.hard.engine import walls
 walls.STEPS = 2
 from mesokit import *
 floor = Surface(contact=SurfaceContact(restitution=1.0, amplitude=0.3, frequency=20))

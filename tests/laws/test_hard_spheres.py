@@ -19,7 +19,7 @@ from mesokit import (
     Viscoelastic,
     theory,
 )
-from mesokit.method.event_driven.machine import system
+from mesokit.method.spheres.hard.engine import system
 
 KINDS = [SphereKind(1.0), SphereKind(0.6, spread=0.1, density=1.0)]
 

@@ -32,8 +32,8 @@ from mesokit import (
     WallForce,
     theory,
 )
-from mesokit.method.event_driven import window
-from mesokit.method.event_driven.machine.groups import LAST
+from mesokit.method.spheres.hard import window
+from mesokit.method.spheres.hard.engine.groups import LAST
 
 
 def observed(simulation, steps=None):

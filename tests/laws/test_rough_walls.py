@@ -7,7 +7,7 @@ from soft_spheres import at_rest, soft
 from mesokit import Case, CaseError, Plates, SphereKind, SpringDashpot, Surface, SurfaceContact
 from mesokit.case.box import Box
 from mesokit.case.run import Run
-from mesokit.method.soft_spheres.section import SoftSpheres
+from mesokit.method.spheres.soft.section import SoftSpheres
 
 ROUGH = Surface(contact=SurfaceContact(friction=0.6))
 

@@ -8,7 +8,7 @@ from kinds import AMONG_MOLECULES, DIMERS
 from kinds import OF_MANY_MASSES as DISSOLVED
 from laboratory import make_case, make_fluid, mean
 
-from mesokit.execute.cpu.engine import CPU
+from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.start.fluid import start
 
 pytestmark = pytest.mark.long

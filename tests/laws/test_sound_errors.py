@@ -5,7 +5,7 @@ import pytest
 from laboratory import make_case
 
 from mesokit import SRD, LongitudinalModes, MaxwellBoltzmann, NoThermostat
-from mesokit.execute.cpu.engine import CPU
+from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.start.fluid import start
 
 pytestmark = pytest.mark.long

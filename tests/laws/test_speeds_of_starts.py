@@ -24,9 +24,9 @@ from mesokit import (
     SurfaceContact,
 )
 from mesokit.io.lammps_data import read
-from mesokit.method.protocol import method_of, summary_of
-from mesokit.method.soft_spheres import scales
-from mesokit.spheres.start.from_file import FileStart
+from mesokit.method.spheres.common.start.from_file import FileStart
+from mesokit.method.spheres.soft import scales
+from mesokit.seam.method import method_of, summary_of
 
 GAP = 0.013
 

@@ -21,7 +21,7 @@ from mesokit import (
     SphereKind,
     SpringDashpot,
 )
-from mesokit.observe.cluster_size import ClusterSize
+from mesokit.method.spheres.common.observe.cluster_size import ClusterSize
 
 UNITS = [2.0**-11, 2.0**9]
 

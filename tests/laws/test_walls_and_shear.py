@@ -7,7 +7,7 @@ from scipy import stats
 
 from mesokit import SRD, MaxwellBoltzmann, Plates, Surface, Uniform, WallStress, theory
 from mesokit.errors import CaseError
-from mesokit.execute.cpu.engine import CPU
+from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.start.fluid import start
 from mesokit.statistics import weighted_line
 

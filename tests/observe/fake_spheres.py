@@ -6,12 +6,12 @@ import numpy as np
 
 from mesokit.case.component import param
 from mesokit.geometry.shape import Wall
-from mesokit.method.protocol import Method, Summary
+from mesokit.method.spheres.common.groups import FIELDS, groups
+from mesokit.method.spheres.common.made import made
+from mesokit.method.spheres.common.section import Spheres
+from mesokit.method.spheres.common.start.thermal import spins, velocities
 from mesokit.observe import Observable
-from mesokit.spheres.groups import FIELDS, groups
-from mesokit.spheres.made import made
-from mesokit.spheres.section import Spheres
-from mesokit.spheres.start.thermal import spins, velocities
+from mesokit.seam.method import Method, Summary
 
 NAME, TIMESTEP = "flying-spheres", 0.1
 

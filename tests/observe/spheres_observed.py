@@ -8,8 +8,8 @@ import numpy as np
 
 from mesokit import Box, Case, HardSpheres, Plates, Run, SphereKind
 from mesokit.errors import CaseError
-from mesokit.spheres.made import made
-from mesokit.spheres.moments import moments
+from mesokit.method.spheres.common.made import made
+from mesokit.method.spheres.common.moments import moments
 
 
 def hard(observe, size=(9, 9), walls=(), **spheres):

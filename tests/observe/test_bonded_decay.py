@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from mesokit import theory
-from mesokit.observe.shared.bonded_decay import BondedLaw, fit_bonded
-from mesokit.observe.shared.estimate import Estimate
+from mesokit.method.mpcd.observe.shared.bonded_decay import BondedLaw, fit_bonded
+from mesokit.seam.estimate import Estimate
 
 LAW = BondedLaw(
     2 * np.pi / 16, 0.5, theory.GaussianMolecule(theory.linear_modes(2), 30.0, 9.0, 0.03)

@@ -22,12 +22,12 @@ from mesokit import (
     Uniform,
     VelocityProfile,
 )
-from mesokit.io.open import RunFiles
 from mesokit.io.tables import record
-from mesokit.method.protocol import summary_of
 from mesokit.observe.shared.build_up import result_of
-from mesokit.observe.shared.result import Result
 from mesokit.report.caption import compared
+from mesokit.run.opened import RunFiles
+from mesokit.seam.method import summary_of
+from mesokit.seam.result import Result
 from mesokit.study.merge import merge
 
 NOTE = "not steady: the flow needs "
@@ -101,7 +101,7 @@ def test_a_flow_that_has_built_up_is_compared(steps, warmup, height):
 
 
 def test_what_is_lacking_is_the_mean_of_an_exponential():
-    from mesokit.method.protocol import BuildUp
+    from mesokit.seam.method import BuildUp
 
     steps = [math.exp(-(50 + n) / 200.0) for n in range(1000)]
     assert BuildUp(200.0, 600, 50).lacks(1000) == pytest.approx(sum(steps) / 1000, rel=0.01)

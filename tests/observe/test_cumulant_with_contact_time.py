@@ -5,8 +5,8 @@ import math
 import pytest
 
 from mesokit import Box, Case, HardSpheres, Run, theory
-from mesokit.method.event_driven.collision.hard import HardCollision
-from mesokit.observe.velocity_cumulant import VelocityCumulant
+from mesokit.method.spheres.common.observe.velocity_cumulant import VelocityCumulant
+from mesokit.method.spheres.hard.collision.hard import HardCollision
 
 
 def known(contact_time):

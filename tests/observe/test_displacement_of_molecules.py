@@ -23,8 +23,8 @@ from mesokit.case.box import Box
 from mesokit.case.case import Case
 from mesokit.case.run import Run
 from mesokit.errors import CaseError
-from mesokit.execute.cpu.engine import CPU
 from mesokit.method.mpcd.derived import derive
+from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.expected.molecules import rouse_note
 from mesokit.method.mpcd.fluid import Fluid
 from mesokit.method.mpcd.molecule import Molecule

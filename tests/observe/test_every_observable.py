@@ -9,7 +9,7 @@ from fake_fluid import FakeFluid, case_for, taken
 from mesokit import AT
 from mesokit.method.mpcd.species import Species
 from mesokit.observe import OBSERVABLES
-from mesokit.observe.shared.result import with_error
+from mesokit.seam.result import with_error
 
 # those of spheres have their own tests: no fluid can answer them
 OF_FLUIDS = [kind for kind in OBSERVABLES if not kind.methods]

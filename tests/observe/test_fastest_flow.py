@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mesokit.observe.shared.estimate import of_ratio
-from mesokit.observe.velocity_field import fastest
+from mesokit.method.mpcd.observe.velocity_field import fastest
+from mesokit.seam.estimate import of_ratio
 
 
 def sums_of(velocity, noise, blocks=12, seed=1):

@@ -28,9 +28,9 @@ from mesokit.case.case import Case
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.expected import recognise, setting
+from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
 from mesokit.method.mpcd.solutes import Polymer, Solutes
-from mesokit.observe.shared.molecule_tensor import kept
-from mesokit.simulation import Simulation
+from mesokit.run.simulation import Simulation
 
 PUSHED = {"force": Uniform((0.01, 0)), "thermostat": MaxwellBoltzmann()}
 

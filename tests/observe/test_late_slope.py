@@ -6,8 +6,8 @@ from spheres_observed import hard
 
 from mesokit import Box, Case, MeanSquareDisplacement, Run, Simulation
 from mesokit.method.brownian import Brownian
-from mesokit.observe.shared.estimate import Estimate
 from mesokit.observe.shared.slope import late_slope
+from mesokit.seam.estimate import Estimate
 
 LAGS = np.unique(np.round(np.geomspace(1, 4000, 90)))
 

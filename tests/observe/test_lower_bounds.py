@@ -5,8 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from mesokit.observe.shared.result import Comparison, Result
 from mesokit.observe.shared.short_run import NOTE, bounded
+from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 

@@ -8,7 +8,7 @@ from fake_fluid import FakeFluid, FakeWaves
 
 from mesokit import LongitudinalModes, TransverseModes
 from mesokit.errors import CaseError
-from mesokit.observe.shared.modes import transverse_units
+from mesokit.method.mpcd.observe.shared.modes import transverse_units
 
 
 def sampled(case, observable, samples, viscosity=0.8, speed=1.3, attenuation=0.9, seed=1):

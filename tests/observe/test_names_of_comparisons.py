@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mesokit.observe import Comparison, Result
-from mesokit.observe.shared.named import find, key_of, keyed
+from mesokit.seam.named import find, key_of, keyed
 
 WORDS = (
     "viscosity from curvature",

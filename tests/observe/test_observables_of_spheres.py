@@ -22,8 +22,8 @@ from mesokit import (
     theory,
 )
 from mesokit.errors import CaseError
+from mesokit.method.spheres.common.observe.cluster_size import cluster_sizes
 from mesokit.observe import OBSERVABLES
-from mesokit.observe.cluster_size import cluster_sizes
 
 OF_SPHERES = [kind for kind in OBSERVABLES if "event-driven" in kind.methods]
 

@@ -25,8 +25,8 @@ from mesokit import (
 from mesokit.case.case import Case
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
-from mesokit.observe.radial_profile import ring_average
-from mesokit.simulation import Simulation
+from mesokit.method.mpcd.observe.radial_profile import ring_average
+from mesokit.run.simulation import Simulation
 
 
 def watched(case, observable, field=None, samples=300, seed=1):

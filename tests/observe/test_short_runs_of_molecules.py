@@ -9,7 +9,7 @@ from laboratory import make_case
 
 from mesokit import SRD, BondLength, Harmonic, MaxwellBoltzmann, MoleculeSize, Stress
 from mesokit.method.mpcd.molecule import Molecule
-from mesokit.observe.shared.molecule_tensor import ENOUGH, kept
+from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH, kept
 
 MOLECULES, RUNS, INTERVAL = 512, 80, 0.1
 DIMERS = {

@@ -24,9 +24,9 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.rheometer import modes_of_stress
 from mesokit.method.mpcd.molecule import Molecule
+from mesokit.method.mpcd.observe.wall_stress import balance
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.observe.conservation import ROWS
-from mesokit.observe.wall_stress import balance
 
 
 def by_name(result):

@@ -23,7 +23,7 @@ from mesokit import (
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import recognise
 from mesokit.method.mpcd.expected.setting import transport
-from mesokit.observe.wake import Standing
+from mesokit.method.mpcd.observe.wake import Standing
 
 PUSHED = {"force": Uniform((0.01, 0)), "thermostat": MaxwellBoltzmann()}
 

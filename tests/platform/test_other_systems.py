@@ -13,7 +13,7 @@ import pytest
 
 import mesokit
 from mesokit.io import atomic
-from mesokit.running.cores import usable_cores
+from mesokit.processes.cores import usable_cores
 
 ON_POSIX = pytest.mark.skipif(sys.platform == "win32", reason="what it stands for is real there")
 SOURCE = str(Path(mesokit.__file__).parent.parent)
@@ -114,9 +114,9 @@ class Kernel32:
 ctypes.WinDLL, ctypes.CDLL, sys.platform = {"kernel32": Kernel32}.get, None, "win32"
 del time.CLOCK_MONOTONIC
 
-from mesokit.execute.cpu.clock import CELLS, FIRST, START, lap
+from mesokit.loops.clock import CELLS, FIRST, START, lap
 from mesokit.scalar.system import TICK
-from mesokit.execute.cpu.threads import Threads, meet
+from mesokit.loops.threads import Threads, meet
 
 @numba.njit(nogil=True)
 def work(team, most, sums):

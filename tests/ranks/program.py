@@ -15,15 +15,15 @@ import numpy as np
 from mpi4py import MPI
 
 from mesokit import Box, Case, Disk, Fluid, Harmonic, Plates, Run, Trajectory
-from mesokit.execute import pieces
-from mesokit.execute.cpu.engine import CPU
-from mesokit.execute.ranks.engine import Ranks
 from mesokit.io import measured
 from mesokit.io.run_directory import RunDirectory
 from mesokit.io.trajectory import TrajectoryWriter
+from mesokit.method.mpcd.engine import pieces
+from mesokit.method.mpcd.engine.cpu.engine import CPU
+from mesokit.method.mpcd.engine.domains.engine import Ranks
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.start.fluid import start
-from mesokit.ranks.several import wait
+from mesokit.processes.several import wait
 
 COMM = MPI.COMM_WORLD
 SMALL, MIDDLE, WHOLE = 50, 2**14, 2**18  # particles of a piece

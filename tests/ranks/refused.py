@@ -10,7 +10,7 @@ import sys
 
 from mesokit import cli
 from mesokit.errors import MesokitError
-from mesokit.ranks import end, world
+from mesokit.processes import end, world
 
 # a rank goes on to the next command, where it would end
 end.leave_orderly = lambda status: None

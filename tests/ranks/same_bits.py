@@ -25,11 +25,11 @@ from mesokit import (
     Solutes,
     Uniform,
 )
-from mesokit.execute.cpu.engine import CPU
-from mesokit.execute.ranks.blocks.tree import divided
-from mesokit.execute.ranks.engine import Ranks
+from mesokit.method.mpcd.engine.cpu.engine import CPU
+from mesokit.method.mpcd.engine.domains.blocks.tree import divided
+from mesokit.method.mpcd.engine.domains.engine import Ranks
 from mesokit.method.mpcd.start.fluid import start
-from mesokit.ranks.several import wait
+from mesokit.processes.several import wait
 
 COMM = MPI.COMM_WORLD
 RUN, HELD = Run(steps=100), MaxwellBoltzmann()

@@ -34,12 +34,12 @@ from mesokit import (
     Uniform,
     Wake,
 )
-from mesokit.execute import pieces
-from mesokit.execute.cpu.engine import CPU
-from mesokit.execute.ranks.engine import Ranks
+from mesokit.method.mpcd.engine import pieces
+from mesokit.method.mpcd.engine.cpu.engine import CPU
+from mesokit.method.mpcd.engine.domains.engine import Ranks
 from mesokit.method.mpcd.start.fluid import start
 from mesokit.observe import domain_size
-from mesokit.ranks.several import wait
+from mesokit.processes.several import wait
 
 domain_size.CLEAR = -math.inf  # noise is to have a size as well
 FEW, ALL = 37, 2**18  # particles of a piece

@@ -15,12 +15,12 @@ from unittest import mock
 import numpy as np
 
 from mesokit import Box, Case, Fluid, Harmonic, Polymer, Run, Simulation, Solutes, Trajectory
-from mesokit.execute import pieces
-from mesokit.execute.measure.earlier import EarlierRows
+from mesokit.method.mpcd.engine import pieces
+from mesokit.method.mpcd.engine.measure.earlier import EarlierRows
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.start import arrays, first_state
 from mesokit.method.mpcd.start.section import Start
-from mesokit.ranks.world import world
+from mesokit.processes.world import world
 
 FLUIDS = {
     "bulk": Fluid(density=5),

@@ -15,7 +15,7 @@ from rank_runs import MESOKIT, MPIEXEC, SOURCE, Ranks, same_files
 
 import mesokit as mk
 from mesokit.io import checkpoint
-from mesokit.ranks import end
+from mesokit.processes import end
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="no signals can be sent to a process")
 SOON = 30.0  # seconds; on a quiet machine it is one
@@ -25,7 +25,7 @@ KILLS = 2  # of rank 1, and of rank 0
 FAULTS = """
 import notes
 from mesokit.errors import RunError
-from mesokit.ranks import end
+from mesokit.processes import end
 {imports}
 end.PATIENCE = {patience}
 
@@ -40,7 +40,7 @@ def fail(original):
 
 {where} = fail({where})
 """
-ENGINE = "from mesokit.execute.ranks.engine import Ranks", "Ranks.totals"
+ENGINE = "from mesokit.method.mpcd.engine.domains.engine import Ranks", "Ranks.totals"
 
 
 def faulty(folder, rank, fault, imports, where, patience=0.2):
@@ -281,7 +281,7 @@ def test_what_a_callback_of_one_rank_does_all_do(caught, name):
 ASKS = """
 import notes
 from mesokit import Simulation, every
-from mesokit.ranks import end, several
+from mesokit.processes import end, several
 
 several.LONG, end.PATIENCE = 0.5, 0.2
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from rank_runs import CASE, MESOKIT, MPIEXEC, Ranks, on_ranks
 
-from mesokit.running.cores import usable_cores
+from mesokit.processes.cores import usable_cores
 
 FLOCK = """
 [run]

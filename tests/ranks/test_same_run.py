@@ -11,7 +11,7 @@ import mesokit as mk
 
 SCRIPT = """
 from mesokit import Simulation, every
-from mesokit.running.callbacks import StopRun
+from mesokit.run.callbacks import StopRun
 
 calls = []
 

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import pytest
 from rank_runs import on_ranks
 
-from mesokit.execute.ranks.messages.mpi import crowded
-from mesokit.running.cores import usable_cores, which_cores
+from mesokit.method.mpcd.engine.domains.messages.mpi import crowded
+from mesokit.processes.cores import usable_cores, which_cores
 
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="sleeps are not counted here")

@@ -10,9 +10,9 @@ from pathlib import Path
 from mpi4py import MPI
 
 from mesokit import Box, Case, Fluid, Run
-from mesokit.execute.ranks.engine import Ranks
+from mesokit.method.mpcd.engine.domains.engine import Ranks
 from mesokit.method.mpcd.start.fluid import start
-from mesokit.ranks.several import wait
+from mesokit.processes.several import wait
 
 COMM = MPI.COMM_WORLD
 OFTEN, PATIENCE = 100, 60.0  # sleeps that are enough; seconds for them, on a busy machine

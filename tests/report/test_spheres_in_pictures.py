@@ -15,13 +15,13 @@ from PIL import Image
 import mesokit
 from mesokit import Box, Case, CaseError, HardSpheres, Plates, Run, RunError, Simulation, Trajectory
 from mesokit.cli import main
+from mesokit.method.spheres.common.kinds import SphereKind
+from mesokit.method.spheres.common.section import Spheres
 from mesokit.report.flow import KINDS, animate, disks, picture
 from mesokit.report.flow.colouring import COLOURS, MOST, in_film
 from mesokit.report.flow.moving_plates import plates_at
 from mesokit.report.flow.shaded import PALE, SHADE, Balls, shaded
 from mesokit.report.flow.solids import Section
-from mesokit.spheres.kinds import SphereKind
-from mesokit.spheres.section import Spheres
 
 TWO = (SphereKind(0.8, share=2.0, name="small"), SphereKind(1.2, spread=0.3, name="large"))
 

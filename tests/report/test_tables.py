@@ -13,8 +13,8 @@ import pytest
 import mesokit
 from mesokit import CaseError
 from mesokit.cli import main
-from mesokit.observe.shared.result import Comparison
 from mesokit.report.table import cells
+from mesokit.seam.result import Comparison
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ import pytest
 import mesokit
 from mesokit.case.case import Case
 from mesokit.report.progress import Reporter
-from mesokit.simulation import Simulation
+from mesokit.run.simulation import Simulation
 
 CASE = """
 [run]

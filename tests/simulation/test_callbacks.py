@@ -8,7 +8,7 @@ import pytest
 import mesokit
 from mesokit import StopRun, every
 from mesokit.errors import CaseError, RunError
-from mesokit.simulation import Simulation
+from mesokit.run.simulation import Simulation
 
 
 @pytest.fixture

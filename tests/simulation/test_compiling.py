@@ -15,11 +15,11 @@ import pytest
 import mesokit
 from mesokit import AT, Box, Case, Conservation, Fluid, Plates, Run, Simulation
 from mesokit.case import kind
+from mesokit.case.methods import templates
 from mesokit.kernels.kept import Counts
 from mesokit.kernels.store import Store
-from mesokit.method import templates
-from mesokit.running import compiling
-from mesokit.running.signals import Stopped
+from mesokit.processes.signals import Stopped
+from mesokit.run import compiling
 
 SOURCE = str(Path(mesokit.__file__).parent.parent)
 CASE = """

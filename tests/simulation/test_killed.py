@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import mesokit
-from mesokit.simulation import Simulation
+from mesokit.run.simulation import Simulation
 
 pytestmark = [
     pytest.mark.long,

@@ -12,7 +12,7 @@ from mesokit import Box, Case, CaseError, Log, Run, RunError, every
 from mesokit.io import log_file
 from mesokit.method.brownian import Brownian
 from mesokit.report.progress import Reporter
-from mesokit.simulation import Simulation
+from mesokit.run.simulation import Simulation
 
 SLIP = "velocity-profile.slip"
 COLUMNS = ("temperature", "velocity x", SLIP, "momentum y", "kinetic energy")

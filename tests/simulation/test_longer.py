@@ -9,7 +9,7 @@ import pytest
 import mesokit
 from mesokit.errors import CaseError
 from mesokit.io import h5md
-from mesokit.simulation import Simulation
+from mesokit.run.simulation import Simulation
 
 
 @pytest.fixture
@@ -68,7 +68,7 @@ def test_killed_while_made_longer(half, tmp_path, ends_alike, monkeypatch, crash
     before = {
         "frames": ("mesokit.io.trajectory.TrajectoryWriter.flush", None),
         "data file": ("mesokit.io.run_directory.RunDirectory.write_case", None),
-        "case": ("mesokit.running.record.recorded_case", None),
+        "case": ("mesokit.run.record.recorded_case", None),
     }[moment][0]
 
     def crash(*given):

@@ -8,7 +8,7 @@ import pytest
 from mesokit import Box, Fluid, MaxwellBoltzmann, NoThermostat, Run, Uniform
 from mesokit.errors import CaseError, RunError
 from mesokit.method.mpcd.start.section import Start
-from mesokit.simulation import Simulation
+from mesokit.run.simulation import Simulation
 
 
 def replaced(case, **parts):

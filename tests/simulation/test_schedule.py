@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mesokit import Box, Case, Conservation, Run, Stress, Trajectory
-from mesokit.running.schedule import Leg, Schedule
+from mesokit.run.schedule import Leg, Schedule
 
 
 def schedule(steps=100, warmup=7, every=(5, 6), frames=20, checkpoint=None):

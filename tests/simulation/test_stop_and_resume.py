@@ -12,7 +12,7 @@ import mesokit
 from mesokit.errors import CheckpointError, RunError
 from mesokit.io import atomic
 from mesokit.report.progress import Reporter
-from mesokit.simulation import Simulation
+from mesokit.run.simulation import Simulation
 
 
 def resumed(folder, threads=1):

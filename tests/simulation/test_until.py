@@ -7,8 +7,8 @@ import pytest
 import mesokit
 from mesokit.cli import main
 from mesokit.errors import CaseError
-from mesokit.running.until import Goal
-from mesokit.simulation import Simulation
+from mesokit.run.simulation import Simulation
+from mesokit.run.until import Goal
 
 
 @pytest.fixture

@@ -168,7 +168,7 @@ def test_what_is_merged_neither_goes_on_nor_is_merged_again(runs, merged, tmp_pa
 
 
 def test_an_accumulator_that_cannot(runs, tmp_path, monkeypatch):
-    from mesokit.observe.flow_rate import FlowRateAccumulator
+    from mesokit.method.mpcd.observe.flow_rate import FlowRateAccumulator
 
     monkeypatch.delattr(FlowRateAccumulator, "pool")
     with pytest.raises(RunError, match="observable 'flow-rate': its runs cannot be pooled"):

@@ -8,8 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from mesokit import method as methods
-from mesokit.case import checks, toml
+from mesokit.case import checks, methods, toml
 from mesokit.case.box import Box
 from mesokit.case.component import (
     build,
@@ -70,7 +69,7 @@ class Case(Shown):
     log: Log | None
     units: Units | None
     title: str
-    _method: ClassVar[Any]  # typed in `mesokit.method.protocol`, which knows cases
+    _method: ClassVar[Any]  # typed in `mesokit.seam.method`, which knows cases
     if TYPE_CHECKING:
         __dataclass_fields__: ClassVar[dict[str, Any]]
 

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationError, ValidationInfo
 from pydantic_core import CoreSchema, InitErrorDetails, PydanticCustomError, core_schema
 
+from mesokit.case.methods import METHODS
 from mesokit.errors import CaseError
 
 if TYPE_CHECKING:
@@ -49,12 +50,10 @@ class Family:
         self._known = dict(sorted(self._known.items(), key=self._place))
         return self._known
 
-    def _place(self, item: tuple[str, type[Any]]) -> tuple[int, str]:
+    def _place(self, item: tuple[str, type[Any]]) -> tuple[bool, str]:
         name, part = item
-        package = part.__module__.rpartition(".")[0]
-        if package in self.packages:
-            return self.packages.index(package), name
-        return len(self.packages), ""
+        own = part.__module__.rpartition(".")[0] in self.packages
+        return not own, name if own else ""
 
     def add(self, name: str, part: type) -> None:
         """Register a part. Raises CaseError if another has its name."""
@@ -77,6 +76,10 @@ class Family:
             self._import(name)
         if name not in self._known and name not in self.parts:
             self._load(name)
+        if name not in self._known:  # a part of another method: the case is told which ones it has
+            for method in METHODS.values():
+                importlib.import_module(method)
+            self._import(name)
         return self._known.get(name)
 
     def _import(self, name: str) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import field_validator
 
-from mesokit import method as methods
+from mesokit.case import methods
 from mesokit.case.component import component, nearest, one_of, param
 
 

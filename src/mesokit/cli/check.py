@@ -39,7 +39,7 @@ def check(
     """Check CASE, show it with all defaults, what follows from it, and what to mind."""
     from mesokit.case.kind import has_run
     from mesokit.case.warnings import has_memory
-    from mesokit.method.protocol import method_of, summary_of
+    from mesokit.seam.method import method_of, summary_of
 
     with patience(READING):
         full = read(case, settings)
@@ -73,9 +73,9 @@ def check(
 
 def _draw(full: Case, case: Path, picture: str, axes: tuple[str, ...] | None) -> Path:
     """Draw what a case starts from, without a step."""
-    from mesokit.method.protocol import method_of
     from mesokit.report import save_figure
-    from mesokit.simulation import Simulation
+    from mesokit.run.simulation import Simulation
+    from mesokit.seam.method import method_of
 
     with naming(case):
         figure = Simulation(full).flow(method_of(full).picture or "particles", axes=axes)

@@ -30,9 +30,9 @@ def warm(
     """
     if bool(cases) == every:
         raise CaseError("warm: expected cases, or --all")
-    from mesokit.method import examples, templates
-    from mesokit.ranks.world import world
-    from mesokit.running.warm import warm as compile_all
+    from mesokit.case.methods import examples, templates
+    from mesokit.processes.world import world
+    from mesokit.run.warm import warm as compile_all
 
     known = {**templates(), **examples()} if every else {str(case): case for case in cases}
     for name, case in known.items():

@@ -11,7 +11,7 @@ import click
 from mesokit.cli.commands import cli
 from mesokit.cli.words import reason, say
 from mesokit.errors import MesokitError, RunError
-from mesokit.ranks.world import known, world
+from mesokit.processes.world import known, world
 
 
 def status_of(arguments: Sequence[str] | None) -> int:

@@ -12,8 +12,8 @@ import click
 from mesokit.cli.words import reason, say
 from mesokit.errors import RunError
 from mesokit.io.shared_work import work_words
-from mesokit.ranks.world import world
-from mesokit.running.signals import Stopped
+from mesokit.processes.signals import Stopped
+from mesokit.processes.world import world
 
 
 @contextlib.contextmanager

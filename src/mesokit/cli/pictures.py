@@ -23,7 +23,7 @@ from mesokit.cli.words import say
 from mesokit.errors import CaseError
 
 if TYPE_CHECKING:
-    from mesokit.io.open import RunFiles
+    from mesokit.run.opened import RunFiles
 
 KIND = "quiver, streamlines, particles, density, speed, vorticity, four, disks or flock"
 FILE = click.Path(dir_okay=False, path_type=Path)

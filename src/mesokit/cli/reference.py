@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from mesokit import method as methods
+from mesokit.case import methods
 from mesokit.cli.commands import cli
 from mesokit.cli.completion import beginning
 from mesokit.errors import CaseError

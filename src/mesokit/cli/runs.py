@@ -24,7 +24,7 @@ from mesokit.cli.outcome import show_results, stopping, warnings_said
 from mesokit.cli.together import on_ranks
 from mesokit.cli.words import READING, in_json, patience, say
 from mesokit.errors import CaseError
-from mesokit.ranks.world import world
+from mesokit.processes.world import world
 
 NOT_REACHED = 3  # exit status of a run that had to end before an error was as small as was asked
 
@@ -55,8 +55,8 @@ def run(
     With --seeds, runs with so many seeds lie in OUTPUT/runs, and their pooled results in
     OUTPUT/runs/merged; the same command goes on with what was stopped.
     """
-    from mesokit.method.protocol import summary_of
     from mesokit.report.progress import Reporter
+    from mesokit.seam.method import summary_of
 
     here = world()
     if seed is not None:
@@ -80,7 +80,7 @@ def run(
     if not quiet:
         for warning in summary_of(full, threads).warnings:
             say(f"warning: {warning}")
-    from mesokit.simulation import Simulation
+    from mesokit.run.simulation import Simulation
 
     with naming(case):
         simulation = Simulation(full, threads=threads)
@@ -117,7 +117,7 @@ def resume(
     here = world()
     here.on_root(lambda: require_run(run))
     from mesokit.io.run_directory import RunDirectory
-    from mesokit.simulation import Simulation
+    from mesokit.run.simulation import Simulation
 
     longer = None if until_error else steps
     with stopping(f"mesokit resume {run}"), warnings_said():

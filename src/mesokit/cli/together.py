@@ -13,8 +13,8 @@ from typing import Any
 import click
 
 from mesokit.errors import CaseError, RunError
-from mesokit.ranks import launcher, parent
-from mesokit.ranks.world import stay_alone, world
+from mesokit.processes import launcher, parent
+from mesokit.processes.world import stay_alone, world
 
 TOGETHER = ("run", "resume", "warm")  # all others are commands of one process
 ALONE = ("study",)  # those that would start runs of their own
@@ -68,8 +68,8 @@ def on_ranks(folder: Callable[[dict[str, Any]], Path]) -> Callable[[Command], Co
 def _carried_by(ranks: int, arguments: Sequence[str], output: Path) -> int:
     """Carry out a command on so many ranks of this machine; the status that they end with."""
     from mesokit.cli.words import say
-    from mesokit.ranks.mpiexec import find, start
-    from mesokit.running.cores import usable_cores
+    from mesokit.processes.cores import usable_cores
+    from mesokit.processes.mpiexec import find, start
 
     if launcher.several():
         raise CaseError("--ranks: this is one of the ranks of an mpiexec; leave it out")

@@ -12,7 +12,7 @@ from mesokit.case.snapshot import Snapshot
 from mesokit.errors import CaseError
 from mesokit.io import checkpoint
 from mesokit.io.run_directory import RunDirectory
-from mesokit.method.protocol import method_of
+from mesokit.seam.method import method_of
 
 
 def spheres_of(path: str) -> Snapshot:

@@ -15,7 +15,7 @@ from mesokit.errors import CaseError, RunError
 from mesokit.io.atomic import replacing
 from mesokit.io.moments import Moment, Particles
 from mesokit.io.trajectory import TrajectoryWriter
-from mesokit.method.protocol import method_of
+from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

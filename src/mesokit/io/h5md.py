@@ -36,8 +36,8 @@ from mesokit.case.component import name_of
 from mesokit.case.trajectory import kinds_of, names_and_diameters
 from mesokit.errors import RunError
 from mesokit.io.atomic import replacing
-from mesokit.method.protocol import method_of
-from mesokit.observe.shared.result import Comparison, Result
+from mesokit.seam.method import method_of
+from mesokit.seam.result import Comparison, Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -14,8 +14,8 @@ from mesokit.errors import CheckpointError, MesokitError
 from mesokit.io import checkpoint
 from mesokit.io.arrays_file import LARGE
 from mesokit.io.run_directory import RunDirectory
-from mesokit.method.protocol import method_of
-from mesokit.observe.shared.pooled import pool
+from mesokit.seam.method import method_of
+from mesokit.seam.pooled import pool
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

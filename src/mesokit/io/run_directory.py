@@ -20,7 +20,7 @@ from mesokit.io import checkpoint
 from mesokit.io.atomic import write_text
 from mesokit.io.record_shape import misshapen
 from mesokit.io.sources import parents, sources
-from mesokit.method.protocol import method_of
+from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

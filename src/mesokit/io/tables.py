@@ -13,8 +13,8 @@ import numpy as np
 
 from mesokit.io.atomic import write_text
 from mesokit.io.optional import package
-from mesokit.observe.shared.named import keyed
-from mesokit.observe.shared.result import Comparison, Result
+from mesokit.seam.named import keyed
+from mesokit.seam.result import Comparison, Result
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -1,10 +1,10 @@
-"""Observables. A new one is a file here."""
+"""What particles of more than one method have: observables, a file each."""
 
 from __future__ import annotations
 
 from mesokit.case.registry import parts_in
-from mesokit.observe.shared.protocol import Accumulator, Observable
-from mesokit.observe.shared.result import Comparison, Result
+from mesokit.seam.observable import Accumulator, Observable
+from mesokit.seam.result import Comparison, Result
 
 __getattr__ = parts_in(__name__, OBSERVABLES=Observable)
 

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from mesokit.case.box import AXES
 from mesokit.case.component import component, tag
-from mesokit.engine import RunningFluid
 from mesokit.method.mpcd.columns import forgets, temperature
 from mesokit.method.mpcd.expected import setting
-from mesokit.observe.shared.protocol import Observable, State, pack, unpack
-from mesokit.observe.shared.result import Array, Comparison, Result
+from mesokit.seam.engine import RunningFluid
+from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:

@@ -9,13 +9,10 @@ from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.component import component, param, tag
-from mesokit.engine import RunningFluid, Some, Terms
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import Group, group_of, kind_of, springs_of
 from mesokit.method.mpcd.expected.traps import held, trapped
-from mesokit.method.protocol import method_of
-from mesokit.observe.shared.estimate import Estimate, of_mean
 from mesokit.observe.shared.profile import (
     Array,
     Profile,
@@ -23,8 +20,11 @@ from mesokit.observe.shared.profile import (
     expected_in_slices,
     part_of,
 )
-from mesokit.observe.shared.result import Comparison, Result
 from mesokit.observe.shared.whose import groups_of
+from mesokit.seam.engine import RunningFluid, Some, Terms
+from mesokit.seam.estimate import Estimate, of_mean
+from mesokit.seam.method import method_of
+from mesokit.seam.result import Comparison, Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from mesokit.case.box import Axis
 from mesokit.case.component import component, param, tag
 from mesokit.case.describe.hints import Either
-from mesokit.engine import Particles
-from mesokit.method.protocol import method_of
-from mesokit.observe.shared.estimate import Estimate
 from mesokit.observe.shared.fitted import fitted_number
 from mesokit.observe.shared.origins import GROUPS, Origins
-from mesokit.observe.shared.protocol import Observable, State, pack, unpack
-from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.observe.shared.slope import Slope, late_slope
+from mesokit.seam.engine import Particles
+from mesokit.seam.estimate import Estimate
+from mesokit.seam.method import method_of
+from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

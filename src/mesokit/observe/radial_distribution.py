@@ -11,15 +11,15 @@ from pydantic import field_validator
 
 from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Many
-from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.molecules import Group, free_diffusion, kind_of
-from mesokit.method.protocol import method_of
-from mesokit.observe.shared.estimate import Estimate, of_mean
 from mesokit.observe.shared.pair_counts import count_pairs, count_within, shells
-from mesokit.observe.shared.protocol import BlockAccumulator, Observable
-from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.observe.shared.whose import OF, default_of, groups_of, periodic_all_over, strangers
+from mesokit.seam.engine import RunningFluid
+from mesokit.seam.estimate import Estimate, of_mean
+from mesokit.seam.method import method_of
+from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from mesokit.case.box import Axis
 from mesokit.case.component import component, option, param, show, tag
 from mesokit.case.describe.hints import Many
-from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.groups import groups
-from mesokit.observe.shared.protocol import Observable, State
-from mesokit.observe.shared.result import Comparison, Result
+from mesokit.seam.engine import RunningFluid
+from mesokit.seam.observable import Observable, State
+from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import spread_ids
 
 if TYPE_CHECKING:

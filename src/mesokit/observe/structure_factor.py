@@ -11,12 +11,9 @@ from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.component import component, param, tag
-from mesokit.engine import RunningFluid
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.molecules import KIND, Group, free_bond, kind_of
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
-from mesokit.observe.shared.protocol import Observable, State, pack, unpack
-from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.observe.shared.scatter_of_waves import scatter_of_waves
 from mesokit.observe.shared.wave_vectors import CHUNK, amplitudes, reachable, wave_shells
 from mesokit.observe.shared.whose import (
@@ -27,6 +24,9 @@ from mesokit.observe.shared.whose import (
     periodic_all_over,
     strangers,
 )
+from mesokit.seam.engine import RunningFluid
+from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

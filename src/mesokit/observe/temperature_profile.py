@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.heating import settled, temperature_rise
-from mesokit.observe.shared.estimate import Estimate, of_ratio
 from mesokit.observe.shared.profile import (
     Array,
     Profile,
@@ -18,8 +17,9 @@ from mesokit.observe.shared.profile import (
     expected_in_slices,
     part_of,
 )
-from mesokit.observe.shared.result import Comparison, Result
 from mesokit.observe.shared.whose import KIND, ids_of_kind
+from mesokit.seam.estimate import Estimate, of_ratio
+from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.component import component, option, param, tag
-from mesokit.engine import RunningFluid
-from mesokit.method.protocol import method_of
-from mesokit.observe.shared.estimate import Estimate
 from mesokit.observe.shared.origins import Origins
-from mesokit.observe.shared.protocol import Observable, State, pack, unpack
-from mesokit.observe.shared.result import Array, Comparison, Result
+from mesokit.seam.engine import RunningFluid
+from mesokit.seam.estimate import Estimate
+from mesokit.seam.method import method_of
+from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import spread_ids
 
 if TYPE_CHECKING:

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from mesokit import theory
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
-from mesokit.method.protocol import method_of
 from mesokit.observe.shared import chi_square
-from mesokit.observe.shared.protocol import BlockAccumulator, Observable
-from mesokit.observe.shared.result import Array, Comparison, Result
 from mesokit.observe.shared.whose import KIND, ids_of_kind
+from mesokit.seam.method import method_of
+from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:

@@ -10,8 +10,6 @@ from mesokit.case.box import Axis
 from mesokit.case.component import component, param, tag
 from mesokit.geometry.solids.solids import slit_of
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.protocol import method_of
-from mesokit.observe.shared.estimate import Estimate, fit, noted, of_ratio
 from mesokit.observe.shared.profile import (
     Array,
     Profile,
@@ -19,8 +17,10 @@ from mesokit.observe.shared.profile import (
     expected_in_slices,
     part_of,
 )
-from mesokit.observe.shared.result import Comparison, Result
 from mesokit.observe.shared.whose import KIND, ids_of_kind
+from mesokit.seam.estimate import Estimate, fit, noted, of_ratio
+from mesokit.seam.method import method_of
+from mesokit.seam.result import Comparison, Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

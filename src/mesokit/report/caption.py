@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from mesokit.case.describe.digits import two_digits
-from mesokit.observe.shared.result import Comparison, with_error
+from mesokit.seam.result import Comparison, with_error
 
 MOST = 8  # comparisons below a figure; the table of the run has all
 LETTERS = 16.0  # in an inch

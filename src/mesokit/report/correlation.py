@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.observe.shared.result import Result
 from mesokit.report.caption import mathematics
 from mesokit.report.style import COLOURS, MARKERS, labelled, legend_above, sparse_logarithm
+from mesokit.seam.result import Result
 
 SHOWN = 6  # curves in one figure
 ALIKE = 0.01  # how near a line is to a curve that tells the same

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.observe.shared.result import Result
 from mesokit.report.caption import mathematics
 from mesokit.report.style import COLOURS, LINES, MARKERS, labelled, legend_above
+from mesokit.seam.result import Result
 
 SHOWN = 6  # curves
 BARS = r"measured, $\pm$ one standard error"

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesokit.observe.flow_frames import average
-from mesokit.observe.shared.result import Result
+from mesokit.method.mpcd.observe.flow_frames import average
 from mesokit.report.caption import symbols
 from mesokit.report.flow import density, quiver, speed
 from mesokit.report.flow.data import Flow
@@ -20,6 +19,7 @@ from mesokit.report.flow.setting import Setting
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import axes_of
 from mesokit.report.style import labelled
+from mesokit.seam.result import Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -10,7 +10,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mesokit.observe.shared.result import Result
 from mesokit.report import (
     correlation,
     curve,
@@ -40,6 +39,7 @@ from mesokit.report.particles import (
 )
 from mesokit.report.rheology import stress_in_time
 from mesokit.report.style import HEIGHT, STYLE, WIDTH
+from mesokit.seam.result import Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.observe.shared.result import Result
 from mesokit.report.style import COLOURS, LINES, MARKERS, labelled, lettered
+from mesokit.seam.result import Result
 
 SHOWN = 12  # bodies in one figure
 MORE = 1.7  # inches for each further row

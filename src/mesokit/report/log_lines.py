@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mesokit.observe.shared.result import with_error
+from mesokit.seam.result import with_error
 
 ERROR = " error"  # ends the name of a number that is the standard error of the one before
 AGAIN = 20  # lines after which the header comes again

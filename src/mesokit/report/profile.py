@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.observe.shared.result import Result
 from mesokit.report.caption import mathematics
 from mesokit.report.style import COLOURS, labelled, legend_above
+from mesokit.seam.result import Result
 
 AXES = {"r": "distance from the axis $r$", "distance": "distance from the surface"}
 NAMES = {

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.observe.shared.result import Result
 from mesokit.report.caption import symbols
 from mesokit.report.style import COLOURS, HEIGHT, LINES, labelled, legend_above
+from mesokit.seam.result import Result
 
 ROW = 1.25  # inches of a panel
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from mesokit.case.describe.digits import two_digits
-from mesokit.observe.shared.result import Comparison, Result, in_percent, with_error
+from mesokit.seam.result import Comparison, Result, in_percent, with_error
 
 if TYPE_CHECKING:
     from rich.console import Console

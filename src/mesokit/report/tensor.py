@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.observe.shared.result import Result
 from mesokit.report.style import COLOURS, MARKERS, labelled, lettered
+from mesokit.seam.result import Result
 
 SYMBOLS = {
     "stress": r"$\sigma_{\alpha\beta}$",

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.observe.shared.result import Result
 from mesokit.report.style import COLOURS, labelled, legend_above
+from mesokit.seam.result import Result
 
 
 def draw(result: Result, figure: Any, ax: Any) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from mesokit.errors import MesokitError
 from mesokit.io.measured import measured
-from mesokit.observe.shared.named import keyed
+from mesokit.seam.named import keyed
 from mesokit.study.dependence import Theory
 from mesokit.study.plan import Base, Planned
 from mesokit.study.table import Pooled

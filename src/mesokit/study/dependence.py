@@ -11,7 +11,6 @@ import numpy as np
 
 from mesokit.case.component import one_of, show
 from mesokit.errors import CaseError
-from mesokit.observe.shared.result import Array, with_error
 from mesokit.report.style import (
     COLOURS,
     HEIGHT,
@@ -22,6 +21,7 @@ from mesokit.report.style import (
     labelled,
     sparse_logarithm,
 )
+from mesokit.seam.result import Array, with_error
 from mesokit.statistics import Fit, weighted_line
 
 FITS = ("line", "power")

@@ -11,13 +11,13 @@ from mesokit.case.case import Case
 from mesokit.errors import CaseError, MesokitError, RunError
 from mesokit.io.atomic import write_text
 from mesokit.io.run_directory import RunDirectory
-from mesokit.method.protocol import Row, summary_of
 from mesokit.report.document.links import link_to
 from mesokit.report.document.pictures import Picture, drawn
 from mesokit.report.document.record import citation, install, origin_rows, timing_rows, when
 from mesokit.report.document.template import render
 from mesokit.report.finish.origin import as_text
 from mesokit.report.table import SUSPICIOUS
+from mesokit.seam.method import Row, summary_of
 from mesokit.study.axes import Axis
 from mesokit.study.dependence import Theory
 from mesokit.study.names import called

@@ -13,9 +13,9 @@ from typing import Any, Protocol
 from mesokit.case.amounts import duration_text
 from mesokit.case.kind import has_run, kind_of
 from mesokit.errors import CaseError
+from mesokit.processes.signals import Stopped, catching
 from mesokit.report.document.progress import NotebookReporter, in_notebook
 from mesokit.report.progress import Reporter
-from mesokit.running.signals import Stopped, catching
 from mesokit.study.plan import Planned
 
 POLL_SECONDS = 0.2

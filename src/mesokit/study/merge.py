@@ -16,14 +16,14 @@ from mesokit.errors import RunError
 from mesokit.io import h5md
 from mesokit.io.atomic import delete_folder
 from mesokit.io.measured import measured
-from mesokit.io.open import RunFiles
 from mesokit.io.run_directory import RunDirectory, now, provenance
 from mesokit.observe.shared.build_up import result_of
-from mesokit.observe.shared.pooled import pool
+from mesokit.run.opened import RunFiles
+from mesokit.seam.pooled import pool
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.observe.shared.result import Result
+    from mesokit.seam.result import Result
 
 MAY_DIFFER = (
     "run.seed",

@@ -19,12 +19,12 @@ from mesokit.case.case import Case
 from mesokit.case.component import show
 from mesokit.errors import CaseError, CheckpointError, RunError
 from mesokit.io import checkpoint
-from mesokit.io.open import RunFiles
 from mesokit.io.run_directory import RunDirectory
-from mesokit.method.protocol import method_of
-from mesokit.observe.shared.named import keyed
-from mesokit.observe.shared.result import Comparison, Result
-from mesokit.running.longer import longer
+from mesokit.run.longer import longer
+from mesokit.run.opened import RunFiles
+from mesokit.seam.method import method_of
+from mesokit.seam.named import keyed
+from mesokit.seam.result import Comparison, Result
 from mesokit.study.axes import MOST, Axis, grid
 from mesokit.study.merge import different_key, flat, pooled
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError
-from mesokit.observe.shared.result import Comparison
+from mesokit.seam.result import Comparison
 from mesokit.study.axes import Axis
 from mesokit.study.dependence import Curve, Theory, draw
 from mesokit.study.names import with_symbol

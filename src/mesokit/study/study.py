@@ -15,9 +15,9 @@ from mesokit.case.describe.shown import Shown
 from mesokit.case.outside import outside_parts
 from mesokit.errors import CaseError, RunError
 from mesokit.io.atomic import write_text
-from mesokit.method.protocol import summary_of
-from mesokit.ranks.world import world
-from mesokit.running.cores import usable_cores
+from mesokit.processes.cores import usable_cores
+from mesokit.processes.world import world
+from mesokit.seam.method import summary_of
 from mesokit.study import table as tables
 from mesokit.study.axes import MOST, Axis
 from mesokit.study.between import theory_between
@@ -32,7 +32,7 @@ from mesokit.study.plan import Base, Planned, by_point, make, planned, short_nam
 from mesokit.study.plot import curves_of, drawable, find_rows, plot
 
 if TYPE_CHECKING:
-    from mesokit.io.open import RunFiles
+    from mesokit.run.opened import RunFiles
     from mesokit.study.table import Pooled
 
 FILE, CASE = "study.toml", "case.toml"

@@ -13,7 +13,7 @@ import numpy as np
 
 from mesokit.io.atomic import replacing
 from mesokit.io.optional import package
-from mesokit.observe.shared.result import Comparison
+from mesokit.seam.result import Comparison
 from mesokit.statistics import ChiSquare, chi_square
 from mesokit.study.plan import Planned, by_point, pooled_numbers
 

@@ -16,9 +16,9 @@ from pathlib import Path
 from mesokit.errors import MesokitError, RunError
 from mesokit.io.atomic import write_text
 from mesokit.io.run_directory import RunDirectory
+from mesokit.processes.signals import Stopped, catching
 from mesokit.report.progress import Reporter
-from mesokit.running.signals import Stopped, catching
-from mesokit.simulation import Simulation
+from mesokit.run.simulation import Simulation
 
 NOTE_SECONDS = 1.0  # between two notes of how far a run has come
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from mesokit import method as methods
+from mesokit.case import methods
 from mesokit.case.case import FIELDS, SECTIONS, Case, case_class
 from mesokit.case.checks import is_offered
 from mesokit.case.component import tag_of

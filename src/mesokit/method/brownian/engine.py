@@ -15,11 +15,11 @@ from mesokit.scalar.random import Counter
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.engine import Array, Integers, State
+    from mesokit.seam.engine import Array, Integers, State
 
 
 class Brownians:
-    """Engine of Brownian motion (`mesokit.engine.Engine`) on the threads of one machine."""
+    """Engine of Brownian motion (`mesokit.seam.engine.Engine`) on the threads of one machine."""
 
     def __init__(self, case: Case, threads: int = 1) -> None:
         given, size = case.brownian, tuple(float(length) for length in case.box.size)

@@ -18,14 +18,14 @@ from mesokit.case.warnings import run_warnings
 from mesokit.errors import CaseError
 from mesokit.method.brownian.engine import Brownians
 from mesokit.method.brownian.section import Sections
-from mesokit.method.protocol import Columns, Method, Row, Summary
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
-from mesokit.running.cores import usable_cores
+from mesokit.processes.cores import usable_cores
+from mesokit.seam.method import Columns, Method, Row, Summary
 from mesokit.statistics import spread_ids
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.engine import Array, Integers
+    from mesokit.seam.engine import Array, Integers
 
 RATE = 14e6  # particle-steps per second of a thread, where the project measures (docs/benchmark.md)
 BYTES = {2: 24, 3: 36}  # for each particle

@@ -13,7 +13,7 @@ from mesokit.statistics import spread_ids
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.engine import Array, Integers
+    from mesokit.seam.engine import Array, Integers
 
 LATE = 5.0  # times in which a heading is forgotten, after which the way is a random walk
 

@@ -19,8 +19,8 @@ from mesokit.method.flock.observe import FlockObservable
 from mesokit.method.flock.section import KEYS, Sections
 from mesokit.method.flock.start import FirstState, first_state
 from mesokit.method.flock.summary import summary
-from mesokit.method.protocol import Columns, Method
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
+from mesokit.seam.method import Columns, Method
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

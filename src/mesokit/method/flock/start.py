@@ -23,7 +23,7 @@ from mesokit.scalar.random import Counter
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.engine import Array
+    from mesokit.seam.engine import Array
 
 TRIES = 10_000  # of places before there is no room
 MOST_BOXES = 2.0**30

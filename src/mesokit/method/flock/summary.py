@@ -13,8 +13,8 @@ from mesokit.case.trajectory import stored_bytes
 from mesokit.case.warnings import run_warnings
 from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.flock.section import BYTES
-from mesokit.method.protocol import Row, Summary
-from mesokit.running.cores import usable_cores
+from mesokit.processes.cores import usable_cores
+from mesokit.seam.method import Row, Summary
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

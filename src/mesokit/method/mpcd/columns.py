@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.method.protocol import Columns
+from mesokit.seam.method import Columns
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -16,8 +16,8 @@ from mesokit.method.mpcd.expected.heating import heating
 from mesokit.method.mpcd.expected.molecules import longest_rouse_time
 from mesokit.method.mpcd.numbers import PIPE, TIMES, Derived
 from mesokit.method.mpcd.warnings import cautions
-from mesokit.method.protocol import BuildUp
-from mesokit.running.cores import usable_cores
+from mesokit.processes.cores import usable_cores
+from mesokit.seam.method import BuildUp
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

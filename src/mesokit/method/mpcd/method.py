@@ -21,19 +21,19 @@ from mesokit.method.mpcd.expected.setting import aperiodic_axes
 from mesokit.method.mpcd.expected.velocities import Velocities
 from mesokit.method.mpcd.expected.velocity_memory import VelocityMemory
 from mesokit.method.mpcd.groups import bonds, groups
+from mesokit.method.mpcd.observe import Observable
 from mesokit.method.mpcd.sections import KEYS, Sections
-from mesokit.method.protocol import Method
-from mesokit.observe import Observable
-from mesokit.ranks.world import world
+from mesokit.processes.world import world
+from mesokit.seam.method import Method
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.engine import Engine
     from mesokit.geometry.solids.solids import Solids
     from mesokit.method.mpcd.si import SI
     from mesokit.method.mpcd.solutes import Solutes
     from mesokit.method.mpcd.start.first_state import FirstState
-    from mesokit.method.protocol import BuildUp, Summary
+    from mesokit.seam.engine import Engine
+    from mesokit.seam.method import BuildUp, Summary
 
 
 def _summary(case: Case, threads: int | None) -> Summary:
@@ -49,12 +49,12 @@ def _first_state(case: Case, arrays: Mapping[str, Any]) -> FirstState:
 
 
 def _engine(case: Case, threads: int, measures: Sequence[str]) -> Engine:
-    from mesokit.execute.cpu.engine import CPU
+    from mesokit.method.mpcd.engine.cpu.engine import CPU
 
     here = world()
     if here.size == 1:
         return CPU(case, threads, measures)
-    from mesokit.execute.ranks.engine import Ranks
+    from mesokit.method.mpcd.engine.domains.engine import Ranks
 
     return Ranks(case, threads, measures, here.comm)
 
@@ -67,9 +67,9 @@ def _build_up(case: Case) -> BuildUp | None:
 
 def _check_ranks(case: Case, ranks: int) -> None:
     """What needs all particles in one memory, and a case with fewer cells than ranks."""
-    from mesokit.execute.cpu.numbers import Numbers
-    from mesokit.execute.ranks.blocks.tree import divided
-    from mesokit.execute.ranks.domain import axes_to_cut
+    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
+    from mesokit.method.mpcd.engine.domains.blocks.tree import divided
+    from mesokit.method.mpcd.engine.domains.domain import axes_to_cut
 
     if case.solutes is not None and case.solutes.coupling == "potential":
         raise CaseError(

@@ -8,7 +8,7 @@ from mesokit.case.amounts import duration_text, number, size_text
 from mesokit.case.kind import has_run
 from mesokit.method.mpcd.derived import compiling_memory, derive
 from mesokit.method.mpcd.numbers import Derived
-from mesokit.method.protocol import Row, Summary
+from mesokit.seam.method import Row, Summary
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -7,10 +7,10 @@ import dataclasses
 import math
 from typing import TYPE_CHECKING, Any
 
-from mesokit.method.protocol import method_of
-from mesokit.observe.shared.protocol import Accumulator
-from mesokit.observe.shared.result import NOT_STEADY, Comparison, Result, with_error
 from mesokit.observe.shared.short_run import bounded
+from mesokit.seam.method import method_of
+from mesokit.seam.observable import Accumulator
+from mesokit.seam.result import NOT_STEADY, Comparison, Result, with_error
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from mesokit.observe.shared.estimate import SURE
-from mesokit.observe.shared.result import Comparison, with_error
+from mesokit.seam.estimate import SURE
+from mesokit.seam.result import Comparison, with_error
 
 
 def fitted_number(

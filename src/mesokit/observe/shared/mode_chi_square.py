@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.observe.shared.estimate import Estimate, per_block
-from mesokit.observe.shared.result import Comparison
+from mesokit.seam.estimate import Estimate, per_block
+from mesokit.seam.result import Comparison
 
 Array = NDArray[np.floating[Any]]
 FEWEST = 8  # blocks of time

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.observe.shared.estimate import Estimate
-from mesokit.observe.shared.protocol import State
+from mesokit.seam.estimate import Estimate
+from mesokit.seam.observable import State
 
 Array = NDArray[np.floating[Any]]
 POINTS = 16  # kept per level; lags are at most 1/8 apart

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.observe.shared.estimate import Array, of_mean
 from mesokit.observe.shared.origins import GROUPS
-from mesokit.observe.shared.protocol import State, pack, unpack
+from mesokit.seam.estimate import Array, of_mean
+from mesokit.seam.observable import State, pack, unpack
 from mesokit.statistics import Blocks, student
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.observe.shared.result import Array
+from mesokit.seam.result import Array
 
 
 def count_pairs(one: Array, other: Array | None, box: Array, edges: Array) -> NDArray[np.int64]:

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from mesokit.case.box import Axis
 from mesokit.case.component import component, name_of, param
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.protocol import method_of
-from mesokit.observe.shared.estimate import Estimate
 from mesokit.observe.shared.mode_chi_square import mode_chi_square
-from mesokit.observe.shared.protocol import BlockAccumulator, Observable
-from mesokit.observe.shared.result import Comparison
+from mesokit.seam.estimate import Estimate
+from mesokit.seam.method import method_of
+from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.result import Comparison
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:

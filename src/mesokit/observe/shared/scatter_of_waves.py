@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.observe.shared.result import Array
+from mesokit.seam.result import Array
 
 FEWEST = 12  # degrees of freedom that the scatter is taken from
 CURVE = 2  # degree of the polynomial that S is taken for where they are

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.observe.shared.result import Result
+from mesokit.seam.result import Result
 from mesokit.statistics import Blocks, plateau
 
 FEWEST = 32  # blocks: of fewer chance alone may make errors grow to the end

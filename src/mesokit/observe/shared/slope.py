@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.observe.shared.estimate import Estimate, fit
+from mesokit.seam.estimate import Estimate, fit
 
 Array = NDArray[np.floating[Any]]
 FEWEST = 3  # points of a fit

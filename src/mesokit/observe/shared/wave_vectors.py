@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.observe.shared.result import Array
+from mesokit.seam.result import Array
 from mesokit.statistics import spread_ids
 
 MOST = 2**20  # of which shells are made

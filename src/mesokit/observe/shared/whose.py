@@ -12,7 +12,7 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import Group, group_of, kind_of
 from mesokit.method.mpcd.molecule import FLUID
-from mesokit.method.protocol import method_of
+from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

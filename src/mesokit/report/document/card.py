@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from mesokit.observe.shared.result import Result
 from mesokit.report.document.comparisons import lines_of
 from mesokit.report.document.template import render
+from mesokit.seam.result import Result
 
 
 def card(

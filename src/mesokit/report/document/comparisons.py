@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from mesokit.observe.shared.result import Result
 from mesokit.report.table import SUSPICIOUS, cells
+from mesokit.seam.result import Result
 
 
 class Line(NamedTuple):

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from mesokit.observe.shared.result import Result
+from mesokit.seam.result import Result
 
 SERIES = "conservation"  # the quantity that is a series of such numbers
 

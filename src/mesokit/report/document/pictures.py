@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from mesokit.case.amounts import size_text
-from mesokit.observe.shared.result import Result
 from mesokit.report.document.links import link_to
+from mesokit.seam.result import Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from mesokit.case.amounts import duration_text
-from mesokit.method.protocol import Row
+from mesokit.seam.method import Row
 
 PROGRAMS = ("mesokit", "__main__.py")  # by which the command line is called
 

@@ -10,8 +10,6 @@ from mesokit.errors import MesokitError
 from mesokit.io.atomic import write_text
 from mesokit.io.pooled import pooled_words
 from mesokit.io.run_directory import RunDirectory
-from mesokit.method.protocol import Row, method_of, summary_of
-from mesokit.observe.shared.result import Result
 from mesokit.report.document.comparisons import lines_of
 from mesokit.report.document.conservation import changes
 from mesokit.report.document.pictures import figures, films_of, pictures_of_flow
@@ -19,6 +17,8 @@ from mesokit.report.document.record import citation, install, origin_rows, timin
 from mesokit.report.document.template import render
 from mesokit.report.finish.origin import as_text
 from mesokit.report.table import SUSPICIOUS
+from mesokit.seam.method import Row, method_of, summary_of
+from mesokit.seam.result import Result
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

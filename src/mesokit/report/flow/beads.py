@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.method.protocol import method_of
 from mesokit.report.flow.data import Array, Beads
 from mesokit.report.flow.region import Region
 from mesokit.report.style import COLOURS
+from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

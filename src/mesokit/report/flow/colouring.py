@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError, RunError
-from mesokit.method.protocol import method_of
-from mesokit.observe.hexatic_order import psi_6
+from mesokit.method.spheres.common.observe.hexatic_order import psi_6
 from mesokit.report import style
 from mesokit.report.caption import rounded, symbols
 from mesokit.report.flow.data import Array
 from mesokit.report.flow.scale import Scale
 from mesokit.report.style import labelled
+from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.observe.shared.result import Result
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.setting import Setting
+from mesokit.seam.result import Result
 
 
 class FieldSource:

@@ -33,8 +33,8 @@ from mesokit.report.progress import FilmReporter, Reporter
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.io.trajectory_reader import TrajectoryReader
-    from mesokit.observe.shared.result import Result
     from mesokit.report.flow.canvas import Canvas
+    from mesokit.seam.result import Result
 
 SCALED = 24  # frames that the colours are chosen from
 DPI = {".mp4": 160, ".gif": 100}

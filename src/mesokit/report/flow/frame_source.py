@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.observe.flow_frames import weights
-from mesokit.observe.shared.result import Result
+from mesokit.method.mpcd.observe.flow_frames import weights
 from mesokit.report.flow.data import Array, Flow
 from mesokit.report.flow.setting import Setting
+from mesokit.seam.result import Result
 
 
 class FrameSource:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError
-from mesokit.method.protocol import method_of
 from mesokit.report.flow import (
     birds,
     density,
@@ -21,6 +20,7 @@ from mesokit.report.flow import (
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.region import Region
 from mesokit.report.flow.scale import Scale
+from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from mesokit.method.spheres.common.wall import rows as columns
+from mesokit.method.spheres.common.wall.surfaces import other_walls, surface_rows
 from mesokit.report.flow.shown import Array
-from mesokit.spheres.wall import rows as columns
-from mesokit.spheres.wall.surfaces import other_walls, surface_rows
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mesokit.method.protocol import method_of
 from mesokit.report.flow.data import Array, Flow
 from mesokit.report.flow.smooth import rim_filled
 from mesokit.report.flow.solids import Section
+from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

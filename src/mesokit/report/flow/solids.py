@@ -10,9 +10,9 @@ import numpy as np
 from mesokit.case.box import AXES
 from mesokit.case.component import show
 from mesokit.errors import CaseError
-from mesokit.method.protocol import method_of
 from mesokit.report.flow.data import Array
 from mesokit.report.flow.region import Region
+from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

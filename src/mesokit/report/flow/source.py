@@ -10,16 +10,16 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import show
 from mesokit.errors import CaseError, RunError
-from mesokit.method.protocol import method_of
-from mesokit.observe.flow_frames import FlowFrames
+from mesokit.method.mpcd.observe.flow_frames import FlowFrames
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.view import View
+from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.io.trajectory_reader import TrajectoryReader
-    from mesokit.observe.shared.result import Result
     from mesokit.report.flow.state import State
+    from mesokit.seam.result import Result
 
 Axes = tuple[str, str]
 ALL = View()

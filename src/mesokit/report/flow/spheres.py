@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import AXES
-from mesokit.method.protocol import method_of
 from mesokit.report.flow.colouring import Frame, chosen
 from mesokit.report.flow.data import Array, Flow
 from mesokit.report.flow.moving_plates import plates_at
 from mesokit.report.flow.setting import Setting
 from mesokit.report.flow.shown import Spheres
 from mesokit.report.flow.view import View
+from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

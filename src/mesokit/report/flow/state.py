@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.trajectory import masses_and_kinds
-from mesokit.method.protocol import method_of
+from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

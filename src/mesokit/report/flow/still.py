@@ -23,8 +23,8 @@ from mesokit.report.flow.view import View
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.io.trajectory_reader import TrajectoryReader
-    from mesokit.observe.shared.result import Result
     from mesokit.report.flow.state import State
+    from mesokit.seam.result import Result
 
 
 def picture(

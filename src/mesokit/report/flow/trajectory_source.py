@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.method.protocol import method_of
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.fluid_bonds import FluidBonds
 from mesokit.report.flow.setting import Setting
+from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.observe.shared.result import Result
 from mesokit.report.style import COLOURS, LINES, labelled
+from mesokit.seam.result import Result
 
 SHOWN = 6  # molecules with a line of their own
 MORE = 2.4  # inches for four panels

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from mesokit.observe.shared.result import Result
 from mesokit.report import curve
+from mesokit.seam.result import Result
 
 
 def draw(result: Result, figure: Any, ax: Any) -> None:

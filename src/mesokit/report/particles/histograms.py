@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.observe.shared.result import Result
 from mesokit.report.style import COLOURS, lettered
+from mesokit.seam.result import Result
 
 NOISY = 0.3  # relative error above which a ratio says nothing
 LABELS = {"speed": r"|\mathbf{v}|", "number": "particles in a cell"}

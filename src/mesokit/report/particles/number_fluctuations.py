@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.observe.shared.result import Result
 from mesokit.report.curve import BARS
 from mesokit.report.style import COLOURS, labelled, legend_above, sparse_logarithm
+from mesokit.seam.result import Result
 
 GUIDED = 4  # of the last points, through whose middle a guide goes
 

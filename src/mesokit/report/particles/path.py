@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from mesokit.observe.shared.result import Result
 from mesokit.report.caption import mathematics
 from mesokit.report.style import COLOURS, labelled, legend_above
+from mesokit.seam.result import Result
 
 
 def draw(result: Result, figure: Any, ax: Any) -> None:

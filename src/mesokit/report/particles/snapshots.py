@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.observe.shared.result import Result
 from mesokit.report.style import COLOURS, labelled
+from mesokit.seam.result import Result
 
 MANY = 5000  # dots, beyond which a vector file holds an image of them
 

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.observe.shared.result import Result
 from mesokit.report import curve
 from mesokit.report.style import sparse_logarithm
+from mesokit.seam.result import Result
 
 SPAN = 5.0  # largest over smallest value from which axes are logarithmic
 

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.observe.shared.result import Result
 from mesokit.report.caption import mathematics
 from mesokit.report.style import COLOURS, LINES, MARKERS, labelled, legend_above
+from mesokit.seam.result import Result
 
 SYMBOLS = {
     "shear stress": r"$\sigma_{xy}$",

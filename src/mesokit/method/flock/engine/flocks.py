@@ -8,25 +8,25 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.execute.cpu.threads import Threads
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.none import Nothing
 from mesokit.geometry.solids.solids import Solids, solids_of
 from mesokit.kernels.group import Packing
+from mesokit.loops.threads import Threads
 from mesokit.method.flock.engine.memory import Physics, axes_of, make
 from mesokit.method.flock.engine.step import step
 from mesokit.scalar.random import Counter
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.engine import Array, Integers, State
+    from mesokit.seam.engine import Array, Integers, State
 
 FEWEST = 2000  # birds for each thread: fewer wait for one another longer than they work
 MOST_BOXES = 2**30  # away: images are 32-bit
 
 
 class Flocks:
-    """Engine of flocks (`mesokit.engine.Engine`).
+    """Engine of flocks (`mesokit.seam.engine.Engine`).
 
     `side` is the least length of a cell, the reach unless said: no bit depends on it.
     """

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from mesokit.execute.cpu.threads import meet
 from mesokit.kernels.kernel import inner
+from mesokit.loops.threads import meet
 from mesokit.method.flock.engine.memory import HEADING
 from mesokit.scalar.fixed_point import fixed
 from mesokit.scalar.intrinsics import with_item

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from mesokit.execute.cpu.threads import meet
 from mesokit.kernels.kernel import inner, kernel
+from mesokit.loops.threads import meet
 from mesokit.method.flock.engine.look import look, next_place, place_of_cell
 from mesokit.method.flock.engine.memory import STRIP
 from mesokit.method.flock.engine.move import move

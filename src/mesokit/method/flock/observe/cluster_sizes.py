@@ -12,14 +12,14 @@ from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.method.flock.observe.protocol import FlockObservable
-from mesokit.observe.shared.estimate import of_mean
-from mesokit.observe.shared.protocol import BlockAccumulator
-from mesokit.observe.shared.result import Comparison, Result
+from mesokit.seam.estimate import of_mean
+from mesokit.seam.observable import BlockAccumulator
+from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.engine import Array
+    from mesokit.seam.engine import Array
 
 MOST_PAIRS = 5e7  # in one sample: more take gigabytes
 

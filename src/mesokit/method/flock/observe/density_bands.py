@@ -12,14 +12,14 @@ from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, show, tag
 from mesokit.errors import CaseError
 from mesokit.method.flock.observe.protocol import FlockObservable, blind, mean_heading, open_box
-from mesokit.observe.shared.estimate import of_mean, of_ratio
-from mesokit.observe.shared.protocol import BlockAccumulator
-from mesokit.observe.shared.result import Comparison, Result
+from mesokit.seam.estimate import of_mean, of_ratio
+from mesokit.seam.observable import BlockAccumulator
+from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.engine import Array
+    from mesokit.seam.engine import Array
 
 MOST_BINS = 2**16
 WAVES = 8  # the longest, that tell where the crest is

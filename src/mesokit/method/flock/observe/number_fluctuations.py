@@ -20,14 +20,14 @@ from mesokit.method.flock.observe.protocol import (
     open_box,
     within,
 )
-from mesokit.observe.shared.estimate import of_mean
-from mesokit.observe.shared.protocol import State, pack, unpack
-from mesokit.observe.shared.result import Comparison, Result
+from mesokit.seam.estimate import of_mean
+from mesokit.seam.observable import State, pack, unpack
+from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.engine import Array
+    from mesokit.seam.engine import Array
 
 LARGEST = 0.25  # side of the largest squares unless said, in the shortest length of the box
 FITTED = 4  # of the largest, whose exponent is fitted

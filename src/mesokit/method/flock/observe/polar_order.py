@@ -17,9 +17,9 @@ from mesokit.method.flock.observe.protocol import (
     blind,
     mean_heading,
 )
-from mesokit.observe.shared.estimate import of_mean
-from mesokit.observe.shared.protocol import State, pack, unpack
-from mesokit.observe.shared.result import Comparison, Result
+from mesokit.seam.estimate import of_mean
+from mesokit.seam.observable import State, pack, unpack
+from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks, TimeSeries
 
 if TYPE_CHECKING:

@@ -12,12 +12,12 @@ import numpy as np
 from mesokit.case.component import component
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
-from mesokit.observe.shared.protocol import Observable
+from mesokit.seam.observable import Observable
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.engine import Array
     from mesokit.method.flock.noise import Noise
+    from mesokit.seam.engine import Array
 
 
 @component

@@ -21,7 +21,7 @@ from mesokit.potential.thermal import energies
 from mesokit.scalar.random import INITIAL_POSITION
 
 if TYPE_CHECKING:
-    from mesokit.execute.cpu.numbers import Numbers
+    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 
 Floats = NDArray[np.float64]
 FIRST_AGAIN = 2**20  # draws of this number and on are of those that were put elsewhere

@@ -19,7 +19,7 @@ from mesokit.method.mpcd.start.section import Start
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.ranks.world import World
+    from mesokit.processes.world import World
 
 Floats = NDArray[np.float64]
 State = Callable[["Case", str], tuple[Any, Any]]

@@ -14,13 +14,13 @@ from mesokit.io.snapshot_file import read_snapshot
 from mesokit.method.mpcd.solute.free import FreeMolecule
 from mesokit.method.mpcd.start.arrays import read_arrays
 from mesokit.method.mpcd.start.snapshot import fitted, fitted_beads
-from mesokit.ranks.alone import Alone
+from mesokit.processes.alone import Alone
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.execute.cpu.numbers import Numbers
+    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
     from mesokit.method.mpcd.solutes import Solutes
-    from mesokit.ranks.world import World
+    from mesokit.processes.world import World
 
 ALONE = Alone()
 
@@ -112,7 +112,7 @@ def _last_state(case: Case, path: str) -> tuple[Any, Any]:
 
     Raises CaseError unless that run has the box and the species of the case.
     """
-    from mesokit.execute.measure.earlier import EarlierRows
+    from mesokit.method.mpcd.engine.measure.earlier import EarlierRows
 
     told = lambda case: ("particles of (mass, number)", _kinds(case))  # noqa: E731
     fluid = _last_fluid(case, path, told)
@@ -124,7 +124,7 @@ def _last_fluid(
 ) -> tuple[Numbers, dict[str, Any]]:
     """An earlier run and its last state, if its box and what is told of it are the same."""
     from mesokit.case.case import Case
-    from mesokit.execute.cpu.numbers import Numbers
+    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 
     directory = RunDirectory.existing(path)
     earlier = Case.from_toml(directory.case_file)

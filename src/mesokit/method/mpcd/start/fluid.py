@@ -18,7 +18,7 @@ from mesokit.scalar.fixed_point import added_halves, halves
 from mesokit.scalar.random import INITIAL_POSITION, INITIAL_VELOCITY
 
 if TYPE_CHECKING:
-    from mesokit.execute.cpu.numbers import Numbers
+    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 
 Floats = NDArray[np.float64]
 Who = NDArray[np.int64]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from mesokit.ranks.world import World
+    from mesokit.processes.world import World
 
 
 class OfFirst:

@@ -12,7 +12,7 @@ from mesokit.case.box import AXES
 from mesokit.geometry.solids.contact import MARGIN
 
 if TYPE_CHECKING:
-    from mesokit.execute.cpu.numbers import Numbers
+    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 
 Floats = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from mesokit.method.mpcd.start.room import periods, stays_out
 from mesokit.scalar.random import FIRST_BEAD, INITIAL_VELOCITY
 
 if TYPE_CHECKING:
-    from mesokit.execute.cpu.numbers import Numbers
+    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
     from mesokit.method.mpcd.solutes import Solutes
 
 

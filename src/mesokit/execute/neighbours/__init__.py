@@ -1,1 +1,0 @@
-"""What cells must know of those next to them."""

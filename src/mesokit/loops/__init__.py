@@ -1,0 +1,1 @@
+"""What compiled loops of any method need: threads, cells, memory in strips, a clock."""

@@ -1,0 +1,153 @@
+"""Cells that hold beads: what their particles and beads need together in order to collide.
+
+Cells add up the fluid alone, which then pays nothing for beads. For the few cells with beads the
+sums are completed here, each by the thread whose share of `collide` it is in, and what follows from
+them takes the place of the answer that `collide` finds for the fluid alone.
+"""
+
+import math
+
+import numpy as np
+
+from mesokit.kernels.part import stage
+from mesokit.loops.layout import LANES, record_length, share
+from mesokit.method.mpcd.collision.protocol import Cell, contribute, freedom
+from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
+from mesokit.method.mpcd.engine.beads.state import PRESENT, bead_of, mass_of, number_of
+from mesokit.method.mpcd.engine.cpu.collide import as_many, draw_with_care
+from mesokit.method.mpcd.engine.cpu.strips.cell_energy import asks
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
+from mesokit.method.mpcd.engine.cpu.strips.terms import read_sums, sums_of_cell
+from mesokit.method.mpcd.engine.domains.messages.shared import key_of
+from mesokit.method.mpcd.engine.embedded.state import collides
+from mesokit.method.mpcd.thermostat.protocol import guess
+from mesokit.scalar.gamma import gamma_number
+from mesokit.scalar.jit import by_type, scalar
+from mesokit.scalar.poisson import poisson_number
+from mesokit.scalar.random import CELL, CELL_VIRTUAL, FIRST_BEAD, VIRTUAL_NUMBER, normals, words
+from mesokit.scalar.vector import added, dot, scaled
+
+NOBODY = -1
+
+
+@by_type
+def join_beads(team, now, physics, fluid, beads):
+    """Answers for the cells with beads, from sums that `collide` is about to clear."""
+    if not collides(beads):
+        return lambda team, now, physics, fluid, beads: None
+    return lambda team, now, physics, fluid, beads: _join(team, now, physics, fluid.cells, beads)
+
+
+@scalar
+def cells_of_thread(team, number):
+    """First and last + 1 of the cells that `collide` leaves to a thread."""
+    first, last = share((number + LANES - 1) // LANES, team.thread, team.threads)
+    return first * LANES, min(last * LANES, number)
+
+
+@stage
+def _join(team, now, physics, cells, beads):
+    first, last = cells_of_thread(team, cells.number)
+    present = number_of(beads.roster, len(beads.cell), PRESENT)
+    for n in range(present):
+        i = bead_of(beads.roster, PRESENT, n)
+        cell = beads.cell[i]
+        if first <= cell < last:
+            beads.following[i] = beads.head[cell]
+            beads.head[cell] = i
+    for n in range(present):
+        i = bead_of(beads.roster, PRESENT, n)
+        cell = beads.cell[i]
+        if first <= cell < last:
+            beads.leads[i] = beads.head[cell] == i
+            if beads.leads[i]:
+                answer = answer_for(beads, i, physics, now.counter, cells, cell)
+                store_values(beads.answers, np.uint64(i * len(physics.coefficients)), answer)
+
+
+@scalar
+def answer_for(beads, leader, physics, counter, cells, cell):
+    """What all in the cell of that bead, the first of its list, need to collide."""
+    found, key = sums_of_cell(cells.sums, cell, physics.terms), key_of(cells.shared, cell)
+    n, mass, momentum, energy, own = read_sums(physics, found)
+    mass = mass if n > 0.5 else 0.0
+    total = n, mass, momentum, energy, own
+    n, mass, momentum, energy, own = with_random_solvent(
+        beads.solvent, beads, physics, counter, key, total
+    )
+    i = leader
+    while i != NOBODY:
+        given = load_values(beads.given, np.uint64(i * len(beads.terms)), beads.terms)
+        more, its_energy, its_own = parts_of(given, physics.zero)
+        n, mass, momentum = n + 1.0, mass + mass_of(beads, i), added(momentum, more)
+        energy, own = energy + its_energy, added(own, its_own)
+        i = beads.following[i]
+    chance = words(counter, CELL, key, 0)
+    x, sure = guess(physics.thermostat, chance[2:], freedom(physics.rule, n))
+    if not sure:
+        x = draw_with_care(physics, counter, key, freedom(physics.rule, n))
+    found = Cell(n, mass, momentum, energy, own)
+    answer = coefficients_of(physics.rule, physics.thermostat, x, chance[:2], found)
+    return as_many(answer, physics.coefficients)
+
+
+@by_type
+def parts_of(given, zero):
+    """Momentum, m v^2 and the rule's own sums of a bead."""
+    d, rest = len(zero), len(zero) + 1
+    return lambda given, zero: (given[:d], given[d], given[rest:])
+
+
+@by_type
+def with_random_solvent(solvent, beads, physics, counter, cell, total):
+    """The sums with as many particles as a cell holds, whose momentum is drawn from a Maxwellian;
+    nothing where there is a fluid."""
+    return _with_random_solvent if len(solvent) else _as_they_are
+
+
+def _as_they_are(solvent, beads, physics, counter, cell, total):
+    return total
+
+
+def _with_random_solvent(solvent, beads, physics, counter, cell, total):
+    mean, mass_of_one = solvent
+    n, mass, momentum, energy, own = total
+    zero = physics.zero
+    d, number = len(zero), poisson_number(mean, counter, VIRTUAL_NUMBER, cell)
+    if number > 0:
+        m = number * mass_of_one
+        a, b, e, f = words(counter, CELL_VIRTUAL, cell, 0)
+        v = scaled(math.sqrt(physics.kT / m), normals(zero, a, b, e, f))
+        n, mass, momentum = n + number, mass + m, added(momentum, scaled(m, v))
+        if asks(physics.energy):
+            inner = gamma_number(float(d * (number - 1)), counter, VIRTUAL_NUMBER, cell)
+            energy += m * dot(v, v) + 2.0 * physics.kT * inner
+        who = (FIRST_BEAD + len(beads.cell) + np.int64(cell), 0)
+        _, drawn = contribute(physics.rule, counter, who, m, v, scaled(0.0, zero))
+        own = added(own, drawn)
+    return n, mass, momentum, energy, own
+
+
+@by_type
+def answer_beads(team, now, physics, fluid, beads):
+    """Put these answers in the place of those that `collide` found without beads."""
+    if not collides(beads):
+        return lambda team, now, physics, fluid, beads: None
+    return _put_answers
+
+
+def _put_answers(team, now, physics, fluid, beads):
+    cells = fluid.cells
+    first, last = cells_of_thread(team, cells.number)
+    needed = physics.coefficients
+    for n in range(number_of(beads.roster, len(beads.cell), PRESENT)):
+        i = bead_of(beads.roster, PRESENT, n)
+        cell = beads.cell[i]
+        if first <= cell < last and beads.leads[i]:
+            beads.head[cell] = NOBODY
+            start = np.uint64(cell) * np.uint64(record_length(len(needed)))
+            store_values(
+                cells.coefficients,
+                start,
+                load_values(beads.answers, np.uint64(i * len(needed)), needed),
+            )

@@ -1,0 +1,132 @@
+"""What a traversal of bonds, angles, pairs and walls asks of each: its force, energy or virial.
+
+The class of `asked` picks one of these when the calling loop is compiled. Each adds its part to
+`total`, a tuple: the force on a bead has as many numbers as there are axes, the energy one, and
+the virial none, as it goes to memory.
+"""
+
+from typing import Any, NamedTuple
+
+from mesokit.geometry.protocol import facing
+from mesokit.method.mpcd.engine.beads.torn import note_torn
+from mesokit.method.mpcd.engine.cpu.bounce import take
+from mesokit.method.mpcd.engine.cpu.stress import add_product
+from mesokit.potential.angle import bend
+from mesokit.potential.protocol import central, torn
+from mesokit.scalar.jit import generic
+from mesokit.scalar.vector import added, added_scaled, dot, scaled
+
+
+class Force(NamedTuple):
+    """The force on a bead.
+
+    It is kept for a `time`, in which walls take the opposite momentum: `impulse`, in units of
+    1 / scale. Torn bonds go to `faults` with the step and their beads, the first of which is 1.
+    """
+
+    time: float
+    impulse: Any
+    scale: float
+    step: int
+    faults: Any
+
+
+class Energy(NamedTuple):
+    """The energy, each bond, angle and pair counted once."""
+
+
+class Virial(NamedTuple):
+    """The vector between two beads times the impulse on the second in a time: (d, d) sums.
+
+    Each bond, angle and pair is counted once. That of walls is not asked for.
+    """
+
+    time: float
+    tensor: Any
+    scale: float  # whole numbers per unit
+
+
+@generic
+def of_two(asked, total, potential, separation, i, j):
+    """Of beads i and j; `separation` leads from j to i. They are also met as j and i."""
+
+
+@generic
+def of_three(asked, total, potential, before, after, role):
+    """Of two bonds in a row and the bead with that role in them: 0 the first, 2 the last."""
+
+
+@generic
+def of_wall(asked, total, potential, near_wall, r):
+    """Of a bead at r and the nearest surface."""
+
+
+@of_two.register(Force)
+def _(asked, total, potential, separation, i, j):
+    square = dot(separation, separation)
+    _, push = central(potential, square)
+    if torn(potential, square):
+        note_torn(asked.faults, asked.step, min(i, j) + 1, max(i, j) + 1)
+    return added_scaled(total, push if j != i else 0.0, separation)
+
+
+@of_three.register(Force)
+def _(asked, total, potential, before, after, role):
+    _, first, last = bend(potential, before, after)
+    middle = scaled(-1.0, added(first, last))
+    own = first if role == 0 else (last if role == 2 else middle)
+    return added(total, own)
+
+
+@of_wall.register(Force)
+def _(asked, total, potential, near_wall, r):
+    solid, reach = near_wall
+    distance, out, surface, lever = facing(solid, reach, r)
+    if distance >= reach:
+        return total
+    _, push = central(potential, distance * distance)
+    force = scaled(push * distance, out)
+    take(asked.impulse, surface, lever, scaled(-asked.time, force), asked.scale)
+    return added(total, force)
+
+
+@of_two.register(Energy)
+def _(asked, total, potential, separation, i, j):
+    energy, _ = central(potential, dot(separation, separation))
+    return added(total, (energy if j > i else 0.0,))
+
+
+@of_three.register(Energy)
+def _(asked, total, potential, before, after, role):
+    energy, _, _ = bend(potential, before, after)
+    return added(total, (energy if role == 1 else 0.0,))
+
+
+@of_wall.register(Energy)
+def _(asked, total, potential, near_wall, r):
+    solid, reach = near_wall
+    distance, _, _, _ = facing(solid, reach, r)
+    energy, _ = central(potential, distance * distance)
+    return added(total, (energy,))
+
+
+@of_two.register(Virial)
+def _(asked, total, potential, separation, i, j):
+    if j > i:
+        _, push = central(potential, dot(separation, separation))
+        add_product(asked.tensor, asked.scale, asked.time * push, separation, separation)
+    return total
+
+
+@of_three.register(Virial)
+def _(asked, total, potential, before, after, role):
+    if role == 1:
+        _, first, last = bend(potential, before, after)
+        add_product(asked.tensor, asked.scale, -asked.time, before, first)
+        add_product(asked.tensor, asked.scale, asked.time, after, last)
+    return total
+
+
+@of_wall.register(Virial)
+def _(asked, total, potential, near_wall, r):
+    return total

@@ -1,0 +1,123 @@
+"""All bonds, angles and pairs of the molecules of a fluid, whatever is asked of them.
+
+WIDTH molecules lie side by side (see `registers`), so that a link is gone through once for all.
+"""
+
+from typing import NamedTuple
+
+from mesokit.method.mpcd.engine.beads.interactions import Virial, of_three, of_two
+from mesokit.method.mpcd.engine.beads.registers import WIDTH, bead_at, load_bead, store_bead
+from mesokit.potential.angle import bend
+from mesokit.potential.protocol import central, torn
+from mesokit.scalar.jit import by_type, generic, scalar
+from mesokit.scalar.pointer import word
+from mesokit.scalar.vector import added, added_scaled, dot, scaled
+
+
+class Kick(NamedTuple):
+    """Change of the velocities of the beads by the forces between them, kept for a time."""
+
+    factor: float  # time over the mass of a bead
+
+
+@scalar
+def each_link(asked, molecule, work, lanes, zero):
+    """Ask of all links, in the lanes that hold molecules; whether a bond is torn."""
+    bonds, angles, pairs = molecule.number
+    broken, at = False, 0
+    for _ in range(bonds):
+        a, b = work[linked(molecule, at, zero)], work[linked(molecule, at + 1, zero)]
+        broken |= of_linked(asked, molecule.bond, a, b, lanes, zero)
+        at += 2
+    for _ in range(angles):
+        a, b = work[linked(molecule, at, zero)], work[linked(molecule, at + 1, zero)]
+        of_angle(molecule.angle, asked, a, b, work[linked(molecule, at + 2, zero)], lanes, zero)
+        at += 3
+    for _ in range(pairs):
+        a, b = work[linked(molecule, at, zero)], work[linked(molecule, at + 1, zero)]
+        of_pair(molecule.pair, asked, a, b, lanes, zero)
+        at += 2
+    return broken
+
+
+@scalar
+def linked(molecule, at, zero):
+    """Where the rows of the bead at a place of the table of links are."""
+    return bead_at(word(molecule.links, at), zero)
+
+
+@by_type
+def of_angle(angle, asked, a, b, c, lanes, zero):
+    """Of the angle of beads a, b and c, if there is a potential."""
+    return _of_angle if len(angle) else lambda *_: None
+
+
+def _of_angle(angle, asked, a, b, c, lanes, zero):
+    (potential,) = angle
+    of_angled(asked, potential, a, b, c, lanes, zero)
+
+
+@by_type
+def of_pair(pair, asked, a, b, lanes, zero):
+    """Of any two beads a and b, if there is a potential."""
+    return _of_pair if len(pair) else lambda *_: None
+
+
+def _of_pair(pair, asked, a, b, lanes, zero):
+    (potential,) = pair
+    of_linked(asked, potential, a, b, lanes, zero)
+
+
+@generic
+def of_linked(asked, potential, a, b, lanes, zero):
+    """Of two beads that a potential holds together; whether they are farther apart than can be."""
+
+
+@generic
+def of_angled(asked, potential, a, b, c, lanes, zero):
+    """Of the bonds from bead a to b and on to c."""
+
+
+@of_linked.register(Kick)
+def _(asked, potential, a, b, lanes, zero):
+    d, broken = len(zero), False
+    for i in range(WIDTH):
+        separation = added_scaled(load_bead(b, i, 0, zero), -1.0, load_bead(a, i, 0, zero))
+        square = dot(separation, separation)
+        _, push = central(potential, square)
+        change = scaled(asked.factor * push, separation)
+        store_bead(a, i, d, added_scaled(load_bead(a, i, d, zero), -1.0, change))
+        store_bead(b, i, d, added(load_bead(b, i, d, zero), change))
+        broken |= torn(potential, square)
+    return broken
+
+
+@of_angled.register(Kick)
+def _(asked, potential, a, b, c, lanes, zero):
+    d = len(zero)
+    for i in range(WIDTH):
+        middle = load_bead(b, i, 0, zero)
+        before = added_scaled(middle, -1.0, load_bead(a, i, 0, zero))
+        after = added_scaled(load_bead(c, i, 0, zero), -1.0, middle)
+        _, first, last = bend(potential, before, after)
+        first, last = scaled(asked.factor, first), scaled(asked.factor, last)
+        store_bead(a, i, d, added(load_bead(a, i, d, zero), first))
+        store_bead(b, i, d, added_scaled(load_bead(b, i, d, zero), -1.0, added(first, last)))
+        store_bead(c, i, d, added(load_bead(c, i, d, zero), last))
+
+
+@of_linked.register(Virial)
+def _(asked, potential, a, b, lanes, zero):
+    for i in range(lanes):
+        separation = added_scaled(load_bead(b, i, 0, zero), -1.0, load_bead(a, i, 0, zero))
+        of_two(asked, (), potential, separation, 0, 1)
+    return False
+
+
+@of_angled.register(Virial)
+def _(asked, potential, a, b, c, lanes, zero):
+    for i in range(lanes):
+        middle = load_bead(b, i, 0, zero)
+        before = added_scaled(middle, -1.0, load_bead(a, i, 0, zero))
+        after = added_scaled(load_bead(c, i, 0, zero), -1.0, middle)
+        of_three(asked, (), potential, before, after, 1)

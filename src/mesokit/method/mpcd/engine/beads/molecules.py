@@ -1,0 +1,209 @@
+"""The flight of the molecules of a fluid through a timestep, WIDTH of them at a time.
+
+Beads fly straight between two kicks, and bounce off solids there; dimers with harmonic bonds may be
+moved in closed form instead.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from mesokit.geometry.protocol import touches
+from mesokit.geometry.solids.none import Nothing
+from mesokit.loops.layout import LANES, SCRATCH_ROW
+from mesokit.loops.threads import Team
+from mesokit.method.mpcd.engine.beads.interactions import Virial
+from mesokit.method.mpcd.engine.beads.links import Kick, each_link
+from mesokit.method.mpcd.engine.beads.registers import WIDTH, bead_at, load_bead, store_bead
+from mesokit.method.mpcd.engine.beads.torn import note_torn
+from mesokit.method.mpcd.engine.beads.verlet import drift, flown, kick, verlet
+from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, Fluid
+from mesokit.method.mpcd.engine.cpu.near_solids import FEW, forget
+from mesokit.method.mpcd.engine.cpu.physics import field_of, kind_of_solid
+from mesokit.method.mpcd.engine.cpu.stages import clear_of
+from mesokit.method.mpcd.engine.cpu.stress import add_product
+from mesokit.method.mpcd.field.none import Zero
+from mesokit.method.mpcd.field.protocol import acceleration
+from mesokit.method.mpcd.molecule import Dimers
+from mesokit.method.mpcd.streaming import fall, halfway
+from mesokit.potential.protocol import torn
+from mesokit.scalar.jit import by_type, scalar
+from mesokit.scalar.pointer import word
+from mesokit.scalar.vector import added, added_scaled, chosen, dot, scaled
+
+
+class Batch(NamedTuple):
+    """Which molecules move: lanes from `start` on of the group whose first strip is `strip`."""
+
+    group: int
+    strip: int
+    start: int
+    lanes: int  # so many of the WIDTH hold molecules
+
+
+class Moving(NamedTuple):
+    """A batch of molecules of a fluid, and the thread that moves them."""
+
+    team: Team
+    fluid: Fluid
+    batch: Batch
+    flags: int
+
+
+@by_type
+def fly_molecules(team, now, physics, fluid, batch):
+    """Positions and velocities of beads a timestep later.
+
+    The stress gets, if it is measured, the momentum that bonds hand over; bonds that tear are
+    noted.
+    """
+    molecule = field_of(physics, "molecule")
+    return _fly_dimers if molecule.instance_class is Dimers else _fly_springs
+
+
+def _fly_springs(team, now, physics, fluid, batch):
+    for k in range(physics.molecule.beads):
+        bead = fluid.scratch.beads[team.thread][bead_at(k, physics.zero)]
+        remember(physics.solid, bead, physics.zero)
+    verlet(Moving(team, fluid, batch, now.flags), now, physics, physics.molecule.substeps)
+
+
+@drift.register(Moving)
+def _(moving, counter, physics, time):
+    for k in range(physics.molecule.beads):
+        if drift_bead(moving, counter, physics, time, k):
+            forget(moving.fluid.room, moving.batch.strip + k, 1 << (moving.batch.start // FEW))
+
+
+@kick.register(Moving)
+def _(moving, step, box, physics, time):
+    molecule, zero, batch, fluid = physics.molecule, physics.zero, moving.batch, moving.fluid
+    work = fluid.scratch.beads[moving.team.thread]
+    if moving.flags & MEASURE_STRESS:
+        virial = Virial(time, fluid.taken.tensor[2, batch.group], physics.stress_scale)
+        each_link(virial, molecule, work, batch.lanes, zero)
+    change = Kick(time * molecule.inverse_mass)
+    if each_link(change, molecule, work, WIDTH, zero):
+        note_torn_bonds(moving, step, molecule, zero)
+    for k in range(molecule.beads):
+        push_bead(physics, time, work[bead_at(k, zero)])
+
+
+@by_type
+def push_bead(physics, time, bead):
+    """The body force, if there is one."""
+    if field_of(physics, "field").instance_class is Zero:
+        return lambda physics, time, bead: None
+    return _push
+
+
+def _push(physics, time, bead):
+    zero = physics.zero
+    for i in range(WIDTH):
+        r, v = load_bead(bead, i, 0, zero), load_bead(bead, i, len(zero), zero)
+        v = added_scaled(v, time, acceleration(physics.field, r))
+        store_bead(bead, i, len(zero), v)
+
+
+def _fly_dimers(team, now, physics, fluid, batch):
+    work, zero = fluid.scratch.beads[team.thread], physics.zero
+    d, exact, time = len(zero), physics.molecule, physics.timestep
+    a, b = work[bead_at(0, zero)], work[bead_at(1, zero)]
+    if now.flags & MEASURE_STRESS:
+        _exact_virial(physics, a, b, batch.lanes, fluid.taken.tensor[2, batch.group])
+    for i in range(WIDTH):
+        r, v = load_bead(a, i, 0, zero), load_bead(a, i, d, zero)
+        r2, v2 = load_bead(b, i, 0, zero), load_bead(b, i, d, zero)
+        separation, rate = added_scaled(r2, -1.0, r), added_scaled(v2, -1.0, v)
+        centre, rise = scaled(0.5, added(r, r2)), scaled(0.5, added(v, v2))
+        pull = halfway(physics.field, centre, rise, time)
+        centre, rise = fall(centre, rise, pull, time)
+        half = scaled(0.5, added_scaled(scaled(exact.cosine, separation), exact.late, rate))
+        turn = scaled(0.5, added_scaled(scaled(exact.cosine, rate), exact.early, separation))
+        store_bead(a, i, 0, added_scaled(centre, -1.0, half) + added_scaled(rise, -1.0, turn))
+        store_bead(b, i, 0, added(centre, half) + added(rise, turn))
+
+
+@scalar
+def _exact_virial(physics, a, b, lanes, tensor):
+    """Add the momentum that harmonic bonds hand over in a timestep: -2K times the time integral of
+    the outer product of the vector between the beads with itself."""
+    exact, zero, scale = physics.molecule, physics.zero, physics.stress_scale
+    d = len(zero)
+    for i in range(lanes):
+        separation = added_scaled(load_bead(b, i, 0, zero), -1.0, load_bead(a, i, 0, zero))
+        rate = added_scaled(load_bead(b, i, d, zero), -1.0, load_bead(a, i, d, zero))
+        add_product(tensor, scale, exact.ways, separation, separation)
+        add_product(tensor, scale, exact.mixed, separation, rate)
+        add_product(tensor, scale, exact.mixed, rate, separation)
+        add_product(tensor, scale, exact.rates, rate, rate)
+
+
+@by_type
+def remember(solid, bead, zero):
+    """Keep the places from which the timestep started, where solids ask for them."""
+    return (lambda *_: None) if solid.instance_class is Nothing else _remember
+
+
+def _remember(solid, bead, zero):
+    for i in range(WIDTH):
+        store_bead(bead, i, 2 * len(zero), load_bead(bead, i, 0, zero))
+
+
+@by_type
+def drift_bead(moving, counter, physics, time, k):
+    """Straight flight of bead k, with reflections; whether any of the batch came near a solid."""
+    return _drift if kind_of_solid(physics) is Nothing else _drift_among_solids
+
+
+def _drift(moving, counter, physics, time, k):
+    zero = physics.zero
+    d, bead = len(zero), moving.fluid.scratch.beads[moving.team.thread][bead_at(k, zero)]
+    for i in range(WIDTH):
+        r, v = load_bead(bead, i, 0, zero), load_bead(bead, i, d, zero)
+        store_bead(bead, i, 0, added_scaled(r, time, v))
+    return False
+
+
+def _drift_among_solids(moving, counter, physics, time, k):
+    # Beads that may hit a surface stay behind in the first loop, as in `stages.fly`. How far they
+    # may go is known from where the timestep started: so the whole way from there counts.
+    batch, fluid, thread, zero = moving.batch, moving.fluid, moving.team.thread, physics.zero
+    d, rest, bead = len(zero), scaled(0.0, zero), fluid.scratch.beads[thread][bead_at(k, zero)]
+    clear = fluid.scratch.clear[thread, k * SCRATCH_ROW + batch.start : (k + 1) * SCRATCH_ROW]
+    hits, impulse = fluid.scratch.marks[thread], fluid.taken.impulse[thread]
+    any_hit = np.int64(0)
+    for i in range(WIDTH):
+        r, v = load_bead(bead, i, 0, zero), load_bead(bead, i, d, zero)
+        there, start = added_scaled(r, time, v), load_bead(bead, i, 2 * d, zero)
+        moved = added_scaled(there, -1.0, start)
+        around = clear_of(physics.solid, clear, i)
+        hit = np.int64(touches(physics.solid, around, start, moved, rest, 1.0))
+        hits[i] = hit
+        any_hit |= hit
+        store_bead(bead, i, 0, chosen(hit != 0, r, there))
+    if any_hit == 0:
+        return False
+    numbers, (m,) = fluid.particles.ident[(batch.strip + k) * LANES + batch.start :], physics.masses
+    for i in range(batch.lanes):
+        if hits[i] != 0:
+            r, v = load_bead(bead, i, 0, zero), load_bead(bead, i, d, zero)
+            r, v = flown(physics, time, counter, numbers[i], m, r, v, impulse)
+            store_bead(bead, i, 0, r + v)
+    return True
+
+
+@scalar
+def note_torn_bonds(moving, step, molecule, zero):
+    """Look for the bonds that are longer than they can be (seldom called)."""
+    batch, ident, thread = moving.batch, moving.fluid.particles.ident, moving.team.thread
+    work, faults = moving.fluid.scratch.beads[thread], moving.fluid.taken.faults[thread]
+    (bonds, _, _), base = molecule.number, batch.strip * LANES + batch.start
+    for n in range(bonds):
+        one, other = word(molecule.links, 2 * n), word(molecule.links, 2 * n + 1)
+        a, b = work[bead_at(one, zero)], work[bead_at(other, zero)]
+        for i in range(batch.lanes):
+            separation = added_scaled(load_bead(b, i, 0, zero), -1.0, load_bead(a, i, 0, zero))
+            if torn(molecule.bond, dot(separation, separation)):
+                first, second = ident[base + one * LANES + i], ident[base + other * LANES + i]
+                note_torn(faults, step, first, second)

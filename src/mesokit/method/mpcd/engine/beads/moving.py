@@ -1,0 +1,118 @@
+"""How the beads of solutes move in a sub-step: straight, with reflections, and by their forces."""
+
+from typing import Any, NamedTuple
+
+from mesokit.geometry.solids.none import Nothing
+from mesokit.loops.threads import Team, meet
+from mesokit.method.mpcd.engine.beads.external import from_outside, turned
+from mesokit.method.mpcd.engine.beads.interactions import Force, Virial
+from mesokit.method.mpcd.engine.beads.neighbours import refresh
+from mesokit.method.mpcd.engine.beads.state import (
+    GROUP,
+    OWN,
+    Beads,
+    bead_of,
+    inverse_mass_of,
+    load_place,
+    load_velocity,
+    mass_of,
+    store_place,
+    store_velocity,
+)
+from mesokit.method.mpcd.engine.beads.traverse import each_on_bead
+from mesokit.method.mpcd.engine.beads.verlet import drift, flown, kick
+from mesokit.method.mpcd.engine.cpu.physics import kind_of_solid, momentum_scale
+from mesokit.method.mpcd.engine.domains.beads.roster import tell_places
+from mesokit.method.mpcd.field.none import Zero
+from mesokit.method.mpcd.field.protocol import acceleration
+from mesokit.scalar.jit import by_type
+from mesokit.scalar.random import FIRST_BEAD
+from mesokit.scalar.vector import added_scaled, scaled
+
+
+class Moving(NamedTuple):
+    """The beads from the first to that before the last, and the thread that moves them."""
+
+    team: Team
+    beads: Beads
+    first: int
+    last: int
+    impulse: Any
+    measured: int
+
+
+@drift.register(Moving)
+def _(moving, counter, physics, time):
+    meet(moving.team)  # nobody looks at the places before any more
+    for n in range(moving.first, moving.last):
+        i = bead_of(moving.beads.roster, OWN, n)
+        drift_bead(moving.beads, i, counter, physics, time, moving.impulse)
+
+
+@by_type
+def drift_bead(beads, i, counter, physics, time, impulse):
+    """Straight flight, with reflections."""
+    return _drift if kind_of_solid(physics) is Nothing else _drift_among_solids
+
+
+def _drift(beads, i, counter, physics, time, impulse):
+    r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
+    store_place(beads, i, added_scaled(r, time, v))
+
+
+def _drift_among_solids(beads, i, counter, physics, time, impulse):
+    r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
+    r, v = flown(physics, time, counter, FIRST_BEAD + i, mass_of(beads, i), r, v, impulse)
+    store_place(beads, i, r)
+    store_velocity(beads, i, v)
+
+
+@kick.register(Moving)
+def _(moving, step, box, physics, time):
+    beads, team, zero = moving.beads, moving.team, physics.zero
+    meet(team)
+    tell_places(team, beads)  # ranks: where they are now
+    refresh(team, beads.neighbours, beads.roster, box, beads.r, zero)
+    if moving.measured:
+        for n in range(moving.first, moving.last):
+            i = bead_of(beads.roster, OWN, n)
+            virial = Virial(time, beads.tensor[2, n // GROUP], physics.stress_scale)
+            each_on_bead(virial, (), beads, i, load_place(beads, i, zero), box)
+    scale, faults = momentum_scale(physics), beads.faults[team.thread]
+    force = Force(time, moving.impulse, scale, step, faults)
+    for n in range(moving.first, moving.last):
+        kick_bead(force, beads, bead_of(beads.roster, OWN, n), box, physics, time)
+
+
+@by_type
+def kick_bead(asked, beads, i, box, physics, time):
+    """Change of the velocity of a bead by the forces on it."""
+    external = beads.types[beads.fields.index("external")]
+    return _kick_from_outside if len(external) else _kick
+
+
+def _kick(asked, beads, i, box, physics, time):
+    r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
+    force = each_on_bead(asked, scaled(0.0, physics.zero), beads, i, r, box)
+    v = added_scaled(v, time * inverse_mass_of(beads, i), force)
+    store_velocity(beads, i, pushed(physics.field, time, r, v))
+
+
+def _kick_from_outside(asked, beads, i, box, physics, time):
+    """Half of the change, a turn in the magnetic field, and the other half (Boris 1970)."""
+    r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
+    force = each_on_bead(asked, scaled(0.0, physics.zero), beads, i, r, box)
+    force = from_outside(beads.external, force, i, r)
+    half = 0.5 * time
+    v = added_scaled(v, half * inverse_mass_of(beads, i), force)
+    v = turned(beads.external, time, i, pushed(physics.field, half, r, v))
+    v = added_scaled(v, half * inverse_mass_of(beads, i), force)
+    store_velocity(beads, i, pushed(physics.field, half, r, v))
+
+
+@by_type
+def pushed(field, time, r, v):
+    """The velocity after the body force."""
+    if field.instance_class is Zero:
+        return lambda field, time, r, v: v
+    return lambda field, time, r, v: added_scaled(v, time, acceleration(field, r))

@@ -1,0 +1,220 @@
+"""Which beads are near which: lists that hold for as long as nobody has gone half a skin.
+
+A list is in the order of the beads' numbers and reaches beyond the potential: what it holds too
+much adds nothing, so that forces have the same bits whenever it was made. A bead with more
+neighbours than its list has room for looks at all beads.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mesokit.case.box import SLIDING, fold
+from mesokit.loops.cells import cell_of, next_along, worn
+from mesokit.loops.layout import share
+from mesokit.loops.threads import meet
+from mesokit.method.mpcd.engine.beads.state import AROUND, OWN, bead_of, number_of
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
+from mesokit.scalar.elementary import rint
+from mesokit.scalar.intrinsics import floor, with_item
+from mesokit.scalar.jit import by_type, scalar, seldom
+from mesokit.scalar.vector import added_scaled, dot, scaled
+
+CROWDED = -1  # the length of a list that did not fit
+MOVED, OFFSET, MADE = 0, 1, 2  # places in `Neighbours.noted`
+GAP = 8  # numbers between those of two threads: each has a cache line of its own
+
+
+class Neighbours(NamedTuple):
+    """Lists, and what they were made from.
+
+    reach: how far the potential and the skin go; skin: how far the list goes beyond the potential.
+    cells (d,), inverse (d,): their number along each axis, and per length of the box.
+    cell (beads,): of each bead; head (cells,), following (beads,): the beads of each cell, one
+    leading to the next, -1 last.
+    count (beads,), near (beads, most): the lists.
+    made_at (beads, d), boxes (beads,): where beads were then, and in which image along y.
+    noted (threads, GAP): what each thread knows: square of the farthest that one of its beads has
+    gone, the offset of the images when the lists were made, and whether there are any.
+    """
+
+    reach: float
+    skin: float
+    cells: tuple[int, ...]
+    inverse: tuple[float, ...]
+    cell: Any
+    head: Any
+    following: Any
+    count: Any
+    near: Any
+    made_at: Any
+    boxes: Any
+    noted: Any
+
+
+@by_type
+def apart(box, r, other):
+    """The vector from r to the nearest image of the other."""
+    return _apart_sliding if box.instance_class in SLIDING else _apart
+
+
+def _apart(box, r, other):
+    return nearest_image(box, r, other)
+
+
+@scalar
+def nearest_image(box, r, other):
+    """That of a box whose images stand still."""
+    separation = added_scaled(other, -1.0, r)
+    for k in range(len(r)):
+        boxes = rint(separation[k] * box.inverse[k])
+        separation = with_item(separation, k, separation[k] - boxes * box.size[k])
+    return separation
+
+
+def _apart_sliding(box, r, other):
+    up = rint((other[1] - r[1]) * box.inverse[1])
+    return nearest_image(box, r, with_item(other, 0, other[0] - up * box.offset))
+
+
+@by_type
+def offset_of_images(box):
+    """How far the image above is displaced now."""
+    return (lambda box: box.offset) if box.instance_class in SLIDING else (lambda box: 0.0)
+
+
+@scalar
+def slipped(lists, box, thread):
+    """How far the images have slid since the lists were made."""
+    moved = offset_of_images(box) - lists.noted[thread, OFFSET]
+    return moved - rint(moved * box.inverse[0]) * box.size[0]
+
+
+@scalar
+def note_moves(lists, roster, box, thread, places, share_of, zero):
+    """Find how far the beads of this thread have gone against what is next to them."""
+    (first, last), slip, farthest = share_of, slipped(lists, box, thread), 0.0
+    for n in range(first, last):
+        i = bead_of(roster, AROUND, n)
+        at = np.uint64(i * len(zero))
+        moved = added_scaled(
+            load_values(places, at, zero), -1.0, load_values(lists.made_at, at, zero)
+        )
+        moved = with_item(moved, 0, moved[0] - lists.boxes[i] * slip)
+        square = dot(moved, moved)
+        farthest = max(farthest, square if square >= 0.0 else np.inf)  # lost beads too
+    lists.noted[thread, MOVED] = farthest
+
+
+@scalar
+def stale(lists, box, team):
+    """Whether the lists must be made anew; the answer is the same in all threads."""
+    farthest = 0.0
+    for t in range(team.threads):
+        farthest = max(farthest, lists.noted[t, MOVED])
+    slip = abs(slipped(lists, box, team.thread))
+    return lists.noted[team.thread, MADE] == 0.0 or worn(farthest, slip, lists.skin)
+
+
+@by_type
+def refresh(team, lists, roster, box, places, zero):
+    """Make the lists anew if they may miss somebody; nothing without a pair potential."""
+    return _refresh if len(lists) else lambda team, lists, roster, box, places, zero: None
+
+
+def _refresh(team, lists, roster, box, places, zero):
+    (lists,) = lists
+    everybody = len(lists.cell)
+    around = share(number_of(roster, everybody, AROUND), team.thread, team.threads)
+    note_moves(lists, roster, box, team.thread, places, around, zero)
+    meet(team)
+    if stale(lists, box, team):
+        find_cells(lists, roster, box, places, around, zero)
+        lists.noted[team.thread, OFFSET] = offset_of_images(box)
+        lists.noted[team.thread, MADE] = 1.0
+        meet(team)
+        link(lists, roster, share(len(lists.head), team.thread, team.threads))
+        meet(team)
+        first, last = share(number_of(roster, everybody, OWN), team.thread, team.threads)
+        for n in range(first, last):
+            make_list(lists, box, places, bead_of(roster, OWN, n), zero)
+        meet(team)
+
+
+@seldom
+def find_cells(lists, roster, box, places, share_of, zero):
+    """Where these beads are, and in which cells."""
+    still = scaled(0.0, zero)
+    for n in range(share_of[0], share_of[1]):
+        i = bead_of(roster, AROUND, n)
+        at = np.uint64(i * len(zero))
+        r = load_values(places, at, zero)
+        store_values(lists.made_at, at, r)
+        lists.boxes[i] = floor(r[1] * box.inverse[1])
+        r, _, _ = fold(box, r, still, still)
+        lists.cell[i] = cell_of(lists, r)
+
+
+@seldom
+def link(lists, roster, cells):
+    """The beads of these cells, each thread's own, the last first."""
+    first, last = cells
+    lists.head[first:last] = -1
+    for n in range(number_of(roster, len(lists.following), AROUND)):
+        i = bead_of(roster, AROUND, n)
+        cell = lists.cell[i]
+        if first <= cell < last:
+            lists.following[i] = lists.head[cell]
+            lists.head[cell] = i
+
+
+@seldom
+def make_list(lists, box, places, i, zero):
+    """All within reach of bead i, in order."""
+    d, still, found = len(zero), scaled(0.0, zero), 0
+    mine = load_values(places, np.uint64(i * d), zero)
+    r, _, _ = fold(box, mine, still, still)
+    slide = offset_of_images(box)
+    rows, layers = lists.cells[0], lists.cells[0] * lists.cells[1]
+    along_z, _ = next_along(lists, box, d - 1, r[d - 1])
+    along_y, up = next_along(lists, box, 1, r[1])
+    for b in range(3):  # the image above or below may be displaced along x
+        x = r[0] - up[b] * slide
+        x -= math.floor(x * box.inverse[0]) * box.size[0]
+        along_x, _ = next_along(lists, box, 0, x)
+        for c in range(3 if d == 3 else 1):
+            layer = along_z[c] if d == 3 else 0
+            if min(along_y[b], layer) < 0:
+                continue
+            row = along_y[b] * rows + layer * layers
+            for a in range(3):
+                if along_x[a] >= 0:
+                    cell = np.uint64(along_x[a] + row)
+                    found = list_cell(lists, box, places, i, mine, cell, found, zero)
+    lists.count[i] = found if found <= lists.near.shape[1] else CROWDED
+
+
+@scalar
+def list_cell(lists, box, places, i, mine, cell, found, zero):
+    """Add those of a cell to the list of bead i; how many it has then."""
+    square, most = lists.reach * lists.reach, lists.near.shape[1]
+    j = lists.head[cell]
+    while j >= 0:
+        separation = apart(box, mine, load_values(places, np.uint64(j * len(zero)), zero))
+        if j != i and dot(separation, separation) <= square:
+            if found < most:
+                put_in_order(lists.near, i, found, j)
+            found += 1
+        j = lists.following[j]
+    return found
+
+
+@scalar
+def put_in_order(near, i, found, j):
+    """Insert j into the list of i."""
+    place = found
+    while place > 0 and near[i, place - 1] > j:
+        near[i, place] = near[i, place - 1]
+        place -= 1
+    near[i, place] = j

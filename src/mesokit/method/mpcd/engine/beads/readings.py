@@ -1,0 +1,174 @@
+"""What observables ask of the beads of solutes, and what a checkpoint keeps of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.box import fold
+from mesokit.errors import RunError
+from mesokit.kernels.kernel import kernel
+from mesokit.loops.threads import Team
+from mesokit.method.mpcd.engine.beads.external import external_energy
+from mesokit.method.mpcd.engine.beads.interactions import Energy
+from mesokit.method.mpcd.engine.beads.neighbours import MADE, refresh
+from mesokit.method.mpcd.engine.beads.state import load_place
+from mesokit.method.mpcd.engine.beads.torn import first_torn, refuse_torn
+from mesokit.method.mpcd.engine.beads.traverse import each_on_bead
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
+from mesokit.method.mpcd.engine.embedded.readings import energy_in_fluid, refuse_faults
+from mesokit.scalar.fixed_point import total
+from mesokit.scalar.vector import scaled
+
+if TYPE_CHECKING:
+    from mesokit.method.mpcd.engine.cpu.memory import Memory
+
+Floats = NDArray[np.float64]
+ALONE = Team(0, 1, np.zeros(1, np.int64), np.zeros(1, np.int64))
+
+
+class SoluteReadings:
+    """The beads of a fluid in memory, by their numbers from 0."""
+
+    def __init__(self, memory: Memory) -> None:
+        case = memory.numbers.case
+        assert case.solutes is not None and memory.solutes
+        self.memory, self.given = memory, case.solutes
+        self.state_of: Any = memory.solutes
+        self.shape = self.given.beads, memory.numbers.dimension
+        self.bonds = self.given.bonds()
+
+    @property
+    def places(self) -> Floats:
+        """Places (beads, d), every molecule whole, as if the box had no bounds; a view."""
+        return self.state_of.r.reshape(self.shape)
+
+    @property
+    def velocities(self) -> Floats:
+        """Velocities (beads, d) in the images of `places`; a view."""
+        return self.state_of.v.reshape(self.shape)
+
+    def folded(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
+        """Places in the box, velocities there, and boxes that each bead is away."""
+        return self.folded_of(self.places, self.velocities)
+
+    def folded_of(self, r: Floats, v: Floats) -> tuple[Floats, Floats, NDArray[np.int32]]:
+        """The same of beads with these places and velocities."""
+        r, v = r.copy(), v.copy()
+        boxes = np.zeros(self.shape)
+        rows = r.reshape(-1), v.reshape(-1), boxes.reshape(-1)
+        fold_beads(self.memory.box, *rows, self.memory.physics.zero)
+        return r, v, boxes.astype(np.int32)
+
+    def whole(self) -> Floats:
+        """Places (beads, d) with the first bead of each molecule in the box."""
+        first = self.first_beads()
+        places, _, _ = self.folded()
+        return places[first] + (self.places - self.places[first])
+
+    def first_beads(self) -> NDArray[np.int64]:
+        """The first bead of the molecule of each bead."""
+        found = []
+        for kind, polymer in enumerate(self.given.polymers):
+            start = self.given.first_bead(kind)
+            starts = start + polymer.length * np.arange(polymer.number)
+            found.append(np.repeat(starts, polymer.length))
+        return np.concatenate(found)
+
+    def masses(self) -> Floats:
+        """Masses (beads,)."""
+        return np.array(self.given.masses)[self.given.kinds()]
+
+    def kinds(self) -> NDArray[np.int64]:
+        """The place of each bead's polymer in solutes.polymers."""
+        return self.given.kinds()
+
+    def bond_vectors(self) -> Floats:
+        """From the first to the second bead of each bond (bonds, d)."""
+        return self.places[self.bonds[:, 1]] - self.places[self.bonds[:, 0]]
+
+    def motion(self) -> Floats:
+        """Momentum and sum of m v^2 of the beads (d + 1,)."""
+        (_, v, _), m = self.folded(), self.masses()
+        scales = np.array(self.memory.numbers.scales_of_motion)
+        terms = np.column_stack([m[:, None] * v, m * (v**2).sum(axis=1)]) * scales
+        return total(np.rint(terms).astype(np.int64), scales)
+
+    def potential_energy(self) -> float:
+        """Of bonds, angles, pairs and walls, and of beads that act on the fluid."""
+        return energy_in(self.memory, self.state_of, self.places)
+
+    def begin(self, places: Floats, velocities: Floats) -> None:
+        """Give the beads their first places and velocities (beads, d)."""
+        self.places[:], self.velocities[:] = places, velocities
+        self.forget_lists()
+
+    def state(self) -> dict[str, NDArray[Any]]:
+        """Places and velocities."""
+        return {"solute_r": self.state_of.r.copy(), "solute_v": self.state_of.v.copy()}
+
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.state_of.r[:], self.state_of.v[:] = state["solute_r"], state["solute_v"]
+        self.state_of.faults[:] = 0
+        for embedded in self.state_of.embedded:
+            embedded.faults[:] = 0
+        self.forget_lists()
+
+    def forget_lists(self) -> None:
+        """Neighbours are found anew at the next step."""
+        for lists in self.state_of.neighbours:
+            lists.noted[:, MADE] = 0.0
+
+    def check(self) -> None:
+        """That no bond was torn, no bead lost or too fast in the last steps. Raises RunError."""
+        substeps = self.state_of.potentials.substeps
+        first = first_torn(self.state_of.faults)
+        if first is not None:
+            advice = f"take more sub-steps than {substeps} (solutes.substeps), or a stiffer bond"
+            bond = self.given.bond_of(int(self.given.kinds()[first - 1]))
+            assert bond is not None
+            refuse_torn(self.state_of.faults, bond.longest, "beads", advice)
+        for embedded in self.state_of.embedded:
+            refuse_faults(embedded.faults, embedded.skin, substeps)
+        sound = np.isfinite(self.state_of.r) & np.isfinite(self.state_of.v)
+        if not sound.all():
+            bead = int(np.argmin(sound)) // self.shape[1]
+            raise RunError(
+                f"step {self.memory.step}: bead {bead + 1} is lost: the forces on it are too large "
+                f"for the sub-step; take more sub-steps than {substeps} (solutes.substeps)"
+            )
+
+
+def energy_in(memory: Memory, beads: Any, places: Floats) -> float:
+    """Potential energy of beads, also of forces from outside and of those on the fluid."""
+    energy = float(energy_of(ALONE, beads, memory.box, memory.physics.zero))
+    energy += external_energy(beads.external, places)
+    return energy + (energy_in_fluid(memory) if beads.embedded else 0.0)
+
+
+@kernel
+def fold_beads(box, r, v, boxes, zero):
+    """Bring beads into the box."""
+    d, none = len(zero), scaled(0.0, zero)
+    for i in range(len(r) // d):
+        at = np.uint64(i * d)
+        place, velocity, crossed = fold(
+            box, load_values(r, at, zero), load_values(v, at, zero), none
+        )
+        store_values(r, at, place)
+        store_values(v, at, velocity)
+        store_values(boxes, at, crossed)
+
+
+@kernel
+def energy_of(team, beads, box, zero):
+    """Potential energy of all beads."""
+    number, total = len(beads.cell), (0.0,)
+    refresh(team, beads.neighbours, (), box, beads.r, zero)
+    for i in range(number):
+        total = each_on_bead(Energy(), total, beads, i, load_place(beads, i, zero), box)
+    (energy,) = total
+    return energy

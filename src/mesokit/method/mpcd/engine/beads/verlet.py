@@ -1,0 +1,54 @@
+"""Velocity Verlet, for the beads of solutes and the molecules of a fluid alike.
+
+Half a kick, then a drift and a kick for each sub-step, the last kick a half one.
+"""
+
+from mesokit.case.box import at_time
+from mesokit.geometry.protocol import free
+from mesokit.method.mpcd.engine.cpu.bounce import bounce
+from mesokit.method.mpcd.streaming import fall
+from mesokit.scalar.jit import by_type, generic, scalar
+from mesokit.scalar.random import Counter
+from mesokit.scalar.vector import scaled
+
+SUBSTEP_BITS = 40  # sub-steps stand above these bits of a step's number in random streams
+
+
+@by_type
+def verlet(moving, now, physics, substeps):
+    """Positions and velocities a timestep later, in sub-steps."""
+    return _verlet
+
+
+def _verlet(moving, now, physics, substeps):
+    step, time = now.counter.step, physics.timestep / substeps
+    for n in range(substeps + 1):
+        if n > 0:  # r: t + (n - 1) h -> t + n h
+            at = Counter(now.counter.seed, step + (n << SUBSTEP_BITS))
+            drift(moving, at, physics, time)
+        box = at_time(now.box, (step - 1) * physics.timestep + n * time)
+        # v: the second half of the kick of that sub-step, and the first half of the next one's
+        span = time if 0 < n < substeps else 0.5 * time
+        kick(moving, step, box, physics, span)
+
+
+@generic
+def drift(moving, counter, physics, time):
+    """Straight flight for a time, with reflections."""
+
+
+@generic
+def kick(moving, step, box, physics, time):
+    """Change of the velocities by the forces of where the beads are, kept for a time.
+
+    `box` is that of now, `step` the number by which torn bonds are noted.
+    """
+
+
+@scalar
+def flown(physics, time, counter, number, m, r, v, impulse):
+    """Position and velocity a time later of a bead that may hit a surface."""
+    rest = scaled(0.0, physics.zero)
+    if free(physics.solid, r, v, rest, time):
+        return fall(r, v, rest, time)
+    return bounce(physics, time, counter, (number, m), r, v, rest, impulse)

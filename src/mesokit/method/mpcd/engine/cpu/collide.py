@@ -1,0 +1,191 @@
+"""One pass over all cells: from the sums over their particles to what these need to collide."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mesokit.kernels.kernel import inner
+from mesokit.kernels.part import stage
+from mesokit.loops.layout import LANES, QUAD, record_length, share, sums_length
+from mesokit.method.mpcd.collision.protocol import Cell, freedom
+from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
+from mesokit.method.mpcd.engine.cell_gradient import gradient_at
+from mesokit.method.mpcd.engine.cpu.physics import of_cells
+from mesokit.method.mpcd.engine.cpu.strips.records import spread, take
+from mesokit.method.mpcd.engine.cpu.strips.rows import (
+    load_scratch,
+    load_values,
+    store_scratch,
+    store_values,
+)
+from mesokit.method.mpcd.engine.cpu.strips.terms import nothing_found, read_sums
+from mesokit.method.mpcd.engine.domains.messages.shared import any_own, key_of, shares
+from mesokit.method.mpcd.thermostat.protocol import draw, guess
+from mesokit.scalar.jit import by_type, scalar, seldom
+from mesokit.scalar.random import CELL, words
+from mesokit.scalar.vector import added
+
+MOST_DRAWS = 1000  # of a thermostat's random number, each accepted with more than 95 %
+
+
+@scalar
+def total_block(sums, start, count, totals, terms):
+    """Add up what the threads found for these cells, and clear it.
+
+    A thread that found nothing in four cells is passed over, so that no other writes to its memory.
+    """
+    none = nothing_found(terms)
+    for i in range(LANES):
+        store_scratch(totals, i, none)
+    together = count - count % QUAD
+    length = np.uint64(sums_length(len(terms)))
+    for t in range(sums.shape[0]):
+        for i in range(0, together, QUAD):
+            found = np.int64(0)
+            for j in range(QUAD):
+                found |= sums[t, np.uint64(start + i + j) * length]
+            if found != 0:
+                take(sums[t], start + i, i, totals, terms)
+        for i in range(together, count):
+            cell = np.uint64(start + i) * length
+            store_scratch(
+                totals, i, added(load_scratch(totals, i, none), load_values(sums[t], cell, none))
+            )
+            store_values(sums[t], cell, none)
+
+
+@scalar
+def put_block(coefficients, start, count, rows, c):
+    """Write the rows to the records of these cells."""
+    together = count - count % QUAD
+    for i in range(0, together, QUAD):
+        spread(coefficients, start + i, i, rows, c)
+    for i in range(together, count):
+        store_values(
+            coefficients,
+            np.uint64(start + i) * np.uint64(record_length(len(c))),
+            load_scratch(rows, i, c),
+        )
+
+
+@scalar
+def draw_with_care(physics, counter, cell, free):
+    """The thermostat's random number where a guess was not sure."""
+    x, good = draw(physics.thermostat, counter, cell, free, 0)
+    attempt = 1
+    while not good and attempt < MOST_DRAWS:
+        x, good = draw(physics.thermostat, counter, cell, free, attempt)
+        attempt += 1
+    return x
+
+
+@by_type
+def as_many(answer, coefficients):
+    """The answer of a rule, for which there is room."""
+    if len(answer) != len(coefficients):
+        raise TypeError(
+            f"coefficients gives {len(answer)} numbers; coefficient_count says {len(coefficients)}"
+        )
+    return lambda answer, coefficients: answer
+
+
+@scalar
+def needs_of_cell(physics, counter, cell, found, gradient, certain):
+    """What the particles of a cell need in order to collide, and whether that is sure.
+
+    `gradient` is that of the sum of which the rule asks for it, and follows its own sums.
+
+    A thermostat only guesses its random number, unless it must be `certain`: that takes longer.
+    """
+    n, mass, momentum, energy, own = read_sums(physics, found)
+    sums = Cell(n, mass, momentum, energy, own + gradient)
+    chance, free = words(counter, CELL, cell, 0), freedom(physics.rule, sums.number)
+    x, sure = guess(physics.thermostat, chance[2:], free)
+    if certain:
+        x = draw_with_care(physics, counter, cell, free)
+    answer = coefficients_of(physics.rule, physics.thermostat, x, chance[:2], sums)
+    return as_many(answer, physics.coefficients), sure
+
+
+@seldom
+def sure_needs(physics, counter, cell, found, gradient):
+    """What the particles of a cell need where a guess was not sure; for few cells."""
+    answer, _ = needs_of_cell(physics, counter, cell, found, gradient, True)
+    return answer
+
+
+class InRow(NamedTuple):
+    """Cells that follow one another, from the first."""
+
+    start: int
+
+
+class Asked(NamedTuple):
+    """Cells that rows of numbers name in their first column: so many `cells`, from a row on."""
+
+    rows: Any
+    start: int
+    cells: int
+
+
+@by_type
+def cell_at(which, i):
+    """Number of the cell of lane i of a batch."""
+    if which.instance_class is InRow:
+        return lambda which, i: which.start + i
+    return lambda which, i: which.rows[which.start + min(i, which.cells - 1), 0]
+
+
+@scalar
+def settle_batch(team, counter, physics, fluid, which, count):
+    """What the cells of a batch need to collide: rows of coefficients from rows of sums."""
+    cells, scratch = fluid.cells, fluid.scratch
+    rows, totals = scratch.coefficients[team.thread], scratch.terms[team.thread]
+    doubtful, none = scratch.marks[team.thread], nothing_found(physics.terms)
+    in_doubt = np.int64(0)
+    for i in range(LANES):
+        found, cell = load_scratch(totals, i, none), cell_at(which, i)
+        gradient, key = gradient_at(cells.field, cell), key_of(cells.shared, cell)
+        answer, sure = needs_of_cell(physics, counter, key, found, gradient, False)
+        doubtful[i] = 1 - np.int64(sure)
+        in_doubt |= doubtful[i]
+        store_scratch(rows, i, answer)
+    for i in range(count if in_doubt != 0 else 0):
+        if doubtful[i] != 0:
+            found, cell = load_scratch(totals, i, none), cell_at(which, i)
+            gradient, key = gradient_at(cells.field, cell), key_of(cells.shared, cell)
+            store_scratch(rows, i, sure_needs(physics, counter, key, found, gradient))
+
+
+@by_type
+def nobody(fluid):
+    """Whether there is no fluid at all; a rank that has no particles may have cells of others."""
+    return (lambda fluid: False) if shares(fluid) else _nobody
+
+
+def _nobody(fluid):
+    return fluid.particles.filling.molecules == 0
+
+
+@inner
+def collide(team, now, physics, fluid):
+    """Coefficients of every cell from its sums, which are cleared for the next step."""
+    _collide(team, now.counter, of_cells(physics), fluid)
+
+
+@stage
+def _collide(team, counter, physics, fluid):
+    cells, scratch = fluid.cells, fluid.scratch
+    rows, totals = scratch.coefficients[team.thread], scratch.terms[team.thread]
+    batches = (cells.number + LANES - 1) // LANES
+    if nobody(fluid):  # a random solvent is only where beads are
+        batches = 0
+    first, last = share(batches, team.thread, team.threads)
+    for b in range(first, last):
+        if not any_own(cells.shared, b):
+            continue
+        start = b * LANES
+        count = min(LANES, cells.number - start)
+        total_block(cells.sums, start, count, totals, physics.terms)
+        settle_batch(team, counter, physics, fluid, InRow(start), count)
+        put_block(cells.coefficients, start, count, rows, physics.coefficients)

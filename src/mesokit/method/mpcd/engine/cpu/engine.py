@@ -1,0 +1,335 @@
+"""Execution on the threads of one machine: the verbs of a step, and the state between two."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import RunError
+from mesokit.loops.clock import BEADS, CELLS, FINISH, FIRST, SORT, SWEEP
+from mesokit.loops.threads import Threads
+from mesokit.method.mpcd.engine.beads.torn import refuse_torn
+from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, MEASURE_WALLS, Course
+from mesokit.method.mpcd.engine.cpu.memory import Memory
+from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
+from mesokit.method.mpcd.engine.cpu.sort import sort
+from mesokit.method.mpcd.engine.cpu.step import advance
+from mesokit.method.mpcd.engine.cpu.strips.cell_energy import (
+    MOST_PARTICLES,
+    ONE_PARTICLE,
+    WithCount,
+)
+from mesokit.method.mpcd.engine.measure.by_pieces import ByPieces, Some, Terms
+from mesokit.method.mpcd.engine.measure.readings import Moments, Readings
+from mesokit.method.mpcd.engine.pieces import Piece, of_state, pieces, require_finite
+from mesokit.method.mpcd.molecule import Springs
+from mesokit.scalar.system import TICK
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+
+class CPU:
+    """A fluid in memory, what moves it on, and what can be read of it.
+
+    Parameters
+    ----------
+    case : Case
+        What to simulate.
+    threads : int
+        Threads to use; the results do not depend on it.
+    measures : sequence of str
+        "stress" and "walls", where an observable needs the stress of single steps or the momentum
+        that the walls take.
+
+    Examples
+    --------
+    >>> import mesokit
+    >>> box, run = mesokit.Box([8, 8]), mesokit.Run(steps=1)
+    >>> cpu = CPU(mesokit.Case(run=run, box=box, fluid=mesokit.Fluid()), 1)
+    >>> cpu.n
+    640
+    """
+
+    def __init__(self, case: Case, threads: int = 1, measures: Sequence[str] = ()) -> None:
+        self.case, self.numbers = case, Numbers(case)
+        self.threads = Threads(threads)
+        self.memory = Memory(self.numbers, threads, measures)
+        self.readings = Readings(self.memory, self.threads)
+        self.solutes = self.readings.solutes
+        self.n, self.dimension, self.box = self.numbers.n, self.numbers.dimension, self.numbers.box
+        self.threads.compile_ahead(advance, self._course(0, 0), *self.memory.groups())
+
+    @property
+    def step(self) -> int:
+        """Steps done, the warm-up included."""
+        return self.memory.step
+
+    @property
+    def time(self) -> float:
+        """Time since the start of the warm-up."""
+        return self.step * self.numbers.timestep
+
+    # --- running --------------------------------------------------------------------------------
+
+    def parts(self, by_first: bool = False) -> Iterator[tuple[int, int]]:
+        """Numbers of the particles, from one to before another, that are to be made here.
+
+        Of several ranks each makes its part, or the first of them all.
+        """
+        return pieces(0, self.n, self.numbers.beads)
+
+    def begin(self, particles: Iterable[tuple[Any, ...]]) -> None:
+        """Have the fluid's particles: a `Piece` for each of `parts`."""
+        self._take(Piece(*piece) for piece in particles)
+        self.sort()
+
+    def _take(self, particles: Iterable[Piece]) -> None:
+        """Have these particles, in the order of their numbers."""
+        for piece in particles:
+            self.memory.put(*piece, first=int(piece.who[0]) // self.numbers.beads)
+
+    def advance(self, steps: int, measure_stress: bool = False) -> None:
+        """Run some steps; velocities are then those after the collision of the last."""
+        if steps == 0:
+            self._advance(0, False)
+        while steps > 0:
+            every = self.numbers.sort_every
+            due = every - self.step % every
+            now = min(steps, due)
+            self._advance(now, measure_stress and now == steps)
+            steps -= now
+            if now == due:
+                self.sort()
+
+    def _advance(self, steps: int, measure_stress: bool) -> None:
+        memory = self.memory
+        self.readings.forget()
+        what = MEASURE_WALLS * ("walls" in memory.measures) + MEASURE_STRESS * measure_stress
+        if measure_stress:
+            memory.fluid.taken.tensor[:] = 0.0
+            if self.solutes is not None:
+                self.solutes.state_of.tensor[:] = 0.0
+        self._steps(steps, what)
+        self.readings.wall_steps += steps
+        self._check_bonds()
+        if self.solutes is not None:
+            self.solutes.check()
+        if measure_stress:
+            self.readings.find_stress()
+
+    def _steps(self, steps: int, what: int) -> None:
+        """Let the threads do so many steps."""
+        course = self._course(steps, what)
+        self.threads.run(advance, course, *self.memory.groups())
+        self.memory.step += steps
+
+    def _course(self, steps: int, what: int) -> Course:
+        memory, case = self.memory, self.case
+        return Course(
+            steps=steps,
+            done=self.step,
+            seed=case.run.seed,
+            grid_shift=case.fluid.grid_shift,
+            closed=tuple(float(shut) for shut in self.numbers.closed),
+            flags=what,
+            box=memory.box,
+            grid=memory.grid,
+        )
+
+    def _check_bonds(self) -> None:
+        """That no bond was torn in the last steps."""
+        molecule, springs = self.case.fluid.molecule, self.memory.physics.molecule
+        if molecule is not None and isinstance(springs, Springs):
+            advice = (
+                f"take more sub-steps than {springs.substeps} (fluid.molecule.substeps), a stiffer "
+                "bond, or start from particles that are not so far apart"
+            )
+            faults = self.memory.fluid.taken.faults
+            refuse_torn(faults, molecule.bond.longest, "particles", advice)
+
+    def sort(self) -> None:
+        """Bring particles back into the box and those of one cell together in memory."""
+        memory = self.memory
+        where = memory.box, memory.grid, memory.fluid.particles
+        self.threads.run(sort, memory.physics.zero, *where, memory.order)
+        memory.fluid.room[:] = 0.0  # other particles are in the strips now
+        self._check_sums(self._largest_crowd())
+
+    def _largest_crowd(self) -> int:
+        """Particles in the fullest cell, just after the sort."""
+        if self.numbers.beads == 1:
+            return int(np.diff(self.memory.order.ends[-1, :-1], prepend=0).max())
+        cells = self.memory.fluid.particles.cell[self.memory.places]
+        return int(np.bincount(cells, minlength=1).max())
+
+    def _check_sums(self, crowd: int) -> None:
+        """That a cell of so many particles of the fastest kind cannot make its sums overflow."""
+        fastest = self.readings.fastest()
+        if fastest >= self.numbers.fastest:
+            slower = "lower the force or the velocity of the surfaces"
+            held = self.case.fluid.thermostat.acts
+            reason = f"the fluid heats up: {'' if held else 'add a thermostat, or '}{slower}"
+            if self.step == 0:
+                reason = "fluid.start: give slower particles"
+            raise RunError(
+                f"step {self.step}: a particle moves at {fastest:g}, beyond the "
+                f"{self.numbers.fastest:g} that cell sums can hold; {reason}"
+            )
+        heaviest, energy = max(self.numbers.masses_of_kinds), self.numbers.energy
+        full = crowd * heaviest * fastest * self.numbers.units["momentum"] > 2.0**61
+        if isinstance(energy, WithCount):
+            full |= crowd > MOST_PARTICLES
+            full |= crowd * heaviest * fastest**2 * energy.scale > ONE_PARTICLE
+        if full:
+            raise RunError(
+                f"step {self.step}: {crowd} particles in one cell, some as fast as {fastest:g}: "
+                "more than cell sums can hold"
+            )
+
+    def check(self) -> None:
+        """Raise RunError if a particle is too fast for the sums of cells."""
+        self._check_sums(1)
+
+    def end_warmup(self) -> None:
+        """Forget what surfaces took so far."""
+        self.readings.forget_walls()
+
+    # --- its state ------------------------------------------------------------------------------
+
+    def state(self) -> dict[str, Any]:
+        """Everything that the next step depends on, by particle number.
+
+        Raises RunError if sums have overflowed.
+        """
+        self.check()
+        memory = self.memory
+        positions, velocities, images = memory.read()
+        return {
+            **(self.solutes.state() if self.solutes else {}),
+            "positions": positions,
+            "velocities": velocities,
+            "images": images,
+            "step": np.int64(self.step),
+            "impulse": self.readings.impulse,
+            "wall_steps": np.int64(self.readings.wall_steps),
+            "wall_rates": memory.wall_rates.copy(),
+        }
+
+    def restore(self, state: Mapping[str, NDArray]) -> None:
+        """Go on from a state, with the same bits whatever the number of threads was."""
+        memory, taken = self.memory, self.memory.fluid.taken
+        require_finite(state)
+        self.readings.forget()
+        taken.faults[:] = 0
+        self._take(of_state(state, (self.n, self.dimension), self.numbers.beads))
+        memory.step = int(state["step"])
+        taken.impulse[:] = 0
+        taken.impulse[0] = state["impulse"]
+        self.readings.wall_steps = int(state["wall_steps"])
+        memory.wall_rates[:] = state["wall_rates"]
+        if self.solutes is not None:
+            self.solutes.restore(dict(state))
+
+    @property
+    def seconds(self) -> dict[str, float]:
+        """Time spent so far in each stage."""
+        names = {"sweep": SWEEP, "cells": CELLS, "finish": FINISH}
+        names |= {"beads": BEADS} if self.solutes is not None else {}
+        names |= {"sort": SORT}
+        return {name: TICK * float(self.threads.clock[FIRST + k]) for name, k in names.items()}
+
+    def balance(self) -> dict[str, Any]:
+        """How the work was shared anew while it ran."""
+        return {}
+
+    # --- what observables ask -------------------------------------------------------------------
+
+    def totals(self) -> tuple[int, Floats, float]:
+        """Number of particles, momentum (d,) and kinetic energy, beads of solutes included."""
+        return self.readings.totals()
+
+    def moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
+        """Number, mass, momentum (d, ...) and sum of m v^2 in bins along one or two axes."""
+        return self.readings.moments(axes, bins)
+
+    def modes(
+        self, wavevectors: NDArray, first: int = 0, last: int | None = None
+    ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Sums of m exp(-i k r) (K,) and of m v exp(-i k r) (K, d) for wave vectors (K, d)."""
+        return self.readings.modes(wavevectors, first, last)
+
+    def sums_of_particles(
+        self,
+        of: Callable[[Some], Terms],
+        bins: int,
+        units: Sequence[float],
+        first: int = 0,
+        last: int | None = None,
+    ) -> Floats:
+        """Sums (terms, bins) of what `of` finds of some particles at a time."""
+        return ByPieces(self.readings).sums_of_particles(of, bins, units, first, last)
+
+    def sums_of_bonds(
+        self,
+        of: Callable[[NDArray[np.int64], Floats], Terms],
+        bins: int,
+        units: Sequence[float],
+        kind: slice,
+    ) -> Floats:
+        """The same of bonds, by their numbers and vectors."""
+        return ByPieces(self.readings).sums_of_bonds(of, bins, units, kind)
+
+    def positions(self, ids: NDArray | None = None, unwrapped: bool = False) -> Floats:
+        """Positions (n, d) by particle number, in the box or as if it had no bounds."""
+        return self.readings.positions(ids, unwrapped)
+
+    def whole_positions(self, ids: NDArray | None = None) -> Floats:
+        """Positions (n, d) with all beads of a molecule next to its first."""
+        return self.readings.whole_positions(ids)
+
+    def velocities(self, ids: NDArray | None = None) -> Floats:
+        """Velocities (n, d) by particle number."""
+        return self.readings.velocities(ids)
+
+    def images(self, ids: NDArray | None = None) -> NDArray[np.int32]:
+        """How many times each particle left the box along each axis (n, d)."""
+        return self.readings.images(ids)
+
+    def masses(self, ids: NDArray | None = None) -> Floats:
+        """Masses (n,) by particle number."""
+        return self.readings.masses(ids)
+
+    def species(self, ids: NDArray | None = None) -> NDArray[np.int64]:
+        """Kind of each particle (n,): of the fluid, then of the solutes."""
+        return self.readings.species(ids)
+
+    def bonds(self) -> NDArray[np.int64]:
+        """Particle numbers (bonds, 2) of all pairs that are linked."""
+        return self.readings.bonds()
+
+    def bond_vectors(self) -> Floats:
+        """From the first to the second particle of each bond (bonds, d)."""
+        return self.readings.bond_vectors()
+
+    def potential_energy(self) -> float:
+        """Of all bonds, angles and pairs of beads, and of solutes near walls."""
+        return ByPieces(self.readings).potential_energy()
+
+    @property
+    def stress(self) -> dict[str, Floats]:
+        """Stress of the last step, if that was measured, by its parts."""
+        return self.readings.stress
+
+    @property
+    def wall_impulse(self) -> Floats:
+        """What surfaces took since the last call."""
+        return self.readings.wall_impulse
+
+    @property
+    def wall_steps(self) -> int:
+        """How many steps that was."""
+        return self.readings.wall_steps

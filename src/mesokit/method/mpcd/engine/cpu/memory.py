@@ -1,0 +1,322 @@
+"""The arrays of a fluid in memory, and the parameters of its physics as kernels take them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import RunError
+from mesokit.geometry.solids.none import Nothing
+from mesokit.kernels.group import Packing
+from mesokit.loops.layout import (
+    BLOCK,
+    LANES,
+    ROW,
+    SCRATCH_ROW,
+    blocks_for,
+    places_of_beads,
+    record_length,
+    strips_for,
+    sums_length,
+    zeros,
+)
+from mesokit.method.mpcd.engine.beads.allocate import beads_of
+from mesokit.method.mpcd.engine.beads.registers import bead_size
+from mesokit.method.mpcd.engine.cell_gradient import Field
+from mesokit.method.mpcd.engine.cpu.grid import Grid
+from mesokit.method.mpcd.engine.cpu.groups import Cells, Fluid, Particles, Scratch, Taken, Walls
+from mesokit.method.mpcd.engine.cpu.near_solids import FEW
+from mesokit.method.mpcd.engine.cpu.physics import Physics
+from mesokit.method.mpcd.engine.cpu.sort import Order
+from mesokit.method.mpcd.engine.embedded.allocate import embedded_of
+from mesokit.method.mpcd.engine.virtual.allocate import virtual_particles, with_clearance
+
+if TYPE_CHECKING:
+    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
+
+Floats = NDArray[np.float64]
+MOST = 2**31 - 2
+
+
+class Memory:
+    """A fluid in memory: its arrays, and what its step is told of its physics.
+
+    `step` steps have been done. Arrays of all threads are made here, so that memory is known.
+    """
+
+    def __init__(
+        self,
+        numbers: Numbers,
+        threads: int,
+        measures: Sequence[str],
+        domain: Any = None,
+        earlier: Memory | None = None,
+    ) -> None:
+        case, d = numbers.case, numbers.dimension
+        self.numbers, self.threads, self.step = numbers, threads, 0
+        self.measures, self.domain = frozenset(measures), domain
+        self._packing = Packing()
+        self._tables: list[Any] = []  # which compiled code knows by address
+        self._places, self._placed = np.zeros(0, np.int64), (0, numbers.beads)
+        if earlier is None or (numbers.solids and earlier.domain.block != domain.block):
+            self.physics = self._physics()
+        else:  # tables of solids take long
+            self.physics, self._tables = earlier.physics, earlier._tables
+        self._allocate()
+        self.solutes: Any = ()
+        if case.solutes is not None:
+            embedded = embedded_of(case.solutes, numbers, threads)
+            self.solutes = beads_of(case.solutes, self)._replace(embedded=embedded)
+        zero, cells = (0.0,) * d, tuple(float(n) for n in numbers.cells)
+        self.grid: Any = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
+        if domain is not None:
+            self.grid = domain.grid(self.grid)
+
+    @property
+    def box(self) -> tuple:
+        """The box as it is after the last step."""
+        numbers = self.numbers
+        time = self.step * numbers.timestep
+        return numbers.case.box.kernel(numbers.closed, time, numbers.timestep)
+
+    def groups(self) -> tuple[Any, ...]:
+        """Physics, fluid, solutes and walls as the step takes them."""
+        return self._packing(self.physics, self.fluid, self.solutes, self.walls)
+
+    def _physics(self) -> Physics:
+        numbers, fluid, d = self.numbers, self.numbers.case.fluid, self.numbers.dimension
+        return Physics(
+            rule=self._rule(),
+            thermostat=fluid.thermostat.kernel(fluid.kT, numbers.least_energy),
+            field=fluid.force.kernel(numbers.case.box.size),
+            solid=self._solid(),
+            masses=(numbers.heaviest,) if numbers.uniform else (),
+            energy=numbers.energy,
+            timestep=fluid.timestep,
+            kT=fluid.kT,
+            molecule=self._molecule(),
+            zero=(0.0,) * d,
+            coefficients=(0.0,) * numbers.coefficient_count,
+            terms=(0,) * len(numbers.scales),
+            scales=numbers.scales,
+            stress_scale=numbers.units["stress"],
+        )
+
+    def _rule(self) -> Any:
+        numbers, fluid = self.numbers, self.numbers.case.fluid
+        kernel = fluid.collision.kernel(numbers.dimension, fluid.kT)
+        return fluid.collision.among(kernel, tuple(numbers.counts), fluid.mass)
+
+    def _solid(self) -> tuple:
+        """Parameters of the solids; plates alone have a kernel of their own."""
+        numbers = self.numbers
+        if numbers.solids is None:
+            return Nothing()
+        if numbers.slit is not None:
+            return numbers.slit.kernel(numbers.case.box.size)
+        held = None if self.domain is None else self.domain.held
+        bodies, tables = with_clearance(numbers.case, numbers.solids, held)
+        self._tables.append(tables)
+        return bodies
+
+    def _molecule(self) -> tuple:
+        """Parameters of what holds molecules together."""
+        fluid = self.numbers.case.fluid
+        if fluid.molecule is None:
+            return ()
+        kernel, links = fluid.molecule.kernel(
+            self.numbers.dimension, fluid.timestep, fluid.kT, fluid.mass
+        )
+        self._tables.append(links)
+        return kernel
+
+    def _allocate(self) -> None:
+        numbers, d = self.numbers, self.numbers.dimension
+        filling, beads, room = numbers.filling, numbers.beads, numbers.filling.molecules
+        self.cells, self.number_of_cells = numbers.cells, numbers.number_of_cells
+        if self.domain is not None:
+            filling, room = filling._replace(molecules=0), self.domain.room
+            self.cells, self.number_of_cells = self.domain.region.known, self.domain.region.number
+        self._require_few(room * beads)
+        self.rows = 2 * d + (not numbers.uniform)
+        self.strips = strips_for(room, beads)
+        lanes = blocks_for(self.strips * LANES) * BLOCK
+        data, image = zeros(lanes // BLOCK * self.rows * ROW), zeros((d, lanes), np.int32)
+        cell = zeros(lanes, np.int32)
+        self.fluid = Fluid(
+            Particles(data, cell, np.arange(lanes), image, filling, self.rows),
+            self._cells(),
+            zeros((2, self.strips * (LANES // FEW))),
+            self._scratch(),
+            self._taken(),
+        )
+        self.fluid.particles.ident[self.places] = np.arange(filling.molecules * beads)
+        spare = zeros(room * beads)
+        ends = zeros((self.threads, self.number_of_cells + 1), np.int32)
+        self.order = Order(
+            zeros(room * beads, np.int32), ends, spare, spare.view(np.int32), spare.view(np.int64)
+        )
+        self.walls = self._walls()
+
+    def _require_few(self, particles: int) -> None:
+        """Raise RunError for more cells or particles than 32 bits can number, here or on a rank."""
+        slots = 0 if self.domain is None else self.domain.slots
+        if self.number_of_cells + slots >= MOST:
+            raise RunError(
+                f"box.size: {self.number_of_cells} cells are more than one process can number; "
+                "expected several ranks, or more of them"
+            )
+        if particles >= MOST:
+            raise RunError(
+                f"fluid.density: {particles} particles are more than one process can number; "
+                "expected several ranks, or more of them"
+            )
+
+    @property
+    def places(self) -> NDArray[np.int64]:
+        """Where particles lie; among molecules some places are empty."""
+        filling: Any = self.fluid.particles.filling
+        molecules, beads = filling.molecules, self.numbers.beads
+        if (molecules, beads) != self._placed:
+            self._places = np.arange(molecules)
+            if beads > 1:
+                self._places = places_of_beads(molecules, beads).ravel()
+            self._placed = molecules, beads
+        return self._places
+
+    def _cells(self) -> Cells:
+        # in the last, lanes that must not act leave their terms
+        every = self.number_of_cells + 1
+        width = sums_length(len(self.physics.terms))
+        shared = () if self.domain is None else self.domain.shared(self)
+        slots = 0 if self.domain is None else self.domain.slots
+        return Cells(
+            self.number_of_cells,
+            zeros((every + slots) * record_length(self.numbers.coefficient_count)),
+            zeros((self.threads, every * width), np.int64),
+            self._field(),
+            shared,
+        )
+
+    def _field(self) -> tuple:
+        """Where the sum of which the rule asks for the gradient is written down."""
+        numbers = self.numbers
+        wanted = numbers.case.fluid.collision.gradient_of
+        if wanted is None:
+            return ()
+        own = len(numbers.case.fluid.collision.own_sums(numbers.dimension))
+        closed = tuple(int(shut) for shut in numbers.closed)
+        term, values = len(numbers.scales) - own + wanted, zeros(self.number_of_cells)
+        return Field(term, values, tuple(self.cells), closed)
+
+    def _scratch(self) -> Scratch:
+        d, threads, beads = self.numbers.dimension, self.threads, self.numbers.beads
+        most = max(self.numbers.coefficient_count, 2 * d)
+        return Scratch(
+            coefficients=zeros((threads, most * SCRATCH_ROW)),
+            terms=zeros((threads, (len(self.physics.terms) + 1) * SCRATCH_ROW), np.int64),
+            marks=zeros((threads, LANES), np.int64),
+            clear=zeros((threads, beads * SCRATCH_ROW), np.int32),
+            beads=zeros((threads, beads * bead_size(d) if beads > 1 else 1)),
+        )
+
+    def _taken(self) -> Taken:
+        numbers, d, threads = self.numbers, self.numbers.dimension, self.threads
+        bodies = len(numbers.solids.bodies) if numbers.solids else 0
+        surfaces = 2 if numbers.slit else bodies
+        strips = self.strips if "stress" in self.measures else 1
+        return Taken(
+            impulse=zeros((threads, surfaces * (d + (1 if d == 2 else 3))), np.int64),
+            tensor=zeros((2 + (numbers.beads > 1), strips, 2 * d * d), np.int64),
+            faults=zeros((threads, 8), np.int64),
+        )
+
+    def _walls(self) -> Walls:
+        numbers, virtual = self.numbers, self.numbers.virtual
+        if virtual == "none":
+            return Walls((), (), ())
+        return Walls(
+            top_up=(1.0,) if virtual == "top-up" else (),
+            gradient=(1.0,) if virtual == "extrapolate" else (),
+            virtual=virtual_particles(numbers, self.threads, self.rows, self.domain),
+        )
+
+    @property
+    def wall_rates(self) -> Floats:
+        """How the fluid's velocity rises with the distance from surfaces; a view."""
+        virtual = self.walls.virtual
+        return virtual.rates if virtual else np.zeros((2, self.numbers.dimension))
+
+    def fill(self, positions: Floats, velocities: Floats, images: Any = 0) -> None:
+        """Write what is known of each particle (n, d), by particle number, in the present order."""
+        who = self.fluid.particles.ident[self.places]
+        images = np.broadcast_to(images, positions.shape)
+        self.put(who, positions[who], velocities[who], images[who])
+
+    def put(
+        self,
+        who: NDArray[np.int64],
+        positions: Floats,
+        velocities: Floats,
+        images: NDArray[Any],
+        first: int = 0,
+    ) -> None:
+        """Have these particles (n,), whole molecules, from this molecule on in memory."""
+        particles, d, start = (
+            self.fluid.particles,
+            self.numbers.dimension,
+            first * self.numbers.beads,
+        )
+        data, places = particles.data, self.places[start : start + len(who)]
+        particles.ident[places] = who
+        for k in range(d):
+            data[self.at(k, places)] = positions[:, k]
+            data[self.at(d + k, places)] = velocities[:, k]
+        particles.image[:, places] = images.T
+        if self.rows > 2 * d:
+            data[self.at(2 * d, places)] = self.numbers.masses_of(who)
+        self.fluid.room[:] = 0.0
+
+    def read(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
+        """Positions and velocities as they lie in memory, and images (n, d), by particle number."""
+        who, (positions, velocities, images) = (
+            self.fluid.particles.ident[self.places],
+            self.rows_of(),
+        )
+        out = np.empty((len(who), 2 * self.numbers.dimension))
+        out[who] = np.concatenate([positions, velocities], axis=1)
+        counts = np.empty(images.shape, np.int32)
+        counts[who] = images
+        return out[:, : positions.shape[1]], out[:, positions.shape[1] :], counts
+
+    def rows_of(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
+        """The same in the order of memory."""
+        particles, d = self.fluid.particles, self.numbers.dimension
+        out = np.empty((len(self.places), 2 * d))
+        for k in range(2 * d):
+            out[:, k] = particles.data[self.at(k)]
+        return out[:, :d], out[:, d:], particles.image[:, self.places].T
+
+    def columns(self, name: str, places: NDArray[np.int64]) -> NDArray[Any]:
+        """Positions, velocities or images (n, d), by name, of those at these places in memory."""
+        particles, d = self.fluid.particles, self.numbers.dimension
+        if name == "images":
+            return particles.image[:, places].T
+        first = {"positions": 0, "velocities": d}[name]
+        return np.stack([particles.data[self.at(first + k, places)] for k in range(d)], axis=1)
+
+    def at(self, row: int, places: Any = None) -> NDArray[np.int64]:
+        """Where a row's values lie in memory: those of all particles, or at these places."""
+        places = self.places if places is None else places
+        return places // BLOCK * (self.rows * ROW) + row * ROW + places % BLOCK
+
+    @property
+    def bytes_held(self) -> int:
+        """Memory of all arrays."""
+        fluid, order = self.fluid, self.order
+        groups = (*fluid.particles, *fluid.cells, fluid.room, *fluid.scratch, *fluid.taken)
+        arrays = (*groups, order.order, order.ends, order.spare)
+        return sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))

@@ -1,0 +1,111 @@
+"""How far particles may fly before they meet a solid, looked up for a few lanes together.
+
+Particles of a strip lie next to one another, sorted by cell. Where all of a few are far from all
+solids, nobody looks again until one of these may have come near. What takes views of arrays is
+`by_type`, for then numba does not count the users of these arrays.
+"""
+
+import math
+
+import numpy as np
+
+from mesokit.geometry.solids.bodies import Bodies, cube_of
+from mesokit.loops.layout import LANES, ROW
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle
+from mesokit.scalar.jit import by_type, scalar
+from mesokit.scalar.pointer import whole
+
+FEW = 64  # lanes: of particles next to one another, which are all near a solid or all far
+MOST_ROOM = 1e6
+ROUNDED_DOWN = 1.0 - 1e-6  # of numbers that float32 may have rounded up
+
+
+@by_type
+def look_around_strip(solid, strip, s, calm, clear, like):
+    """How far each particle of strip s may fly, plates not counted, in as many lanes at a time as
+    `lanes_together` says.
+
+    The answer has a bit for each of these parts: whether all may fly a stride, plates or not.
+    """
+    return _look_around if solid.instance_class is Bodies else lambda *_: 0
+
+
+@by_type
+def lanes_together(solid):
+    """How many lanes are looked at together: those of a strip, fewer among solids in tables."""
+    number = FEW if solid.instance_class is Bodies else LANES
+    return lambda solid: number
+
+
+def _look_around(solid, strip, s, calm, clear, like):
+    """At most a stride, which few go beyond.
+
+    `calm` is the distance that is surely clear around every particle of a part of a strip, of
+    plates and of all else: each step takes off a stride, until it is found anew.
+    """
+    quiet = 0
+    for part in range(LANES // FEW):
+        n, start = s * (LANES // FEW) + part, part * FEW
+        if calm[1, n] < solid.stride:
+            calm[1, n] = room_between_plates(solid, strip[start:], clear[start:], like)
+        look_up(solid, strip[start:], n, calm, clear[start:], like)
+        if (calm[0, n] >= solid.stride) & (calm[1, n] >= solid.stride):
+            quiet |= 1 << part
+        calm[0, n] -= solid.stride
+        calm[1, n] -= solid.stride
+    return quiet
+
+
+@by_type
+def look_up(solid, strip, n, calm, clear, like):
+    """The distance around each particle of the nth part, and the least of them if it is not known.
+
+    `clear` holds the bits of float32 numbers: those of positive numbers are in the same order, and
+    the least of whole numbers is found faster.
+    """
+    return _look_up
+
+
+def _look_up(solid, strip, n, calm, clear, like):
+    stride = np.int32(np.float32(solid.stride * solid.stride).view(np.int32))
+    if calm[0, n] < solid.stride:
+        for i in range(FEW):
+            clear[i] = cube_of(solid, load_particle(strip, i, 0, like))
+        for i in range(FEW):
+            clear[i] = np.int32(whole(solid.clear, np.int64(clear[i])))
+        least = np.int32(np.iinfo(np.int32).max)
+        for i in range(FEW):
+            least = min(least, clear[i])
+            clear[i] = min(stride, clear[i])
+        calm[0, n] = math.sqrt(np.int32(least).view(np.float32))
+    else:
+        for i in range(FEW):
+            clear[i] = stride
+
+
+@by_type
+def room_between_plates(solid, strip, clear, like):
+    """The least distance of the particles of the part from plates; `clear` is scratch memory."""
+    return _room_between_plates
+
+
+def _room_between_plates(solid, strip, clear, like):
+    least = np.int32(np.float32(MOST_ROOM).view(np.int32))
+    for k in range(len(like)):
+        if solid.lowest[k] > -np.inf:
+            for i in range(FEW):
+                x = strip[k * ROW + i]
+                room = max(min(x - solid.lowest[k], solid.highest[k] - x), 0.0)
+                clear[i] = np.float32(room).view(np.int32)
+            for i in range(FEW):
+                least = min(least, clear[i])
+    return np.int32(least).view(np.float32) * ROUNDED_DOWN
+
+
+@scalar
+def forget(calm, s, far):
+    """Let the parts of a strip be looked around anew that `far` has bits for."""
+    for part in range(LANES // FEW):
+        if (far >> part) & 1 != 0:
+            n = s * (LANES // FEW) + part
+            calm[0, n] = calm[1, n] = 0.0

@@ -1,0 +1,157 @@
+"""Bring particles of one cell together in memory, and their coordinates back into the box.
+
+Sorted particles find their cells in the cache; a few cells of disorder do no harm, so this is done
+rarely. The order is that of a stable counting sort, whatever the number of threads. Molecules are
+sorted as a whole, by the cell of their first bead.
+"""
+
+from typing import Any, NamedTuple
+
+from mesokit.case.box import SLIDING, fold, unfold
+from mesokit.kernels.kernel import inner, kernel
+from mesokit.loops.clock import SORT, START, lap
+from mesokit.loops.layout import (
+    LANES,
+    Singles,
+    beads_of,
+    groups_in,
+    lanes_in,
+    place,
+    place_of_bead,
+    share,
+    strip_at,
+)
+from mesokit.loops.threads import meet
+from mesokit.method.mpcd.engine.cpu.grid import cell_index
+from mesokit.method.mpcd.engine.cpu.strips.rows import count_images, load_particle, store_particle
+from mesokit.scalar.jit import by_type
+from mesokit.scalar.vector import scaled
+
+
+class Order(NamedTuple):
+    """Memory of the sort."""
+
+    order: Any  # (molecules,) present number of the molecule that belongs at each number
+    ends: Any  # (threads, cells) where the molecules of each cell end
+    spare: Any  # (particles,) floats
+    whole: Any  # the same memory as whole numbers of 32 bits
+    long: Any  # and of 64
+
+
+@kernel
+def sort(team, zero, box, grid, particles, memory):
+    """Bring everybody back into the box, and those of one cell together."""
+    lap(team, START)
+    wrap(team, zero, box, grid, particles)
+    meet(team)
+    order_by_cell(team, particles, memory)
+    for bead in range(beads_of(particles.filling)):
+        for row in range(particles.rows):
+            reorder_row(team, particles, memory, row, bead)
+        reorder(team, particles.ident, memory.long, particles.filling, memory.order, bead)
+        for k in range(len(zero)):
+            reorder(team, particles.image[k], memory.whole, particles.filling, memory.order, bead)
+    lap(team, SORT)
+
+
+@inner
+def wrap(team, zero, box, grid, particles):
+    """Move every molecule to its image in the primary box, count the boxes crossed, find cells.
+
+    Spare lanes go back to zero: nothing else keeps them from running away.
+    """
+    filling, rows = particles.filling, particles.rows
+    d, beads = len(zero), beads_of(filling)
+    first, last = share(groups_in(filling), team.thread, team.threads)
+    for g in range(first, last):
+        for bead in range(beads):
+            b = g * beads + bead
+            strip = particles.data[strip_at(b, rows)]
+            for i in range(lanes_in(filling, b), LANES):
+                store_particle(strip, i, 0, zero + zero)
+        for bead in range(beads - 1, -1, -1):  # the first, which decides, at the end
+            b = g * beads + bead
+            places = slice(b * LANES, (b + 1) * LANES)
+            strip, image = particles.data[strip_at(b, rows)], particles.image[:, places]
+            leader = particles.data[strip_at(g * beads, rows)]
+            for i in range(LANES):
+                r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
+                leading = load_particle(leader, i, 0, zero)
+                r, v, crossed = fold_with(filling, box, r, v, leading)
+                store_particle(strip, i, 0, r + v)
+                particles.cell[b * LANES + i] = cell_index(r, grid)
+                count_images(image, i, crossed)
+
+
+@by_type
+def fold_with(filling, box, r, v, leader):
+    """Position and velocity in the image in which the leader is in the box, and the boxes crossed.
+
+    Under shear every bead is folded by itself, for velocities of one cell are those of one image.
+    """
+    alone = filling.instance_class is Singles or box.instance_class in SLIDING
+    return _by_itself if alone else _with_leader
+
+
+def _by_itself(filling, box, r, v, leader):
+    return fold(box, r, v, scaled(0.0, r))
+
+
+def _with_leader(filling, box, r, v, leader):
+    _, _, crossed = fold(box, leader, v, scaled(0.0, r))
+    return unfold(box, r, v, scaled(-1.0, crossed)) + (crossed,)
+
+
+@inner
+def order_by_cell(team, particles, memory):
+    """`order[j]` becomes the present number of the molecule that belongs at number j."""
+    cell, filling, ends, thread = particles.cell, particles.filling, memory.ends, team.thread
+    first, last = share(filling.molecules, thread, team.threads)
+    ends[thread] = 0
+    for i in range(first, last):
+        ends[thread, cell[place_of_bead(filling, i, 0)]] += 1
+    meet(team)
+    # from counts to the place of each thread's first molecule of each cell
+    first_cell, last_cell = share(ends.shape[1], thread, team.threads)
+    total = 0
+    for t in range(team.threads):
+        for c in range(first_cell):
+            total += ends[t, c]
+    meet(team)
+    for c in range(first_cell, last_cell):
+        for t in range(team.threads):
+            here = ends[t, c]
+            ends[t, c] = total
+            total += here
+    meet(team)
+    for i in range(first, last):
+        c = cell[place_of_bead(filling, i, 0)]
+        memory.order[ends[thread, c]] = i
+        ends[thread, c] += 1
+    meet(team)
+
+
+@inner
+def reorder_row(team, particles, memory, row, bead):
+    """Put one row of the blocks in the new order, through a spare array, for one bead of each."""
+    data, filling, rows, spare = particles.data, particles.filling, particles.rows, memory.spare
+    first, last = share(filling.molecules, team.thread, team.threads)
+    for j in range(first, last):
+        i = place_of_bead(filling, memory.order[j], bead)
+        spare[j] = data[place(i, rows, row)]
+    meet(team)
+    for j in range(first, last):
+        data[place(place_of_bead(filling, j, bead), rows, row)] = spare[j]
+    meet(team)
+
+
+@inner
+def reorder(team, values, spare, filling, order, bead):
+    """Put a plain array in the new order, through a spare one, for one bead of each molecule."""
+    first, last = share(filling.molecules, team.thread, team.threads)
+    for j in range(first, last):
+        spare[j] = values[place_of_bead(filling, order[j], bead)]
+    meet(team)
+    for j in range(first, last):
+        values[place_of_bead(filling, j, bead)] = spare[j]
+    meet(team)

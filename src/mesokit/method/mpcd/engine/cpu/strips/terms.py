@@ -1,0 +1,78 @@
+"""What cells add up over their particles: their number, and fixed-point numbers."""
+
+# ruff: noqa: F401  lines written out as text use what is imported here
+
+import numpy as np
+
+from mesokit.loops.layout import sums_length
+from mesokit.method.mpcd.collision.protocol import Cell
+from mesokit.method.mpcd.engine.cpu.physics import field_of
+from mesokit.method.mpcd.engine.cpu.strips.cell_energy import Column, energy_term, untangled
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_values
+from mesokit.scalar.fixed_point import from_fixed, integers, rounded
+from mesokit.scalar.jit import by_type, elementwise, scalar
+from mesokit.scalar.vector import added, scaled
+
+
+@scalar
+def nothing_found(terms):
+    """The sums of a cell without particles: their number, and so many terms."""
+    return (np.int64(0),) + integers(terms)
+
+
+@scalar
+def sums_of_cell(sums, cell, terms):
+    """What the particles of all threads add up to in a cell: their number, and the terms."""
+    found, start = nothing_found(terms), np.uint64(cell) * np.uint64(sums_length(len(terms)))
+    for t in range(sums.shape[0]):
+        found = added(found, load_values(sums[t], start, found))
+    return found
+
+
+@scalar
+def number_in_cell(physics, sums, cell):
+    """How many particles all threads have found in a cell."""
+    number, start = np.int64(0), cell * sums_length(len(physics.terms))
+    for t in range(sums.shape[0]):
+        number += untangled(physics.energy, sums[t, start])[0]
+    return number
+
+
+@scalar
+def terms_of(physics, m, v, own):
+    """What a particle adds to the sums of its cell; `own` is for those of the collision rule."""
+    terms = scaled(m, v) + _mass_term(physics.masses, m) + energy_term(physics.energy, m, v) + own
+    return rounded(terms, physics.scales)
+
+
+@by_type
+def _mass_term(masses, m):
+    """(m,) where particles differ in mass, so that cells must add it up; () where they do not."""
+    if len(masses) == 1:
+        return lambda masses, m: ()
+    return lambda masses, m: (m,)
+
+
+@by_type
+def read_sums(physics, found):
+    """What a cell has found: its number, mass, momentum, sum of m v^2 (0 if not asked), and the
+    rule's own sums."""
+    d, uniform = len(field_of(physics, "zero")), len(field_of(physics, "masses")) == 1
+    asked = field_of(physics, "energy").instance_class is Column
+    at_energy = d if uniform else d + 1
+    own = at_energy + 1 if asked else at_energy
+
+    def read(physics, found):
+        n, with_count = untangled(physics.energy, found[0])
+        values = _floats(n, found, physics.scales)
+        mass = max(float(n), 1.0) * physics.masses[0] if uniform else max(values[d], 1e-300)
+        m_v_squared = values[at_energy] if asked else with_count
+        return Cell(float(n), mass, values[:d], m_v_squared, values[own:])
+
+    return read
+
+
+@elementwise
+def _floats(n, found, scales):
+    """The sums of n particles as floats."""
+    return "from_fixed(found[{k} + 1], n, scales[{k}])"

@@ -1,0 +1,164 @@
+"""One pass over all particles: the pending collision, streaming, and the sums of the next cells.
+
+The collision of a step is done while its particles are in the cache for the flight of the next.
+Blocks are shared out among the threads in order; each thread adds to cell sums of its own.
+"""
+
+import numpy as np
+
+from mesokit.case.box import at_time, peculiar
+from mesokit.kernels.part import stage
+from mesokit.loops.layout import (
+    LANES,
+    SCRATCH_ROW,
+    groups_in,
+    lanes_in,
+    share,
+    strip_at,
+    strips_in,
+)
+from mesokit.method.mpcd.engine.beads.molecules import Batch, fly_molecules
+from mesokit.method.mpcd.engine.beads.registers import WIDTH, bead_at, bead_to_strip, strip_to_bead
+from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
+from mesokit.method.mpcd.engine.cpu.near_solids import forget, look_around_strip
+from mesokit.method.mpcd.engine.cpu.physics import field_of, of_particles
+from mesokit.method.mpcd.engine.cpu.stages import (
+    add_strip,
+    bin_strip,
+    bounce_strip,
+    collide_and_stream_strip,
+    collide_strip,
+    gather_strip,
+    slide_strip,
+    stream_strip,
+)
+from mesokit.method.mpcd.engine.cpu.stress import flux
+from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle, mass_of
+from mesokit.method.mpcd.engine.domains.messages.guests import note_guests
+from mesokit.method.mpcd.engine.domains.messages.migrate import note_strays
+from mesokit.scalar.fixed_point import add_fixed, added_fixed, integers
+from mesokit.scalar.jit import by_type, seldom
+from mesokit.scalar.vector import added, products
+
+
+@by_type
+def stream(team, now, physics, fluid):
+    """Do what the flags ask, in this order, for each strip in turn.
+
+    Time levels: velocities of step n before COLLIDE, after it; positions and velocities of
+    step n + 1 after STREAM, with their cells and cell sums.
+    """
+    if len(field_of(physics, "molecule")) == 0:
+        return lambda team, now, physics, fluid: _stream_singles(
+            team, now, of_particles(physics), fluid
+        )
+    return lambda team, now, physics, fluid: _stream_molecules(
+        team, now, of_particles(physics), fluid
+    )
+
+
+@stage  # two places call it
+def _stream_singles(team, now, physics, fluid):
+    particles, scratch, zero = fluid.particles, fluid.scratch, physics.zero
+    gathered, terms = scratch.coefficients[team.thread], scratch.terms[team.thread]
+    clear, hits = scratch.clear[team.thread], scratch.marks[team.thread]
+    impulse, tensor = fluid.taken.impulse[team.thread], fluid.taken.tensor
+    sums, measured = fluid.cells.sums[team.thread], now.flags & MEASURE_STRESS
+    first, last = share(strips_in(particles.filling), team.thread, team.threads)
+    for s in range(first, last):
+        lanes, places = lanes_in(particles.filling, s), slice(s * LANES, (s + 1) * LANES)
+        strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
+        who, image = particles.ident[places], particles.image[:, places]
+        quiet, behind = 0, np.int64(0)
+        if now.flags & STREAM:
+            quiet = look_around_strip(physics.solid, strip, s, fluid.room, clear, zero)
+        if now.flags & COLLIDE:
+            gather_strip(cell, fluid.cells.coefficients, gathered, physics.coefficients)
+        if now.flags & COLLIDE and now.flags & STREAM and not measured:
+            behind = collide_and_stream_strip(physics, now.old, strip, gathered, quiet, clear, hits)
+        else:
+            if now.flags & COLLIDE:
+                collide_strip(physics, now.old, strip, gathered)
+                if measured and not now.flags & STREAM:
+                    add_strip_flux(physics, now.box, now.old, strip, lanes, tensor[1, s])
+            if now.flags & STREAM:
+                behind = stream_strip(physics, strip, clear, hits)
+        if behind != 0:
+            far = bounce_strip(physics, now.counter, strip, lanes, behind, who, hits, impulse)
+            forget(fluid.room, s, far)
+        if now.flags & STREAM:
+            slide_strip(now.box, now.grid, strip, image, zero)
+            if measured:
+                add_strip_flux(physics, now.box, now.grid, strip, lanes, tensor[0, s])
+            bin_strip(physics, now, strip, cell, who, terms)
+            tallied = tally(physics.energy, 0.0, zero)
+            add_strip(cell, terms, sums, lanes, physics.terms, tallied)
+            note_guests(team, s, fluid, cell, terms, lanes, physics.terms, tallied)
+            note_strays(team, now, physics, fluid, strip, s)
+
+
+@stage
+def _stream_molecules(team, now, physics, fluid):
+    particles, scratch, zero = fluid.particles, fluid.scratch, physics.zero
+    gathered, terms = scratch.coefficients[team.thread], scratch.terms[team.thread]
+    clear, work = scratch.clear[team.thread], scratch.beads[team.thread]
+    tensor, sums = fluid.taken.tensor, fluid.cells.sums[team.thread]
+    beads, measured = physics.molecule.beads, now.flags & MEASURE_STRESS
+    # the box in which images were counted
+    before = at_time(now.box, (now.counter.step - 1) * physics.timestep)
+    first, last = share(groups_in(particles.filling), team.thread, team.threads)
+    for g in range(first, last):
+        lanes = lanes_in(particles.filling, g * beads)
+        for k in range(beads):  # velocities of step n, after the collision
+            s = g * beads + k
+            places = slice(s * LANES, (s + 1) * LANES)
+            strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
+            if now.flags & STREAM:
+                near = clear[k * SCRATCH_ROW : (k + 1) * SCRATCH_ROW]
+                look_around_strip(physics.solid, strip, s, fluid.room, near, zero)
+            if now.flags & COLLIDE:
+                gather_strip(cell, fluid.cells.coefficients, gathered, physics.coefficients)
+                collide_strip(physics, now.old, strip, gathered)
+                if measured and not now.flags & STREAM:
+                    add_strip_flux(physics, now.box, now.old, strip, lanes, tensor[1, s])
+        if not now.flags & STREAM:
+            continue
+        for start in range(0, lanes, WIDTH):  # positions and velocities of step n + 1
+            batch = Batch(g, g * beads, start, min(WIDTH, lanes - start))
+            leader = particles.image[:, g * beads * LANES + start : (g * beads + 1) * LANES]
+            for k in range(beads - 1, -1, -1):  # the leader's counts of boxes stay to the end
+                s = g * beads + k
+                image = particles.image[:, s * LANES + start : (s + 1) * LANES]
+                strip = particles.data[strip_at(s, particles.rows)][start:]
+                strip_to_bead(before, strip, image, leader, work[bead_at(k, zero)], zero)
+            fly_molecules(team, now, physics, fluid, batch)
+            for k in range(beads):
+                strip = particles.data[strip_at(g * beads + k, particles.rows)][start:]
+                bead_to_strip(strip, work[bead_at(k, zero)], zero)
+        for k in range(beads):  # cells and their sums of step n + 1
+            s = g * beads + k
+            places = slice(s * LANES, (s + 1) * LANES)
+            strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
+            slide_strip(now.box, now.grid, strip, particles.image[:, places], zero)
+            if measured:
+                add_strip_flux(physics, now.box, now.grid, strip, lanes, tensor[0, s])
+            bin_strip(physics, now, strip, cell, particles.ident[places], terms)
+            tallied = tally(physics.energy, 0.0, zero)
+            add_strip(cell, terms, sums, lanes, physics.terms, tallied)
+            note_guests(team, s, fluid, cell, terms, lanes, physics.terms, tallied)
+            if k == 0:
+                note_strays(team, now, physics, fluid, strip, s)
+
+
+@seldom
+def add_strip_flux(physics, box, grid, strip, count, tensor):
+    """What the particles of a strip carry of the stress."""
+    zero = physics.zero
+    d, sums = len(zero), integers(products(zero, zero) + products(zero, zero))
+    for i in range(count):
+        r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
+        m = mass_of(physics.masses, strip, i, 2 * d)
+        carried = flux(m, peculiar(box, r, v), v, added(r, grid.shift))
+        sums = added_fixed(carried, physics.stress_scale, sums)
+    add_fixed(tensor, count, sums)

@@ -1,0 +1,156 @@
+"""When and where to the borders between ranks move, so that all have as much to do.
+
+Each rank times its own work, without waiting. At a sort all know the times of the window before,
+which were sent on their way then: so nobody waits for them. A branch of the tree whose two sides
+differ by more than a limit is cut anew, with all below it. What moves at a high branch is more, and
+so its limit is larger. Source: the tree of cuts of Shojaaee, Shaebani, Brendel, Torok and Wolf, J.
+Comput. Phys. 231, 612 (2012): sigma_T = sqrt(<T^2> - <T>^2) / <T> of the branches of a node.
+"""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.method.mpcd.engine.domains.blocks.tree import Block, Node, Tree
+
+HIGHER = 0.5  # of the limit, more for each level above the lowest branches
+PATIENCE = 1  # windows after a move that are not looked at
+LEAST = 0.02  # seconds of work: a shorter window tells nothing
+
+
+class Move(NamedTuple):
+    """Borders that moved: after which step, the imbalance that was seen, and the blocks then."""
+
+    step: int
+    imbalance: float
+    blocks: tuple[Block, ...]
+
+
+class Balance:
+    """What the ranks know of each other's work.
+
+    Parameters
+    ----------
+    comm : communicator of mpi4py
+        Of all ranks.
+    limit : float
+        Difference of the branches of a node that is too much.
+    """
+
+    def __init__(self, comm: Any, limit: float) -> None:
+        self.comm, self.limit = comm, limit
+        self.moves: list[Move] = []
+        self.first = self.last = np.nan  # imbalance of the first and the last window
+        self._times, self._earlier = np.zeros(comm.size), np.zeros(0)
+        self._pending: list[Any] = []
+        weakref.finalize(self, finish, self._pending)
+        self._wait = 1  # windows to let pass: the first has the compiling in it
+
+    def tell(self, seconds: float) -> None:
+        """Send what this rank has worked in the window that ends, to all, without waiting."""
+        self._own = np.array([seconds])
+        self._pending.append(self.comm.Iallgather(self._own, self._times))
+
+    def heard(self) -> list[NDArray[np.float64]]:
+        """Times (ranks,) of the two windows before, the same on all ranks; nothing if there were
+        none: what is seen twice is no accident."""
+        if not finish(self._pending):
+            return []
+        if self._wait > 0:
+            self._wait -= 1
+            return []
+        earlier, times = self._earlier, self._times.copy()
+        if times.mean() < LEAST:
+            return []
+        self.last = imbalance(times)
+        if np.isnan(self.first):
+            self.first = self.last
+        self._earlier = times
+        return [earlier, times] if len(earlier) else []
+
+    def moved(self, step: int, blocks: tuple[Block, ...]) -> None:
+        """Borders have moved: the window in hand tells nothing of the new ones."""
+        self.moves.append(Move(step, float(self.last), blocks))
+        finish(self._pending)
+        self._wait, self._earlier = PATIENCE, np.zeros(0)
+
+
+def finish(pending: list[Any]) -> bool:
+    """Wait for a message that all ranks have sent, if there is one; also where a run ends."""
+    if not pending:
+        return False
+    pending.pop().Wait()
+    return True
+
+
+def imbalance(times: NDArray[np.float64]) -> float:
+    """Most over mean."""
+    return float(times.max() / times.mean()) if times.mean() > 0 else 1.0
+
+
+def spread(node: Node, windows: Sequence[NDArray[np.float64]]) -> float:
+    """sigma_T of the two branches of a node, from the mean times of their ranks: the least of some
+    windows, 0 if these do not agree on which side has more to do."""
+    few, found = node.ranks // 2, []
+    for times in windows:
+        low = times[node.first : node.first + few].mean()
+        high = times[node.first + few : node.first + node.ranks].mean()
+        found.append(float((high - low) / (high + low)) if high + low > 0 else 0.0)
+    agreed = all(x > 0 for x in found) or all(x < 0 for x in found)
+    return min(abs(x) for x in found) if agreed else 0.0
+
+
+def still_good(tree: Tree, windows: Sequence[NDArray[np.float64]], limit: float) -> Tree:
+    """The nodes whose branches differ by less than their limits, and so do those above them."""
+    kept: list[tuple[Node, ...]] = []
+    bad: list[tuple[int, int]] = []  # ranks of branches that are cut anew
+    for n, level in enumerate(tree.nodes):
+        above = len(tree.nodes) - 1 - n
+        stay = []
+        for node in level:
+            inside = any(a <= node.first < b for a, b in bad)
+            if inside or spread(node, windows) > min(limit * (1.0 + HIGHER * above), 1.0):
+                bad.append((node.first, node.first + node.ranks))
+            else:
+                stay.append(node)
+        kept.append(tuple(stay))
+    return Tree(tuple(kept), tree.blocks)
+
+
+class Load:
+    """The work in each cell of a rank's block, as whole numbers of nanoseconds."""
+
+    def __init__(self, block: Block, cells: NDArray[np.float64], comm: Any) -> None:
+        self.block, self.comm = block, comm
+        self.cells = np.rint(cells * 1e9).astype(np.int64).reshape(block.lengths[::-1])
+
+    def layers(self, asked: Sequence[tuple[Block, int]]) -> list[NDArray[np.float64]]:
+        """The work of all ranks in the layers of some blocks across an axis."""
+        parts = [self._own(block, axis) for block, axis in asked]
+        together = np.concatenate([np.zeros(0, np.int64), *parts])
+        total = np.empty_like(together)
+        self.comm.Allreduce(together, total)
+        ends = np.cumsum([len(part) for part in parts])
+        return [
+            total[end - len(part) : end].astype(float)
+            for end, part in zip(ends, parts, strict=True)
+        ]
+
+    def _own(self, block: Block, axis: int) -> NDArray[np.int64]:
+        out, d = np.zeros(block.lengths[axis], np.int64), len(block.low)
+        low = [max(a, b) for a, b in zip(block.low, self.block.low, strict=True)]
+        high = [min(a, b) for a, b in zip(block.high, self.block.high, strict=True)]
+        if all(a < b for a, b in zip(low, high, strict=True)):
+            inside = tuple(
+                slice(low[k] - self.block.low[k], high[k] - self.block.low[k])
+                for k in reversed(range(d))
+            )
+            others = tuple(n for n in range(d) if n != d - 1 - axis)
+            start = low[axis] - block.low[axis]
+            out[start : start + high[axis] - low[axis]] = self.cells[inside].sum(axis=others)
+        return out

@@ -1,0 +1,75 @@
+"""Particles that are made or read piece by piece go to the ranks whose blocks they are in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import RunError
+from mesokit.method.mpcd.engine.pieces import Piece
+
+DONE, MORE, FAILED = range(3)
+
+Owners = Callable[[NDArray[np.float64]], NDArray[np.int64]]
+
+
+def dealt(
+    comm: Any, particles: Iterable[Piece], owners: Owners, beads: int, d: int
+) -> Iterator[Piece]:
+    """What of the pieces of all ranks is this one's, round after round, in d dimensions.
+
+    Pieces are of whole molecules, which are where their first bead is; `owners` tells the rank of
+    each place (n, d). All ranks do this together, with as many pieces each as they have. Raises on
+    every rank what is raised on one while it makes its pieces.
+    """
+    left = iter(particles)
+    while True:
+        piece, error = None, None
+        try:
+            piece = next(left, None)
+            to = np.repeat(owners(piece.positions[::beads]), beads) if piece else np.zeros(0, int)
+        except Exception as reason:
+            error = reason
+        if not _anybody(comm, piece is not None, error):
+            return
+        rows = np.zeros((0, 1 + 3 * d), np.int64) if piece is None else _packed(piece)
+        yield _unpacked(_sent(comm, rows, to), d)
+
+
+def _anybody(comm: Any, here: bool, error: Exception | None) -> bool:
+    """Whether any rank has a piece. Raises if one has failed."""
+    worst = max(comm.allgather(FAILED if error else MORE if here else DONE))
+    if worst == FAILED:
+        said = comm.allgather(None if error is None else str(error))
+        if error is not None:
+            raise error
+        rank = next(k for k, text in enumerate(said) if text is not None)
+        raise RunError(f"rank {rank}: {said[rank]}")
+    return bool(worst == MORE)
+
+
+def _sent(comm: Any, rows: NDArray[np.int64], to: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Each row to a rank; those that come, by the ranks that they are from."""
+    words = rows.shape[1]
+    sent = np.bincount(to, minlength=comm.size).astype(np.int64)
+    come = np.empty_like(sent)
+    comm.Alltoall(sent, come)
+    out = np.empty((int(come.sum()), words), np.int64)
+    ordered = np.ascontiguousarray(rows[np.argsort(to, kind="stable")])
+    comm.Alltoallv([ordered, sent * words], [out, come * words])
+    return out
+
+
+def _packed(piece: Piece) -> NDArray[np.int64]:
+    """All numbers of each particle in a row, as whole numbers."""
+    reals = np.concatenate([piece.positions, piece.velocities], axis=1, dtype=float)
+    columns = piece.who[:, None], reals.view(np.int64), piece.images
+    return np.concatenate(columns, axis=1, dtype=np.int64)
+
+
+def _unpacked(rows: NDArray[np.int64], d: int) -> Piece:
+    reals = np.ascontiguousarray(rows[:, 1 : 1 + 2 * d]).view(float)
+    return Piece(rows[:, 0], reals[:, :d], reals[:, d:], rows[:, 1 + 2 * d :].astype(np.int32))

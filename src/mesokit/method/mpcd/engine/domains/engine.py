@@ -1,0 +1,310 @@
+"""Execution on the ranks of MPI: each has the particles of a block of cells, on its threads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import RunError
+from mesokit.loops.clock import FIRST, MOVE, SHARE, WAIT
+from mesokit.loops.threads import Threads
+from mesokit.method.mpcd.engine.cpu.engine import CPU
+from mesokit.method.mpcd.engine.cpu.memory import Memory
+from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
+from mesokit.method.mpcd.engine.domains.blocks.balance import Balance, Load, still_good
+from mesokit.method.mpcd.engine.domains.blocks.tree import Tree, divided
+from mesokit.method.mpcd.engine.domains.blocks.window import Window, waiting
+from mesokit.method.mpcd.engine.domains.deal import dealt
+from mesokit.method.mpcd.engine.domains.domain import Domain, axes_to_cut, owners
+from mesokit.method.mpcd.engine.domains.here import Here
+from mesokit.method.mpcd.engine.domains.messages.mpi import crowded
+from mesokit.method.mpcd.engine.domains.messages.shared import (
+    DONE,
+    FAR,
+    FAULTS,
+    FULL,
+    MOLECULES,
+    STRETCHED,
+)
+from mesokit.method.mpcd.engine.domains.readings import SharedReadings, SharedSolutes
+from mesokit.method.mpcd.engine.domains.state import ROOT, SPREAD, Spread
+from mesokit.method.mpcd.engine.pieces import Piece, of_state, pieces, require_finite
+from mesokit.scalar.system import TICK
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+
+def pieces_of(memory: Memory) -> Iterator[Piece]:
+    """The particles in a rank's memory, whole molecules."""
+    who = memory.fluid.particles.ident
+    for first, last in pieces(0, len(memory.places), memory.numbers.beads):
+        places = memory.places[first:last]
+        columns = (memory.columns(name, places) for name in SPREAD)
+        yield Piece(who[places], *columns)
+
+
+GROWTH = 1.1  # times as many molecules as there are, when arrays become too small
+
+
+class Ranks(CPU):
+    """The part of a fluid that is one rank's, and the verbs that all ranks do together.
+
+    Parameters
+    ----------
+    case : Case
+        What to simulate; the same on all ranks.
+    threads : int
+        Of this rank.
+    measures : sequence of str
+        As of `CPU`.
+    comm : communicator of mpi4py
+        Of all ranks.
+    """
+
+    readings: SharedReadings
+
+    def __init__(self, case: Case, threads: int, measures: Sequence[str], comm: Any) -> None:
+        self.case, self.numbers, self.comm = case, Numbers(case), comm
+        self.threads, self.measures = Threads(threads), measures
+        self.n, self.dimension, self.box = self.numbers.n, self.numbers.dimension, self.numbers.box
+        self.balancing = Balance(comm, case.run.imbalance)
+        self._crowded = crowded(comm, threads)
+        self._window = Window()
+        tree = divided(self.numbers.cells, comm.size, axes_to_cut(self.numbers))
+        self._live_in(tree, self.numbers.filling.molecules // comm.size)
+
+    def _live_in(self, tree: Tree, molecules: int) -> None:
+        """New memory, for this rank's block in a tree."""
+        size = self.threads.size
+        earlier = self.memory if hasattr(self, "memory") else None
+        self.domain = Domain(self.numbers, self.comm, tree, size, molecules, self._crowded)
+        self.memory = Memory(self.numbers, size, self.measures, self.domain, earlier)
+        before = self.readings if earlier is not None else None
+        self.readings = SharedReadings(self.memory, self.threads, self.comm)
+        self.readings.go_on_from(before)
+        self.solutes = self.readings.solutes
+
+    # --- running --------------------------------------------------------------------------------
+
+    def parts(self, by_first: bool = False) -> Iterator[tuple[int, int]]:
+        beads, molecules = self.numbers.beads, self.n // self.numbers.beads
+        first, last = (molecules * (self.comm.rank + k) // self.comm.size for k in (0, 1))
+        if by_first:
+            first, last = 0, molecules if self.comm.rank == ROOT else 0
+        return pieces(first * beads, last * beads, beads)
+
+    def _take(self, particles: Iterable[Piece]) -> None:
+        """Have those of these particles, and of those of other ranks, that are in this block."""
+        beads, held = self.numbers.beads, 0
+        self._count(0)
+        come = dealt(self.comm, particles, self.domain.owners, beads, self.dimension)
+        for piece in come:
+            first, held = held, held + len(piece.who) // beads
+            if held > self.domain.room:
+                self._make_room(held)
+            self._count(held)
+            self.memory.put(*piece, first=first)
+
+    def _hold(
+        self, who: NDArray[np.int64], positions: Floats, velocities: Floats, images: NDArray
+    ) -> None:
+        """Have these particles, and no others."""
+        molecules = len(who) // self.numbers.beads
+        if molecules > self.domain.room:
+            self._live_in(self.domain.tree, molecules)
+        self._count(molecules)
+        self.memory.put(who, positions, velocities, images)
+
+    def _count(self, molecules: int) -> None:
+        """Have so many molecules in memory."""
+        fluid = self.memory.fluid
+        filling: Any = fluid.particles.filling
+        filling = filling._replace(molecules=molecules)
+        self.memory.fluid = fluid._replace(particles=fluid.particles._replace(filling=filling))
+        fluid.cells.shared.noted[MOLECULES] = molecules
+
+    def _make_room(self, least: int = 0) -> None:
+        """Larger arrays for what this rank has, and for as many molecules at least."""
+        memory, rows = self.memory, self.memory.rows_of()
+        who = memory.fluid.particles.ident[memory.places]
+        molecules = int(GROWTH * len(who) / self.numbers.beads) + 1
+        self._live_in(self.domain.tree, max(molecules, least))
+        self._go_on_from(memory)
+        self._hold(who, *rows)
+
+    def _go_on_from(self, memory: Memory) -> None:
+        """Take over what is not of particles."""
+        new = self.memory
+        new.step = memory.step
+        new.fluid.taken.impulse[:] = memory.fluid.taken.impulse
+        new.wall_rates[:] = memory.wall_rates
+        new.fluid.cells.shared.meter[:] = memory.fluid.cells.shared.meter
+        if memory.solutes:
+            beads, before = new.solutes, memory.solutes
+            beads.r[:], beads.v[:] = before.r, before.v
+            beads.roster.who[:], beads.roster.count[:] = before.roster.who, before.roster.count
+
+    def _steps(self, steps: int, what: int) -> None:
+        left = steps
+        while True:
+            before = self.memory.step
+            with self._window.timing(self):
+                super()._steps(left, what)
+            noted = self.memory.fluid.cells.shared.noted
+            self.memory.step = before + int(noted[DONE])
+            left -= int(noted[DONE])
+            self._check_messages(noted)
+            if steps:
+                self._count(int(noted[MOLECULES]))
+            if left <= 0:
+                return
+            self._make_room()
+
+    # --- balance --------------------------------------------------------------------------------
+
+    def sort(self) -> None:
+        with self._window.timing(self):
+            super().sort()
+        if self.step > 0:
+            self._balance()
+
+    def _balance(self) -> None:
+        """Move borders if the window before the last said so."""
+        windows = self.balancing.heard()
+        if windows:
+            kept = still_good(self.domain.tree, windows, self.balancing.limit)
+            if kept.nodes != self.domain.tree.nodes:
+                self.cut_anew(kept)
+        self.balancing.tell(self._window.work)
+        self._window = Window()
+
+    def cut_anew(self, kept: Tree | None = None) -> None:
+        """Cut by what each cell has cost of late; nodes in `kept` stay."""
+        load = Load(self.domain.block, self._costs(), self.comm)
+        cells, weights = self.numbers.cells, axes_to_cut(self.numbers)
+        tree = divided(cells, self.comm.size, weights, load.layers, kept)
+        if tree.blocks != self.domain.tree.blocks:
+            self.live_in(tree)
+        self.balancing.moved(self.step, tree.blocks)
+
+    def _costs(self) -> Floats:
+        """Seconds of this rank's work in each of its cells, x varying fastest."""
+        block, window = self.domain.block, self._window
+        lengths = np.array(block.lengths)
+
+        def counted(places: Floats) -> Floats:
+            where = np.floor(places).astype(np.int64) - np.array(block.low)
+            where = np.clip(where % np.array(self.numbers.cells), 0, lengths - 1)
+            number = np.ravel_multi_index(tuple(where.T[::-1]), tuple(lengths[::-1]))
+            return np.bincount(number, minlength=lengths.prod()).astype(float)
+
+        particles = counted(self.memory.rows_of()[0])
+        costs = np.full(lengths.prod(), window.cells / lengths.prod())
+        costs += window.particles * particles / max(particles.sum(), 1.0)
+        if isinstance(self.solutes, SharedSolutes):
+            beads = counted(self.solutes.own_places())
+            costs += window.beads * beads / max(beads.sum(), 1.0)
+        return costs
+
+    def live_in(self, tree: Tree) -> None:
+        """Have the blocks of another tree, and the particles that are there."""
+        memory, rates = self.memory, self.readings.wall_rates()
+        solutes = None if self.solutes is None else self.solutes.state()
+        leaders = memory.rows_of()[0][:: self.numbers.beads]
+        here = np.bincount(owners(tree.blocks, self.numbers, leaders), minlength=self.comm.size)
+        self._live_in(tree, int(self.readings.reduced(here)[self.comm.rank]))
+        self._go_on_from(memory)
+        self.memory.wall_rates[:] = rates
+        self._take(pieces_of(memory))
+        if self.solutes is not None and solutes is not None:
+            self.solutes.restore(solutes)
+
+    def balance(self) -> dict[str, Any]:
+        """How often borders moved, and most over mean of the ranks' work at first and of late."""
+        known = self.balancing
+        found: dict[str, Any] = {"borders moved": len(known.moves)}
+        if not np.isnan(known.first):
+            found |= {"most over mean at first": known.first, "of late": known.last}
+        return found
+
+    def _check_messages(self, noted: NDArray[np.int64]) -> None:
+        faults, post = int(noted[FAULTS]), self.memory.fluid.cells.shared.post
+        if post.flag[1]:
+            raise RunError(f"step {self.step}: a message to another rank failed")
+        if faults & FULL:
+            raise RunError(
+                f"step {self.step}: more particles beyond the cells around a rank's block than it "
+                "has room for; expected fewer ranks"
+            )
+        if faults & STRETCHED:
+            raise RunError(
+                f"step {self.step}: a bead of solutes went farther in a step, or its bonds are "
+                "longer, than ranks can follow; expected fewer ranks or a shorter fluid.timestep"
+            )
+        if faults & FAR:
+            raise RunError(
+                f"step {self.step}: a particle came to a cell of a rank that is no neighbour; "
+                "expected fewer ranks"
+            )
+
+    @property
+    def here(self) -> Here:
+        """What this rank may ask of its own particles without the others."""
+        return Here(self.readings)
+
+    @property
+    def seconds(self) -> dict[str, float]:
+        """Time spent so far in each stage, on this rank; waiting for beads is waiting."""
+        names = {"share": SHARE, "wait": WAIT, "move": MOVE}
+        clock = self.threads.clock
+        found = super().seconds | {
+            name: TICK * float(clock[FIRST + k]) for name, k in names.items()
+        }
+        for post in waiting(self.memory)[1:]:
+            waited = min(TICK * float(post[2]), found["beads"])
+            found["beads"], found["wait"] = found["beads"] - waited, found["wait"] + waited
+        return found
+
+    # --- its state ------------------------------------------------------------------------------
+
+    def state(self) -> dict[str, Any]:
+        """As of `CPU`; positions, velocities and images come piece by piece (`Spread`), as long as
+        nobody moves on."""
+        self.check()
+        comm, shape, rows = self.comm, (self.n, self.dimension), self.readings.rows_in_memory
+        return {
+            **(self.solutes.state() if self.solutes else {}),
+            "positions": Spread(comm, shape, np.float64, partial(rows, "positions")),
+            "velocities": Spread(comm, shape, np.float64, partial(rows, "velocities")),
+            "images": Spread(comm, shape, np.int32, partial(rows, "images")),
+            "step": np.int64(self.step),
+            "impulse": self.readings.impulse,
+            "wall_steps": np.int64(self.readings.wall_steps),
+            "wall_rates": self.readings.wall_rates(),
+        }
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Go on from a state, which only the first rank has to have."""
+        root = self.comm.rank == ROOT
+        plain = {k: np.asarray(v) for k, v in state.items() if k not in SPREAD} if root else None
+        plain = self.comm.bcast(plain, ROOT)
+        self.readings.forget()
+        self.memory.fluid.taken.faults[:] = 0
+        self._take(self._given(state) if root else ())
+        memory, taken = self.memory, self.memory.fluid.taken
+        memory.step = int(plain["step"])
+        taken.impulse[:] = 0
+        taken.impulse[0] = plain["impulse"] if root else 0
+        self.readings.wall_steps = int(plain["wall_steps"])
+        memory.wall_rates[:] = plain["wall_rates"]
+        if self.solutes is not None:
+            self.solutes.restore(plain)
+
+    def _given(self, state: Mapping[str, Any]) -> Iterator[Piece]:
+        require_finite(state)
+        yield from of_state(state, (self.n, self.dimension), self.numbers.beads)

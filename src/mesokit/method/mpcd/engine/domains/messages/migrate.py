@@ -1,0 +1,248 @@
+"""Particles move to the rank whose cells they have come to, every so many steps.
+
+They travel after the cells have been settled and before anybody has collided: with what their own
+cell has for them. So no sum changes, and nothing is computed twice. In between they stay where they
+are, and the cells around a block are those that they may stray to. Molecules move as a whole, with
+their first bead.
+"""
+
+import numpy as np
+
+from mesokit.case.box import SLIDING
+from mesokit.kernels.group import writer
+from mesokit.kernels.part import stage
+from mesokit.loops.clock import MOVE, lap
+from mesokit.loops.layout import (
+    LANES,
+    beads_of,
+    lanes_in,
+    place,
+    place_of_bead,
+    record_length,
+)
+from mesokit.loops.threads import meet
+from mesokit.method.mpcd.engine.cpu.grid import cell_in_box, in_block, moved_grid
+from mesokit.method.mpcd.engine.cpu.near_solids import FEW
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle
+from mesokit.method.mpcd.engine.domains.messages.guests import NOBODY, owner_of
+from mesokit.method.mpcd.engine.domains.messages.mpi import finish
+from mesokit.method.mpcd.engine.domains.messages.rows import receive_rows, send_rows
+from mesokit.method.mpcd.engine.domains.messages.shared import (
+    ARRIVED,
+    DONE,
+    HEADER,
+    MOLECULES,
+    MOVED,
+    MOVED_WORDS,
+    shares,
+)
+from mesokit.scalar.fixed_point import bits, from_bits
+from mesokit.scalar.jit import by_type, scalar, seldom
+from mesokit.scalar.vector import scaled
+
+PARTICLES = 4  # tag of messages
+
+
+@by_type
+def migrate(team, now, physics, fluid):
+    """Those that strayed go to others, if it is time; whether there still are the same."""
+    if not shares(fluid):
+        return lambda team, now, physics, fluid: True
+    return lambda team, now, physics, fluid: _migrate(team, now, physics, fluid)
+
+
+@by_type
+def room_left(fluid):
+    """Whether the arrays can take as many as may come at once."""
+    if not shares(fluid):
+        return lambda fluid: True
+    return _room_left
+
+
+def _room_left(fluid):
+    shared = fluid.cells.shared
+    return fluid.particles.filling.molecules + shared.moved_in.shape[0] <= shared.room
+
+
+@by_type
+def note_done(team, fluid, steps):
+    """Tell how many steps were done: fewer than asked for where there was no room."""
+    if not shares(fluid):
+        return lambda team, fluid, steps: None
+    return _note_done
+
+
+def _note_done(team, fluid, steps):
+    if team.thread == 0:
+        fluid.cells.shared.noted[DONE] = steps
+
+
+@stage
+def _migrate(team, now, physics, fluid):
+    shared = fluid.cells.shared
+    if np.int64(now.counter.step) % shared.every != 0:
+        return True
+    meet(team)
+    if team.thread == 0:
+        for p in range(len(shared.ranks)):
+            shared.moved_out[shared.moved_at[p] + HEADER, 0] = 0
+        n = fluid.particles.filling.molecules
+        for t in range(team.threads - 1, -1, -1):  # the last first: they leave no holes
+            for j in range(shared.left[t, 0] - 1, -1, -1):
+                n = leave(fluid, physics, shared.leaving[t, j], shared.owner[t, j], n)
+            shared.left[t, 0] = 0
+        exchange(shared)
+        shared.noted[ARRIVED] = 0
+        for p in range(len(shared.ranks)):
+            begin = shared.moved_at[p] + HEADER + 1
+            for row in range(begin, begin + shared.moved_in[begin - 1, 0]):
+                n = arrive(fluid, physics, shared.moved_in[row], n)
+        shared.noted[MOLECULES] = n
+    meet(team)
+    lap(team, MOVE)
+    return False
+
+
+@by_type
+def home(box, grid, closed):
+    """The cells by which it is said whose a particle is: those without a shift. Under shear it is
+    the step's, because only in these are particles of the box those of one image."""
+    if box.instance_class in SLIDING:
+        return lambda box, grid, closed: grid
+    return lambda box, grid, closed: moved_grid(grid, scaled(0.0, grid.shift), closed)
+
+
+@by_type
+def note_strays(team, now, physics, fluid, strip, s):
+    """Note the leaders in strip s, which is in the cache, that are to go to other ranks now."""
+    if not shares(fluid):
+        return lambda team, now, physics, fluid, strip, s: None
+    return _note_strays
+
+
+def _note_strays(team, now, physics, fluid, strip, s):
+    shared, away = fluid.cells.shared, np.int64(0)
+    if np.int64(now.counter.step) % shared.every == 0:
+        marks, grid = fluid.scratch.marks[team.thread], home(now.box, now.grid, shared.closed)
+        for i in range(LANES):
+            r = load_particle(strip, i, 0, physics.zero)
+            marks[i] = is_away(shared.limits, r, grid)
+            away |= marks[i]
+        if away != 0:
+            note_leaving(team.thread, fluid, strip, s, grid, physics.zero)
+
+
+@seldom
+def note_leaving(thread, fluid, strip, s, grid, zero):
+    """Note the marked molecules of a strip and whose they are, as many as may go."""
+    shared, marks, filling = (
+        fluid.cells.shared,
+        fluid.scratch.marks[thread],
+        fluid.particles.filling,
+    )
+    found, first = shared.left[thread, 0], s // beads_of(filling) * LANES
+    for i in range(lanes_in(filling, s)):
+        if marks[i] != 0 and found < shared.leaving.shape[1]:
+            r = load_particle(strip, i, 0, zero)
+            owner, _ = owner_of(shared, cell_in_box(r, grid))
+            if owner != NOBODY:
+                shared.leaving[thread, found], shared.owner[thread, found] = first + i, owner
+                found += 1
+    shared.left[thread, 0] = found
+
+
+@scalar
+def is_away(limits, r, grid):
+    """1 if the cell at r is not one of this rank's own, whose block has these limits."""
+    return np.int64(not in_block(limits, cell_in_box(r, grid)))
+
+
+@scalar
+def leave(fluid, physics, molecule, p, n):
+    """Write a molecule into the message to a partner; the last of n takes its place."""
+    shared, particles = fluid.cells.shared, fluid.particles
+    first = shared.moved_at[p]
+    rows = shared.moved_out[first + HEADER, 0]
+    if first + HEADER + 1 + rows >= shared.moved_at[p + 1]:
+        return n  # it goes the next time
+    shared.moved_out[first + HEADER, 0] = rows + 1
+    out, at = shared.moved_out[first + HEADER + 1 + rows], 0
+    numbers, d = len(physics.coefficients), len(physics.zero)
+    length = np.uint64(record_length(numbers))
+    for bead in range(beads_of(particles.filling)):
+        i = place_of_bead(particles.filling, molecule, bead)
+        last = place_of_bead(particles.filling, n - 1, bead)
+        out[at] = particles.ident[i]
+        at += 1
+        for row in range(particles.rows):
+            here = place(i, particles.rows, row)
+            out[at] = bits(particles.data[here])
+            particles.data[here] = particles.data[place(last, particles.rows, row)]
+            at += 1
+        for k in range(d):
+            out[at] = particles.image[k, i]
+            particles.image[k, i] = particles.image[k, last]
+            at += 1
+        start = np.uint64(particles.cell[i]) * length
+        for k in range(numbers):
+            out[at] = bits(fluid.cells.coefficients[start + np.uint64(k)])
+            at += 1
+        particles.ident[i], particles.cell[i] = particles.ident[last], particles.cell[last]
+        forget_part(fluid, i)
+    return n - 1
+
+
+@scalar
+def forget_part(fluid, i):
+    """Others are in this part of a strip now: what is clear around them is found anew."""
+    part = i // FEW
+    fluid.room[0, part] = fluid.room[1, part] = 0.0
+
+
+@scalar
+def exchange(shared):
+    """Messages to all partners, and from them."""
+    n = receive_rows(shared, 0, shared.moved_in, shared.moved_at, PARTICLES)
+    for p in range(len(shared.ranks)):
+        first = shared.moved_at[p]
+        rows = shared.moved_out[first + HEADER, 0]
+        n = send_rows(shared, n, shared.moved_out, first, 1 + rows, p, PARTICLES, MOVED_WORDS)
+        shared.meter[MOVED] += rows
+    finish(shared.post, n)
+
+
+@scalar
+def arrive(fluid, physics, given, n):
+    """Take over a molecule; what its cells have for it goes into slots of its own."""
+    shared, particles, at = fluid.cells.shared, fluid.particles, 0
+    numbers, d = len(physics.coefficients), len(physics.zero)
+    length = np.uint64(record_length(numbers))
+    for bead in range(beads_of(particles.filling)):
+        i = place_of_bead(particles.filling, n, bead)
+        particles.ident[i] = given[at]
+        at += 1
+        for row in range(particles.rows):
+            particles.data[place(i, particles.rows, row)] = from_bits(given[at])
+            at += 1
+        for k in range(d):
+            particles.image[k, i] = np.int32(given[at])
+            at += 1
+        slot = fluid.cells.number + 1 + shared.slots + shared.noted[ARRIVED]
+        shared.noted[ARRIVED] += 1
+        particles.cell[i] = np.int32(slot)
+        for k in range(numbers):
+            fluid.cells.coefficients[np.uint64(slot) * length + np.uint64(k)] = from_bits(given[at])
+            at += 1
+        forget_part(fluid, i)
+    return n + 1
+
+
+@by_type
+def hold_those_here(fluid):
+    """Count the molecules that there are now."""
+    if not shares(fluid):
+        return lambda fluid: None
+    return lambda fluid: hold(fluid.particles, fluid.cells.shared.noted[MOLECULES])
+
+
+hold = writer("filling")  # particles, number of molecules

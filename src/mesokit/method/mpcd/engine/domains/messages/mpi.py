@@ -1,0 +1,127 @@
+"""MPI in compiled code: what a step needs of the library that mpi4py has loaded.
+
+A step of a small fluid lasts less than Python takes to hand over its arrays; so messages are sent
+by the kernel itself. Handles are whole numbers of 32 or 64 bits, as the library has them.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import platform
+from typing import Any, NamedTuple
+
+import numpy as np
+from llvmlite import binding
+from numba import types
+
+from mesokit.processes.cores import usable_cores, which_cores
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.system import nap, read_work_clock, yield_core
+
+SPINS = 1_000  # times that a rank looks for its messages before it lets others have the core
+FAILED = 1  # bit of `Post.flag[1]`: a call of the library failed
+
+_WORD, _INT = types.int64, types.int32
+_send = types.ExternalFunction(
+    "mesokit_mpi_isend", _INT(_WORD, _INT, _WORD, _INT, _INT, _WORD, _WORD)
+)
+_receive = types.ExternalFunction(
+    "mesokit_mpi_irecv", _INT(_WORD, _INT, _WORD, _INT, _INT, _WORD, _WORD)
+)
+_test = types.ExternalFunction("mesokit_mpi_testall", _INT(_INT, _WORD, _WORD, _WORD))
+
+
+class Post(NamedTuple):
+    """Where messages go.
+
+    comm, words: handles of the communicator and of the type of 64-bit numbers; requests, statuses:
+    memory of the library, `size` bytes for each request; flag (2,) int32: its answer, and what
+    failed; waited (3,): room for the clock, and ticks spent in waiting; crowded: whether ranks
+    share cores, and so sleep while they wait: a core that is yielded often comes back at once.
+    """
+
+    comm: int
+    words: int
+    size: int
+    requests: Any
+    statuses: Any
+    flag: Any
+    waited: Any
+    crowded: bool
+
+
+def crowded(comm: Any, threads: int) -> bool:
+    """Whether the threads of those ranks that have this one's cores are more than these cores.
+
+    All ranks of the communicator call this, each with its threads.
+    """
+    own = platform.node(), which_cores()
+    every = comm.allgather((own, threads))
+    return sum(n for theirs, n in every if theirs == own) > usable_cores()
+
+
+def post(comm: Any, messages: int, crowded: bool) -> Post:
+    """For so many messages at a time, to ranks of this communicator, which may share cores."""
+    from mpi4py import MPI
+
+    library = ctypes.CDLL(MPI.__file__)
+    for name in ("isend", "irecv", "testall"):
+        function = getattr(library, f"MPI_{name.capitalize()}")
+        binding.add_symbol(f"mesokit_mpi_{name}", ctypes.cast(function, ctypes.c_void_p).value)
+    size = MPI._sizeof(MPI.Request)
+    return Post(
+        comm=MPI._handleof(comm),
+        words=MPI._handleof(MPI.INT64_T),
+        size=size,
+        requests=np.zeros(size * messages + 8, np.uint8),
+        statuses=np.zeros(MPI._sizeof(MPI.Status) * messages + 8, np.uint8),
+        flag=np.zeros(2, np.int32),
+        waited=np.zeros(3, np.int64),
+        crowded=crowded,
+    )
+
+
+@scalar
+def request_of(post, n):
+    """Where the library keeps the nth message in hand."""
+    return np.int64(post.requests.ctypes.data) + n * post.size
+
+
+@scalar
+def send(post, n, address, words, rank, tag):
+    """Begin to send so many 64-bit numbers from an address to a rank; the nth message in hand."""
+    number, to, mark = np.int32(words), np.int32(rank), np.int32(tag)
+    failed = _send(np.int64(address), number, post.words, to, mark, post.comm, request_of(post, n))
+    post.flag[1] |= failed != 0
+    return n + 1
+
+
+@scalar
+def receive(post, n, address, words, rank, tag):
+    """Be ready for at most so many from a rank."""
+    number, by, mark = np.int32(words), np.int32(rank), np.int32(tag)
+    failed = _receive(
+        np.int64(address), number, post.words, by, mark, post.comm, request_of(post, n)
+    )
+    post.flag[1] |= failed != 0
+    return n + 1
+
+
+@scalar
+def finish(post, n):
+    """Wait until the n messages in hand have been sent and have come."""
+    requests, statuses = post.requests.ctypes.data, post.statuses.ctypes.data
+    post.flag[0], spins, began = 0, 0, read_work_clock(post.waited)
+    while post.flag[0] == 0:
+        failed = _test(
+            np.int32(n), np.int64(requests), np.int64(post.flag.ctypes.data), np.int64(statuses)
+        )
+        if failed != 0:
+            post.flag[1] |= FAILED
+            break
+        spins += 1
+        if post.crowded:
+            nap()
+        elif spins > SPINS:
+            yield_core()
+    post.waited[2] += read_work_clock(post.waited) - began

@@ -1,0 +1,88 @@
+"""The memory of solutes that act on the fluid near them."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mesokit.loops.layout import LANES, zeros
+from mesokit.method.mpcd.engine.beads.allocate import cells_of_beads
+from mesokit.method.mpcd.engine.beads.neighbours import GAP as LISTS_GAP
+from mesokit.method.mpcd.engine.beads.neighbours import Neighbours
+from mesokit.method.mpcd.engine.cpu.grid import Grid
+from mesokit.method.mpcd.engine.cpu.numbers import fastest_surface
+from mesokit.method.mpcd.engine.embedded.state import GAP, PARTNERS, Embedded
+from mesokit.potential.thermal import boltzmann_volume
+
+if TYPE_CHECKING:
+    from mesokit.method.mpcd.engine.cpu.numbers import Numbers
+    from mesokit.method.mpcd.solutes import Solutes
+
+FAST = 5.0  # thermal velocities: few particles are faster, and those are looked at one by one
+NEVER = 8.0  # thermal velocities, which no diffuse wall gives in the life of a run (chance 1e-14)
+ROOM = 3.0  # times as many particles near beads as there are in equilibrium
+ROUNDED_UP = 1.0 + 1e-9
+
+
+def embedded_of(given: Solutes, numbers: Numbers, threads: int) -> tuple:
+    """What such solutes need besides; () for those that collide with the fluid."""
+    if given.solvent_pair is None:
+        return ()
+    case, d = numbers.case, numbers.dimension
+    fluid, pair = case.fluid, given.solvent_pair
+    thermal = fluid.timestep * math.sqrt(fluid.kT / min(numbers.masses_of_kinds))
+    diffuse = any(
+        body.surface.rule == "diffuse" for body in (numbers.solids.bodies if numbers.solids else [])
+    )
+    further = 2.0 * fluid.timestep * fastest_surface(case) + NEVER * thermal * diffuse
+    travel = FAST * thermal + further
+    reach = (pair.reach + given.skin + travel) * ROUNDED_UP
+    expected = given.beads * numbers.density * boltzmann_volume(pair.kernel(), d, fluid.kT, reach)
+    most = int(min(numbers.n, ROOM * expected + 1000))
+    cells = tuple(float(n) for n in numbers.cells)
+    zero = (0.0,) * d
+    return (
+        Embedded(
+            potential=pair.kernel(),
+            reach=pair.reach,
+            skin=given.skin,
+            travel=travel,
+            further=further,
+            grid=Grid(zero, zero, cells, tuple(1.0 / n for n in cells)),
+            marked=np.zeros(numbers.number_of_cells + 1, np.int64),
+            lists=_lists(reach, given.beads, numbers, threads),
+            lane=zeros((threads, most), np.int64),
+            partners=zeros((threads, most), np.int32),
+            beads=zeros((threads, most * PARTNERS), np.int32),
+            r=zeros((threads, most * d)),
+            v=zeros((threads, most * d)),
+            start=zeros((threads, most * d)),
+            bound=zeros((threads, most)),
+            number=zeros((threads, GAP), np.int64),
+            chosen=zeros((threads, LANES), np.int64),
+            taken=zeros((threads, given.beads * d), np.int64),
+            faults=zeros((threads, GAP), np.int64),
+        ),
+    )
+
+
+def _lists(reach: float, beads: int, numbers: Numbers, threads: int) -> Any:
+    """Cells of beads; lists of neighbours are not made of them."""
+    d, box, none = numbers.dimension, numbers.box, np.zeros(0, np.int32)
+    cells = cells_of_beads(reach, box, numbers.closed)
+    return Neighbours(
+        reach=reach,
+        skin=0.0,
+        cells=cells,
+        inverse=tuple(n / float(length) for n, length in zip(cells, box, strict=True)),
+        cell=np.zeros(beads, np.int32),
+        head=np.zeros(math.prod(cells), np.int32),
+        following=np.zeros(beads, np.int32),
+        count=none,
+        near=none.reshape(0, 1),
+        made_at=np.zeros(beads * d),
+        boxes=np.zeros(beads),
+        noted=np.zeros((threads, LISTS_GAP)),
+    )

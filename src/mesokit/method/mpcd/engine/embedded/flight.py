@@ -1,0 +1,187 @@
+"""Beads and the particles of the fluid near them, moved together in sub-steps.
+
+What a particle and a bead hand over is rounded to a whole number of units of momentum, which one
+takes and the other loses: momentum is kept exactly, and forces on a bead are sums of whole numbers,
+in whatever order and by however many threads they are found.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mesokit.geometry.solids.none import Nothing
+from mesokit.kernels.part import stage
+from mesokit.loops.layout import LANES, share, strip_at
+from mesokit.loops.threads import meet
+from mesokit.method.mpcd.engine.beads.moving import Moving, pushed
+from mesokit.method.mpcd.engine.beads.neighbours import apart
+from mesokit.method.mpcd.engine.beads.state import (
+    inverse_mass_of,
+    load_place,
+    load_velocity,
+    store_velocity,
+)
+from mesokit.method.mpcd.engine.beads.verlet import drift, flown, kick, verlet
+from mesokit.method.mpcd.engine.cpu.groups import STREAM
+from mesokit.method.mpcd.engine.cpu.physics import kind_of_solid, momentum_scale
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, mass_of, store_values
+from mesokit.method.mpcd.engine.embedded.near import has_left, note
+from mesokit.method.mpcd.engine.embedded.state import (
+    COUNT,
+    EVERYBODY,
+    PARTNERS,
+    TOO_FAR,
+    TOO_HARD,
+    Embedded,
+)
+from mesokit.potential.protocol import central
+from mesokit.scalar.fixed_point import add_integers, added_quanta, integers
+from mesokit.scalar.jit import by_type, elementwise, scalar
+from mesokit.scalar.vector import added_scaled, dot, scaled
+
+MOST_UNITS = 2.0**52  # that a particle may hand over at once: a thousand thermal momenta
+
+
+class Together(NamedTuple):
+    """Beads and the particles near them, as one thread moves its share of both."""
+
+    solutes: Moving
+    embedded: Embedded
+    particles: Any
+
+
+@stage
+def move_in_fluid(team, now, physics, fluid, beads):
+    """r, v of beads and of the particles near them: t -> t + dt."""
+    if now.flags & STREAM:
+        (embedded,) = beads.embedded
+        first, last = share(len(beads.cell), team.thread, team.threads)
+        impulse = fluid.taken.impulse[team.thread]
+        solutes = Moving(team, beads, first, last, impulse, 0)
+        moving = Together(solutes, embedded, fluid.particles)
+        verlet(moving, now, physics, beads.potentials.substeps)
+
+
+@drift.register(Together)
+def _(moving, counter, physics, time):
+    drift(moving.solutes, counter, physics, time)
+    solutes, embedded, thread = moving.solutes, moving.embedded, moving.solutes.team.thread
+    for i in range(solutes.first, solutes.last):
+        start = load_values(embedded.lists.made_at, np.uint64(i * len(physics.zero)), physics.zero)
+        if has_left(start, load_place(solutes.beads, i, physics.zero), embedded.skin):
+            note(embedded.faults[thread], step_of(counter), TOO_FAR, i + 1)
+    for n in range(embedded.number[thread, COUNT]):
+        drift_particle(moving, n, counter, physics, time)
+
+
+@scalar
+def step_of(counter):
+    """The step of a counter that also counts sub-steps (see `verlet`)."""
+    return np.int64(counter.step) & np.int64((1 << 40) - 1)
+
+
+@scalar
+def drift_particle(moving, n, counter, physics, time):
+    """Straight flight of one particle, with reflections."""
+    embedded, thread, zero = moving.embedded, moving.solutes.team.thread, physics.zero
+    at = np.uint64(n * len(zero))
+    r, v = load_values(embedded.r[thread], at, zero), load_values(embedded.v[thread], at, zero)
+    r, v = moved(physics, time, counter, moving, embedded.lane[thread, n], r, v)
+    store_values(embedded.r[thread], at, r)
+    store_values(embedded.v[thread], at, v)
+    start = load_values(embedded.start[thread], at, zero)
+    if has_left(start, r, embedded.bound[thread, n]):  # pushed away: other beads may be near now
+        embedded.partners[thread, n] = EVERYBODY
+
+
+@by_type
+def moved(physics, time, counter, moving, lane, r, v):
+    """Place and velocity of the particle in a lane after a sub-step without forces."""
+    if kind_of_solid(physics) is Nothing:
+        return lambda physics, time, counter, moving, lane, r, v: (
+            added_scaled(r, time, v),
+            v,
+        )
+
+    def among_solids(physics, time, counter, moving, lane, r, v):
+        m, who = mass_in_lane(physics, moving.particles, lane), moving.particles.ident[lane]
+        return flown(physics, time, counter, who, m, r, v, moving.solutes.impulse)
+
+    return among_solids
+
+
+@scalar
+def mass_in_lane(physics, particles, lane):
+    """Mass of the particle in a lane, counted through the strips."""
+    strip = particles.data[strip_at(lane // LANES, particles.rows)]
+    return mass_of(physics.masses, strip, lane % LANES, 2 * len(physics.zero))
+
+
+@kick.register(Together)
+def _(moving, step, box, physics, time):
+    kick(moving.solutes, step, box, physics, time)  # threads meet: all places are known
+    solutes, embedded, zero = moving.solutes, moving.embedded, physics.zero
+    team, beads = solutes.team, solutes.beads
+    embedded.taken[team.thread] = 0
+    for n in range(embedded.number[team.thread, COUNT]):
+        kick_particle(moving, n, step, box, physics, time)
+    meet(team)
+    unit = 1.0 / momentum_scale(physics)
+    for i in range(solutes.first, solutes.last):
+        total = integers(zero)
+        for t in range(team.threads):
+            total = plus(embedded.taken[t], i * len(zero), total)
+        v = added_scaled(
+            load_velocity(beads, i, zero),
+            unit * inverse_mass_of(beads, i),
+            floats(total),
+        )
+        store_velocity(beads, i, v)
+
+
+@scalar
+def kick_particle(moving, n, step, box, physics, time):
+    """Change of the velocity of one particle by the beads near it, which take the opposite."""
+    embedded, thread, zero = moving.embedded, moving.solutes.team.thread, physics.zero
+    beads, at, d = moving.solutes.beads, np.uint64(n * len(zero)), len(zero)
+    r, v = load_values(embedded.r[thread], at, zero), load_values(embedded.v[thread], at, zero)
+    count, given, scale = embedded.partners[thread, n], integers(zero), momentum_scale(physics)
+    for k in range(count if count != EVERYBODY else len(beads.cell)):
+        j = embedded.beads[thread, n * PARTNERS + k] if count != EVERYBODY else k
+        separation = apart(box, load_place(beads, j, r), r)
+        square = dot(separation, separation)
+        _, push = central(embedded.potential, square)
+        if push != 0.0:
+            if not abs(push) * time * scale * square**0.5 < MOST_UNITS:
+                note(embedded.faults[thread], step, TOO_HARD, j + 1)
+            else:
+                units = added_quanta(scaled(time * push, separation), scale, integers(zero))
+                given = all_added(given, units)
+                add_integers(embedded.taken[thread, j * d : (j + 1) * d], opposite(units))
+    m = mass_in_lane(physics, moving.particles, embedded.lane[thread, n])
+    v = added_scaled(v, 1.0 / (scale * m), floats(given))
+    store_values(embedded.v[thread], at, pushed(physics.field, time, r, v))
+
+
+@elementwise
+def all_added(a, b):
+    """The sum of two vectors of whole numbers."""
+    return "a[{k}] + b[{k}]"
+
+
+@elementwise
+def opposite(a):
+    """A vector of whole numbers, the other way."""
+    return "-a[{k}]"
+
+
+@elementwise
+def floats(a):
+    """A vector of whole numbers as floats."""
+    return "float(a[{k}])"
+
+
+@elementwise
+def plus(values, start, total):
+    """A vector of whole numbers to which consecutive values of an array are added."""
+    return "total[{k}] + values[start + {k}]"

@@ -1,0 +1,178 @@
+"""Which particles of the fluid may come near a bead in a timestep, and which beads.
+
+A particle that no bead can reach flies straight: its distance from all beads is larger than the
+reach of the potential, what it flies, and what beads may go (`skin`). The others are moved in the
+sub-steps of the beads. That follows from places and velocities alone, neither from the order in
+memory nor from threads: marked cells only say where it is worth looking.
+"""
+
+import math
+
+import numpy as np
+
+from mesokit.case.box import fold
+from mesokit.kernels.kernel import inner
+from mesokit.loops.cells import next_along
+from mesokit.loops.layout import share
+from mesokit.loops.threads import meet
+from mesokit.method.mpcd.engine.beads.neighbours import apart, find_cells, link
+from mesokit.method.mpcd.engine.beads.state import load_place
+from mesokit.method.mpcd.engine.cpu.grid import cell_index
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle, store_values
+from mesokit.method.mpcd.engine.embedded.state import (
+    COUNT,
+    EVERYBODY,
+    PARTNERS,
+    STEP,
+    TOO_MANY,
+    WHAT,
+    WHICH,
+)
+from mesokit.method.mpcd.streaming import halfway, vector
+from mesokit.scalar.intrinsics import floor, with_item
+from mesokit.scalar.jit import scalar, seldom
+from mesokit.scalar.vector import added_scaled, dot, scaled
+
+
+@inner
+def find_beads(team, stamp, box, beads, zero):
+    """Put beads into their cells, and mark the cells of the fluid around them with a stamp."""
+    (embedded,), number = beads.embedded, len(beads.cell)
+    first, last = share(number, team.thread, team.threads)
+    find_cells(embedded.lists, beads.roster, box, beads.r, (first, last), zero)
+    for i in range(first, last):
+        mark_around(embedded, load_place(beads, i, zero), stamp)
+    meet(team)
+    link(embedded.lists, beads.roster, share(len(embedded.lists.head), team.thread, team.threads))
+    meet(team)
+
+
+@seldom
+def mark_around(embedded, r, stamp):
+    """Mark the cells of the fluid that come as near to r as the lists of partners reach."""
+    d, reach = len(r), embedded.lists.reach
+    low, high = r, r
+    for k in range(d):
+        low = with_item(low, k, floor(r[k] - reach))
+        high = with_item(high, k, floor(r[k] + reach))
+    depth = int(high[2] - low[2]) + 1 if d == 3 else 1
+    middle = r
+    for c in range(depth):
+        if d == 3:
+            middle = with_item(middle, 2, low[2] + c + 0.5)
+        for b in range(int(high[1] - low[1]) + 1):
+            middle = with_item(middle, 1, low[1] + b + 0.5)
+            for a in range(int(high[0] - low[0]) + 1):
+                middle = with_item(middle, 0, low[0] + a + 0.5)
+                square = 0.0
+                for k in range(d):
+                    gap = max(abs(middle[k] - r[k]) - 0.5, 0.0)
+                    square += gap * gap
+                if square <= reach * reach:
+                    embedded.marked[cell_index(middle, embedded.grid)] = stamp
+
+
+@scalar
+def path_of(embedded, physics, r, v):
+    """The longest way that a particle can fly in a timestep, far from beads."""
+    a, time = vector(halfway(physics.field, r, v, physics.timestep), r), physics.timestep
+    way = time * math.sqrt(dot(v, v)) + 0.5 * time * time * math.sqrt(dot(a, a))
+    return way + embedded.further
+
+
+@scalar
+def choose_near(team, now, physics, beads, strip, s, count, marks):
+    """Put the particles of strip s that may come near a bead on the list of this thread.
+
+    Their lanes come to stand in the first places of `marks`; the answer is their number.
+    """
+    (embedded,), zero = beads.embedded, physics.zero
+    d, step, candidates, chosen = len(zero), now.counter.step, 0, 0
+    for i in range(count):
+        r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
+        near = embedded.marked[cell_index(r, embedded.grid)] == step
+        fast = not path_of(embedded, physics, r, v) <= embedded.travel
+        marks[i] = np.int64(near) | np.int64(fast)
+    for i in range(count):  # their numbers first, without branches
+        mark = marks[i]
+        marks[candidates] = i
+        candidates += mark
+    for j in range(candidates):
+        i = marks[j]
+        r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
+        path, n = path_of(embedded, physics, r, v), embedded.number[team.thread, COUNT]
+        if n == embedded.lane.shape[1]:
+            note(embedded.faults[team.thread], step, TOO_MANY, 0)
+            break
+        partners = find_partners(embedded, beads, now.box, r, path, (team.thread, n))
+        if partners != 0:
+            at = np.uint64(n * d)
+            embedded.lane[team.thread, n] = s * len(marks) + i
+            embedded.partners[team.thread, n] = partners
+            embedded.bound[team.thread, n] = max(path, embedded.travel)
+            store_values(embedded.r[team.thread], at, r)
+            store_values(embedded.start[team.thread], at, r)
+            store_values(embedded.v[team.thread], at, v)
+            embedded.number[team.thread, COUNT] = n + 1
+            marks[chosen] = i
+            chosen += 1
+    return chosen
+
+
+@seldom
+def find_partners(embedded, beads, box, r, path, where):
+    """List the beads that a particle at r may meet, which flies so far; 0 if there are none.
+
+    All beads of a list lie within reach of `travel`, so that it holds if the path is shorter.
+    """
+    lists, number = embedded.lists, len(beads.cell)
+    if not path <= embedded.travel:  # a fast one, or one that is lost
+        for j in range(number):
+            if comes_near(embedded, beads, box, r, path, j):
+                return EVERYBODY
+        return 0
+    still, d, found, met = scaled(0.0, r), len(r), 0, False
+    place, _, _ = fold(box, r, still, still)
+    rows, layers = lists.cells[0], lists.cells[0] * lists.cells[1]
+    along_z, _ = next_along(lists, box, d - 1, place[d - 1])
+    along_y, _ = next_along(lists, box, 1, place[1])
+    along_x, _ = next_along(lists, box, 0, place[0])
+    for b in range(3):
+        for c in range(3 if d == 3 else 1):
+            layer = along_z[c] if d == 3 else 0
+            for a in range(3):
+                if min(along_x[a], along_y[b], layer) >= 0:
+                    j = lists.head[along_x[a] + along_y[b] * rows + layer * layers]
+                    while j >= 0:
+                        if comes_near(embedded, beads, box, r, embedded.travel, j):
+                            if found < PARTNERS:
+                                at = where[1] * PARTNERS + found
+                                embedded.beads[where[0], at] = j
+                            found += 1
+                            met |= comes_near(embedded, beads, box, r, path, j)
+                        j = lists.following[j]
+    if not met:
+        return 0
+    return found if found <= PARTNERS else EVERYBODY
+
+
+@scalar
+def comes_near(embedded, beads, box, r, path, j):
+    """Whether a particle at r that flies so far may come within the reach of bead j."""
+    bound = embedded.reach + embedded.skin + path
+    separation = apart(box, load_place(beads, j, r), r)
+    return not dot(separation, separation) > bound * bound
+
+
+@scalar
+def note(faults, step, what, which):
+    """Note the first thing that goes wrong."""
+    if faults[STEP] == 0:
+        faults[STEP], faults[WHAT], faults[WHICH] = np.int64(step), what, np.int64(which)
+
+
+@scalar
+def has_left(start, r, bound):
+    """Whether a place is farther from where it was than it was said to be."""
+    way = added_scaled(r, -1.0, start)
+    return not dot(way, way) <= bound * bound

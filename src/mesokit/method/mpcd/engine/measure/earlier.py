@@ -1,0 +1,55 @@
+"""What a checkpoint says of its particles, row by row: as the fluid that wrote it would tell."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.method.mpcd.engine.beads.readings import fold_beads
+from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
+from mesokit.method.mpcd.engine.measure.readings import between
+
+
+class EarlierRows:
+    """Positions of whole molecules, or velocities (n, d), of a state: made when they are asked for.
+
+    `state` has its arrays by name, which may lie in a file. Raises ValueError if they are not those
+    of this fluid.
+    """
+
+    def __init__(self, numbers: Numbers, state: Mapping[str, Any], name: str) -> None:
+        self.numbers, self.state, self.name = numbers, state, name
+        self.shape, self.dtype = (numbers.n, numbers.dimension), np.dtype(float)
+        for array in ("positions", "velocities", "images"):
+            if state[array].shape != self.shape:
+                raise ValueError(f"{array} of shape {state[array].shape}, not {self.shape}")
+        time = int(state["step"]) * numbers.timestep
+        self.box = numbers.case.box.kernel(numbers.closed, time, numbers.timestep)
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __getitem__(self, rows: slice) -> Floats:
+        first, last, _ = rows.indices(len(self))
+        beads = self.numbers.beads
+        start, end = first // beads * beads, -(-last // beads) * beads
+        r, v, image = self._folded(start, end)
+        found = {"positions": r, "velocities": v}[self.name]
+        if self.name == "positions" and beads > 1:
+            leader = np.repeat(np.arange(0, len(r), beads), beads)
+            way = between(r, image, leader, np.arange(len(r)), self.numbers.box, self.box)
+            found = r[leader] + way
+        return found[first - start : last - start]
+
+    def _folded(self, first: int, last: int) -> tuple[Floats, Floats, NDArray[np.int32]]:
+        """Places in the box, velocities there, and boxes that each is away."""
+        r, v, image = (
+            np.array(self.state[name][first:last]) for name in ("positions", "velocities", "images")
+        )
+        crossed = np.zeros(r.shape)
+        zero = (0.0,) * r.shape[1]
+        fold_beads(self.box, r.reshape(-1), v.reshape(-1), crossed.reshape(-1), zero)
+        return r, v, image + crossed.astype(np.int32)

@@ -1,0 +1,342 @@
+"""What observables ask of a fluid in memory."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.box import SLIDING
+from mesokit.loops.layout import (
+    LANES,
+    SCRATCH_ROW,
+    strips_for,
+    sums_length,
+    zeros,
+)
+from mesokit.loops.threads import Threads
+from mesokit.method.mpcd.engine.beads.readings import SoluteReadings
+from mesokit.method.mpcd.engine.cpu.memory import Floats, Memory
+from mesokit.method.mpcd.engine.measure import sums as measure
+from mesokit.scalar.fixed_point import ROUNDER_BITS, added_halves, halves, joined
+
+Moments = tuple[Floats, Floats, Floats, Floats]
+AT_ONCE = 2**10  # strips of a thread: sums of the terms of more particles may overflow
+
+
+class Seen(NamedTuple):
+    """Particles that were looked at, a row for each."""
+
+    positions: Floats
+    velocities: Floats
+    images: NDArray[np.int32]
+
+
+class Readings:
+    """What can be read of a fluid in memory, by threads that look together."""
+
+    def __init__(self, memory: Memory, threads: Threads) -> None:
+        self.memory, self.numbers, self.threads = memory, memory.numbers, threads
+        self.n, self.beads, self.dimension = (
+            memory.numbers.n,
+            memory.numbers.beads,
+            memory.numbers.dimension,
+        )
+        self.wall_steps = 0
+        self._asked: NDArray | None = None  # ids, for the next time
+        self._slots_of_asked = np.zeros(0, np.int32)
+        self._seen: dict[tuple, Moments] = {}  # moments at this step, for several observables
+        self.stress: dict[str, Floats] = {}
+        self.tells_solutes = True  # whether sums take the beads of solutes from here
+        self.solutes = SoluteReadings(memory) if memory.solutes else None
+
+    @property
+    def _vectors(self) -> tuple[tuple, tuple]:
+        """The zero vector, and the mass of all or (): loops are compiled for these."""
+        return self.memory.physics.zero, self.memory.physics.masses
+
+    def forget(self) -> None:
+        """The particles have moved on."""
+        self._seen.clear()
+
+    def totals(self) -> tuple[int, Floats, float]:
+        """Number of particles, momentum (d,) and kinetic energy, beads of solutes included."""
+        number, sums = self.n, self.motion()
+        if self.solutes is not None:
+            number, sums = number + self.solutes.shape[0], sums + self.solutes.motion()
+        return number, sums[:-1], 0.5 * float(sums[-1])
+
+    def motion(self) -> Floats:
+        """Momentum and sum of m v^2 of the fluid (d + 1,)."""
+        sums, _ = self._motion_of_strips()
+        return self.total(sums, np.array(self.numbers.scales_of_motion))
+
+    def fastest(self) -> float:
+        """The largest component of |v| of what is in this memory."""
+        _, fastest = self._motion_of_strips()
+        return float(fastest.max(initial=0.0))
+
+    def _motion_of_strips(self) -> tuple[NDArray[np.int64], Floats]:
+        scales = self.numbers.scales_of_motion
+        sums = np.zeros((self.memory.strips, len(scales)), np.int64)
+        fastest = np.zeros(self.memory.strips)
+        _, masses = self._vectors
+        particles = self.memory.fluid.particles
+        self.threads.run(measure.totals, masses, particles, scales, sums, fastest)
+        return sums, fastest
+
+    def total(self, rows: NDArray[np.int64], scale: Any) -> Floats:
+        """Sums over the rows (n, ...) of whole numbers, over the scale."""
+        return self.joined(halves(rows), scale)
+
+    def joined(self, parts: NDArray[np.int64], scale: Any) -> Floats:
+        """The same of the halves of sums."""
+        return joined(self.reduced(parts), scale)
+
+    def added(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Whole numbers that the threads have found together."""
+        return self.reduced(numbers.sum(axis=0))
+
+    def reduced(self, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
+        """The sum over all that have a part of the particles: here, all are in one hand."""
+        return numbers
+
+    def moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
+        """Number, mass, momentum (d, ...) and sum of m v^2 in bins along one or two axes."""
+        key = axes, bins
+        if key not in self._seen:
+            self._seen[key] = self._moments(axes, bins)
+        return self._seen[key]
+
+    def _moments(self, axes: tuple[int, ...], bins: tuple[int, ...]) -> Moments:
+        d, threads, size = self.dimension, self.threads.size, math.prod(bins)
+        two = (axes + axes)[:2], tuple(float(n) for n in (*bins, 1)[:2])
+        names = ["momentum"] * d + ["mass", "energy"]
+        scales = tuple(self.numbers.units[name] for name in names)
+        length = sums_length(d + 2)
+        part = zeros((threads, size * length), np.int64)
+        place = np.zeros((threads, LANES), np.int32)
+        terms = np.zeros((threads, (d + 2) * SCRATCH_ROW), np.int64)
+        where = self.memory.box, self.memory.fluid.particles
+        filling: Any = self.memory.fluid.particles.filling
+        strips = strips_for(filling.molecules, self.beads)
+        sums = np.zeros((2, size, d + 3), np.int64)
+        for first in range(0, strips, AT_ONCE * threads):
+            part[:] = 0
+            last = min(first + AT_ONCE * threads, strips)
+            chosen = measure.Bins(*two, scales, place, terms, first, last)
+            self.threads.run(measure.bin_sums, *self._vectors, *where, chosen, part)
+            found = part.reshape(threads, size, length)[:, :, : d + 3]
+            found[:, :, 1:] -= found[:, :, :1] * ROUNDER_BITS
+            sums = added_halves(np.stack([sums, halves(found)]))
+        values = self.joined(sums, np.array((1.0, *scales))).T.reshape(-1, *bins)
+        return values[0], values[d + 1], values[1 : d + 1], values[d + 2]
+
+    def modes(
+        self, wavevectors: NDArray, first: int = 0, last: int | None = None
+    ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+        """Sums of m exp(-i k r) (K,) and of m v exp(-i k r) (K, d) for wave vectors (K, d), of all
+        particles or of those from one number to before another."""
+        turns = np.ascontiguousarray(wavevectors, float) / (2.0 * math.pi)
+        d, scale = self.dimension, self.numbers.units["momentum"]
+        waves = measure.Waves(turns, scale, first, self.n if last is None else last)
+        part = np.zeros((self.threads.size, len(turns), 2 + 2 * d), np.int64)
+        where = self.memory.box, self.memory.fluid.particles
+        self.threads.run(measure.modes, *self._vectors, *where, waves, part)
+        total = self.added(part) / scale
+        return total[:, 0] + 1j * total[:, 1], total[:, 2 : 2 + d] + 1j * total[:, 2 + d :]
+
+    def positions(self, ids: NDArray | None = None, unwrapped: bool = False) -> Floats:
+        """Positions (n, d) by particle id, in the box or as if it had no bounds."""
+        return self._gather(ids, unwrapped).positions
+
+    def velocities(self, ids: NDArray | None = None) -> Floats:
+        """Velocities (n, d) by particle id."""
+        return self._gather(ids, False).velocities
+
+    def images(self, ids: NDArray | None = None) -> NDArray[np.int32]:
+        """How many times each particle left the box along each axis (n, d), by particle id."""
+        return self._gather(ids, False).images
+
+    def masses(self, ids: NDArray | None = None) -> Floats:
+        """Masses (n,) by particle id: kinds are numbered one after the other, then come solutes."""
+        ids = self._all_beads(ids)
+        if ids is None:
+            return self.numbers.masses()
+        mass, beads = np.zeros(len(ids)), np.asarray(ids) >= self.n
+        mass[~beads] = self.numbers.masses_of(ids[~beads])
+        if beads.any() and self.solutes is not None:
+            mass[beads] = np.broadcast_to(self.solutes.masses(), self.solutes.shape[:1])[
+                ids[beads] - self.n
+            ]
+        return mass
+
+    def species(self, ids: NDArray | None = None) -> NDArray[np.int64]:
+        """Kind of each particle (n,), by particle id: its place in fluid.species, then those of
+        solutes.polymers."""
+        ids = self._all_beads(ids)
+        if ids is None:
+            return self.numbers.kinds()
+        kind = self.numbers.kinds_of(np.minimum(ids, max(self.n - 1, 0)))
+        beads = ids >= self.n
+        if beads.any() and self.solutes is not None:
+            kind[beads] = len(self.numbers.counts) + self.solutes.kinds()[ids[beads] - self.n]
+        return kind
+
+    def bonds(self) -> NDArray[np.int64]:
+        """Particle ids (bonds, 2) of all pairs that are linked; molecule after molecule, those of
+        the fluid before those of solutes."""
+        if self.solutes is None:
+            return self._bonds_of_fluid()
+        return np.concatenate([self._bonds_of_fluid(), self.n + self.solutes.bonds])
+
+    def _bonds_of_fluid(self) -> NDArray[np.int64]:
+        molecule = self.numbers.case.fluid.molecule
+        links = np.array(molecule.bonds if molecule else (), np.int64).reshape(-1, 2)
+        starts = np.arange(0, self.n, self.beads)
+        return (starts[:, None, None] + links).reshape(-1, 2) if len(links) else links
+
+    def bond_vectors(self) -> Floats:
+        """From the first to the second particle of each of `bonds` (bonds, d)."""
+        bonds = self._bonds_of_fluid()
+        if self.solutes is None:
+            return self._between(bonds)
+        beads = self.solutes.bond_vectors()
+        return np.concatenate([self._between(bonds), beads]) if len(bonds) else beads
+
+    def whole_positions(self, ids: NDArray | None = None) -> Floats:
+        """Positions (n, d) by particle id, in the box but for beads that hang over its ends.
+
+        Those are where their molecule has them, next to its first bead, which is in the box.
+        `ids`, if given, name molecule after molecule with all of its beads; without them they are
+        those of the fluid.
+        """
+        if self.solutes is None or ids is None or (ids < self.n).all():
+            return self._whole_in_fluid(ids)
+        own = ids < self.n
+        places = self.solutes.whole()[np.where(own, 0, ids - self.n)]
+        if own.any():
+            places[own] = self._whole_in_fluid(ids[own])
+        return places
+
+    def _whole_in_fluid(self, ids: NDArray | None) -> Floats:
+        r, _, image = self._gather(ids, False)
+        if self.beads == 1:
+            return r
+        first = np.repeat(np.arange(0, len(r), self.beads), self.beads)
+        return r[first] + self.way(r, image, first, np.arange(len(r)))
+
+    def _between(self, pairs: NDArray[np.int64]) -> Floats:
+        """Vectors (n, d) between beads of one molecule."""
+        r, _, image = self._gather(None, False)
+        return self.way(r, image, *pairs.T)
+
+    def way(self, r: Floats, image: NDArray, first: NDArray, second: NDArray) -> Floats:
+        """From one bead to another, whatever images they lie in."""
+        return between(r, image, first, second, self.numbers.box, self.memory.box)
+
+    def _gather(self, ids: NDArray | None, unwrapped: bool) -> Seen:
+        """Places, velocities, images by particle id; those of beads of solutes follow the fluid."""
+        ids = self._all_beads(ids)
+        if self.solutes is None or ids is None or (ids < self.n).all():
+            return self._gather_fluid(ids, unwrapped)
+        own = ids < self.n
+        r, v, image = self.solutes.folded()
+        if unwrapped:
+            r, v = self.solutes.places, self.solutes.velocities
+        beads = np.where(own, 0, ids - self.n)
+        r, v, image = r[beads], v[beads], image[beads]
+        if own.any():
+            r[own], v[own], image[own] = self._gather_fluid(ids[own], unwrapped)
+        return Seen(r, v, image)
+
+    def _all_beads(self, ids: NDArray | None) -> NDArray | None:
+        """The same ids; in a random solvent, which has no particles, None stands for all beads."""
+        if ids is not None or self.n or self.solutes is None:
+            return ids
+        return np.arange(len(self.solutes.kinds()))
+
+    def _gather_fluid(self, ids: NDArray | None, unwrapped: bool) -> Seen:
+        slots = np.arange(self.n, dtype=np.int32) if ids is None else self._slots(ids)
+        shape = self.n if ids is None else len(ids), self.dimension
+        out = Seen(np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32))
+        looked = measure.Looked(slots, *out)
+        zero, _ = self._vectors
+        where = self.memory.box, self.memory.fluid.particles
+        self.threads.run(measure.gather_by_id, zero, *where, unwrapped, looked)
+        return out
+
+    def seen_at(self, places: NDArray[np.int64], unwrapped: bool) -> Seen:
+        """Position, velocity and images of the particles at these places in memory."""
+        shape, zero = (len(places), self.dimension), self.memory.physics.zero
+        out = Seen(np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32))
+        looked = measure.Looked(places, *out)
+        where = self.memory.box, self.memory.fluid.particles
+        self.threads.run(measure.gather_at, zero, *where, unwrapped, looked)
+        return out
+
+    def _slots(self, ids: NDArray) -> NDArray[np.int32]:
+        """Place of each particle in `ids`, by particle id, -1 if none; kept for the next time."""
+        if self._asked is None or not np.array_equal(self._asked, ids):
+            self._slots_of_asked = np.full(self.n, -1, np.int32)
+            self._slots_of_asked[ids] = np.arange(len(ids))
+            self._asked = ids.copy()
+        return self._slots_of_asked
+
+    def find_stress(self) -> None:
+        """Stress of the step that ends now, positive where the fluid above drags the one below.
+
+        Kinetic: momentum carried in the flight, which is the mean of the values before and after
+        the collision. Collisional: momentum handed over within cells (Winkler and Huang 2009).
+        Bond: momentum handed over within molecules of the fluid and between beads of solutes, the
+        mean over the flight.
+        """
+        d = self.dimension
+        unit = self.numbers.units["stress"]
+        parts = self.total(self.memory.fluid.taken.tensor.swapaxes(0, 1), unit)
+        if self.solutes is not None:
+            theirs = self.total(self.solutes.state_of.tensor.swapaxes(0, 1), unit)
+            bonded = theirs[2:] + parts[2:] if len(parts) > 2 else theirs[2:]
+            parts = np.concatenate([parts[:2] + theirs[:2], bonded])
+        (flux, moment), (flux_after, moment_after), *rest = parts.reshape(-1, 2, d, d)
+        volume = math.prod(self.numbers.case.box.size)
+        self.stress = {
+            "kinetic": -0.5 * (flux + flux_after) / volume,
+            "collisional": -(moment_after - moment) / (volume * self.numbers.timestep),
+        }
+        for virial, _ in rest:
+            self.stress["bond"] = -virial / (volume * self.numbers.timestep)
+
+    @property
+    def wall_impulse(self) -> Floats:
+        """What surfaces took since the last call: momentum (d), then angular momentum (1 or 3).
+
+        A row for each: the lower and upper plate of a slit, or the bodies in order.
+        """
+        columns = self.dimension + (1 if self.dimension == 2 else 3)
+        taken = self.impulse.astype(float).reshape(-1, columns)
+        self.forget_walls()
+        return taken / self.numbers.units["momentum"]
+
+    @property
+    def impulse(self) -> NDArray[np.int64]:
+        """The same as whole numbers, all in a row."""
+        return self.added(self.memory.fluid.taken.impulse)
+
+    def forget_walls(self) -> None:
+        """Count anew what surfaces take."""
+        self.memory.fluid.taken.impulse[:] = 0
+        self.wall_steps = 0
+
+
+def between(
+    r: Floats, image: NDArray, first: NDArray, second: NDArray, size: Floats, box: tuple
+) -> Floats:
+    """From some particles to others, whatever images of a box of this size they lie in."""
+    boxes = image[second] - image[first]
+    way: Floats = r[second] - r[first] + boxes * size
+    if isinstance(box, SLIDING):
+        way[:, 0] += boxes[:, 1] * box.offset
+    return way

@@ -1,0 +1,143 @@
+"""How fast the fluid's velocity rises with the distance from each piece of surface.
+
+Virtual particles at rest with a wall drag the fluid as if the wall lay deeper: in the part of a
+cell that is solid the fluid's profile would go on, to velocities beyond the wall's. With the rate
+of the profile known they can move like that; the wall is then where it should be.
+
+Next to a surface the velocity relative to it is s h + q h^2 at the height h. Two cells of fluid in
+front of each piece, free of solid, tell u / h = s + q h at two heights; where the second is not
+free, q is taken for 0.
+"""
+
+import numpy as np
+
+from mesokit.geometry.cut import height, roomy, surface_flow
+from mesokit.loops.layout import share
+from mesokit.loops.threads import meet
+from mesokit.method.mpcd.engine.cpu.grid import cell_in_box, cell_index, in_block
+from mesokit.method.mpcd.engine.cpu.physics import field_of
+from mesokit.method.mpcd.engine.cpu.strips.terms import read_sums, sums_of_cell
+from mesokit.scalar.intrinsics import floor, with_item
+from mesokit.scalar.jit import by_type, scalar, seldom
+from mesokit.scalar.vector import added_scaled, dot, scaled
+
+EVERY = 4  # steps from one look at a piece to the next: sooner, the same particles are there
+MEMORY = EVERY / 256.0  # weight of one look
+PROBES = 2
+APART = 1.0  # cells between the places where fluid is looked for
+LEAST_APART = 0.5  # of the first mean height: nearer to one another, two tell no bend
+
+
+@scalar
+def columns(d):
+    """Numbers kept for each piece: slope s (d), bend q (d), and of each probe the mean of u / h (d)
+    and of h."""
+    return 2 * d + PROBES * (d + 1)
+
+
+@scalar
+def flow_at(rates, piece, above, zero):
+    """Velocity relative to the surface at a height above it, which is negative in the solid."""
+    d = len(zero)
+    for k in range(d):
+        rise = rates[piece, k] + above * rates[piece, d + k]
+        zero = with_item(zero, k, above * rise)
+    return zero
+
+
+def follow_pieces(team, now, physics, fluid, walls):
+    """Update what is known at every EVERYth piece of surface, from this step's cells."""
+    _follow(team, now, physics, fluid.cells.sums, walls.virtual)
+    meet(team)
+
+
+@by_type
+def _follow(team, now, physics, sums, virtual):
+    """All pieces; a rank of several only notes what it sees, which `ranks.flow` takes up."""
+    if len(field_of(virtual, "seen")) == 0:
+        return lambda team, now, physics, sums, virtual: _follow_all(
+            team, now, physics, sums, virtual
+        )
+    return lambda team, now, physics, sums, virtual: _see(team, now, physics, sums, virtual)
+
+
+@seldom
+def _follow_all(team, now, physics, sums, virtual):
+    turn = np.int64(now.counter.step) % EVERY
+    begin, end = share((len(virtual.terms) + EVERY - 1 - turn) // EVERY, team.thread, team.threads)
+    for e in range(turn + EVERY * begin, turn + EVERY * end, EVERY):
+        for p in range(PROBES):
+            good, seen = look(virtual, e, p, physics, now.grid, sums)
+            if good:
+                remember(virtual.rates, e, p, seen, physics.zero)
+        straighten(virtual.rates, e, physics.zero)
+
+
+@seldom
+def _see(team, now, physics, sums, virtual):
+    turn, pieces = np.int64(now.counter.step) % EVERY, virtual.seen.here
+    begin, end = share(len(pieces), team.thread, team.threads)
+    for j in range(begin, end):
+        e = pieces[j]
+        for p in range(PROBES if e % EVERY == turn else 0):
+            place = cell_in_box(probe_at(virtual, e, p, physics.zero), now.grid)
+            if in_block(virtual.seen.limits, place):
+                good, seen = look(virtual, e, p, physics, now.grid, sums)
+                if good:
+                    virtual.seen.step[e, p] = np.int64(now.counter.step)
+                    for k in range(len(seen)):
+                        virtual.seen.values[e, p, k] = seen[k]
+
+
+@scalar
+def probe_at(virtual, e, p, zero):
+    """Where fluid is looked for."""
+    for k in range(len(zero)):
+        place = virtual.probes[e, k] + p * APART * virtual.outward[e, k]
+        zero = with_item(zero, k, place)
+    return zero
+
+
+@scalar
+def look(virtual, e, p, physics, grid, sums):
+    """What is seen at a probe, u / h (d) and h: not good if its cell is empty or holds solid."""
+    solid, zero = physics.solid, physics.zero
+    probe, n = probe_at(virtual, e, p, zero), zero
+    middle = probe
+    for k in range(len(zero)):
+        n = with_item(n, k, virtual.outward[e, k])
+        corner = floor(probe[k] + grid.origin[k]) - grid.origin[k]
+        middle = with_item(middle, k, corner + 0.5)
+    if not roomy(solid, middle):
+        return False, zero + (0.0,)
+    found = sums_of_cell(sums, cell_index(probe, grid), physics.terms)
+    number, mass, momentum, _, _ = read_sums(physics, found)
+    if number < 1.0:
+        return False, zero + (0.0,)
+    above = height(solid, virtual.terms[e], middle)
+    u = surface_flow(solid, virtual.terms[e], middle)
+    rise = scaled(1.0 / above, added_scaled(scaled(1.0 / mass, momentum), -1.0, u))
+    return True, added_scaled(rise, -dot(rise, n), n) + (above,)
+
+
+@scalar
+def remember(rates, e, p, seen, zero):
+    """Take what was seen at a probe into its means."""
+    d = len(zero)
+    place = 2 * d + p * (d + 1)
+    for k in range(d + 1):
+        rates[e, place + k] += MEMORY * (seen[k] - rates[e, place + k])
+
+
+@scalar
+def straighten(rates, e, zero):
+    """Slope and bend from the means. At the start all means are short of what they will be by the
+    same factor, and so then is the slope."""
+    d = len(zero)
+    near, far = rates[e, 3 * d], rates[e, 4 * d + 1]
+    apart = far - near
+    for k in range(d):
+        a, b = rates[e, 2 * d + k], rates[e, 3 * d + 1 + k]
+        bent = apart > LEAST_APART * near
+        rates[e, d + k] = (b - a) / apart if bent else 0.0
+        rates[e, k] = (a * far - b * near) / apart if bent else a

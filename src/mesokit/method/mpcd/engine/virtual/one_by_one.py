@@ -1,0 +1,171 @@
+"""Virtual particles of walls one by one, for rules that can tell and for mixtures.
+
+Each cut cell draws as many places as the fluid would have particles there, a Poisson number, and
+keeps those that lie in a solid: their number is then that of an ideal gas in the solid part of the
+cell, whatever its shape. What a gas at the surface's velocity lacks, the fluid's own profile gives
+(see `gradient`).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from mesokit.geometry.cut import behind, home, surface_flow
+from mesokit.geometry.protocol import homed
+from mesokit.geometry.solids.clearance import offset_of
+from mesokit.loops.layout import LANES, ROW, share, strip_at
+from mesokit.loops.threads import meet
+from mesokit.method.mpcd.engine.cpu.groups import MEASURE_WALLS
+from mesokit.method.mpcd.engine.cpu.physics import momentum_scale
+from mesokit.method.mpcd.engine.cpu.stages import add_strip, bin_strip, collide_strip, gather_strip
+from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle, mass_of, store_particle
+from mesokit.method.mpcd.engine.cpu.strips.terms import number_in_cell
+from mesokit.method.mpcd.engine.virtual.gas import body_takes, thermal
+from mesokit.method.mpcd.engine.virtual.gradient import flow_at
+from mesokit.method.mpcd.engine.virtual.particles import KINDS, MOST
+from mesokit.scalar.intrinsics import with_item
+from mesokit.scalar.jit import scalar, seldom
+from mesokit.scalar.poisson import poisson_number
+from mesokit.scalar.random import (
+    FIRST_VIRTUAL,
+    VIRTUAL_NUMBER,
+    VIRTUAL_POSITION,
+    VIRTUAL_VELOCITY,
+    unit_open,
+    words,
+)
+from mesokit.scalar.vector import added, first, scaled
+
+TRIES = 32  # to find a place in the solid part of a cell that is to be topped up
+
+
+def fill_one_by_one(team, now, physics, fluid, walls):
+    """Fill all cut cells, whose number of particles is that of an ideal gas."""
+    virtual, solid, counter = walls.virtual, physics.solid, now.counter
+    offset = offset_of(solid, now.grid)
+    start = virtual.starts[offset]
+    begin, end = share(virtual.starts[offset + 1] - start, team.thread, team.threads)
+    count = 0
+    for entry in range(start + begin, start + end):
+        key = virtual.keys[entry]
+        for j in range(poisson_number(virtual.density, counter, VIRTUAL_NUMBER, key)):
+            drawn = words(counter, VIRTUAL_POSITION, key, j)
+            at = Candidate(team.thread, count, entry, FIRST_VIRTUAL + key * MOST + j)
+            count += place_one(virtual, at, physics, now.grid, drawn, fluid.particles.rows)
+    draw_velocities(virtual, count, team, now, physics, fluid)
+
+
+class Candidate(NamedTuple):
+    """A virtual particle that may be: whose, how many that thread has, its cut cell and number."""
+
+    thread: int
+    held: int
+    entry: int
+    number: int
+
+
+@scalar
+def in_grid(corners, entry, place, grid):
+    """A place in a cell of the grid, from numbers between 0 and 1."""
+    for k in range(len(place)):
+        place = with_item(place, k, corners[entry, k] + place[k] - grid.origin[k])
+    return place
+
+
+@seldom
+def place_one(virtual, at, physics, grid, drawn, rows):
+    """Note a virtual particle at a place drawn in a cell, with the mean velocity of the gas there,
+    if that is solid; 1 if it is, else 0."""
+    solid, zero = physics.solid, physics.zero
+    a, b, c, e = drawn
+    place = first((unit_open(a), unit_open(b), unit_open(c)), zero)
+    r = in_grid(virtual.corners, at.entry, place, grid)
+    x = homed(solid, r)
+    clear, term, foot = behind(solid, x)
+    if clear >= 0.0 or at.held >= virtual.term.shape[1]:
+        return 0
+    u = surface_flow(solid, term, x)
+    piece = virtual.pieces[home(solid, foot)]
+    if piece >= 0:
+        u = added(u, flow_at(virtual.rates, piece, clear, zero))
+    strip, lane = virtual.data[at.thread][strip_at(at.held // LANES, rows)], at.held % LANES
+    store_particle(strip, lane, 0, r + u)
+    if len(physics.masses) == 0:
+        kind = (e * np.uint64(KINDS)) >> np.uint64(32)
+        strip[2 * len(zero) * ROW + lane] = virtual.masses[kind]
+    virtual.number[at.thread, at.held] = at.number
+    virtual.term[at.thread, at.held] = term
+    return 1
+
+
+@scalar
+def draw_velocities(virtual, count, team, now, physics, fluid):
+    """Thermal velocities about the mean, cells, and what the particles add to the sums."""
+    thread, zero, rows = team.thread, physics.zero, fluid.particles.rows
+    terms, sums = fluid.scratch.terms[thread], fluid.cells.sums[thread]
+    d = len(zero)
+    virtual.filled[thread] = count
+    for s in range((count + LANES - 1) // LANES):
+        strip, lanes = virtual.data[thread][strip_at(s, rows)], min(LANES, count - s * LANES)
+        here = virtual.cell[thread, s * LANES : (s + 1) * LANES]
+        who = virtual.number[thread, s * LANES : (s + 1) * LANES]
+        for i in range(LANES):
+            r, u = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
+            m = max(mass_of(physics.masses, strip, i, 2 * d), 1e-300)
+            v = added(u, thermal(physics, m, now.counter, VIRTUAL_VELOCITY, who[i], 0))
+            store_particle(strip, i, 0, r + v)
+        if now.flags & MEASURE_WALLS:
+            take_momentum(virtual, team, physics, s, strip, fluid.taken.impulse[thread], -1.0)
+        bin_strip(physics, now, strip, here, who, terms)
+        add_strip(here, terms, sums, lanes, physics.terms, tally(physics.energy, 0.0, zero))
+
+
+@scalar
+def take_momentum(virtual, team, physics, s, strip, impulse, sign):
+    """Add the momentum of virtual particles, as part of the wall in which they lie."""
+    solid, zero, thread = physics.solid, physics.zero, team.thread
+    d, scale = len(zero), momentum_scale(physics)
+    for i in range(min(LANES, virtual.filled[thread] - s * LANES)):
+        r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
+        term = virtual.term[thread, s * LANES + i]
+        m = mass_of(physics.masses, strip, i, 2 * d)
+        body_takes(impulse, solid, term, homed(solid, r), scaled(sign * m, v), scale)
+
+
+def recoil_one_by_one(team, now, physics, fluid, walls):
+    """What walls take by the collision of the virtual particles in them."""
+    virtual, thread = walls.virtual, team.thread
+    gathered, impulse = fluid.scratch.coefficients[thread], fluid.taken.impulse[thread]
+    if now.flags & MEASURE_WALLS:
+        for s in range((virtual.filled[thread] + LANES - 1) // LANES):
+            strip = virtual.data[thread][strip_at(s, fluid.particles.rows)]
+            here = virtual.cell[thread, s * LANES : (s + 1) * LANES]
+            gather_strip(here, fluid.cells.coefficients, gathered, physics.coefficients)
+            collide_strip(physics, now.grid, strip, gathered)
+            take_momentum(virtual, team, physics, s, strip, impulse, 1.0)
+
+
+def top_up(team, now, physics, fluid, walls):
+    """Top up each cut cell to the mean density.
+
+    A fractional density is met on average. Places are uniform in the solid part of the cell.
+    """
+    virtual, counter = walls.virtual, now.counter
+    offset = offset_of(physics.solid, now.grid)
+    start = virtual.starts[offset]
+    begin, end = share(virtual.starts[offset + 1] - start, team.thread, team.threads)
+    count = 0
+    for entry in range(start + begin, start + end):
+        key = virtual.keys[entry]
+        present = number_in_cell(physics, fluid.cells.sums, virtual.cells[entry])
+        a, _, _, _ = words(counter, VIRTUAL_NUMBER, key, 0)
+        for j in range(int(virtual.density + unit_open(a)) - present):
+            at = Candidate(team.thread, count, entry, FIRST_VIRTUAL + key * MOST + j)
+            for attempt in range(TRIES):
+                drawn = words(counter, VIRTUAL_POSITION, key, j * TRIES + attempt)
+                if place_one(virtual, at, physics, now.grid, drawn, fluid.particles.rows) == 1:
+                    count += 1
+                    break
+    draw_velocities(virtual, count, team, now, physics, fluid)
+    meet(team)

@@ -1,0 +1,10 @@
+"""What is measured of fluids of MPCD and of what is in them. A new observable is a file here."""
+
+from __future__ import annotations
+
+from mesokit.case.registry import parts_in
+from mesokit.seam.observable import Observable
+
+__getattr__ = parts_in(__name__, OBSERVABLES=Observable)
+
+__all__ = ["OBSERVABLES", "Observable"]

@@ -1,0 +1,129 @@
+"""How long the bonds of molecules are, and which way they point."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.component import component, param, tag
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import (
+    KIND,
+    bond_at_rest,
+    bonds_in_shear,
+    bonds_of,
+    group_of,
+    molecule_of,
+    of_fluid,
+    shear_note,
+)
+from mesokit.method.mpcd.observe.shared.molecule_tensor import MoleculeTensorAccumulator
+from mesokit.seam.engine import RunningFluid, Terms
+from mesokit.seam.observable import Observable
+from mesokit.seam.result import Array, Comparison, Result
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+
+@component
+class BondLength(Observable):
+    """Mean of the products of the components of bonds; their sum is the mean square bond length."""
+
+    quantity: Literal["bond-length"] = tag("bond-length")
+    needs_fluid: ClassVar[bool] = False
+    kind: int | str = param(1, doc=KIND)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for a fluid without bonds."""
+        molecule_of(case, self.quantity, self.kind)
+
+    def accumulator(self, case: Case) -> BondLengthAccumulator:
+        """An empty memory for it."""
+        return BondLengthAccumulator(self, case)
+
+
+class BondLengthAccumulator(MoleculeTensorAccumulator):
+    """Block averages of the products."""
+
+    def __init__(self, observable: BondLength, case: Case) -> None:
+        observable.check(case)
+        molecules = group_of(case, "beads", observable.kind).number
+        super().__init__(observable, case, ("bonds",), observable.kind, molecules)
+        self.molecules = molecules
+        self.molecule = molecule_of(case, kind=observable.kind)
+        self.bonds = bonds_of(case, observable.kind)
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        d, bonds = self.case.box.dimension, self.bonds.stop - self.bonds.start
+        units = [1.0] * (2 * d * d + 1)
+        sums = fluid.sums_of_bonds(self.products, self.own.groups, units, self.bonds)
+        products, (*elements, traces) = sums[: d * d], sums[d * d :].sum(axis=1) / bonds
+        self.note_sums(products.T * (self.molecules / bonds), self.molecules)
+        self.note_squares(np.reshape(elements, (1, d, d)), np.array([traces]), bonds)
+
+    def products(self, numbers: NDArray[np.int64], way: Array) -> Terms:
+        """Groups of molecules of some bonds; products of their components, their squares, and those
+        of their square lengths."""
+        molecule = numbers // ((self.bonds.stop - self.bonds.start) // self.molecules)
+        axes = way.T
+        products = [one * other for one in axes for other in axes]
+        squares = [product**2 for product in products]
+        return self.own.group_of(molecule), [*products, *squares, (way**2).sum(axis=1) ** 2]
+
+    def result(self) -> Result:
+        """The products, and the mean square bond length beside that of Boltzmann."""
+        theory = "Boltzmann's distribution of a bond at rest"
+        if self.in_shear() is not None:
+            theory = "molecules in shear"
+        return self.tensors("bond-length", "products of bond components", "a^2", theory)
+
+    def square(self) -> float:
+        """Mean square length; nan in flow, between walls, and where other beads matter."""
+        case = self.case
+        force = case.fluid.force
+        falling = force.acts and force.uniform(case.box.dimension) is not None
+        at_rest = not setting.flowing(case) or (setting.isothermal(case) and falling)
+        if case.walls or not at_rest:
+            return np.nan
+        solutes = None if of_fluid(case, self.kind) else case.solutes
+        ideal = solutes is None or solutes.ideal(solutes.index_of(self.kind))
+        if self.molecule.pair is None and not ideal:
+            return np.nan  # beads of other kinds matter
+        found = self.molecule.mean_square_bond(case.box.dimension, case.fluid.kT)
+        return np.nan if found is None else found * bond_at_rest(case, self.kind)
+
+    def expected(self) -> Array:
+        """Isotropic products, or those in shear."""
+        flowing = self.in_shear()
+        if flowing is not None:
+            return flowing[None]
+        d = self.case.box.dimension
+        return self.square() / d * np.eye(d)[None]
+
+    def in_shear(self) -> Array | None:
+        """Products (d, d) in a steady shear whose temperature is held; None without a theory."""
+        case = self.case
+        undisturbed = not case.walls and not case.fluid.force.acts
+        if not (case.box.steady_rate and undisturbed and setting.isothermal(case)):
+            return None
+        return bonds_in_shear(case)
+
+    def comparisons(self) -> list[Comparison]:
+        """Mean square and root mean square length."""
+        mean, error = self.size(0)
+        expected = float(np.trace(self.expected()[0]))
+        note = "" if self.in_shear() is None else shear_note(self.case)
+        root = max(mean, 0.0) ** 0.5
+        note = "; ".join(filter(None, (note, self.short_run())))
+        error = setting.with_start(self.case, error, mean, self.blocks.series)
+        return [
+            Comparison("mean square bond length", mean, error, expected, "a^2", note),
+            Comparison(
+                "root mean square bond length", root, error / max(2 * root, 1e-300),
+                expected**0.5, "a", note,
+            ),
+        ]  # fmt: skip

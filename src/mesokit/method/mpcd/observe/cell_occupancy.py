@@ -1,0 +1,163 @@
+"""How many particles cells hold: a histogram beside Poisson."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.component import component, tag
+from mesokit.errors import CaseError
+from mesokit.geometry.solids.solids import free_volume, solids_of
+from mesokit.method.mpcd.expected import setting
+from mesokit.observe.shared import chi_square
+from mesokit.seam.engine import RunningFluid, Some, Terms
+from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.result import Array, Comparison, Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+FEWEST = 20  # cells
+REACH = 6.0  # standard deviations of the numbers that have a bin of their own
+
+
+@component
+class CellOccupancy(Observable):
+    """Histogram of the number of particles in cells of a lattice at rest.
+
+    Cells in a solid, or cut by one, do not count. An ideal gas has Poisson numbers; the chi-square
+    of single samples has a known mean, which no memory from one sample to the next changes.
+    """
+
+    quantity: Literal["cell-occupancy"] = tag("cell-occupancy")
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError with too few whole cells."""
+        if (number := int(_whole_cells(case).sum())) < FEWEST:
+            raise CaseError(f"{number} whole cells in the fluid; expected at least {FEWEST}")
+
+    def accumulator(self, case: Case) -> CellOccupancyAccumulator:
+        """An empty memory for it."""
+        return CellOccupancyAccumulator(self, case)
+
+
+class CellOccupancyAccumulator(BlockAccumulator):
+    """Block averages of the shares of the cells, and of mean, variance and chi-square."""
+
+    def __init__(self, observable: CellOccupancy, case: Case) -> None:
+        from scipy.stats import poisson
+
+        observable.check(case)
+        self.name, self.case = observable.label, case
+        self.cells, mean = _whole_cells(case).ravel(), case.fluid.density
+        self.first = max(0, math.floor(mean - REACH * math.sqrt(mean)))
+        last = math.ceil(mean + REACH * math.sqrt(mean) + 2)
+        self.numbers = np.arange(self.first, last + 1)
+        self.probability = poisson.pmf(self.numbers, mean)
+        self.whole = self._whole()
+        self.of = chi_square.classes(self.whole, int(self.cells.sum()))
+        self.classes = chi_square.joined(self.whole, self.of)
+        self.blocks = Blocks((len(self.numbers) + 3,))
+
+    def _whole(self) -> Array:
+        """The same where the first and last bin have no end."""
+        from scipy.stats import poisson
+
+        whole, mean = self.probability.copy(), self.case.fluid.density
+        whole[0] = poisson.cdf(self.numbers[0], mean)
+        whole[-1] = poisson.sf(self.numbers[-1] - 1, mean)
+        return np.asarray(whole)
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        (number,) = fluid.sums_of_particles(self.cell_of, len(self.cells), [1.0])
+        held = number.astype(np.int64)[self.cells]
+        bins = np.clip(held - self.first, 0, len(self.numbers) - 1)
+        count = np.bincount(bins, minlength=len(self.numbers)).astype(float)
+        square = chi_square.chi_square(chi_square.joined(count, self.of), self.classes)
+        self.blocks.add(np.append(count / len(held), [held.mean(), held.var(), square]))
+
+    def cell_of(self, some: Some) -> Terms:
+        """Cells of some particles, each of which counts as one."""
+        size, place = self.case.box.size, np.floor(some.positions).astype(np.int64)
+        for k, length in enumerate(size):  # what lies at the very end is in the last
+            place[:, k] = np.clip(place[:, k], 0, length - 1)
+        return np.ravel_multi_index(tuple(place.T), size), [np.ones(len(place))]
+
+    def result(self) -> Result:
+        """Probabilities of the numbers."""
+        mean, error = self.blocks.mean(), self.blocks.error()
+        known = self._even()
+        expected = self.probability if known else np.full(len(self.numbers), np.nan)
+        return Result(
+            quantity="cell-occupancy",
+            drawing="histograms",
+            name=self.name,
+            x={"of": np.array(["number"]), "bin": self.numbers},
+            value=mean[None, :-3],
+            error=error[None, :-3],
+            expected=expected[None],
+            label="probability",
+            units={"value": "", "of": ""},
+            theory="Poisson",
+            comparisons=tuple(self._comparisons(mean[-3:], error[-3:])),
+            samples=self.blocks.count,
+            extra={"edges": (np.append(self.numbers, self.numbers[-1] + 1) - 0.5)[None]},
+        )
+
+    def _even(self) -> bool:
+        """Whether the fluid is an ideal gas of the same density everywhere."""
+        case = self.case
+        pressed = setting.acceleration(case)[sorted(setting.closed_axes(case))]
+        return case.fluid.molecule is None and not (setting.gathered(case) or pressed.any())
+
+    def _comparisons(self, mean: Array, error: Array) -> list[Comparison]:
+        """Variance over mean, and mean chi-square of a sample."""
+        case, number = self.case, int(self.cells.sum())
+        part = number / free_volume(case)
+        note = ""
+        if not self._even():
+            note = "no theory of such a fluid"
+        elif setting.obstructed(case) and setting.driven(case):
+            note = "approximate: the flow makes the density uneven"
+        probability = self.classes
+        density = case.fluid.density
+        # the number of all particles is fixed: of each class, its covariance with the number
+        away = chi_square.joined(self.whole * (self.numbers - density), self.of)
+        lost = part * chi_square.taken(away / math.sqrt(density), probability)
+        nothing = not self._even()
+        spread = 1.0 - 1.0 / number  # about the mean of the sample, whatever others hold
+        return [
+            Comparison(
+                "variance of the number over its mean",
+                float(mean[1] / mean[0]),
+                float(error[1] / mean[0]),
+                math.nan if nothing else spread,
+                "",
+                note,
+            ),
+            Comparison(
+                "mean chi-square of the number",
+                float(mean[2]),
+                float(error[2]),
+                math.nan if nothing else len(probability) - 1.0 - lost,
+                "",
+                note or f"{len(probability)} classes",
+            ),
+        ]
+
+
+def _whole_cells(case: Case) -> NDArray[np.bool_]:
+    """Which cells of the lattice at rest are fluid all over."""
+    centres = np.stack(
+        np.meshgrid(*(np.arange(n) + 0.5 for n in case.box.size), indexing="ij"), axis=-1
+    )
+    if not setting.obstructed(case):
+        return np.ones(case.box.size, bool)
+    half = 0.5 * math.sqrt(case.box.dimension)
+    clear = solids_of(case).distance(centres.reshape(-1, case.box.dimension)) > half
+    return np.asarray(clear.reshape(case.box.size))

@@ -1,0 +1,89 @@
+"""Map of the density over two axes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from mesokit.case.component import component, tag
+from mesokit.geometry.solids.solids import solids_of
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.observe.shared.field import Array, Field, FieldAccumulator
+from mesokit.seam.result import Comparison, Result
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+
+OPEN = 0.5  # part of a bin that is fluid, for it to count
+SPREAD = "root mean square over the map, less what noise adds"
+
+
+@component
+class DensityField(Field):
+    """Particles per cell on a grid over two axes."""
+
+    quantity: Literal["density-field"] = tag("density-field")
+
+    def accumulator(self, case: Case) -> DensityFieldAccumulator:
+        """An empty memory for it."""
+        return DensityFieldAccumulator(self, case)
+
+
+class DensityFieldAccumulator(FieldAccumulator):
+    """Density of each bin."""
+
+    def __init__(self, observable: DensityField, case: Case) -> None:
+        super().__init__(observable, case, width=1)
+        self.bin_volume = np.prod(case.box.size) / np.prod(self.bins)
+
+    def sample(self, number: Array, mass: Array, momentum: Array, energy: Array) -> Array:
+        """Particles per volume."""
+        return number[None] / self.bin_volume
+
+    def result(self) -> Result:
+        """The map; uniform unless a force presses the fluid to a plate."""
+        if setting.obstructed(self.case):
+            share = solids_of(self.case).open_share(self.axes, self.bins)
+            expected = np.where(share > 0, self.case.fluid.density * share, np.nan)
+            pressed = setting.driven(self.case)
+        else:
+            expected = np.full(self.bins, self.case.fluid.density)
+            pressed = setting.gathered(self.case) or any(
+                setting.acceleration(self.case)[axis] for axis in setting.closed_axes(self.case)
+            )
+        return Result(
+            quantity="density-field",
+            drawing="map",
+            name=self.name,
+            x=self.coordinates,
+            value=self.blocks.mean()[0],
+            error=self.blocks.error()[0],
+            label="density",
+            units={"value": self.case.box.density_unit} | dict.fromkeys(self.coordinates, "a"),
+            expected=None if pressed else expected,
+            theory="uniform",
+            comparisons=self.comparisons(),
+            samples=self.blocks.count,
+            extra={
+                "bins_per_cell": self.observable.bins_per_cell,
+                "dimension": self.case.box.dimension,
+            },
+        )
+
+    def comparisons(self) -> tuple[Comparison, ...]:
+        """How far the density differs from its mean, less what noise adds."""
+        if not setting.driven(self.case) or self.blocks.count < 4:
+            return ()
+        share = np.ones(self.bins)
+        if setting.obstructed(self.case):
+            share = solids_of(self.case).open_share(self.axes, self.bins)
+        open_bins = share > OPEN
+        density, error = (
+            a[0][open_bins] / share[open_bins] for a in (self.blocks.mean(), self.blocks.error())
+        )
+        mean = float(density.mean())
+        variance = float(((density - mean) ** 2 - error**2).mean())
+        spread = 100 * np.sqrt(max(variance, 0.0)) / mean
+        return (Comparison("density spread", spread, np.nan, unit="%", note=SPREAD),)

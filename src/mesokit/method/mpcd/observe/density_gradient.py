@@ -1,0 +1,167 @@
+"""Density of the fluid along the flow, over a unit cell of what it flows round."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from mesokit.case.box import AXES, Axis
+from mesokit.case.component import component, param, tag
+from mesokit.errors import CaseError
+from mesokit.geometry.solids.solids import solids_of
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.compression import compression, unit_cell
+from mesokit.method.mpcd.expected.ideal import flow_axis
+from mesokit.seam.engine import RunningFluid
+from mesokit.seam.estimate import Estimate, noted, of_mean
+from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.result import Array, Comparison, Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+OPEN = 0.1  # part of a slice that is fluid, for it to count
+
+
+@component
+class DensityGradient(Observable):
+    """Particles per volume of fluid in slices along the flow, all unit cells taken together.
+
+    A force presses an ideal gas, which this fluid is, against what holds it up: the density rises
+    before obstacles and falls behind them. That is wanted small: a real liquid hardly does so.
+    """
+
+    quantity: Literal["density-gradient"] = tag("density-gradient")
+    axis: Axis | None = param(
+        None, doc="the axis (that of the force on the fluid, x unless there is one)"
+    )
+    length: float | None = param(
+        None,
+        doc="of a unit cell, a whole part of the box (that of arrays, else the box, unless said)",
+        unit="a",
+        gt=0,
+    )
+    bins_per_cell: int = param(1, doc="slices per cell", ge=1)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for a closed axis, and a length that does not divide the box."""
+        axis = self.axis_of(case)
+        if axis in setting.closed_axes(case):
+            raise CaseError(f"axis = {AXES[axis]!r}: plates close it; for that see density-profile")
+        slices = self.length_of(case) * self.bins_per_cell
+        for number, key in ((self.repeats(case), "length"), (slices, "bins_per_cell")):
+            if abs(number - round(number)) > 1e-9 * number or round(number) < 1:
+                given = self.length_of(case) if key == "length" else self.bins_per_cell
+                raise CaseError(
+                    f"{key} = {given:g}: expected whole numbers of unit cells in the box "
+                    f"({case.box.size[axis]:g}), and of slices in a unit cell "
+                    f"({self.length_of(case):g} long)"
+                )
+
+    def axis_of(self, case: Case) -> int:
+        """Number of the axis."""
+        return flow_axis(case) if self.axis is None else case.box.index(self.axis)
+
+    def length_of(self, case: Case) -> float:
+        """Of a unit cell."""
+        return self.length or unit_cell(case, self.axis_of(case))
+
+    def repeats(self, case: Case) -> float:
+        """Unit cells in the box."""
+        return float(case.box.size[self.axis_of(case)]) / self.length_of(case)
+
+    def accumulator(self, case: Case) -> DensityGradientAccumulator:
+        """An empty memory for it."""
+        return DensityGradientAccumulator(self, case)
+
+
+class DensityGradientAccumulator(BlockAccumulator):
+    """Particles in each slice of a unit cell."""
+
+    def __init__(self, observable: DensityGradient, case: Case) -> None:
+        observable.check(case)
+        self.case, self.name = case, observable.label
+        self.axis = observable.axis_of(case)
+        self.length, self.repeats = observable.length_of(case), round(observable.repeats(case))
+        self.slices = round(self.length * observable.bins_per_cell)
+        self.bins_per_cell = observable.bins_per_cell
+        self.bins = self.slices * self.repeats
+        self.blocks = Blocks((self.slices,))
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        number = fluid.moments((self.axis,), (self.bins,))[0]
+        self.blocks.add(number.reshape(self.repeats, self.slices).sum(axis=0))
+
+    def volume(self) -> Array:
+        """Of the fluid in each slice (slices,), in all unit cells."""
+        share = np.ones(self.bins)
+        if setting.obstructed(self.case):
+            share = solids_of(self.case).open_share((self.axis,), (self.bins,))
+        whole = self.case.box.volume / self.bins
+        return np.asarray(whole * share.reshape(self.repeats, self.slices).sum(axis=0))
+
+    def result(self) -> Result:
+        """Density over the unit cell, and how uneven it is."""
+        volume, every = self.volume(), of_mean(self.blocks)
+        seen = volume > OPEN * volume.max()
+        scale = np.where(seen, 1 / np.where(seen, volume, 1.0), np.nan)
+        axis, unit = AXES[self.axis], self.case.box.density_unit
+        density = Estimate(every.value * scale, every.residuals * scale, every.weights)
+        mean = every.value.sum() / volume.sum()
+        uniform = None
+        if not (setting.gathered(self.case) or setting.driven(self.case)):
+            uniform = np.where(seen, mean, np.nan)
+        found = tuple(self.comparisons(density, mean, seen)) if self.blocks.count else ()
+        known = compression(self.case)
+        return Result(
+            quantity="density-gradient",
+            drawing="profile",
+            name=self.name,
+            x={axis: (np.arange(self.slices) + 0.5) * self.length / self.slices},
+            value=density.value,
+            error=density.error if self.blocks.count else np.full(self.slices, np.nan),
+            label="density",
+            units={"value": unit, axis: "a"},
+            expected=uniform,
+            theory="uniform",
+            comparisons=found,
+            samples=self.blocks.count,
+            extra={
+                "bins_per_cell": self.bins_per_cell,
+                "length": self.length,
+                "acceleration_length_over_kT": known[1] if known else 0.0,
+            },
+        )
+
+    def comparisons(self, density: Estimate, mean: float, seen: Array) -> Iterator[Comparison]:
+        """Amplitude of the wave that is as long as the unit cell, extremes, spread."""
+        known = compression(self.case)
+        said = f"acceleration x length/(kT/m) is {known[1]:.2g}" if known else ""
+        place = 2 * np.pi * (np.arange(self.slices) + 0.5) / self.slices
+        waves = 2 / max(seen.sum(), 1) * np.stack([np.cos(place), np.sin(place)]) * seen
+        filled = Estimate(
+            np.where(seen, density.value - mean, 0.0),
+            np.where(seen, density.residuals, 0.0),
+            density.weights,
+        )
+        wave = filled.linear(waves / mean)
+        size = float(np.hypot(*wave.value))
+        along = wave.value / size if size > 0 else np.array([1.0, 0.0])
+        value, error = wave.scalar(100 * size, 100 * along)
+        # an amplitude is never below zero, so that it is not compared with it
+        note = said or "noise alone reads about 1.3 standard errors"
+        yield Comparison("amplitude of the density", value, error, unit="%", note=note)
+        value_of = np.where(seen, density.value, np.nan)
+        high, low = int(np.nanargmax(value_of)), int(np.nanargmin(value_of))
+        top, bottom = float(value_of[high]), float(value_of[low])
+        if bottom > 0:
+            slope = np.zeros(self.slices)
+            slope[high] += 1 / bottom
+            slope[low] -= top / bottom**2
+            what, smallest = "largest density over smallest", np.eye(self.slices)[low]
+            value, error = filled.scalar(top / bottom, slope, over=(bottom, smallest))
+            yield Comparison(what, value, error, note=noted(value, said))

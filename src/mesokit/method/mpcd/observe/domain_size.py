@@ -1,0 +1,139 @@
+"""How large the domains of two species are, in time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.component import component, param, tag
+from mesokit.errors import CaseError
+from mesokit.observe.shared.whose import periodic_all_over
+from mesokit.seam.engine import RunningFluid, Some, Terms
+from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.result import Array, Comparison, Result
+from mesokit.statistics import TimeSeries
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+ROWS = 4096  # kept of the series in time
+CLEAR = 10.0  # standard deviations of noise above which there are domains at all
+LATE = 0.1  # part of the series that tells the size at the end
+
+
+@component
+class DomainSize(Observable):
+    """Size of the domains of two species: 2 pi over the mean wave number of the colour.
+
+    The colour is the number of particles of one species less that of the other. Its structure
+    factor S(k), without the noise of independent particles (1), weighs the wave numbers
+    (first moment). A band of half of a box reads three quarters of it, for its edges. nan as
+    long as there are no domains.
+    """
+
+    quantity: Literal["domain-size"] = tag("domain-size")
+    largest: float = param(
+        math.pi / 2, doc="longest wave vector that counts", unit="1/a", gt=0, le=math.pi
+    )
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError without two species, and where waves do not fit."""
+        if len(case.fluid.species) != 2:
+            raise CaseError(f"domain-size: {len(case.fluid.species)} fluid.species; expected 2")
+        periodic_all_over(case, "domain-size")
+        least = 2 * math.pi / max(case.box.size)
+        if self.largest < least:
+            raise CaseError(
+                f"largest = {self.largest:g}: expected {least:.4g} (one wave in the box) or more"
+            )
+
+    def accumulator(self, case: Case) -> DomainSizeAccumulator:
+        """An empty memory for it."""
+        return DomainSizeAccumulator(self, case)
+
+
+class DomainSizeAccumulator:
+    """The series in time."""
+
+    def __init__(self, observable: DomainSize, case: Case) -> None:
+        observable.check(case)
+        self.name, self.size = observable.label, case.box.size
+        first, second = (kind.number for kind in case.groups[0].kinds)
+        self.first, mean = first, (first - second) / (first + second)
+        self.colours = 1.0 - mean, -1.0 - mean  # of one of either species, 0 in the mean
+        self.noise = first * self.colours[0] ** 2 + second * self.colours[1] ** 2
+        # waves of cells: with the real transform those along the last axis stand for two but
+        # for the first and the last
+        turns = [np.fft.fftfreq(n) for n in self.size[:-1]] + [np.fft.rfftfreq(self.size[-1])]
+        grids = np.meshgrid(*turns, indexing="ij")
+        length = 2 * math.pi * np.sqrt(sum(grid**2 for grid in grids))
+        self.counts = (length > 0) & (length <= observable.largest)
+        alone = (grids[-1] == 0) | (2 * grids[-1] == 1)
+        self.lengths = length[self.counts]
+        # a cell is a mean over its side
+        smeared = np.prod([np.sinc(grid) ** 2 for grid in grids], axis=0)
+        self.weights = (np.where(alone, 1.0, 2.0) / smeared)[self.counts]
+        self.series, self.samples = TimeSeries(1, ROWS), np.zeros(1, np.int64)
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        (colour,) = fluid.sums_of_particles(self.colour_of, math.prod(self.size), [1.0])
+        power = abs(np.fft.rfftn(colour.reshape(self.size))[self.counts]) ** 2 / self.noise
+        self.series.add(fluid.time, [self.size_of(power)])
+        self.samples += 1
+
+    def colour_of(self, some: Some) -> Terms:
+        """Cells of some particles, and their colour."""
+        cell = np.floor(some.positions).astype(int) % np.array(self.size)
+        place = np.ravel_multi_index(tuple(cell.T), self.size)
+        return place, [np.where(some.ids < self.first, *self.colours)]
+
+    def size_of(self, power: Array) -> float:
+        """Of the structure factor of each wave, noise included."""
+        weight = self.weights * (power - 1.0)
+        if weight.sum() < CLEAR * np.sqrt((self.weights**2).sum()):
+            return math.nan
+        return float(2 * math.pi * weight.sum() / (weight @ self.lengths))
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(series=self.series, samples=self.samples)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.series = TimeSeries.from_state(unpack(state, "series"))
+        self.samples = np.array(state["samples"])
+
+    def pool(self, other: DomainSizeAccumulator) -> None:
+        """Take in an independent run of the same case, only to read: the series becomes a mean."""
+        self.series.pool(other.series)
+        self.samples = self.samples + other.samples
+
+    def result(self) -> Result:
+        """The series; a sample has no error bar: nan."""
+        value = self.series.values()[:, 0]
+        return Result(
+            quantity="domain-size",
+            name=self.name,
+            x={"time": self.series.time()},
+            value=value,
+            error=np.full(len(value), np.nan),
+            label="size of domains",
+            units={"value": "a", "time": "tau"},
+            comparisons=tuple(self.comparisons(value)),
+            samples=int(self.samples[0]),
+            extra={"samples_per_row": self.series.stride},
+        )
+
+    def comparisons(self, value: Array) -> list[Comparison]:
+        """The size at the end, with the scatter there: samples are not independent."""
+        late = value[-max(2, math.ceil(LATE * len(value))) :]
+        if len(late) < 2:
+            return []
+        note = "mean and scatter of the last tenth"
+        mean, scatter = float(late.mean()), float(late.std(ddof=1))
+        return [Comparison("size of domains at the end", mean, scatter, math.nan, "a", note)]

@@ -1,0 +1,192 @@
+"""Storage and loss modulus at the frequency of an oscillating shear."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.case.component import component, option, tag
+from mesokit.errors import CaseError
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import rouse_note, rouse_times_of, without_bonds
+from mesokit.method.mpcd.observe.stress import PARTS, ROUSE, UNIT
+from mesokit.seam.engine import RunningFluid
+from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.result import Array, Comparison, Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+LEAST_SAMPLES = 8  # in a period
+SLOW = 0.2  # frequency times timestep: above it the memory of flights is seen in both moduli
+MODULI = {"G'": "storage", "G''": "loss"}
+
+
+@component
+class DynamicModuli(Observable):
+    """Shear stress over an oscillating strain: the part in phase with it, and with its rate.
+
+    sigma_xy = strain_0 (G' sin wt + G'' cos wt) for the strain strain_0 sin wt that the box's
+    shear_rate and shear_frequency, or its oscillating shear, give; fitted to every whole period of
+    the run.
+    """
+
+    quantity: Literal["dynamic-moduli"] = tag("dynamic-moduli")
+    measures: ClassVar[tuple[str, ...]] = ("stress",)
+    every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError without an oscillating shear, or with too few samples in its period."""
+        oscillation = case.box.oscillation
+        if oscillation is None:
+            raise CaseError("dynamic-moduli needs box.shear_rate and box.shear_frequency")
+        if case.walls:
+            raise CaseError("stress is measured without walls")
+        samples = 2 * math.pi / (oscillation.frequency * case.fluid.timestep * self.every)
+        if samples < LEAST_SAMPLES:
+            raise CaseError(
+                f"every = {self.every}: {samples:.2g} samples in a period; expected at least "
+                f"{LEAST_SAMPLES}"
+            )
+
+    def accumulator(self, case: Case) -> DynamicModuliAccumulator:
+        """An empty memory for it."""
+        return DynamicModuliAccumulator(self, case)
+
+
+class DynamicModuliAccumulator:
+    """Moduli of every period (parts, 2), and the sums of the period that is under way."""
+
+    def __init__(self, observable: DynamicModuli, case: Case) -> None:
+        observable.check(case)
+        self.case, self.name = case, observable.label
+        oscillation = case.box.oscillation
+        assert oscillation is not None
+        self.amplitude, self.frequency = oscillation.rate, oscillation.frequency
+        bonded = case.fluid.molecule is not None or case.solutes is not None
+        self.parts = PARTS[: 3 if bonded else 2]
+        self.blocks = Blocks((len(self.parts) + 1, 2))
+        self.squares, self.products = np.zeros((3, 3)), np.zeros((3, len(self.parts) + 1))
+        self.began = np.full(1, np.nan)  # time of the first sample of this period
+        self.samples = np.zeros(1, np.int64)
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        time = fluid.time
+        if np.isnan(self.began[0]):
+            self.began[0] = time
+        # a rounded time must not put the first sample of a period into the one before
+        elif self.frequency * (time - self.began[0]) > 2 * math.pi * (1 - 1e-9):
+            self.close()
+            self.began[0] += 2 * math.pi / self.frequency
+        self.samples += 1
+        # the stress is the mean over the step, whose images moved as in its middle
+        phase = self.frequency * (time - 0.5 * self.case.fluid.timestep)
+        basis = np.array([math.sin(phase), math.cos(phase), 1.0])
+        parts = [fluid.stress[part][0, 1] for part in self.parts]
+        self.squares += np.outer(basis, basis)
+        self.products += np.outer(basis, [*parts, sum(parts)])
+
+    def close(self) -> None:
+        """Fit the period, and begin the next."""
+        fitted = np.linalg.solve(self.squares, self.products)
+        self.blocks.add(fitted[:2].T * self.frequency / self.amplitude)
+        self.squares[:], self.products[:] = 0.0, 0.0
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(
+            blocks=self.blocks,
+            squares=self.squares,
+            products=self.products,
+            began=self.began,
+            samples=self.samples,
+        )
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        for name in ("squares", "products", "began", "samples"):
+            setattr(self, name, np.array(state[name]))
+
+    def pool(self, other: DynamicModuliAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.blocks.pool(other.blocks)
+        self.samples += other.samples
+
+    def result(self) -> Result:
+        """Both moduli by parts."""
+        return Result(
+            quantity="dynamic-moduli",
+            drawing="moduli",
+            name=self.name,
+            x={"part": np.array([*self.parts, "total"]), "modulus": np.array(list(MODULI))},
+            value=self.blocks.mean(),
+            error=self.blocks.error(),
+            label="modulus",
+            units={"value": UNIT[self.case.box.dimension]},
+            expected=self.expected(),
+            theory="Newtonian fluid, molecular chaos"
+            if self.case.fluid.molecule is None
+            else ROUSE,
+            comparisons=tuple(self.comparisons()) if self.blocks.count else (),
+            samples=int(self.samples[0]),
+            extra={"frequency": self.frequency},
+        )
+
+    def expected(self) -> Array:
+        """eta w for the loss modulus, nothing stored; and what springs add to that."""
+        expected, case = np.zeros((len(self.parts) + 1, 2)), self.case
+        expected[:, 1] = np.nan
+        c, w = setting.transport(case), self.frequency
+        if case.fluid.molecule is not None:
+            expected[:, 0] = np.nan
+            c = without_bonds(case)
+            times = None if c is None else rouse_times_of(case)
+            if c is not None and times is not None:
+                modulus = case.fluid.density / case.fluid.molecule.length * case.fluid.kT
+                eta = c.viscosity * setting.mass_density(case)
+                expected[2:, 0] = theory.storage_modulus(w, modulus, times.stress)
+                expected[2, 1] = theory.loss_modulus(w, modulus, times.stress)
+                expected[3, 1] = theory.loss_modulus(w, modulus, times.stress, eta)
+        elif case.solutes is not None:
+            expected[:, 0] = np.nan
+        elif c is not None:
+            nu = np.array([c.viscosity_kinetic, c.viscosity_collisional, c.viscosity])
+            expected[:, 1] = nu * setting.mass_density(case) * w
+        return expected
+
+    def comparisons(self) -> list[Comparison]:
+        """Totals, and the viscosity that the loss modulus is."""
+        mean, error, expected = self.blocks.mean(), self.blocks.error(), self.expected()
+        unit = UNIT[self.case.box.dimension]
+        turn = self.frequency * self.case.fluid.timestep
+        note = "" if self.case.fluid.molecule is None else rouse_note(self.case)
+        if self.case.fluid.molecule is None and turn > SLOW:
+            note = f"approximate: flights remember; w dt = {turn:.2g}"
+        found = [
+            Comparison(
+                f"{name} modulus", float(mean[-1, k]), float(error[-1, k]), float(expected[-1, k]),
+                unit, note,
+            )
+            for k, name in enumerate(MODULI.values())
+        ]  # fmt: skip
+        if self.case.fluid.molecule is None:
+            scale = setting.mass_density(self.case) * self.frequency
+            found.append(
+                Comparison(
+                    "viscosity from the loss modulus",
+                    float(mean[-1, 1] / scale),
+                    float(error[-1, 1] / scale),
+                    float(expected[-1, 1] / scale),
+                    "a^2/tau",
+                    "; ".join(filter(None, (note, setting.caveat(self.case)))),
+                )
+            )
+        return found

@@ -1,0 +1,220 @@
+"""Volume flux through the box, and the permeability that it means."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.case.box import AXES, Axis
+from mesokit.case.component import component, param, tag
+from mesokit.geometry.solids.solids import free_volume
+from mesokit.method.mpcd.expected import recognise, setting
+from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
+from mesokit.observe.velocity_profile import ENOUGH
+from mesokit.seam.engine import RunningFluid
+from mesokit.seam.estimate import Estimate, of_mean
+from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.result import Comparison, Result
+from mesokit.statistics import Blocks, TimeSeries
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+FLUX = {2: "a^2/tau", 3: "a^3/tau"}  # by dimension
+
+
+@component
+class FlowRate(Observable):
+    """Mean velocity along an axis over the whole box, solids included, and the flow rate.
+
+    The superficial velocity U is the momentum of the fluid over its density and the volume of the
+    box; the flow rate is U times the cross-section of the box. Where a uniform force drives the
+    fluid along that axis, the permeability is nu U/g with the theoretical viscosity.
+    """
+
+    quantity: Literal["flow-rate"] = tag("flow-rate")
+    asks_transport: ClassVar[bool] = True
+    of_built_up_flow: ClassVar[bool] = True
+    axis: Axis | None = param(None, doc="axis of the flow (that of the force unless said)")
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for an axis that the box has not."""
+        if self.axis is not None:
+            case.box.index(self.axis)
+
+    def seen(self, case: Case) -> int:
+        """Number of the axis in this case."""
+        if self.axis is not None:
+            return AXES.index(self.axis)
+        pushed = setting.push_axis(case)
+        if pushed is not None:
+            return pushed
+        flowing = setting.flowing_axes(case)
+        return AXES.index(flowing[0]) if len(flowing) == 1 else 0
+
+    def accumulator(self, case: Case) -> FlowRateAccumulator:
+        """An empty memory for it."""
+        return FlowRateAccumulator(self, case)
+
+
+class FlowRateAccumulator:
+    """The superficial velocity: its average, and a time series that shows whether it is steady."""
+
+    def __init__(self, observable: FlowRate, case: Case) -> None:
+        observable.check(case)
+        self.observable, self.case, self.name = observable, case, observable.label
+        self.axis = observable.seen(case)
+        self.mass = setting.superficial_mass(case)
+        self.blocks, self.series = Blocks(), TimeSeries(1)
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        _, momentum, _ = fluid.totals()
+        velocity = momentum[self.axis] / self.mass
+        self.blocks.add(velocity)
+        self.series.add(fluid.time, [velocity])
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks, series=self.series)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        self.series = TimeSeries.from_state(unpack(state, "series"))
+
+    def pool(self, other: FlowRateAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.blocks.pool(other.blocks)
+        self.series.pool(other.series)
+
+    def result(self) -> Result:
+        """The velocity in time, whose points are no means of their own: the error is nan."""
+        time, value = self.series.time(), self.series.values()[:, 0]
+        known, theory_name = self.expected()
+        found = self.comparisons(known, theory_name) if self.blocks.count else []
+        return Result(
+            quantity="flow-rate",
+            drawing="flow series",
+            name=self.name,
+            x={"time": time},
+            value=value,
+            error=np.full(value.shape, np.nan),
+            label=f"mean velocity along {AXES[self.axis]}",
+            units={"value": "a/tau", "time": "tau"},
+            expected=None if np.isnan(known) else np.full(value.shape, known),
+            theory=theory_name,
+            comparisons=tuple(found),
+            samples=self.blocks.count,
+            extra={
+                "mean": float(self.blocks.mean()),
+                "mean_error": self.error(),
+                "axis": AXES[self.axis],
+            },
+        )
+
+    def relaxation(self) -> float:
+        """The time in which the flow's momentum is forgotten; nan where no force tells it.
+
+        A force drives the flow to the momentum that it gives in that time: exact in slow flow, for
+        the response to a force is the integral of the momentum's correlation (Kubo 1957).
+        """
+        case, push = self.case, float(setting.acceleration(self.case)[self.axis])
+        time = float(self.blocks.mean()) * self.mass / (self.moving_mass() * push) if push else -1.0
+        return time if case.walls and time > 0 else np.nan
+
+    def moving_mass(self) -> float:
+        """Of fluid and solutes in the box."""
+        return setting.mass_density(self.case) * free_volume(self.case)
+
+    def length(self) -> float:
+        """Of a run, in relaxation times."""
+        steps = self.blocks.count / self.blocks.series * self.observable.every
+        return steps * self.case.fluid.timestep / self.relaxation()
+
+    def short_run(self) -> str:
+        """Where blocking cannot see how slowly the flow changes: a note."""
+        times = self.length()
+        if not times < ENOUGH:
+            return ""
+        return f"error bar is a lower bound: the run has {times:.2g} relaxation times"
+
+    def error(self) -> float:
+        """Standard error of the mean velocity: in a short run at least that of a thermal momentum,
+        of variance M kT, whose correlation falls as an exponential."""
+        error, times = float(self.blocks.error()), self.length()
+        if not times < ENOUGH:
+            return error
+        variance = self.moving_mass() * self.case.fluid.kT / self.mass**2
+        return float(np.maximum(error, (variance * kept(times) / self.blocks.series) ** 0.5))
+
+    def comparisons(self, known: float, name: str) -> list[Comparison]:
+        """Mean velocity, flow rate, permeability."""
+        mean: Estimate = of_mean(self.blocks)
+        speed, error = float(mean.value), self.error()
+        size, letter = np.array(self.case.box.size, float), AXES[self.axis]
+        area = float(np.prod(size) / size[self.axis])
+        short = self.short_run()
+        note = "; ".join(filter(None, (setting.caveat(self.case) or name, short)))
+        found = [
+            Comparison(f"mean velocity along {letter}", speed, error, known, "a/tau", note),
+            Comparison(
+                f"flow rate along {letter}",
+                area * speed,
+                area * error,
+                area * known,
+                FLUX[len(size)],
+                note,
+            ),
+        ]
+        push, coefficients = setting.acceleration(self.case), setting.transport(self.case)
+        if setting.push_axis(self.case) == self.axis and coefficients is not None:
+            scale = coefficients.viscosity / float(push[self.axis])
+            found.append(
+                Comparison(
+                    f"permeability along {letter}",
+                    scale * speed,
+                    abs(scale) * error,
+                    scale * known,
+                    "a^2",
+                    "; ".join(filter(None, [name, "theoretical viscosity", short])),
+                )
+            )
+        return found
+
+    def expected(self) -> tuple[float, str]:
+        """The superficial velocity and what says so; nan where nothing is known."""
+        case, coefficients = self.case, setting.transport(self.case)
+        push = float(setting.acceleration(case)[self.axis])
+        if not setting.obstructed(case):
+            flow = setting.flow(case, self.axis)
+            edges = np.linspace(0.0, case.box.size[flow.across], 65)
+            bins = flow.bins(flow.across, edges)
+            return (np.nan, "") if bins is None else (float(bins.mean()), flow.kind)
+        if not setting.driven(case):
+            return 0.0, "rest"
+        if coefficients is None or not push or setting.push_axis(case) != self.axis:
+            return np.nan, ""
+        viscosity, pipe, lattice = (
+            coefficients.viscosity,
+            recognise.pipe(case),
+            recognise.lattice(case),
+        )
+        if pipe is not None and pipe.axis == self.axis:
+            rate = theory.hagen_poiseuille_flow_rate(pipe.radius, push, viscosity)
+            area = np.prod(case.box.size) / case.box.size[self.axis]
+            return float(rate / area), "hagen-poiseuille"
+        if lattice is None or self.axis not in lattice.across:
+            return np.nan, ""
+        try:
+            if len(lattice.across) == 2:
+                k = theory.square_array_permeability(lattice.concentration, lattice.pitch)
+                return k * push / viscosity, "square array, slow flow"
+            k = theory.cubic_array_permeability(lattice.concentration, lattice.pitch)
+            return k * push / viscosity, "cubic array, slow flow"
+        except ValueError:  # denser than the theory goes
+            return np.nan, ""

@@ -1,0 +1,301 @@
+"""How a number of molecules is distributed: size, ends, orientation, place of the centre."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.case.box import AXES, Axis
+from mesokit.case.component import component, param, tag
+from mesokit.errors import CaseError
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.compression import unit_cell
+from mesokit.method.mpcd.expected.ideal import flow_axis, mean_shape, stretched, undisturbed
+from mesokit.method.mpcd.expected.molecules import (
+    KIND,
+    ends_at_rest,
+    free_bond,
+    group_of,
+    modes_at_rest,
+    molecule_of,
+)
+from mesokit.method.mpcd.expected.traps import held, trapped
+from mesokit.observe.shared.over_molecules import MeansOverMolecules
+from mesokit.seam.engine import RunningFluid
+from mesokit.seam.observable import Observable, State
+from mesokit.seam.result import Array, Comparison, Result
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+FINE = 480  # bins in memory; those of a result are of several
+DIVISORS = tuple(n for n in range(1, FINE + 1) if FINE % n == 0)
+WORDS = {
+    "gyration": "radius of gyration",
+    "end-to-end": "end-to-end distance",
+    "orientation": "cosine of the end-to-end vector",
+    "centre": "centre of mass",
+}
+
+
+@component
+class MoleculeHistogram(Observable):
+    """Probability density of one number of molecules, beside that of ideal ones at rest."""
+
+    quantity: Literal["molecule-histogram"] = tag("molecule-histogram")
+    needs_fluid: ClassVar[bool] = False
+    of: Literal["gyration", "end-to-end", "orientation", "centre"] = param(
+        "gyration",
+        doc="radius of gyration; of chains the end-to-end distance (with `axis` its component), "
+        '"orientation": cosine of their ends against the axis; "centre": of mass, along the axis',
+    )
+    axis: Axis | None = param(
+        None,
+        doc='axis of "orientation" and "centre" (that of the force on the fluid, x unless there '
+        'is one), or of the component of "end-to-end" (the distance unless said)',
+    )
+    length: float | None = param(
+        None,
+        doc="of a unit cell, in which all centres are counted (that of an array, else the box, "
+        "unless said)",
+        unit="a",
+        gt=0,
+    )
+    largest: float | None = param(
+        None,
+        doc="largest size that is counted (that of a stretched molecule unless said)",
+        unit="a",
+        gt=0,
+    )
+    bins: int = param(40, doc="bins over what is found, at most", ge=4, le=FINE)
+    molecules: int = param(2000, doc="molecules looked at, evenly spread over all", ge=1)
+    kind: int | str = param(1, doc=KIND)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError without molecules, and for what they have not."""
+        molecule = molecule_of(case, self.quantity, self.kind)
+        if self.axis is not None:
+            case.box.index(self.axis)
+        if self.of in ("end-to-end", "orientation") and molecule.topology != "chain":
+            raise CaseError(f"of = {self.of!r}: only chains have two ends")
+        if self.of == "gyration" and self.axis is not None:
+            raise CaseError("axis: no effect with of = 'gyration'; leave it out")
+        if self.length is not None and self.of != "centre":
+            raise CaseError(f"length: no effect with of = {self.of!r}; only with of = 'centre'")
+        if self.largest is not None and self.of not in ("gyration", "end-to-end"):
+            raise CaseError(f"largest: no effect with of = {self.of!r}; leave it out")
+        if self.of == "centre" and self.axis_of(case) == 0 and case.box.sheared:
+            raise CaseError("of = 'centre': not along 'x' under shear, whose images slide")
+
+    def axis_of(self, case: Case) -> int:
+        """Number of the axis."""
+        return flow_axis(case) if self.axis is None else case.box.index(self.axis)
+
+    def accumulator(self, case: Case) -> MoleculeHistogramAccumulator:
+        """An empty memory for it."""
+        return MoleculeHistogramAccumulator(self, case)
+
+
+class MoleculeHistogramAccumulator:
+    """Shares of the molecules in fine bins."""
+
+    def __init__(self, observable: MoleculeHistogram, case: Case) -> None:
+        observable.check(case)
+        self.observable, self.case, self.name = observable, case, observable.label
+        self.group = group_of(case, "beads", observable.kind)
+        self.beads = self.group.beads(observable.molecules)
+        self.axis, self.dimension = observable.axis_of(case), case.box.dimension
+        self.mean = mean_shape(case, observable.kind, self.group)
+        self.edges = np.linspace(*self.limits(), FINE + 1)
+        self.means = MeansOverMolecules(len(self.beads), FINE)
+
+    def limits(self) -> tuple[float, float]:
+        """Between which numbers the bins lie."""
+        observable, molecule = self.observable, self.group.molecule
+        assert molecule is not None
+        if observable.of == "orientation":
+            return -1.0, 1.0
+        if observable.of == "centre":
+            return 0.0, observable.length or unit_cell(self.case, self.axis)
+        most = observable.largest
+        if most is None:
+            most = stretched(self.case, molecule)
+            if self.mean is not None:  # and what pulls add
+                most += float(np.linalg.norm(np.ptp(self.mean, axis=0)))
+            most *= 0.5 if observable.of == "gyration" else 1.0
+        return (-most if self.component else 0.0), most
+
+    @property
+    def component(self) -> bool:
+        """Whether it is a component of the end-to-end vector."""
+        return self.observable.of == "end-to-end" and self.observable.axis is not None
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        found = self.numbers(fluid)
+        width = self.edges[1] - self.edges[0]
+        place = np.floor((found - self.edges[0]) / width).astype(int)
+        each = np.zeros((len(found), FINE))
+        inside = (place >= 0) & (place < FINE)
+        each[np.flatnonzero(inside), place[inside]] = 1.0
+        self.means.add(each)
+
+    def numbers(self, fluid: RunningFluid) -> Array:
+        """What is counted, (molecules,)."""
+        of, ids = self.observable.of, self.beads.ravel()
+        shape = (*self.beads.shape, self.dimension)
+        if of == "centre":
+            r = fluid.positions(ids, unwrapped=True).reshape(shape)
+            return np.asarray(r[:, :, self.axis].mean(axis=1) % self.edges[-1])
+        r = fluid.whole_positions(ids).reshape(shape)
+        if of == "gyration":
+            return np.sqrt(((r - r.mean(axis=1, keepdims=True)) ** 2).sum(axis=(1, 2)) / shape[1])
+        ends = r[:, -1] - r[:, 0]
+        if self.component:
+            return ends[:, self.axis]
+        length = np.sqrt((ends**2).sum(axis=1))
+        if of == "end-to-end":
+            return length
+        cosine = ends[:, self.axis] / np.where(length > 0, length, 1.0)
+        return np.minimum(cosine, np.nextafter(1.0, 0.0))  # 1 is in the last bin
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return self.means.state()
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.means.restore(state)
+
+    def pool(self, other: MoleculeHistogramAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.means.pool(other.means)
+
+    def result(self) -> Result:
+        """The density over what was found, in so many bins, and the mean."""
+        first, last, many = self.coarse()
+        edges = self.edges[first : last + 1 : many]
+        combine = np.zeros((len(edges) - 1, FINE))
+        for k in range(len(combine)):
+            combine[k, first + k * many : first + (k + 1) * many] = 1 / (edges[1] - edges[0])
+        known = self.cdf(self.edges)
+        expected = None if known is None else np.diff(known[first : last + 1 : many])
+        name = {"centre": AXES[self.axis], "end-to-end": "R", "gyration": "Rg"}.get(
+            self.observable.of, "cosine"
+        )
+        name = f"R{AXES[self.axis]}" if self.component else name
+        unit = "" if name == "cosine" else "a"
+        return Result(
+            quantity="molecule-histogram",
+            drawing="histogram",
+            name=self.name,
+            x={name: (edges[1:] + edges[:-1]) / 2},
+            value=self.means.mean(combine),
+            error=self.means.error(combine),
+            label="probability density",
+            units={"value": "1/a" if unit else "", name: unit},
+            expected=None if expected is None else expected / (edges[1] - edges[0]),
+            theory=self.legend(),
+            comparisons=tuple(self.comparisons(known)) if self.means.blocks.count else (),
+            samples=self.means.blocks.count,
+            extra={"edges": edges, "of": self.words()},
+        )
+
+    def spread(self, share: Array) -> Comparison:
+        """Mean square distance from the expected middle, by the shorter way round the box."""
+        length, middle = self.edges[-1], (self.edges[1:] + self.edges[:-1]) / 2
+        turns = np.angle(share @ np.exp(2j * np.pi * middle / length))
+        away = middle - turns * length / (2 * np.pi)
+        square = ((away - length * np.rint(away / length)) ** 2)[None]
+        value, error = float(self.means.mean(square)[0]), float(self.means.error(square)[0])
+        what = f"mean square distance from the middle of the traps along {AXES[self.axis]}"
+        expected, note = float(square[0] @ share), self.means.caution()
+        return Comparison(what, value, error, expected, "a^2", note)
+
+    def words(self) -> str:
+        """What is counted."""
+        words, axis = WORDS[self.observable.of], AXES[self.axis]
+        if self.component:
+            return f"end-to-end vector along {axis}"
+        against = {"orientation": f" against {axis}", "centre": f" along {axis}"}
+        return words + against.get(self.observable.of, "")
+
+    def legend(self) -> str:
+        """What the theory is called in a figure."""
+        if self.observable.of != "centre":
+            return "ideal molecules"
+        in_traps = trapped(self.case, self.observable.kind)
+        return "Boltzmann in traps" if in_traps else "anywhere alike"
+
+    def coarse(self) -> tuple[int, int, int]:
+        """First and last fine edge of the result, and fine bins in each of its bins."""
+        found = np.flatnonzero(self.means.mean() > 0)
+        if self.observable.of in ("centre", "orientation") or not len(found):
+            found = np.array([0, FINE - 1])
+        for many in DIVISORS:
+            first, last = found[0] // many * many, (found[-1] // many + 1) * many
+            if (last - first) // many <= self.observable.bins:
+                break
+        return int(first), int(last), many
+
+    def cdf(self, edges: Array) -> Array | None:
+        """What theory expects below each edge; None where there is none."""
+        of, case, kind = self.observable.of, self.case, self.observable.kind
+        molecule, d = self.group.molecule, self.dimension
+        assert molecule is not None
+        if of == "centre" and trapped(case, kind):
+            return self.cdf_in_traps(edges)
+        if of == "centre":
+            uneven = case.walls or setting.gathered(case)
+            return None if uneven else (edges - edges[0]) / (edges[-1] - edges[0])
+        if of == "orientation":
+            quiet = undisturbed(case) or self.as_at_rest()
+            return theory.cosine_cdf(edges, d) if quiet else None
+        bond = free_bond(case, kind)
+        if bond is None or self.mean is None:
+            return None
+        if self.component:
+            from scipy.special import ndtr
+
+            ends = ends_at_rest(case, kind, bond)
+            middle = (self.mean[-1] - self.mean[0])[self.axis]
+            return np.asarray(ndtr((edges - middle) / (ends / d) ** 0.5))
+        if not self.as_at_rest():
+            return None
+        if of == "gyration":
+            return theory.gyration_cdf(edges, modes_at_rest(case, kind), bond, d)
+        return theory.end_to_end_cdf(edges, ends_at_rest(case, kind, bond), d)
+
+    def as_at_rest(self) -> bool:
+        """Whether ideal molecules have the shape that they have at rest."""
+        return self.mean is not None and not self.mean.any()
+
+    def cdf_in_traps(self, edges: Array) -> Array | None:
+        """Of the centres of molecules that traps hold, counted in a unit cell."""
+        found, length = held(self.case, self.observable.kind), float(edges[-1])
+        if found is None:
+            return None
+        share = theory.normal_in_box(
+            edges, float(found.centre[self.axis]), found.centre_variance, length
+        )
+        return np.concatenate([[0.0], np.cumsum(share)])
+
+    def comparisons(self, known: Array | None) -> list[Comparison]:
+        """The mean, by the middles of the fine bins, as theory is taken too; of centres in traps
+        the mean square distance from where they are in the mean."""
+        if self.observable.of == "centre":
+            if known is None or not trapped(self.case, self.observable.kind):
+                return []
+            return [self.spread(np.diff(known))]
+        middle = ((self.edges[1:] + self.edges[:-1]) / 2)[None]
+        value, error = float(self.means.mean(middle)[0]), float(self.means.error(middle)[0])
+        expected = np.nan if known is None else float(middle[0] @ np.diff(known))
+        outside = 1 - float(self.means.mean().sum())
+        left = f"{100 * outside:.2g} % larger than largest are left out" if outside > 1e-9 else ""
+        note = "; ".join(filter(None, (left, self.means.caution())))
+        unit = "" if self.observable.of == "orientation" else "a"
+        return [Comparison(f"mean {self.words()}", value, error, expected, unit, note)]

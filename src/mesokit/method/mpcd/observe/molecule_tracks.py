@@ -1,0 +1,183 @@
+"""Molecules in time: size, ends, orientation, place and velocity of each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.box import AXES, Axis
+from mesokit.case.component import component, param, tag
+from mesokit.method.mpcd.expected.ideal import flow_axis, ideal_sizes, undisturbed
+from mesokit.method.mpcd.expected.molecules import KIND, group_of, molecule_of
+from mesokit.observe.shared.over_molecules import MeansOverMolecules
+from mesokit.seam.engine import RunningFluid
+from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.result import Comparison, Result
+from mesokit.statistics import TimeSeries
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+NUMBERS = 2**20  # of the time series, for all molecules together
+MOST_ROWS = 4096
+
+
+@component
+class MoleculeTracks(Observable):
+    """Radius of gyration, end-to-end vector, orientation, place and velocity of molecules in time.
+
+    Each molecule has its own series: `result.x["time"]` by `molecule` by `component`. The place of
+    the centre of mass is unwrapped: it grows as the molecule goes from box to box (under shear nan
+    along x, where images slide). The orientation is that of the end-to-end vector of a chain
+    against `axis`: (d cos^2 - 1)/(d - 1) in d dimensions, 1 along it, 0 for any direction.
+    """
+
+    quantity: Literal["molecule-tracks"] = tag("molecule-tracks")
+    needs_fluid: ClassVar[bool] = False
+    molecules: int = param(20, doc="molecules followed, evenly spread over all", ge=1, le=10_000)
+    kind: int | str = param(1, doc=KIND)
+    axis: Axis | None = param(
+        None, doc="axis of the orientation (that of the force on the fluid, x unless there is one)"
+    )
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError without molecules, or for an axis that the box has not."""
+        molecule_of(case, self.quantity, self.kind)
+        if self.axis is not None:
+            case.box.index(self.axis)
+
+    def warnings(self, case: Case) -> Iterator[str]:
+        """Say when a run is too long for every sample to be kept."""
+        kept = self.accumulator(case)
+        samples = case.run.steps // self.every + 1
+        if samples > kept.rows:
+            yield (
+                f"every = {self.every}: {samples} samples of {kept.number} molecules are more than "
+                f"are kept; each row of the series will be the mean of up to "
+                f"{2 ** int(np.ceil(np.log2(samples / kept.rows)))} samples"
+            )
+
+    def accumulator(self, case: Case) -> MoleculeTracksAccumulator:
+        """An empty memory for it."""
+        return MoleculeTracksAccumulator(self, case)
+
+
+class MoleculeTracksAccumulator:
+    """A series of every molecule, and means over all."""
+
+    def __init__(self, observable: MoleculeTracks, case: Case) -> None:
+        observable.check(case)
+        self.case, self.name, self.kind = case, observable.label, observable.kind
+        self.group = group_of(case, "beads", observable.kind)
+        self.beads = self.group.beads(observable.molecules)
+        self.number, self.dimension = len(self.beads), case.box.dimension
+        axis = observable.axis
+        self.axis = flow_axis(case) if axis is None else case.box.index(axis)
+        molecule = self.group.molecule
+        self.chain = molecule is not None and molecule.topology == "chain"
+        width = self.number * len(self.components)
+        self.rows = min(MOST_ROWS, 2 * max(NUMBERS // width // 2, 1))
+        self.series = TimeSeries(width, self.rows)
+        self.means = MeansOverMolecules(self.number, 3 + self.dimension)
+
+    @property
+    def components(self) -> list[str]:
+        """What is known of a molecule at a time."""
+        axes = AXES[: self.dimension]
+        ends = ["end-to-end", *(f"R{a}" for a in axes), "orientation"] if self.chain else []
+        return ["gyration", *ends, *axes, *(f"v{a}" for a in axes)]
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        shape, d = (*self.beads.shape, self.dimension), self.dimension
+        ids = self.beads.ravel()
+        r = fluid.whole_positions(ids).reshape(shape)
+        arm = r - r.mean(axis=1, keepdims=True)
+        gyration = (arm**2).sum(axis=(1, 2)) / shape[1]
+        place = fluid.positions(ids, unwrapped=True).reshape(shape).mean(axis=1)
+        if self.case.box.sheared:
+            place[:, 0] = np.nan
+        velocity = fluid.velocities(ids).reshape(shape).mean(axis=1)
+        ends = r[:, -1] - r[:, 0]
+        square = (ends**2).sum(axis=1)
+        with np.errstate(invalid="ignore"):
+            aligned = (d * ends[:, self.axis] ** 2 / square - 1) / (d - 1)
+        aligned = np.where(square > 0, aligned, 0.0)
+        root = [np.sqrt(gyration)]
+        kept = [*root, np.sqrt(square), *ends.T, aligned] if self.chain else root
+        row = np.stack([*kept, *place.T, *velocity.T], axis=1)
+        self.series.add(fluid.time, row.ravel())
+        self.means.add(np.stack([gyration, square, aligned, *velocity.T], axis=1))
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(series=self.series, means=self.means)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.series = TimeSeries.from_state(unpack(state, "series"))
+        self.means.restore(unpack(state, "means"))
+
+    def pool(self, other: MoleculeTracksAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read.
+
+        The series become means over the runs.
+        """
+        self.series.pool(other.series)
+        self.means.pool(other.means)
+
+    def result(self) -> Result:
+        """The series of every molecule; a sample has no error bar: nan."""
+        names = self.components
+        value = self.series.values().reshape(-1, self.number, len(names))
+        units = dict.fromkeys(names, "a") | {"orientation": ""}
+        units |= {f"v{a}": "a/tau" for a in AXES}
+        sizes = ideal_sizes(self.case, self.kind, self.group)
+        return Result(
+            quantity="molecule-tracks",
+            drawing="tracks",
+            name=self.name,
+            x={
+                "time": self.series.time(),
+                "molecule": 1 + (self.beads[:, 0] - self.group.first) // self.group.length,
+                "component": np.array(names),
+            },
+            value=value,
+            error=np.full(value.shape, np.nan),
+            label="molecules in time",
+            units={"value": "", "time": "tau", "molecule": ""} | {n: units[n] for n in names},
+            comparisons=tuple(self.comparisons(*sizes)) if self.means.blocks.count else (),
+            samples=self.means.blocks.count,
+            extra={
+                "axis": AXES[self.axis],
+                "samples_per_row": self.series.stride,
+                "ideal_gyration": float(np.sqrt(sizes[0])),
+                "ideal_end_to_end": float(np.sqrt(sizes[1])),
+            },
+        )
+
+    def comparisons(self, gyration: float, ends: float) -> Iterator[Comparison]:
+        """Mean squares of size, orientation, velocity."""
+        mean, error = self.means.mean().tolist(), self.means.error().tolist()
+        yield Comparison(
+            "mean square radius of gyration", mean[0], error[0], gyration, "a^2", self.note()
+        )
+        rest = 0.0 if undisturbed(self.case) else np.nan
+        if self.chain:
+            yield Comparison(
+                "mean square end-to-end distance", mean[1], error[1], ends, "a^2", self.note()
+            )
+            what = f"orientation along {AXES[self.axis]}"
+            yield Comparison(what, mean[2], error[2], rest, note=self.note())
+        for k in range(self.dimension):
+            what = f"velocity of centres along {AXES[k]}"
+            yield Comparison(what, mean[3 + k], error[3 + k], rest, "a/tau", self.note())
+
+    def note(self) -> str:
+        """How many molecules are behind an error bar, where they are few."""
+        few = self.number < self.group.number
+        words = f"of {self.number} of {self.group.number} molecules" if few else ""
+        return "; ".join(filter(None, (words, self.means.caution())))

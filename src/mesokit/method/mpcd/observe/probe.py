@@ -1,0 +1,241 @@
+"""Velocity in a small part of the fluid in time, and the frequency at which it oscillates."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.box import AXES, Axis
+from mesokit.case.component import component, param, show, tag
+from mesokit.case.describe.digits import two_digits
+from mesokit.case.describe.hints import Either
+from mesokit.errors import CaseError
+from mesokit.geometry.solids.solids import solids_of
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.observe.shared.swing import Series, amplitudes, in_slit
+from mesokit.method.mpcd.observe.shared.swing import comparisons as swings
+from mesokit.seam.engine import RunningFluid, Some, Terms
+from mesokit.seam.estimate import of_mean
+from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.result import Array, Comparison, Result
+from mesokit.statistics import (
+    Blocks,
+    TimeSeries,
+    dominant_frequency,
+    mean_frequency,
+    mean_spectrum,
+    spectrum,
+)
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+ROWS = 16384  # of the time series
+
+
+@component
+class Probe(Observable):
+    """Mean velocity of the particles in a small box: its time series and power spectrum.
+
+    The spectrum is of one component, by default that across the flow, in which the vortices of a
+    wake show best. Where it has a clear peak the dominant frequency f is given, and with `speed` U
+    and `length` D the Strouhal number f D/U. Of a uniform force that oscillates, amplitude and lag
+    of the velocity along it are given, from whole periods, and beside theory in a slit.
+    """
+
+    quantity: Literal["probe"] = tag("probe")
+    centre: Either[None, float] = param(
+        None,
+        doc="middle of the small box (that of the box unless said); what sticks out of a periodic "
+        "axis is at its other end",
+        unit="a",
+    )
+    size: Either[None, float] = param(
+        None, doc="its sides (2 cells along each axis unless said)", unit="a"
+    )
+    component: Axis | None = param(
+        None, doc="axis of the velocity whose spectrum is taken (across the flow unless said)"
+    )
+    speed: float | None = param(None, doc="speed U of the Strouhal number", unit="a/tau", gt=0)
+    length: float | None = param(None, doc="length D of the Strouhal number", unit="a", gt=0)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for a place without fluid, or half a Strouhal number."""
+        d = case.box.dimension
+        for key in ("centre", "size"):
+            vector = getattr(self, key)
+            if vector is not None and len(vector) != d:
+                raise CaseError(f"{key} = {show(vector)}: expected {d} numbers, one for each axis")
+        if self.size is not None and not all(
+            0 < side <= length for side, length in zip(self.size, case.box.size, strict=True)
+        ):
+            raise CaseError(f"size = {show(self.size)}: expected lengths that fit the box")
+        self._require_between_plates(case)
+        if self.component is not None:
+            case.box.index(self.component, "component")
+        if (self.speed is None) != (self.length is None):
+            lone, other = ("speed", "length") if self.length is None else ("length", "speed")
+            raise CaseError(f"{lone}: no effect without {other}; give both or neither")
+        if case.walls and solids_of(case).distance(self.place(case))[0] <= 0:
+            raise CaseError(f"centre = {show(self.place(case))}: lies in a solid")
+
+    def _require_between_plates(self, case: Case) -> None:
+        """Raise CaseError for a small box that reaches over a plate."""
+        place, sides = self.place(case), self.size or (2.0,) * case.box.dimension
+        for axis in setting.closed_axes(case):
+            half = 0.5 * sides[axis] - 1e-9
+            if not half <= place[axis] <= case.box.size[axis] - half:
+                raise CaseError(
+                    f"centre = {show(place)}: with sides {show(sides)} it reaches over a plate "
+                    f"along {AXES[axis]}"
+                )
+
+    def place(self, case: Case) -> tuple[float, ...]:
+        """The middle of the small box in this case."""
+        return self.centre or tuple(length / 2 for length in case.box.size)
+
+    def seen(self, case: Case) -> int:
+        """Number of the axis whose spectrum is taken."""
+        if self.component is not None:
+            return AXES.index(self.component)
+        flowing = setting.push_axis(case)
+        return 1 if flowing in (None, 0) else 0
+
+    def accumulator(self, case: Case) -> ProbeAccumulator:
+        """An empty memory for it."""
+        return ProbeAccumulator(self, case)
+
+
+class ProbeAccumulator:
+    """The time series of the velocity, and its average."""
+
+    def __init__(self, observable: Probe, case: Case) -> None:
+        observable.check(case)
+        self.observable, self.case, self.name = observable, case, observable.label
+        self.dimension = d = case.box.dimension
+        self.centre = np.array(observable.place(case))
+        self.half = np.array(observable.size or (2.0,) * d) / 2
+        lengths = np.array(case.box.size, float)
+        shut = [k in setting.closed_axes(case) for k in range(d)]
+        self.lengths = np.where(shut, np.inf, lengths)
+        self.component = observable.seen(case)
+        self.blocks, self.series = Blocks((d,)), TimeSeries(d, ROWS)
+        self.others: list[TimeSeries] = []  # of runs pooled with it
+        self.last = np.zeros(d)  # the velocity where nobody is there to tell a new one
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        mass, d = self.case.fluid.mass, self.dimension
+        units = [mass, *[math.sqrt(mass * self.case.fluid.kT)] * d]
+        m, *momentum = fluid.sums_of_particles(self.inside, 1, units)[:, 0]
+        if m > 0:
+            self.last = np.array(momentum) / m
+        self.blocks.add(self.last)
+        self.series.add(fluid.time, self.last)
+
+    def inside(self, some: Some) -> Terms:
+        """Mass and momentum of the particles in the small box."""
+        away = some.positions - self.centre
+        away -= np.where(np.isfinite(self.lengths), self.lengths, 0) * np.round(away / self.lengths)
+        inside = (np.abs(away) <= self.half).all(axis=1)
+        m = some.masses[inside]
+        return np.zeros(len(m), np.int64), [m, *(m * some.velocities[inside].T)]
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks, series=self.series, last=self.last)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        self.series = TimeSeries.from_state(unpack(state, "series"))
+        self.last = np.array(state["last"])
+
+    def pool(self, other: ProbeAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.blocks.pool(other.blocks)
+        self.others.append(other.series)
+
+    def signals(self) -> tuple[list[Array], float]:
+        """The series of the component in each run, as long as the shortest, and their interval.
+
+        Runs whose series are thinner than others are left out.
+        """
+        series = [self.series, *self.others]
+        stride = min(one.stride for one in series)
+        signals = [one.values()[:, self.component] for one in series if one.stride == stride]
+        shortest = min(map(len, signals))
+        interval = self.observable.every * self.case.fluid.timestep * stride
+        return [signal[:shortest] for signal in signals], interval
+
+    def result(self) -> Result:
+        """The spectrum of one component; the time series of all is in `extra`."""
+        values, letter = self.series.values(), AXES[self.component]
+        signals, interval = self.signals()
+        found = mean_spectrum([spectrum(signal, interval) for signal in signals])
+        peak = mean_frequency([dominant_frequency(signal, interval) for signal in signals])
+        return Result(
+            quantity="probe",
+            drawing="signal",
+            name=self.name,
+            x={"frequency": found.frequency},
+            value=found.power,
+            error=found.error,
+            label=f"power of v_{letter} per frequency",
+            units={"value": "a^2/tau", "frequency": "1/tau", "velocity": "a/tau", "time": "tau"},
+            comparisons=tuple(self.comparisons(peak)) if self.blocks.count else (),
+            samples=self.blocks.count,
+            extra={
+                "time": self.series.time(),
+                "velocity": values,
+                "component": letter,
+                "dominant": np.nan if peak is None else peak.value,
+            },
+        )
+
+    def with_force(self) -> Iterator[Comparison]:
+        """Amplitude and lag of the velocity along a force that oscillates."""
+        swing = self.case.fluid.force.swing()
+        push = swing.of.uniform(self.dimension) if swing else None
+        if swing is None or push is None:
+            return
+        interval = self.observable.every * self.case.fluid.timestep
+        low, high = self.centre - self.half, self.centre + self.half
+        for k in np.flatnonzero(push):
+            series = [
+                Series(s.values()[:, k], float(s.time()[0]), interval * s.stride, s.stride)
+                for s in (self.series, *self.others)
+                if len(s.time())
+            ]
+            blocks = amplitudes(series, swing.frequency)
+            expected = in_slit(self.case, swing, int(k), low, high)
+            yield from swings(blocks, swing, AXES[k], expected)
+
+    def comparisons(self, peak: Any) -> list[Comparison]:
+        """Mean velocity, dominant frequency, Strouhal number."""
+        mean: Any = of_mean(self.blocks)
+        value: Array = mean.value
+        found = [
+            Comparison(f"mean velocity v_{letter}", float(value[k]), float(mean.error[k]),
+                       unit="a/tau")
+            for k, letter in enumerate(AXES[: self.dimension])
+        ]  # fmt: skip
+        found += self.with_force()
+        if peak is None:
+            return found
+        note = f"peak {two_digits(peak.contrast)} times the power around it"
+        found.append(
+            Comparison("dominant frequency", peak.value, peak.error, unit="1/tau", note=note)
+        )
+        given = self.observable
+        if given.speed is not None and given.length is not None:
+            scale = given.length / given.speed
+            note = f"U = {given.speed:g} a/tau"
+            found.append(
+                Comparison("Strouhal number", scale * peak.value, scale * peak.error, note=note)
+            )
+        return found

@@ -1,0 +1,70 @@
+"""Fits to the decay of a correlation function, with error bars that know how lags correlate."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.seam.estimate import Estimate
+from mesokit.statistics import MultipleTau
+
+Array = NDArray[np.floating[Any]]
+
+
+def normalised(correlator: MultipleTau) -> tuple[NDArray[np.int64], Estimate]:
+    """Correlation averaged over all signals over that at lag 0: lags (n,) in samples, and values.
+
+    Lags whose averages are longer than a block of time are left out.
+    """
+    lags: list[NDArray[np.int64]] = []
+    values, residuals = [], []
+    zero, zero_residual = np.ones(1), np.zeros((0, 1))
+    weights = np.zeros(0)
+    for lag, sums, counts in correlator.products(within_blocks=True):
+        sums = sums.reshape(*sums.shape[:2], -1).mean(axis=-1)
+        total = counts.sum(axis=0)
+        mean = sums.sum(axis=0) / total
+        residual = (sums - mean * counts) / total
+        if not lags:
+            zero, zero_residual, weights = mean[:1], residual[:, :1], counts[:, 0]
+        lags.append(lag)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            values.append(mean / zero)
+            residuals.append((residual - mean / zero * zero_residual) / zero)
+    if not lags:
+        return np.zeros(0, np.int64), Estimate(np.zeros(0), np.zeros((0, 0)), weights)
+    joined = Estimate(np.concatenate(values), np.concatenate(residuals, axis=1), weights)
+    return np.concatenate(lags), joined
+
+
+def fit_curve(
+    time: Array,
+    curve: Estimate,
+    model: Callable[..., Array],
+    start: list[float],
+    use: NDArray[np.bool_],
+) -> Estimate | None:
+    """Least squares parameters (p,) of `model(time, *parameters)` over the points in `use`.
+
+    All points weigh alike: their errors are so correlated that weights would only let the
+    shortest lags, where the law does not hold yet, decide. None where the fit fails.
+    """
+    from scipy.optimize import curve_fit
+
+    if use.sum() <= len(start) or not np.isfinite(curve.value[use]).all():
+        return None
+    try:
+        parameters = curve_fit(model, time[use], curve.value[use], p0=start)[0]
+    except RuntimeError:
+        return None
+    steps = 1e-6 * np.maximum(abs(parameters), 1e-6)
+    slopes = [
+        (model(time[use], *(parameters + step)) - model(time[use], *(parameters - step)))
+        / (2 * step.sum())
+        for step in np.diag(steps)
+    ]
+    matrix = np.linalg.pinv(np.stack(slopes, axis=1))
+    return Estimate(parameters, curve.residuals[:, use] @ matrix.T, curve.weights)

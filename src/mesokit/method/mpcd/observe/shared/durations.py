@@ -1,0 +1,160 @@
+"""How long events lasted: a list in bounded memory, its mean and its histogram."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.seam.estimate import Array, Estimate, of_ratio
+from mesokit.seam.observable import State, pack
+
+MOST = 2**16  # events kept; every other one is dropped when they are full
+PARTS = 64  # of the time of a run, for error bars
+FEWEST, MANY = 8, 40  # bins of a histogram
+ALIKE, ONE = 1e-3, 0.1  # of the longest: a spread that is none; width of the one bin then
+
+
+class Histogram(NamedTuple):
+    """Probability density (bins,) between edges (bins + 1,), and its standard error."""
+
+    edges: Array
+    density: Array
+    error: Array
+
+
+class Events(NamedTuple):
+    """Those of one run that are kept: end, duration, whether it is whole, and whose it is (events,)
+    each; first and last time (2,) of the run, and the number of all whole ones."""
+
+    ends: Array
+    lasted: Array
+    whole: NDArray[np.bool_]
+    who: NDArray[np.int64]
+    span: Array
+    number: int
+
+
+class Durations:
+    """Events that end at a time and have lasted for so long.
+
+    Events may be cut: they had begun before the run. Those count for `every` run alone.
+
+    Error bars are those of sums over parts of the time of the run, so that events that follow from
+    one another, or happen to all molecules at once, do not count as independent.
+
+    >>> events = Durations()
+    >>> for time in range(64):
+    ...     events.look(time)
+    ...     events.add(time, np.array([1.0, 3.0]), who=np.arange(2))
+    >>> events.number, [round(x, 9) for x in events.mean()]
+    (128, [2.0, 0.0])
+    """
+
+    def __init__(self) -> None:
+        self._rows = np.zeros((MOST, 4))  # end, duration, 1 if it is whole, whose
+        self._counts = np.array([0, 1, 0, 0])  # rows kept, events per row, events, whole ones
+        self._span = np.full(2, np.nan)  # first and last time that was looked at
+        self._others: list[Events] = []  # of pooled runs
+
+    def look(self, time: float) -> None:
+        """Note that all events up to a time are there."""
+        if np.isnan(self._span[0]):
+            self._span[0] = time
+        self._span[1] = time
+
+    def add(self, ends: Any, lasted: Array, who: NDArray[Any], whole: Any = True) -> None:
+        """Take in events, in the order of their ends but for those of one sample."""
+        for row in np.stack(np.broadcast_arrays(ends, lasted, whole, who), axis=1).astype(float):
+            kept, stride, number, complete = self._counts
+            if number % stride == 0 and kept == MOST:
+                self._rows[: MOST // 2] = self._rows[::2]
+                kept, stride = MOST // 2, 2 * stride
+            if number % stride == 0:
+                self._rows[kept] = row
+                kept += 1
+            self._counts[:] = kept, stride, number + 1, complete + row[2]
+
+    def state(self) -> State:
+        """All it has to remember."""
+        kept = self._counts[0]
+        return pack(rows=self._rows[:kept], counts=self._counts, span=self._span)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self._rows[: len(state["rows"])] = state["rows"]
+        self._counts, self._span = np.array(state["counts"]), np.array(state["span"])
+
+    def pool(self, other: Durations) -> None:
+        """Take in the events of an independent run: only to read from then on."""
+        self._others += other.every
+
+    @property
+    def every(self) -> list[Events]:
+        """The events of each run."""
+        ends, lasted, whole, who = self._rows[: self._counts[0]].T
+        own = Events(
+            ends, lasted, whole > 0, who.astype(np.int64), self._span, int(self._counts[3])
+        )
+        return [own, *self._others]
+
+    @property
+    def number(self) -> int:
+        """Of all whole events, those that were not kept too."""
+        return sum(run.number for run in self.every)
+
+    @property
+    def lasted(self) -> Array:
+        """Durations of the whole events that are kept, (events,)."""
+        return np.concatenate([run.lasted[run.whole] for run in self.every])
+
+    def sums(self, of: Array) -> Array:
+        """Sums (parts, n) over whole events in each part of the time, of numbers (events, n)."""
+        ends = [run.ends[run.whole] for run in self.every]
+        numbers = np.split(of, np.cumsum([len(end) for end in ends])[:-1])
+        runs = zip(self.every, ends, numbers, strict=True)
+        return np.concatenate([in_parts(run.span, end, n) for run, end, n in runs])
+
+    def mean(self) -> tuple[float, float]:
+        """Mean duration and its standard error; nan without events, the error with too few."""
+        if not len(self.lasted):
+            return np.nan, np.nan
+        sums = self.sums(np.stack([self.lasted, np.ones(len(self.lasted))], axis=1))
+        return ratio(sums)
+
+    def histogram(self) -> Histogram:
+        """The distribution, in some 8 to 40 bins from the shortest to the longest.
+
+        One event, or those that all last for as long, are a single bin about that time.
+        """
+        lasted = self.lasted
+        if not len(lasted):
+            return Histogram(np.zeros(1), np.zeros(0), np.zeros(0))
+        bins = int(np.clip(3 * len(lasted) ** (1 / 3), FEWEST, MANY))
+        least, most = float(lasted.min()), float(lasted.max())
+        margin = (most - least) / (2 * bins)
+        if most - least <= ALIKE * most:
+            bins, margin = 1, ONE / 2 * most or 0.5
+        edges = np.linspace(max(least - margin, 0.0), most + margin, bins + 1)
+        place = np.clip(np.searchsorted(edges, lasted, side="right") - 1, 0, bins - 1)
+        within = (place[:, None] == np.arange(bins)).astype(float)
+        number = self.sums(np.ones((len(lasted), 1)))
+        found = of_ratio(self.sums(within), np.broadcast_to(number, (len(number), bins)))
+        width = edges[1] - edges[0]
+        return Histogram(edges, found.value / width, found.error / width)
+
+
+def in_parts(span: Array, ends: Array, of: Array) -> Array:
+    """Sums (parts, n) of numbers (events, n) over the events that end in each part of a run."""
+    edges = np.linspace(float(span[0]), float(span[1]), PARTS + 1)[1:-1]
+    sums = np.zeros((PARTS, of.shape[1]))
+    np.add.at(sums, np.searchsorted(edges, ends, side="right"), of)
+    return sums
+
+
+def ratio(sums: Array) -> tuple[float, float]:
+    """Ratio of the first to the second of two sums (parts, 2), and its standard error."""
+    found: Estimate = of_ratio(sums[:, 0], sums[:, 1])
+    return float(found.value), float(found.error)

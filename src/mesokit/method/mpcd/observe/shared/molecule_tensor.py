@@ -1,0 +1,162 @@
+"""Tensors of molecules, with error bars that are honest in runs no longer than a molecule relaxes.
+
+Blocking sees a number change only within the run, and a molecule changes in its relaxation time: a
+shorter run sees each molecule in one state, and the mean is off by the scatter of the molecules in
+one sample over the root of their number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.method.mpcd.expected.molecules import least_times_of
+from mesokit.method.mpcd.observe.shared.tensor import TensorAccumulator
+from mesokit.observe.shared.over_molecules import OwnMeans
+from mesokit.seam.observable import BlockAccumulator, Observable, State, pack, unpack
+from mesokit.seam.result import Array
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+ENOUGH = 30.0  # relaxation times of the slowest mode, for an error bar by blocking
+
+
+def kept(times: float) -> float:
+    """Part of the variance of one sample that the mean over so many correlation times keeps.
+
+    Of a process that decays as an exponential: 1 for none, 2/times for many.
+
+    >>> kept(0.0), round(kept(1e-3), 3), round(1e4 * kept(1e4), 1)
+    (1.0, 1.0, 2.0)
+    """
+    if times < 1e-3:
+        return 1.0
+    return float(2 * (times + np.expm1(-times)) / times**2)
+
+
+class MoleculeTensorAccumulator(TensorAccumulator):
+    """Block averages of tensors of molecules, and how much these differ in one sample."""
+
+    def __init__(
+        self,
+        observable: Observable,
+        case: Case,
+        parts: tuple[str, ...],
+        kind: int | str,
+        molecules: int,
+    ) -> None:
+        super().__init__(observable, case, parts)
+        self.every, self.kind = observable.every, kind
+        self.number = 1  # molecules, or bonds, in a sample
+        self.runs = 1  # that were pooled
+        self.scatter = Blocks((len(parts), case.box.dimension**2 + 1))  # elements, and the trace
+        self.times = least_times_of(case, kind)
+        self.own = OwnMeans(molecules, len(parts) * case.box.dimension**2)
+
+    def note_own(self, tensors: Array) -> None:
+        """Take the tensors (molecules, parts, d, d) of each molecule."""
+        self.blocks.add(tensors.mean(axis=0))
+        self.own.add(tensors.reshape(len(tensors), -1))
+
+    def note_sums(self, sums: Array, molecules: int) -> None:
+        """Take the sums (groups, parts d d) of the tensors of each group of so many molecules."""
+        mean = sums.sum(axis=0) / molecules
+        self.blocks.add(mean.reshape(len(self.parts), *[self.case.box.dimension] * 2))
+        self.own.add_sums(sums)
+
+    def note_squares(self, elements: Array, traces: Array, number: int) -> None:
+        """Take the means over `number` molecules of the squares of elements (parts, d, d) and of
+        traces (parts,)."""
+        self.number = number
+        self.scatter.add(np.concatenate([elements.reshape(len(traces), -1), traces[:, None]], 1))
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks, scatter=self.scatter, own=self.own, number=self.number)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        self.scatter = Blocks.from_state(unpack(state, "scatter"))
+        self.own.restore(unpack(state, "own"))
+        self.number = int(state["number"])
+
+    def pool(self, other: BlockAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        assert isinstance(other, MoleculeTensorAccumulator)
+        super().pool(other)
+        self.scatter.pool(other.scatter)
+        self.own.pool(other.own)
+        self.number, self.runs = max(self.number, other.number), self.runs + other.runs
+
+    def weights(self, part: int) -> Array:
+        """Part of the size that each normal mode has: the same of the bonds."""
+        assert self.times is not None
+        return np.ones(len(self.times.mode))
+
+    def relaxations(self) -> float:
+        """How many relaxation times of the slowest mode a run has, nan where they are not known.
+
+        Those of molecules at rest: a flow makes them shorter.
+        """
+        if self.times is None:
+            return np.nan
+        length = self.blocks.count / self.runs * self.every * self.case.fluid.timestep
+        return float(length / self.times.mode[0])
+
+    def short_run(self) -> str:
+        """Where blocking cannot see how slowly molecules change: a note."""
+        times = self.relaxations()
+        if np.isnan(times):
+            return self.own.caution()
+        if not 0 < times < ENOUGH:
+            return ""
+        most = "at most " * (self.case.solutes is not None and self.case.fluid.molecule is not None)
+        return f"error bar is a lower bound: the run has {most}{times:.2g} relaxation times"
+
+    def bounds(self, part: int) -> tuple[Array, float]:
+        """Least errors of the elements (d, d) of a part, and of its trace; 0 in a long run.
+
+        The scatter of the molecules' own means, which may be caught between walls however long the
+        run is; and where times are known, but blocks too short, that in one sample.
+        """
+        d = self.case.box.dimension
+        short = bool(self.short_run())
+        if not (short or np.isnan(self.relaxations()) or self.case.walls):
+            return np.zeros((d, d)), 0.0
+        sums = np.zeros((d * d + 1, len(self.parts), d * d))
+        sums[:-1, part], sums[-1, part] = np.eye(d * d), np.eye(d).ravel()
+        bound = np.nan_to_num(self.own.error(sums.reshape(d * d + 1, -1)))
+        if self.times is not None and short:
+            bound = np.maximum(bound, self.scatter_in_samples(part))
+        return bound[:-1].reshape(d, d), float(bound[-1])
+
+    def scatter_in_samples(self, part: int) -> Array:
+        """Errors of the elements of a part, and of its trace, by how much molecules differ in one
+        sample and what a mean over the run keeps of that."""
+        assert self.times is not None
+        weight = self.weights(part) ** 2
+        slow = float((weight * self.times.stress).sum() / weight.sum())  # of squares of modes
+        length = self.relaxations() * float(self.times.mode[0])
+        mean, square = self.blocks.mean()[part], self.scatter.mean()[part]
+        means = np.append(mean.ravel(), np.trace(mean))
+        independent = self.number * self.runs
+        variance = np.maximum(square - means**2, 0.0) * kept(length / slow) / independent
+        return np.sqrt(variance)
+
+    def errors(self) -> Array:
+        """Standard errors (parts, d, d)."""
+        found = self.blocks.error()
+        if not self.blocks.count:
+            return found
+        return np.maximum(found, np.stack([self.bounds(k)[0] for k in range(len(self.parts))]))
+
+    def size(self, part: int) -> tuple[float, float]:
+        """Trace of a part, and its standard error."""
+        value, error = self.summed(part, np.eye(self.case.box.dimension))
+        return value, float(np.maximum(error, self.bounds(part)[1]))

@@ -1,0 +1,278 @@
+"""The stress of the fluid, kinetic, collisional, of bonds: pressure, and viscosity under shear."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+import numpy as np
+
+from mesokit import theory
+from mesokit.case.component import component, option, tag
+from mesokit.errors import CaseError
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import (
+    bond_viscosity,
+    shear_note,
+    springs_in,
+    stress_in_shear,
+)
+from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH, kept
+from mesokit.method.mpcd.observe.shared.tensor import TensorAccumulator
+from mesokit.seam.engine import RunningFluid
+from mesokit.seam.observable import Observable
+from mesokit.seam.result import Array, Comparison, Result
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+PARTS = ("kinetic", "collisional", "bond")  # the last one of molecules only
+ROUSE = "Rouse molecules, beads with the friction of free particles"
+IN_SHEAR, OF_PART = "no theory of such a fluid in shear", "no theory of this part"
+UNIT = {2: "m/tau^2", 3: "m/(a tau^2)"}  # force per area, by dimension
+
+
+@component
+class Stress(Observable):
+    """Stress tensor: momentum carried by flying particles, and moved by collisions and bonds.
+
+    Positive under shear, sigma_xy = eta dv_x/dy, so that the pressure is minus its diagonal.
+    """
+
+    quantity: Literal["stress"] = tag("stress")
+    measures: ClassVar[tuple[str, ...]] = ("stress",)
+    every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError between walls."""
+        if case.walls:
+            raise CaseError("stress is measured without walls; use wall-stress")
+
+    def accumulator(self, case: Case) -> StressAccumulator:
+        """An empty memory for it."""
+        return StressAccumulator(self, case)
+
+
+class StressAccumulator(TensorAccumulator):
+    """Block averages of both parts and their sum."""
+
+    def __init__(self, observable: Stress, case: Case) -> None:
+        observable.check(case)
+        self.bonded_beads = case.fluid.molecule is not None or case.solutes is not None
+        self.given = PARTS[: 3 if self.bonded_beads else 2]
+        self.every = observable.every
+        # numbers per cell of all that carries momentum, and of what moves as one
+        self.carriers, self.wholes = setting.carriers(case)
+        self.springs = springs_in(case)
+        super().__init__(observable, case, (*self.given, "total"))
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        parts = [fluid.stress[name] for name in self.given]
+        self.blocks.add(np.stack([*parts, sum(parts[1:], parts[0])]))
+
+    def result(self) -> Result:
+        """Tensors, pressure and viscosities."""
+        theory = "molecular chaos, ideal gas" + (" of molecules" if self.bonded_beads else "")
+        if self.case.box.steady_rate and self.bonded() is not None:
+            theory = "molecules in shear"
+        return self.tensors("stress", "stress", UNIT[self.case.box.dimension], theory)
+
+    def length(self) -> float:
+        """Of a run."""
+        return self.blocks.count / self.blocks.series * self.every * self.case.fluid.timestep
+
+    def short_run(self) -> str:
+        """Where blocking cannot see how slowly bonds change: a note."""
+        slowest = max((float(times.mode[0]) for _, times in self.springs), default=0.0)
+        if not 0 < self.length() < ENOUGH * slowest:
+            return ""
+        times = self.length() / slowest
+        return f"error bar is a lower bound: the run has {times:.2g} relaxation times"
+
+    def least(self, weight: Array) -> float:
+        """Least error of a sum of elements of the stress of bonds, and so of the total, with these
+        weights (d, d); 0 in a long run.
+
+        The stress of a mode of springs at rest has the moments of x x/V with a Gaussian x of
+        variance kT along each axis, and is forgotten in the stress time.
+        """
+        if not self.short_run():
+            return 0.0
+        squares = float((weight**2 + weight * weight.T).sum())
+        kept_of_modes = sum(
+            number * kept(self.length() / float(stress))
+            for number, times in self.springs
+            for stress in times.stress
+        )
+        scale = self.case.fluid.kT / self.case.box.volume
+        return scale * float(squares * kept_of_modes / self.blocks.series) ** 0.5
+
+    def summed(self, part: int, weight: Array) -> tuple[float, float]:
+        """Sum of the elements of a part with these weights (d, d), and its standard error."""
+        value, error = super().summed(part, weight)
+        return value, float(np.maximum(error, self.least(weight) if self.bonds_in(part) else 0.0))
+
+    def bonds_in(self, part: int) -> bool:
+        """Whether a part has the stress of bonds in it: that part, and the total."""
+        return self.bonded_beads and part % len(self.parts) >= 2
+
+    def errors(self) -> Array:
+        """Standard errors (parts, d, d)."""
+        found, d = self.blocks.error(), self.case.box.dimension
+        if not self.blocks.count or not self.bonded_beads:
+            return found
+        unit = np.eye(d * d).reshape(d, d, d, d)
+        least = np.array([[self.least(element) for element in row] for row in unit])
+        found[2:] = np.maximum(found[2:], least)
+        return found
+
+    def expected(self) -> Array:
+        """Pressure on the diagonal, eta gdot off it; nan where there is no theory."""
+        case, d = self.case, self.case.box.dimension
+        expected = np.zeros((len(self.parts), d, d))
+        known = self.known()
+        kT = case.fluid.kT if known else np.nan
+        for axis in range(d):
+            expected[0, axis, axis] = -self.carriers * kT
+            expected[-1, axis, axis] = -self.wholes * kT  # bonds pull as if beads were one
+            expected[2:-1, axis, axis] = (self.carriers - self.wholes) * kT
+        rate, coefficients = case.box.steady_rate, setting.transport(case)
+        if case.fluid.force.acts:
+            expected[:] = np.nan
+        elif case.box.sheared:
+            # the parts and the normal stresses are of higher order in the shear rate
+            expected[:, range(d), range(d)] = np.nan
+            expected[2:-1] = np.nan
+            steady = coefficients and rate
+            for part, nu in zip((0, 1, -1), self.viscosities(), strict=True):
+                shear = nu * setting.mass_density(case) * rate if steady else np.nan
+                expected[part, 0, 1] = expected[part, 1, 0] = shear
+            self.put_bonds(expected)
+        return expected
+
+    def put_bonds(self, expected: Array) -> None:
+        """Of molecules in steady shear: the total, and the part of the bonds."""
+        case, d = self.case, self.case.box.dimension
+        rate, bonded = case.box.steady_rate, self.bonded()
+        if not (rate and self.bonded_beads):
+            return
+        slow = bond_viscosity(case)
+        if slow is not None:
+            expected[2, 0, 1] = expected[2, 1, 0] = slow * rate
+        if bonded is None:
+            return
+        expected[-1, 0, 1] = expected[-1, 1, 0] = bonded.viscosity * rate
+        if not self.known():
+            return
+        for axis in range(d):
+            stretch = bonded.first if axis == 0 else 0.0
+            expected[2, axis, axis] = (self.carriers - self.wholes) * case.fluid.kT + stretch
+            expected[-1, axis, axis] = -self.wholes * case.fluid.kT + stretch
+
+    def known(self) -> bool:
+        """Whether the pressure is that of an ideal gas of known temperature."""
+        case = self.case
+        ideal = case.fluid.collision.ideal or not case.fluid.species
+        return ideal and (setting.isothermal(case) or not setting.driven(case))
+
+    def viscosities(self) -> tuple[float, float, float]:
+        """Kinetic, collisional and total viscosity of the theory."""
+        c = setting.transport(self.case)
+        if c is None:
+            return np.nan, np.nan, np.nan
+        return c.viscosity_kinetic, c.viscosity_collisional, c.viscosity
+
+    def comparisons(self) -> list[Comparison]:
+        """Pressure, and under shear the viscosity with its parts."""
+        case, found = self.case, []
+        mean, error = self.blocks.mean(), self.errors()
+        rate = case.box.steady_rate
+        if rate:
+            scale = setting.mass_density(case) * rate
+            notes = (
+                setting.caveat(case),
+                setting.chaos(
+                    case, "10 to 30 % low at mean free path 0.1, with rules +a in 2D half"
+                ),
+                setting.chaos(
+                    case, "1 to 2 % high at mean free path 0.1, with rules +a in 2D 10 %"
+                ),
+            )
+            for part, name, note in zip(
+                (-1, 0, 1), ("viscosity", "kinetic part", "collisional part"), notes, strict=True
+            ):
+                nu, bonded = self.viscosities()[part], self.bonded()
+                if part < 0 and bonded is not None:
+                    nu, note = bonded.viscosity / setting.mass_density(case), shear_note(case)
+                elif self.bonded_beads:
+                    note = IN_SHEAR if part < 0 else OF_PART
+                note = self.cautioned(note, part)
+                found.append(
+                    Comparison(
+                        f"{name} from the stress",
+                        float(mean[part, 0, 1] / scale),
+                        float(error[part, 0, 1] / abs(scale)),
+                        nu,
+                        "a^2/tau",
+                        note,
+                    )
+                )
+            if self.bonded_beads:
+                found.append(self.bond_part(scale))
+            found += self.normal_differences()
+        known = self.known()
+        ideal = self.wholes * case.fluid.kT
+        if case.box.sheared and self.bonded_beads:  # stretched bonds pull along the flow
+            bonded = self.bonded() if rate else None
+            ideal = ideal - bonded.first / case.box.dimension if bonded else np.nan
+        d = case.box.dimension
+        pressure, spread = self.summed(-1, -np.eye(d) / d)
+        spread = setting.with_start(case, spread, ideal, self.blocks.series)
+        ideal = ideal if known else np.nan
+        note = ""
+        if case.box.sheared and self.bonded_beads:
+            note = shear_note(case) if np.isfinite(ideal) else IN_SHEAR
+        note = self.cautioned(note)
+        found.append(Comparison("pressure", pressure, spread, ideal, UNIT[d], note))
+        return found
+
+    def cautioned(self, note: str, part: int = -1) -> str:
+        """A note on a part, and what to say of its error bar."""
+        short = self.short_run() if self.bonds_in(part) else ""
+        return "; ".join(filter(None, (note, short)))
+
+    def bond_part(self, scale: float) -> Comparison:
+        """What bonds add to the viscosity; `scale` is the mass density times the shear rate."""
+        value, error = self.blocks.mean()[2, 0, 1] / scale, self.errors()[2, 0, 1] / scale
+        known, expected, note = bond_viscosity(self.case), np.nan, ""
+        if known is not None:
+            expected = known / setting.mass_density(self.case)
+            note = shear_note(self.case)
+            if not self.bonded():
+                note = f"approximate: at zero shear rate; {ROUSE}"
+        what = "bond part from the stress"
+        note = self.cautioned(note)
+        return Comparison(what, float(value), float(abs(error)), expected, "a^2/tau", note)
+
+    def bonded(self) -> theory.ShearStress | None:
+        """What Rouse's theory expects of a sheared fluid of molecules."""
+        return None if self.case.fluid.molecule is None else stress_in_shear(self.case)
+
+    def normal_differences(self) -> list[Comparison]:
+        """First and, in 3D, second normal-stress difference of a sheared fluid."""
+        bonded, d = self.bonded(), self.case.box.dimension
+        known = (bonded.first, bonded.second) if bonded is not None else (np.nan, np.nan)
+        found = []
+        for which, name in enumerate(("first", "second")[: d - 1]):
+            weight = np.zeros((d, d))
+            weight[which, which], weight[which + 1, which + 1] = 1.0, -1.0
+            found.append(
+                Comparison(
+                    f"{name} normal-stress difference",
+                    *self.summed(-1, weight),
+                    known[which],
+                    UNIT[d],
+                    self.cautioned(shear_note(self.case) if bonded else ""),
+                )
+            )
+        return found

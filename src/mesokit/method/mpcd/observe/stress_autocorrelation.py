@@ -1,0 +1,208 @@
+"""Relaxation modulus from the fluctuations of the stress at rest, and the moduli that follow."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.case.component import component, option, param, tag
+from mesokit.errors import CaseError
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import shear_note
+from mesokit.method.mpcd.expected.rheometer import modes_of_stress
+from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH
+from mesokit.method.mpcd.observe.stress import UNIT
+from mesokit.seam.engine import RunningFluid
+from mesokit.seam.estimate import Estimate
+from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.result import Array, Comparison, Result
+from mesokit.statistics import MultipleTau
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+NOISE = 1.0  # standard errors: the integral ends where G first falls below so many
+ROUGH = 0.2  # relative error that hides by how much a theory is approximate
+STRESS_TIMES = 4.0  # to which it goes where molecules relax as theory knows: all but 2 %
+FREQUENCIES = 40
+
+
+@component
+class StressAutocorrelation(Observable):
+    """G(t) = V/kT <s(t) s(0)> of the shear stresses s of a fluid at rest (Green and Kubo).
+
+    Its integral is the viscosity; half of the value at lag 0 counts, as time is discrete. It ends
+    after four stress times of molecules, or, where these are not known, where G is lost in noise.
+    """
+
+    quantity: Literal["stress-autocorrelation"] = tag("stress-autocorrelation")
+    measures: ClassVar[tuple[str, ...]] = ("stress",)
+    every: int = option(default=1, doc="steps between two samples", ge=1, kw_only=True)
+    max_lag: int | None = param(
+        None, doc="longest lag (as the run allows unless said)", unit="steps", ge=1
+    )
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError where the fluid is not at rest or has walls."""
+        if case.walls:
+            raise CaseError("stress is measured without walls")
+        if setting.driven(case):
+            raise CaseError("stress-autocorrelation: only of a fluid at rest")
+
+    def accumulator(self, case: Case) -> StressAutocorrelationAccumulator:
+        """An empty memory for it."""
+        return StressAutocorrelationAccumulator(self, case)
+
+
+class StressAutocorrelationAccumulator:
+    """A correlator of the elements off the diagonal."""
+
+    def __init__(self, observable: StressAutocorrelation, case: Case) -> None:
+        observable.check(case)
+        self.observable, self.case, self.name = observable, case, observable.label
+        max_lag = None if observable.max_lag is None else observable.max_lag // observable.every
+        d = case.box.dimension
+        self.correlator = MultipleTau((d * (d - 1),), max_lag=max_lag, pooled=1)
+        self.runs = 1  # that were pooled
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample. Rules that do not conserve angular momentum have no symmetric stress."""
+        stress = np.sum(list(fluid.stress.values()), axis=0)
+        self.correlator.add(stress[~np.eye(len(stress), dtype=bool)])
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(correlator=self.correlator)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.correlator = MultipleTau.from_state(unpack(state, "correlator"))
+
+    def pool(self, other: StressAutocorrelationAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.correlator.pool(other.correlator)
+        self.runs += other.runs
+
+    def modulus(self) -> tuple[Array, Estimate]:
+        """Time (n,) and G(t) with what each block of time adds to it."""
+        case = self.case
+        scale = case.box.volume / case.fluid.kT
+        lags: list[Array] = []
+        values: list[Array] = []
+        residuals: list[Array] = []
+        weights = np.zeros(0)
+        for lag, sums, counts in self.correlator.products(within_blocks=True):
+            total = counts.sum(axis=0)
+            mean = sums.sum(axis=0) / total
+            weights = counts[:, 0] if not lags else weights
+            lags.append(lag * self.observable.every * case.fluid.timestep)
+            values.append(scale * mean)
+            residuals.append(scale * (sums - mean * counts) / total)
+        if not lags:
+            return np.zeros(0), Estimate(np.zeros(0), np.zeros((0, 0)), weights)
+        joined = Estimate(np.concatenate(values), np.concatenate(residuals, axis=1), weights)
+        return np.concatenate(lags), joined
+
+    def result(self) -> Result:
+        """G(t), its integral and its Fourier transforms."""
+        time, modulus = self.modulus()
+        known = modes_of_stress(self.case)
+        bonds = None
+        if known is not None and known[1] and len(time):
+            bonds = theory.relaxation_modulus(time, *known[:2])
+            bonds[time == 0] = np.nan  # where all collide as well
+        extra: dict[str, Any] = {}
+        comparisons: list[Comparison] = []
+        if len(time) > 3:
+            comparisons, extra = self.integrals(time, modulus)
+        return Result(
+            quantity="stress-autocorrelation",
+            drawing="modulus",
+            name=self.name,
+            x={"time": time},
+            value=modulus.value,
+            error=modulus.error,
+            label="relaxation modulus G",
+            units={"value": UNIT[self.case.box.dimension], "time": "tau"},
+            expected=bonds,
+            theory="Rouse, bonds alone",
+            comparisons=tuple(comparisons),
+            samples=self.correlator.count,
+            extra=extra,
+        )
+
+    def remembers(self) -> bool:
+        """Whether the stress lasts longer than collisions make it: in molecules and solutes."""
+        return self.case.fluid.molecule is not None or self.case.solutes is not None
+
+    def stress_time(self) -> float:
+        """The longest of the molecules, nan where it is not known."""
+        known = modes_of_stress(self.case)
+        return max(known[1], default=np.nan) if known else np.nan
+
+    def end(self, time: Array, modulus: Estimate) -> int:
+        """The first lag that the integral leaves out."""
+        slow = self.stress_time()
+        if slow == slow:
+            return max(2, int(np.searchsorted(time, STRESS_TIMES * slow, "right")))
+        quiet = np.flatnonzero(~(modulus.value > NOISE * modulus.error))
+        return int(quiet[0]) if len(quiet) else len(time)
+
+    def note(self, last: float, error: float) -> str:
+        """How far the integral goes, what that leaves out, and how good the theory is.
+
+        `error`: relative to theory; a large one says nothing about the theory.
+        """
+        if not self.remembers():
+            return setting.caveat(self.case)
+        slow, until = self.stress_time(), f"integral to t = {last:.3g} tau"
+        if np.isnan(slow):
+            return f"lower bound: {until}, where G is lost in noise"
+        length = self.correlator.count / self.runs * self.observable.every
+        times = length * self.case.fluid.timestep / slow
+        if last < 0.75 * STRESS_TIMES * slow:
+            until = f"lower bound: {until}, stress time {slow:.3g} tau"
+        elif times < ENOUGH:
+            until += f", error bar is a lower bound: the run has {times:.2g} stress times"
+        return until if error > ROUGH else f"{shear_note(self.case)}; {until}"
+
+    def integrals(self, time: Array, modulus: Estimate) -> tuple[list[Comparison], dict[str, Any]]:
+        """Viscosity, and moduli G' = w int G sin wt dt, G'' = w int G cos wt dt with errors."""
+        end = self.end(time, modulus)
+        weight = np.zeros(len(time))
+        weight[0] = (time[1] - time[0]) / 2 if end == 1 else 0.0
+        weight[: end - 1] += np.diff(time[:end]) / 2
+        weight[1:end] += np.diff(time[:end]) / 2
+        density = setting.mass_density(self.case)
+        value, spread = modulus.scalar(weight @ modulus.value, weight)
+        known = modes_of_stress(self.case)
+        last = time[end - 1] if end > 1 else time[1]
+        expected = np.nan
+        if known is not None:  # the integral to the same time
+            bonds = sum(known[0] * tau * -math.expm1(-last / tau) for tau in known[1])
+            expected = (known[2] + bonds) / density
+        found = [
+            Comparison(
+                "viscosity from the integral", value / density, spread / density, expected,
+                "a^2/tau", self.note(last, spread / density / expected),
+            )
+        ]  # fmt: skip
+        longest = last if self.remembers() else time[-1]
+        if longest < 2 * time[1]:
+            return found, {}
+        frequency = np.geomspace(1 / longest, 1 / time[1], FREQUENCIES)
+        extra: dict[str, Any] = {"frequency": frequency}
+        for name, wave in (("storage", np.sin), ("loss", np.cos)):
+            kernel = frequency[:, None] * wave(frequency[:, None] * time) * weight
+            transformed = modulus.linear(kernel)
+            extra[name], extra[f"{name}_error"] = transformed.value, transformed.error
+        if known is not None:
+            phi_kT, times, viscosity = known
+            extra["storage_theory"] = theory.storage_modulus(frequency, phi_kT, times)
+            extra["loss_theory"] = theory.loss_modulus(frequency, phi_kT, times, viscosity)
+        return found, extra

@@ -1,0 +1,170 @@
+"""How long molecules take from one plane across the flow to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.case.box import AXES, Axis
+from mesokit.case.component import component, param, tag
+from mesokit.method.mpcd.expected.compression import unit_cell
+from mesokit.method.mpcd.expected.ideal import drift_of, flow_axis, flow_sign
+from mesokit.method.mpcd.expected.molecules import KIND, group_of
+from mesokit.method.mpcd.observe.shared.events import (
+    EventAccumulator,
+    Words,
+    crossing,
+    require_still,
+)
+from mesokit.observe.shared.over_molecules import MeansOverMolecules
+from mesokit.seam.engine import RunningFluid
+from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.result import Array, Comparison, Result
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+
+@component
+class TransitTime(Observable):
+    """Times that centres of mass take from plane to plane, a `length` apart, with the flow.
+
+    Planes lie across the axis at all multiples of the length; a transit begins when a molecule is
+    at a plane for the first time and ends when it is at the next for the first time. So each way
+    counts once, however often a molecule goes back and forth, and the mean is length/velocity.
+    """
+
+    quantity: Literal["transit-time"] = tag("transit-time")
+    needs_fluid: ClassVar[bool] = False
+    axis: Axis | None = param(
+        None, doc="the way (along the force on the fluid, x unless there is one)"
+    )
+    length: float | None = param(
+        None,
+        doc="from plane to plane (the unit cell of an array, else the box, unless said)",
+        unit="a",
+        gt=0,
+    )
+    of: Literal["centres", "particles"] = param(
+        "centres", doc='of molecules or monomers; "particles": of the fluid'
+    )
+    kind: int | str = param(1, doc=KIND)
+    molecules: int = param(2000, doc="those followed, evenly spread over all", ge=1)
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError without molecules, and for an axis along which images slide."""
+        group_of(case, self.of, self.kind)
+        require_still(case, self.axis_of(case), "axis")
+
+    def axis_of(self, case: Case) -> int:
+        """Number of the axis."""
+        return flow_axis(case) if self.axis is None else case.box.index(self.axis)
+
+    def accumulator(self, case: Case) -> TransitTimeAccumulator:
+        """An empty memory for it."""
+        return TransitTimeAccumulator(self, case)
+
+
+class TransitTimeAccumulator(EventAccumulator):
+    """Where each molecule was, the next plane that it has not been at, and when it was at the last.
+
+    Memory: `time`, `place`, `plane` (number of the next), `since` (nan before the first plane).
+    """
+
+    def __init__(self, observable: TransitTime, case: Case) -> None:
+        observable.check(case)
+        words = Words("transit-time", observable.label, "transit time", "transits")
+        super().__init__(case, words, observable.of, observable.kind, observable.molecules)
+        self.axis = observable.axis_of(case)
+        self.sign = flow_sign(case, self.axis)
+        self.length = observable.length or unit_cell(case, self.axis)
+        self.velocity = MeansOverMolecules(len(self.beads), 1)
+
+    def observe(self, fluid: RunningFluid) -> None:
+        """Take one sample."""
+        place = self.sign * self.each(fluid)[:, :, self.axis].mean(axis=1)
+        time, now = float(fluid.time), self.now
+        self.samples_here += 1
+        self.durations.look(time)
+        if not now:
+            plane = np.floor(place / self.length) + 1
+            self.now = {"plane": plane, "since": np.full(len(place), np.nan)}
+        else:
+            times, before = (float(now["time"]), time), now["place"]
+            self.velocity.add(((place - before) / (times[1] - times[0]))[:, None])
+            while (beyond := place >= now["plane"] * self.length).any():
+                self.arrive(np.flatnonzero(beyond), before, place, times)
+        self.now |= {"time": np.array(time), "place": place}
+
+    def arrive(
+        self, who: NDArray[np.intp], before: Array, place: Array, times: tuple[float, float]
+    ) -> None:
+        """Some are beyond their next plane: note when they were at it."""
+        plane, since = self.now["plane"], self.now["since"]
+        arrived = crossing(before[who], place[who], plane[who] * self.length, times)
+        lasted = arrived - since[who]
+        known = np.isfinite(lasted)
+        self.durations.add(arrived[known], lasted[known], who[known])
+        since[who] = arrived
+        plane[who] += 1
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return super().state() | pack(velocity=self.velocity)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        super().restore(state)
+        self.velocity.restore(unpack(state, "velocity"))
+
+    def pool(self, other: EventAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        assert isinstance(other, TransitTimeAccumulator)
+        super().pool(other)
+        self.velocity.pool(other.velocity)
+
+    def result(self) -> Result:
+        """The distribution of the times, the mean, and the velocity."""
+        drift = drift_of(self.case, self.group, self.kind)
+        speed = self.sign * drift.velocity[self.axis] if drift else 0.0
+        if drift is None or not speed > 0:
+            return self.made(self.comparisons(0.0, ""))
+        diffusion = drift.diffusion
+        return self.made(
+            self.comparisons(speed, drift.note),
+            lambda t: theory.first_passage_cdf(t, self.length, speed, diffusion),
+            "drift and diffusion",
+        )
+
+    def mean(self) -> tuple[float, float]:
+        """Mean time and its standard error, transits that the end of the run has cut included.
+
+        The last, unfinished one is more often a long one. Of n transits one after the other that
+        makes the mean short by its variance over n times its square, to the first order in 1/n.
+        """
+        value, error = self.durations.mean()
+        lasted = self.durations.lasted
+        if not self.durations.number:
+            return value, error
+        more = 1 + lasted.var() / value**2 * self.followed / self.durations.number
+        return value * more, error * more
+
+    def comparisons(self, speed: float, note: str) -> Iterator[Comparison]:
+        """Mean time, number, and the velocity that must agree with it."""
+        few = self.note()
+        wanted = np.nan if few or not speed > 0 else self.length / speed
+        yield Comparison("mean transit time", *self.mean(), wanted, "tau", few or note)
+        yield self.counted()
+        value, error = float(self.velocity.mean()[0]), float(self.velocity.error()[0])
+        along = f"velocity of centres along {AXES[self.axis]}"
+        sign = self.sign
+        known = sign * speed if speed > 0 else np.nan
+        note = "; ".join(filter(None, (note, self.velocity.caution())))
+        yield Comparison(along, sign * value, error, known, "a/tau", note)
+        if value > 3 * error:
+            over = self.length / value
+            yield Comparison("length over velocity", over, over * error / value, unit="tau")

@@ -1,0 +1,226 @@
+"""Decay of transverse velocity modes, and the viscosity that it gives."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from mesokit import theory
+from mesokit.case.component import component, tag
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.expected.molecules import (
+    free_bond,
+    modes_of,
+    molecule_of,
+    rouse_note,
+    rouse_times_of,
+    without_bonds,
+)
+from mesokit.method.mpcd.molecule import FLUID
+from mesokit.method.mpcd.observe.shared.bonded_decay import BondedLaw, fit_bonded
+from mesokit.method.mpcd.observe.shared.decay import fit_curve, normalised
+from mesokit.method.mpcd.observe.shared.modes import (
+    SHOWN,
+    Array,
+    Modes,
+    ModesAccumulator,
+    transverse_units,
+)
+from mesokit.observe.shared.fitted import fitted_number
+from mesokit.seam.result import Comparison, Result
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+LOWEST = (0.5, 0.2)  # of the correlation, that the fit looks at: later lags add little but noise
+FEWEST = 4  # lags; the lower limit serves where the sampling is too coarse for the upper one
+DROWNED = 2.0  # standard errors below which a correlation has drowned in noise
+FITTED = 3  # wave numbers of a fluid of molecules that are fitted
+FIRST = 3  # steps left out of the fit: the first collisions do not obey hydrodynamics yet
+
+
+@component
+class TransverseModes(Modes):
+    """Correlation in time of velocity modes across their wave vector, averaged over equal length.
+
+    It decays as exp(-nu k^2 t): each wave number gives a viscosity.
+    """
+
+    quantity: Literal["transverse-modes"] = tag("transverse-modes")
+
+    def accumulator(self, case: Case) -> TransverseModesAccumulator:
+        """An empty memory for it."""
+        return TransverseModesAccumulator(self, case)
+
+
+def decaying(time: Array, rate: float, amplitude: float) -> Array:
+    """An exponential."""
+    return np.asarray(amplitude * np.exp(-rate * time))
+
+
+class TransverseModesAccumulator(ModesAccumulator):
+    """Correlators of the polarisations across each wave vector."""
+
+    def polarise(self, wavevector: Array) -> Array:
+        """Across it."""
+        return transverse_units(wavevector)
+
+    def result(self) -> Result:
+        """The decay for each wave number, and the viscosity from each."""
+        time, value, error = self.curves()
+        coefficients = setting.transport(self.case) if self.undisturbed() else None
+        first = self.equipartition() if self.undisturbed() else None
+        bonded = self.case.fluid.molecule is not None
+        fits = self.viscosities(coefficients)
+        if bonded:
+            fits = self.bonded_fits() + self.deviations()
+        return Result(
+            quantity="transverse-modes",
+            drawing="modes",
+            name=self.name,
+            x={"time": time, "wavenumber": self.wavenumbers},
+            value=value,
+            error=error,
+            label="transverse mode correlation",
+            units={"value": "", "time": "tau", "wavenumber": "1/a"},
+            expected=self.law(time),
+            theory="Rouse fluid at finite k" if bonded else "exp(-nu k^2 t)",
+            comparisons=tuple([c for c in [*fits, first] if c]),
+            samples=self.shells[0].correlator.count,
+            extra=self.smooth(time),
+        )
+
+    def law(self, time: Array) -> Array | None:
+        """exp(-nu k^2 t), or what springs make of it."""
+        if self.case.fluid.molecule is not None:
+            return self.bonded_law(time) if self.undisturbed() else None
+        coefficients = setting.transport(self.case) if self.undisturbed() else None
+        if coefficients is None:
+            return None
+        return theory.transverse_correlation(
+            self.wavenumbers, time[:, None], coefficients.viscosity
+        )
+
+    def bonded_law(self, time: Array, finite: bool = True) -> Array | None:
+        """Of a fluid of Rouse molecules, at finite wave numbers or as for long waves."""
+        case = self.case
+        coefficients = without_bonds(case)
+        times, bond = rouse_times_of(case, FLUID), free_bond(case, FLUID)
+        if coefficients is None or times is None or bond is None:
+            return None
+        molecule, nu = molecule_of(case, kind=FLUID), coefficients.viscosity
+        elasticity = case.fluid.kT / (case.fluid.mass * molecule.length)
+        if not finite:
+            return theory.transverse_correlation_chain(
+                self.wavenumbers, time[:, None], nu, elasticity, times.stress
+            )
+        diffusion = coefficients.diffusion / molecule.length
+        springs = theory.GaussianMolecule(
+            modes_of(molecule), times.mode[0], bond, diffusion, case.box.dimension
+        )
+        curves = [
+            theory.transverse_correlation_finite_k(k, time, nu, elasticity, springs)
+            for k in self.wavenumbers
+        ]
+        return np.stack(curves, axis=1)
+
+    def bonded_fits(self) -> list[Comparison]:
+        """Stress time of the slowest mode and background viscosity, from each of the longest waves.
+
+        Fitted to the correlation of finite k up to where theory falls below noise.
+        """
+        case = self.case
+        coefficients = without_bonds(case)
+        times, bond = rouse_times_of(case, FLUID), free_bond(case, FLUID)
+        if not self.undisturbed() or coefficients is None or times is None or bond is None:
+            return []
+        molecule, found = molecule_of(case, kind=FLUID), []
+        springs = theory.GaussianMolecule(
+            modes_of(molecule),
+            times.mode[0],
+            bond,
+            coefficients.diffusion / molecule.length,
+            case.box.dimension,
+        )
+        elasticity = case.fluid.kT / (case.fluid.mass * molecule.length)
+        for k, _, correlator in self.shells[:FITTED]:
+            lags, curve = normalised(correlator)
+            time, law = lags * self.interval(), BondedLaw(k, elasticity, springs)
+            start = (coefficients.viscosity, float(times.mode[0]))
+            if len(time) < FEWEST:
+                continue
+            error = curve.error
+            above = np.flatnonzero(np.abs(law(time, *start)) > DROWNED * error)
+            use = np.arange(len(time)) <= (above[-1] if len(above) else 0)
+            use &= lags * self.observable.every >= FIRST
+            fitted = fit_bonded(time, curve, law, start, use)
+            if fitted is None:
+                continue
+            nu, slowest = np.exp(fitted.value)
+            for value, gradient, what, expected, unit, note in (
+                (
+                    slowest / 2, [0.0, slowest / 2], "stress time", times.stress[0], "tau",
+                    rouse_note(case),
+                ),
+                (
+                    nu, [nu, 0.0], "background viscosity", start[0], "a^2/tau",
+                    "approximate: that of free particles",
+                ),
+            ):  # fmt: skip
+                number, spread = fitted.scalar(float(value), np.array(gradient))
+                name = f"{what} at k = {k:.4g}/a"
+                found.append(fitted_number(name, number, spread, float(expected), unit, note))
+        return found
+
+    def deviations(self) -> list[Comparison]:
+        """The largest from theory for each of the smallest wave numbers, above noise."""
+        time, value, error = self.curves()
+        found = []
+        for finite, name in ((True, "finite k"), (False, "long waves")):
+            if not self.undisturbed() or not len(time):
+                break
+            law = self.bonded_law(time, finite)
+            if law is None:
+                break
+            for i, k in enumerate(self.wavenumbers[:SHOWN]):
+                drowned = np.flatnonzero(~(np.abs(value[:, i]) > DROWNED * error[:, i]))
+                end = drowned[drowned > FIRST][:1]
+                use = slice(0, int(end[0]) if len(end) else len(time))
+                off = value[use, i] - law[use, i]
+                worst = int(np.argmax(np.abs(off)))
+                found.append(
+                    Comparison(
+                        f"largest deviation at k = {k:.4g}/a, {name}",
+                        float(off[worst]),
+                        float(error[worst, i]),
+                        0.0,
+                        "",
+                        f"at {time[worst]:.3g} tau",
+                    )
+                )
+        return found
+
+    def viscosities(self, coefficients: theory.Transport | None) -> list[Comparison]:
+        """One for each of the smallest wave numbers."""
+        found = []
+        for k, _, correlator in self.shells[:SHOWN]:
+            lags, curve = normalised(correlator)
+            time = lags * self.interval()
+            for lowest in LOWEST:
+                below = np.flatnonzero(~(curve.value > lowest))
+                use = np.arange(len(time)) < (below[0] if len(below) else len(time))
+                use &= lags * self.observable.every >= FIRST
+                if use.sum() >= FEWEST:
+                    break
+            if use.sum() < 3:
+                continue
+            start = [-np.log(curve.value[use][-1]) / time[use][-1], 1.0]
+            fitted = fit_curve(time, curve, decaying, start, use)
+            if fitted is None:
+                continue
+            nu, error = fitted.scalar(fitted.value[0] / k**2, np.array([1 / k**2, 0]))
+            expected = coefficients.viscosity if coefficients else np.nan
+            what, note = f"viscosity at k = {k:.4g}/a", setting.caveat(self.case)
+            found.append(fitted_number(what, nu, error, expected, "a^2/tau", note))
+        return found

@@ -1,0 +1,1 @@
+"""Spheres and disks: hard ones, event by event, and soft ones, by forces."""

@@ -1,0 +1,106 @@
+"""How the velocities of spheres are distributed, and how far that is from Maxwell's."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.errors import CaseError
+from mesokit.method.spheres.common.expected.cooling import rate
+from mesokit.method.spheres.common.expected.slices import Find
+from mesokit.method.spheres.common.made import made
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+Array = NDArray[np.float64]
+FEW = 0.01  # of the collisions, made elastic by a contact time: they do not change the law
+Known = tuple[float, str]  # a_2, nan where nothing is known, and whose law it is
+
+
+def cumulant(find: Find, case: Case) -> Known:
+    """What theory knows: of spheres that keep energy, and of smooth ones of constant restitution
+    without walls."""
+    section = case.spheres
+    if find(case) is not None:
+        return 0.0, "Maxwell"
+    collision = getattr(section, "collision", None)
+    if collision is None or case.walls or section.gravity:
+        return math.nan, ""
+    if collision.elastic:
+        return 0.0, "Maxwell"
+    kind, heating = section.kinds[0], section.heating
+    if len(section.kinds) > 1 or kind.spread:
+        return math.nan, ""
+    kicked = hasattr(heating, "power")  # a white noise, unlike a bath
+    constant = hasattr(collision, "restitution") and collision.hard
+    if not constant or collision.rough or (heating and not kicked):
+        return math.nan, ""
+    if theory.elastic_share(rate(case, section.kT), collision.contact_time) > FEW:
+        return math.nan, ""
+    known = theory.fourth_cumulant(collision.restitution, case.box.dimension, heated=kicked)
+    return known, "van Noije and Ernst"
+
+
+class Cumulant:
+    """That of the velocities: `value`, nan where it is not known, `law` and whether it is exact."""
+
+    answers = "velocity-cumulant"
+
+    def __init__(self, find: Find, case: Case, observable: Any) -> None:
+        self.value, self.law = cumulant(find, case)
+        self.exact = self.value == 0.0
+
+
+class VelocitiesOfSpheres:
+    """Maxwell's distribution, or that with the first Sonine polynomial; of all spheres or a kind.
+
+    Each sample is about the mean velocity and scaled by the temperature of those that count: on the
+    mean a histogram loses what both would take.
+    """
+
+    answers = "velocity-distribution"
+
+    def __init__(self, find: Find, case: Case, observable: Any) -> None:
+        self.dimension = case.box.dimension
+        given = observable.component
+        self.axis = case.box.index(given, "component") if given else 0
+        self.group = observable.group(case)
+        if len(self.group) < 3:
+            raise CaseError(
+                f"velocity-distribution: {len(self.group)} spheres; expected 3 at least"
+            )
+        chosen = np.unique(np.linspace(0, len(self.group) - 1, observable.particles).astype(int))
+        self.chosen = chosen if observable.particles < len(self.group) else slice(None)
+        part = min(1.0, observable.particles / len(self.group))
+        roots = np.sqrt(made(case).masses[self.group])
+        alike = float(roots.sum() ** 2 / (len(roots) * (roots**2).sum()))
+        self.taken_by_mean, self.taken_by_energy, self.kept_energy = part * alike, part, 0.0
+        self.ids = self.group[self.chosen]
+        self.cumulant, self.law = cumulant(find, case)
+        self.known = (not math.isnan(self.cumulant),) * 2
+
+    def numbers(self, spheres: Any) -> Array:
+        """Velocities (n, d) over sqrt(kT/m), with the temperature of this moment."""
+        v, mass = spheres.velocities(self.group), spheres.masses(self.group)
+        u = (v - mass @ v / mass.sum()) * np.sqrt(mass)[:, None]
+        kT = float((u * u).sum()) / u.size
+        return np.asarray(u[self.chosen] / math.sqrt(kT) if kT > 0 else u[self.chosen])
+
+    def warm(self, runs: int) -> float:
+        """Nothing: every sample has its own temperature."""
+        return 0.0
+
+    def legend(self) -> str:
+        """Whose law it is."""
+        return "Maxwell" if self.cumulant == 0 else "first Sonine polynomial"
+
+    def note(self, classes: int) -> str:
+        """What to say of it."""
+        if self.cumulant == 0:
+            return f"{classes} classes"
+        return f"approximate: first order in a_2 = {self.cumulant:.3g}, dilute uniform gas"

@@ -1,0 +1,11 @@
+"""What is measured of spheres and disks. A new observable is a file here."""
+
+from __future__ import annotations
+
+from mesokit.case.registry import parts_in
+from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
+from mesokit.seam.observable import Observable
+
+__getattr__ = parts_in(__name__, OBSERVABLES=Observable)
+
+__all__ = ["OBSERVABLES", "MeanSquareDisplacement"]

@@ -1,0 +1,161 @@
+"""How often hard spheres collide."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit import theory
+from mesokit.case.component import component, tag
+from mesokit.method.spheres.common.expected.enskog import pair_rate, root_of_temperature
+from mesokit.seam.estimate import of_mean
+from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.result import Comparison, Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.seam.engine import RunningSpheres
+
+MANY = 25  # collisions, of which blocks know the error
+ENOUGH = 5  # to be expected, where none has been seen, for something to be compared
+KINDS = ("pairs", "walls", "elastic by contact time")
+
+
+@component
+class CollisionRate(Observable):
+    """Collisions of a sphere per time: with others, with walls, and made elastic by a contact time.
+
+    A collision of two counts for both; what a contact time does is told without walls. The mean
+    free path is the mean speed over the rate with others. Theory is that of a uniform gas of equal
+    spheres with Maxwell's velocities: the rate that belongs to the pressure, at the temperature as
+    it is in time.
+    """
+
+    quantity: Literal["collision-rate"] = tag("collision-rate")
+    methods: ClassVar[tuple[str, ...]] = ("event-driven",)
+    of_methods_alone: ClassVar[bool] = True
+    needs_fluid: ClassVar[bool] = False
+
+    def accumulator(self, case: Case) -> CollisionRateAccumulator:
+        """An empty memory for it."""
+        return CollisionRateAccumulator(self, case)
+
+
+class Few(NamedTuple):
+    """What is known of the rate of rare collisions: the least error, theory, and why."""
+
+    error: float = 0.0
+    expected: float = math.nan
+    note: str = ""
+
+
+class CollisionRateAccumulator:
+    """Block averages of what has happened between two samples."""
+
+    def __init__(self, observable: CollisionRate, case: Case) -> None:
+        self.name, self.case, self.every = observable.label, case, observable.every
+        self.blocks = Blocks((5,))  # three rates, the root of the temperature, the mean speed
+        self.before = np.full(6, np.nan)  # time, three counts, root of temperature, mean speed
+
+    def observe(self, spheres: RunningSpheres) -> None:
+        """Take one sample: of what has happened since the last."""
+        root = root_of_temperature(self.case, spheres.totals()[2])
+        speed = float(np.linalg.norm(spheres.velocities(), axis=1).mean())
+        now = np.array([spheres.time, *spheres.collisions, root, speed])
+        elapsed = now[0] - self.before[0]
+        if elapsed > 0:  # false at the first, which is nan
+            pairs, walls, elastic = (now - self.before)[1:4] / elapsed / spheres.n
+            between = 0.5 * (now[4:] + self.before[4:])
+            self.blocks.add([2 * pairs, walls, 2 * elastic, *between])
+        self.before = now
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks, before=self.before)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        self.before = np.array(state["before"])
+
+    def pool(self, other: CollisionRateAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.blocks.pool(other.blocks)
+
+    def result(self) -> Result:
+        """The three rates."""
+        value, error = self.blocks.mean(), self.blocks.error()
+        known = np.array([self.expected(float(value[3])), math.nan, math.nan])
+        contact_time, few = self.case.spheres.collision.contact_time, Few()
+        if contact_time and not self.case.walls:
+            known[2] = known[0] * theory.elastic_share(float(value[0]), contact_time)
+            few = self.few(float(value[2]), float(known[2]))
+            error[2], known[2] = max(error[2], few.error), few.expected
+        # that of a contact time counts walls as well, which are not told apart
+        shown = [0, 1] if self.case.walls else [0, 2] if contact_time else [0]
+        drawn = 2 if self.case.walls else 1
+        note = "approximate: molecular chaos" if not self.case.spheres.collision.elastic else ""
+        share = note or ("" if math.isnan(known[2]) else "approximate: neighbours meet again")
+        notes = [note, note, "; ".join(filter(None, (share, few.note)))]
+        listed = [
+            Comparison(
+                f"collisions per time, {KINDS[k]}",
+                float(value[k]),
+                float(error[k]),
+                float(known[k]),
+                "1/tau",
+                notes[k],
+            )
+            for k in shown
+        ]
+        if value[0] > 0 and not self.case.walls:
+            listed.append(self.free_path(note))
+        return Result(
+            quantity="collision-rate",
+            drawing="curve",
+            name=self.name,
+            x={"with": np.array(KINDS[:drawn])},
+            value=value[:drawn],
+            error=error[:drawn],
+            label="collisions of a sphere per time",
+            units={"value": "1/tau", "with": ""},
+            expected=known[:drawn],
+            theory="Enskog",
+            comparisons=tuple(listed) if self.blocks.count else (),
+            samples=self.blocks.count,
+        )
+
+    def few(self, rate: float, known: float) -> Few:
+        """Of few collisions blocks do not know the error: it is Poisson's then, of as many as there
+        are or are to be expected. Where none has been seen and few are, nothing can be compared."""
+        spacing = self.every * float(self.case.spheres.timestep)
+        each = 2 / (self.case.particles * max(1, self.blocks.count) * spacing)  # rate of one
+        seen, awaited = rate / each, known / each
+        if max(seen, 0.0 if math.isnan(awaited) else awaited) >= MANY:
+            return Few(expected=known)
+        text = f"{round(seen)} seen, {awaited:.2g} expected" if known >= 0 else f"{seen:.0f} seen"
+        if seen < 0.5 and not awaited >= ENOUGH:
+            return Few(each, note=f"{text}: the error is that of one")
+        most = max(seen, awaited) if known >= 0 else seen
+        return Few(math.sqrt(most) * each, known, f"{text}: Poisson's error")
+
+    def free_path(self, note: str) -> Comparison:
+        """Mean speed over the rate, which Maxwell's velocities relate to one another."""
+        found = of_mean(self.blocks)
+        rate, _, _, root, speed = found.value
+        d = self.case.box.dimension
+        mass = self.case.spheres.kinds[0].mean_mass(d)
+        maxwell = math.sqrt((math.pi / 2 if d == 2 else 8 / math.pi) / mass) * root
+        path, error = found.scalar(
+            speed / rate, np.array([-speed / rate**2, 0.0, 0.0, 0.0, 1 / rate])
+        )
+        return Comparison("mean free path", path, error, maxwell / self.expected(root), "a", note)
+
+    def expected(self, root: float) -> float:
+        """The rate of a uniform fluid of equal hard spheres, nan of all others."""
+        return pair_rate(self.case, root)

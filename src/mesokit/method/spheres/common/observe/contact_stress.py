@@ -1,0 +1,149 @@
+"""Stress and contacts of soft spheres."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+
+from mesokit import theory
+from mesokit.case.component import component, tag
+from mesokit.errors import CaseError
+from mesokit.seam.estimate import of_mean
+from mesokit.seam.method import method_of
+from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.result import NOT_STEADY, Comparison, Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+PARTS = ("motion", "forces")
+LANDED = 0.1  # of the weight: a bed whose flux is nearer to it has landed
+
+
+@component
+class ContactStress(Observable):
+    """Pressure by the motion of soft spheres and by their forces, and how many touch each.
+
+    The pressure of forces is the virial of pairs, sum r F over d times the volume of the box.
+    Beside it are, of stiff elastic spheres in a box without walls, the pressure of hard ones, and
+    of a bed in gravity what the weight above each height asks for: the momentum flux along gravity,
+    over the box, is m g times the sum of the heights above those of spheres on the floor, as long
+    as none is thrown against the ceiling.
+    """
+
+    quantity: Literal["contact-stress"] = tag("contact-stress")
+    methods: ClassVar[tuple[str, ...]] = ("soft-spheres",)
+    of_methods_alone: ClassVar[bool] = True
+    needs_fluid: ClassVar[bool] = False
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError for one sphere."""
+        if case.particles < 2:
+            raise CaseError("1 sphere; expected 2 at least")
+
+    def accumulator(self, case: Case) -> ContactStressAccumulator:
+        """An empty memory for it."""
+        return ContactStressAccumulator(self, case)
+
+
+class ContactStressAccumulator(BlockAccumulator):
+    """Block averages of pressures, temperature, contacts, and flux and weight along gravity."""
+
+    def __init__(self, observable: ContactStress, case: Case) -> None:
+        observable.check(case)
+        self.name, self.case = observable.label, case
+        self.volume = float(np.prod(case.box.size))
+        self.floor = _floor(case)
+        self.unit = "m/tau^2" if case.box.dimension == 2 else "m/(a tau^2)"
+        self.blocks = Blocks((7,))
+
+    def observe(self, spheres: Any) -> None:
+        """Take one sample."""
+        d, stress = spheres.dimension, spheres.stress
+        pressures = [-float(np.trace(stress[name])) / d for name in ("kinetic", "pair")]
+        still = 0 if self.case.walls else 1  # without walls the momentum is zero
+        kT = 2 * spheres.totals()[2] / (d * max(spheres.n - still, 1))
+        flux = weight = above = 0.0
+        if self.floor is not None:
+            k, g, base = self.floor
+            flux = -float(stress["kinetic"][k, k] + stress["pair"][k, k]) * self.volume
+            height = (spheres.positions(unwrapped=True)[:, k] - base) * math.copysign(1.0, -g)
+            lowest = 0.5 * spheres.diameters()
+            weight = abs(g) * float(spheres.masses() @ (height - lowest.mean()))
+            above = float((height + lowest > self.case.box.size[k]).any())
+        self.blocks.add([*pressures, kT, spheres.coordination().mean(), flux, weight, above])
+
+    def result(self) -> Result:
+        """Pressures, and what they are to be."""
+        value, error = self.blocks.mean(), self.blocks.error()
+        return Result(
+            quantity="contact-stress",
+            drawing="curve",
+            name=self.name,
+            x={"by": np.array(PARTS)},
+            value=value[:2],
+            error=error[:2],
+            label="pressure",
+            units={"value": self.unit, "by": ""},
+            expected=None,
+            theory="",
+            comparisons=tuple(self.comparisons()) if self.blocks.count else (),
+            samples=self.blocks.count,
+        )
+
+    def comparisons(self) -> list[Comparison]:
+        """Pressure, compressibility, contacts, and flux over weight."""
+        found = of_mean(self.blocks)
+        kinetic, forces, kT, contacts, flux, weight, above = found.value
+        total, error = found.scalar(kinetic + forces, np.array([1.0, 1, 0, 0, 0, 0, 0]))
+        listed = [Comparison("pressure", total, error, unit=self.unit)]
+        density = self.case.particles / self.volume
+        if self.floor is None and not self.case.walls and kT > 0:
+            per = 1 / (density * kT)
+            gradient = np.array([0.0, per, -forces * per / kT, 0, 0, 0, 0])
+            z, error = found.scalar(1 + forces * per, gradient)
+            note = "approximate: hard spheres" if math.isfinite(known := self.hard()) else ""
+            listed.append(Comparison("P/(n kT)", z, error, known, "", note))
+        if getattr(self.case.spheres.pair, "width", None) is not None:
+            value, error = found.scalar(contacts, np.array([0.0, 0, 0, 1, 0, 0, 0]))
+            listed.append(Comparison("contacts of a sphere", value, error))
+        if self.floor is not None and weight > 0 and above == 0:
+            gradient = np.array([0.0, 0, 0, 0, 1 / weight, -flux / weight**2, 0])
+            ratio, error = found.scalar(flux / weight, gradient)
+            alike = len(self.case.spheres.kinds) == 1 and self.case.spheres.kinds[0].spread == 0
+            note = "" if alike else "approximate: those on the floor of mean size"
+            note = "; ".join(filter(None, (self.falling(ratio), note)))
+            listed.append(Comparison("flux along gravity over weight", ratio, error, 1.0, "", note))
+        return listed
+
+    def falling(self, ratio: float) -> str:
+        """That samples began while spheres fell, where the flux is not yet near the weight."""
+        assert self.floor is not None
+        k, g, _ = self.floor
+        step, had = method_of(self.case).timestep(self.case), self.case.run.warmup
+        need = math.ceil(2 * math.sqrt(2 * self.case.box.size[k] / abs(g)) / step)
+        if had >= need or abs(ratio - 1) < LANDED:
+            return ""
+        return f"{NOT_STEADY}: a fall and a rise take {need} steps before samples, had {had}"
+
+    def hard(self) -> float:
+        """Compressibility of hard spheres, nan of spheres that lose energy or attract."""
+        section = self.case.spheres
+        alike = len(section.kinds) == 1 and section.kinds[0].spread == 0
+        if not (alike and getattr(section.pair, "elastic", False)) or section.gravity:
+            return math.nan
+        return theory.compressibility(section.fraction(self.case.box), self.case.box.dimension)
+
+
+def _floor(case: Case) -> tuple[int, float, float] | None:
+    """The axis of gravity, its acceleration and the place of the plate below; None without."""
+    pulls = [(k, g) for k, g in enumerate(case.spheres.gravity) if g]
+    if len(pulls) != 1:
+        return None
+    k, g = pulls[0]
+    if not any(case.box.axes[k] in wall.closed_axes for wall in case.walls):
+        return None
+    return k, g, 0.0 if g < 0 else float(case.box.size[k])

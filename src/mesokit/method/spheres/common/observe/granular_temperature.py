@@ -1,0 +1,173 @@
+"""Temperature of spheres in time: of their motion and of their rotation."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, ClassVar, Literal, Protocol, Self
+
+import numpy as np
+
+from mesokit import theory
+from mesokit.case.component import component, tag
+from mesokit.method.spheres.common.observe.samples import Samples
+from mesokit.seam.method import method_of
+from mesokit.seam.observable import Observable
+from mesokit.seam.result import Array, Comparison, Result
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.seam.engine import RunningSpheres
+
+PARTS, UNIT = ("translation", "rotation"), "m a^2/tau^2"
+
+
+class Cooling(Protocol):
+    """What is known: see `spheres.expected.cooling`."""
+
+    turns: bool
+    restitution: float
+    held: float
+    fluctuates: bool
+    contact_time: float
+
+
+class CoolingInTime(Protocol):
+    """What a method says of it: what is known, and the time of Haff's law from a temperature."""
+
+    known: Cooling
+
+    def haff_time(self, kT: float) -> float: ...
+
+
+@component
+class GranularTemperature(Observable):
+    """Twice the kinetic energy per degree of freedom, of translation and of rotation.
+
+    Translation is about the mean velocity. A gas of smooth inelastic spheres cools by Haff's law as
+    long as it is uniform; collisions of hard spheres so far are in the table as well.
+    """
+
+    quantity: Literal["granular-temperature"] = tag("granular-temperature")
+    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    of_methods_alone: ClassVar[bool] = True
+    needs_fluid: ClassVar[bool] = False
+
+    def accumulator(self, case: Case) -> GranularTemperatureAccumulator:
+        """An empty memory for it."""
+        return GranularTemperatureAccumulator(self, case)
+
+
+class GranularTemperatureAccumulator(Samples):
+    """The series in time."""
+
+    def __init__(self, observable: GranularTemperature, case: Case) -> None:
+        self.name, self.case = observable.label, case
+        self.theory: CoolingInTime = method_of(case).expected["granular-temperature"](
+            case, observable
+        )
+        super().__init__(3)  # both temperatures, collisions of a sphere
+        self.runs = 1
+
+    def observe(self, spheres: RunningSpheres) -> None:
+        """Take one sample."""
+        n, d = spheres.n, spheres.dimension
+        energies, (_, momentum, _) = spheres.energies(), spheres.totals()
+        masses = spheres.masses()
+        about_mean = 2 * energies["translation"] - momentum @ momentum / masses.sum()
+        motion = about_mean / (d * max(n - 1, 1))
+        turning = 2 * energies["rotation"] / ((1 if d == 2 else 3) * n)
+        pairs = getattr(spheres, "collisions", (math.nan,))[0]  # soft ones do not count them
+        self.series.add(spheres.time, [motion, turning, 2 * pairs / n])
+        self.samples += 1
+
+    def pool(self, other: Self) -> None:
+        """Take in an independent run of the same case, only to read."""
+        super().pool(other)
+        self.runs += other.runs
+
+    def result(self) -> Result:
+        """The series; a sample has no error bar: nan."""
+        time, rows = self.series.time(), self.series.values()
+        shown = PARTS if self.theory.known.turns else PARTS[:1]
+        value = rows[:, : len(shown)]
+        return Result(
+            quantity="granular-temperature",
+            drawing="cooling" if self.law() == "Haff" else "curve",
+            name=self.name,
+            x={"time": time, "of": np.array(shown)},
+            value=value,
+            error=np.full(value.shape, np.nan),
+            label="temperature $k_B T$",
+            units={"value": UNIT, "time": "tau", "of": ""},
+            expected=self.expected(time, rows, len(shown)),
+            theory=self.law(),
+            comparisons=tuple(self.comparisons(time, rows)),
+            samples=self.samples,
+            extra={} if np.isnan(rows[:, 2]).any() else {"collisions": rows[:, 2].copy()},
+        )
+
+    def law(self) -> str:
+        """Whose law is beside it."""
+        known = self.theory.known
+        if not math.isnan(known.held):
+            return "bath"
+        if math.isnan(known.restitution):
+            return ""
+        return "conserved" if known.restitution == 1 else "Haff"
+
+    def expected(self, time: Array, rows: Array, width: int) -> Array | None:
+        """Of translation: what a bath holds, or Haff's law from the first sample on."""
+        if not self.law() or not len(time):
+            return None
+        found, first = np.full((len(time), width), np.nan), rows[0, 0]
+        if self.law() == "bath":
+            found[:, 0] = self.theory.known.held
+        else:
+            haff = self.theory.haff_time(first)
+            found[:, 0] = first * theory.haff_temperature(time - time[0], haff)
+        return found
+
+    def comparisons(self, time: Array, rows: Array) -> list[Comparison]:
+        """The temperature at the end, and where it has fallen to a quarter, while the gas is still
+        uniform; there also beside the collisions that there were."""
+        if len(time) < 2:
+            return []
+        law, nan, name = self.expected(time, rows, 1), math.nan, self.law()
+        known = nan if law is None else float(law[-1, 0])
+        error, note = self.spread(), self.note()
+        listed = [
+            Comparison("temperature at the end", float(rows[-1, 0]), error, known, UNIT, note)
+        ]
+        if self.theory.known.turns:
+            turning = float(rows[-1, 1])
+            listed.append(Comparison("of rotation at the end", turning, nan, unit=UNIT))
+        quarter = np.flatnonzero(rows[:, 0] <= 0.25 * rows[0, 0])
+        if law is not None and name == "Haff" and len(quarter):
+            k, e = quarter[0], self.theory.known.restitution
+            found, at = float(rows[k, 0]), f"at t = {time[k]:.4g}"
+            listed.append(Comparison(f"temperature {at}", found, nan, float(law[k, 0]), UNIT, note))
+            # a sphere loses (1 - e^2)/d of its mean energy in each collision, in molecular chaos
+            collisions = rows[k, 2] - rows[0, 2]
+            if math.isnan(collisions):
+                return listed
+            lost = math.exp(-(1 - e**2) * collisions / self.case.box.dimension)
+            what = f"temperature after {collisions:.3g} collisions of each"
+            listed.append(Comparison(what, found, nan, float(rows[0, 0]) * lost, UNIT, note))
+        return listed
+
+    def spread(self) -> float:
+        """By how much a sample differs from what a bath holds: it has that of Maxwell's velocities;
+        nan without a bath."""
+        known = self.theory.known
+        if math.isnan(known.held) or not known.fluctuates or self.series.stride > 1:
+            return math.nan
+        degrees = self.case.box.dimension * max(self.case.particles - 1, 1)
+        return float(known.held * math.sqrt(2 / (degrees * self.runs)))
+
+    def note(self) -> str:
+        """What the law leaves out."""
+        if self.law() == "Haff":
+            return "approximate: the law is that of a uniform gas"
+        if self.law() == "conserved" and self.theory.known.contact_time > 0:
+            return "approximate: contacts hold a part of the energy"
+        return ""

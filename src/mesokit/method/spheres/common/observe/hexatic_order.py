@@ -1,0 +1,106 @@
+"""How far disks are ordered as a triangular lattice is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.component import component, tag
+from mesokit.errors import CaseError
+from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.result import Array, Comparison, Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.seam.engine import RunningSpheres
+
+
+@component
+class HexaticOrder(Observable):
+    """psi_6: the mean over Voronoi neighbours of exp(6 i angle), of each disk and of all.
+
+    "local" is the mean size of a disk's own psi_6, "global" the size of the mean over all disks,
+    which falls with the number of disks in a fluid and stays in a hexatic or a crystal.
+    """
+
+    quantity: Literal["hexatic-order"] = tag("hexatic-order")
+    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    of_methods_alone: ClassVar[bool] = True
+    needs_fluid: ClassVar[bool] = False
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError in 3D, beside walls and with few disks."""
+        if case.box.dimension != 2:
+            raise CaseError("hexatic-order: expected disks in 2D")
+        if case.walls:
+            raise CaseError("hexatic-order: not with walls; expected a periodic box")
+        if case.particles < 4:
+            raise CaseError(f"hexatic-order: {case.particles} disks; expected 4 at least")
+
+    def accumulator(self, case: Case) -> HexaticOrderAccumulator:
+        """An empty memory for it."""
+        return HexaticOrderAccumulator(self, case)
+
+
+class HexaticOrderAccumulator(BlockAccumulator):
+    """Block averages of both."""
+
+    def __init__(self, observable: HexaticOrder, case: Case) -> None:
+        observable.check(case)
+        self.name, self.blocks = observable.label, Blocks((2,))
+
+    def observe(self, spheres: RunningSpheres) -> None:
+        """Take one sample."""
+        psi = psi_6(spheres.positions(), spheres.box)
+        self.blocks.add([np.abs(psi).mean(), abs(psi.mean())])
+
+    def result(self) -> Result:
+        """Both numbers."""
+        value, error = self.blocks.mean(), self.blocks.error()
+        listed = [
+            Comparison(f"{name} psi_6", float(value[k]), float(error[k]))
+            for k, name in enumerate(("local", "global"))
+        ]
+        return Result(
+            quantity="hexatic-order",
+            drawing="curve",
+            name=self.name,
+            x={"order": np.array(["local", "global"])},
+            value=value,
+            error=error,
+            label=r"hexatic order $|\psi_6|$",
+            units={"value": "", "order": ""},
+            comparisons=tuple(listed) if self.blocks.count else (),
+            samples=self.blocks.count,
+        )
+
+
+def psi_6(places: Array, box: Array) -> NDArray[np.complex128]:
+    """psi_6 of each disk in a periodic box, by its Voronoi neighbours.
+
+    >>> x, y = np.meshgrid(np.arange(4.0), np.arange(4.0))
+    >>> rows = np.stack([x + 0.5 * (y % 2), y * 3**0.5 / 2], -1).reshape(-1, 2)
+    >>> bool(np.allclose(np.abs(psi_6(rows, np.array([4, 2 * 3**0.5]))), 1))
+    True
+    """
+    from scipy.spatial import Delaunay
+
+    n = len(places)
+    shifts = np.array([(i, j) for i in (0, -1, 1) for j in (0, -1, 1)], float)
+    everywhere = (places + (shifts * box)[:, None]).reshape(-1, 2)
+    # images farther away than a few mean distances are nobody's neighbours
+    margin = 6.0 * np.sqrt(box.prod() / n)
+    near = ((everywhere > -margin) & (everywhere < box + margin)).all(axis=1)
+    near[:n] = True
+    points = everywhere[near]
+    starts, others = Delaunay(points).vertex_neighbor_vertices
+    owner = np.repeat(np.arange(len(points)), np.diff(starts))
+    own = owner < n
+    way = points[others[own]] - points[owner[own]]
+    phase = np.exp(6j * np.arctan2(way[:, 1], way[:, 0]))
+    count = np.bincount(owner[own], minlength=n)[:n]
+    real, imaginary = (np.bincount(owner[own], part, n)[:n] for part in (phase.real, phase.imag))
+    return np.asarray((real + 1j * imaginary) / count)

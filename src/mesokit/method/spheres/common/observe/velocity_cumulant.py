@@ -1,0 +1,88 @@
+"""How far the velocities of spheres are from Maxwell's: the fourth cumulant."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+import numpy as np
+
+from mesokit.case.component import component, tag
+from mesokit.errors import CaseError
+from mesokit.seam.method import method_of
+from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.result import Comparison, Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.seam.engine import RunningSpheres
+
+
+@component
+class VelocityCumulant(Observable):
+    """a_2 = d/(d + 2) <v^4>/<v^2>^2 - 1 of equal spheres: 0 of Maxwell's distribution.
+
+    Each sample is scaled by its own temperature and freed of the mean velocity, and is corrected
+    for their finite number: its mean is 0 for velocities drawn at random whatever the number.
+    """
+
+    quantity: Literal["velocity-cumulant"] = tag("velocity-cumulant")
+    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    of_methods_alone: ClassVar[bool] = True
+    needs_fluid: ClassVar[bool] = False
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError where spheres differ in mass, and for less than three."""
+        kinds = case.spheres.kinds
+        if len(kinds) > 1 or kinds[0].spread:
+            raise CaseError("velocity-cumulant: expected spheres of one kind, without spread")
+        if case.particles < 3:
+            raise CaseError(f"velocity-cumulant: {case.particles} spheres; expected 3 at least")
+
+    def accumulator(self, case: Case) -> VelocityCumulantAccumulator:
+        """An empty memory for it."""
+        return VelocityCumulantAccumulator(self, case)
+
+
+class VelocityCumulantAccumulator(BlockAccumulator):
+    """Block averages of a_2."""
+
+    def __init__(self, observable: VelocityCumulant, case: Case) -> None:
+        observable.check(case)
+        self.name, self.blocks = observable.label, Blocks((1,))
+        self.theory = method_of(case).expected["velocity-cumulant"](case, observable)
+
+    def observe(self, spheres: RunningSpheres) -> None:
+        """Take one sample; none of spheres that stand still."""
+        v = spheres.velocities()
+        square = ((v - v.mean(axis=0)) ** 2).sum(axis=1)
+        if square.mean() == 0:
+            return
+        d = spheres.dimension
+        ratio = d / (d + 2) * float((square**2).mean() / square.mean() ** 2)
+        # velocities of n spheres with a given sum and energy lie evenly on a sphere of so many
+        # dimensions, on which the mean ratio is free/(free + 2)
+        free = d * (spheres.n - 1)
+        self.blocks.add([ratio * (free + 2) / free - 1])
+
+    def result(self) -> Result:
+        """One number."""
+        value, error = self.blocks.mean(), self.blocks.error()
+        theory = self.theory
+        note = "" if theory.exact else "approximate: first order, dilute uniform gas"
+        note = note if theory.law else ""
+        listed = (Comparison("a_2", float(value[0]), float(error[0]), theory.value, "", note),)
+        return Result(
+            quantity="velocity-cumulant",
+            drawing="curve",
+            name=self.name,
+            x={"of": np.array(["velocity"])},
+            value=value,
+            error=error,
+            label="fourth cumulant $a_2$",
+            units={"value": "", "of": ""},
+            expected=np.array([theory.value]),
+            theory=theory.law,
+            comparisons=listed if self.blocks.count else (),
+            samples=self.blocks.count,
+        )

@@ -1,0 +1,155 @@
+"""Force of spheres on the walls."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.component import component, tag
+from mesokit.errors import CaseError
+from mesokit.seam.estimate import Array, Estimate, of_mean
+from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.result import Comparison, Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.seam.engine import RunningSpheres
+
+
+ROUNDING = 1e-12  # of a force
+STILL = 1e-3  # of the weight that their momentum may grow by in a unit of time
+
+
+def surface_names(case: Case) -> tuple[str, ...]:
+    """What surfaces are called, wall by wall."""
+    names = []
+    for i, wall in enumerate(case.walls):
+        name, keys = wall.name or f"{type(wall).__name__.lower()}-{i + 1}", wall.surfaces()
+        names += [f"{name}-{key}" if len(keys) > 1 else name for key in keys]
+    return tuple(names)
+
+
+@component
+class WallForce(Observable):
+    """Mean force on each surface, and of all of them beside the weight of the spheres.
+
+    It is the momentum that spheres give to a surface per time.
+    """
+
+    quantity: Literal["wall-force"] = tag("wall-force")
+    methods: ClassVar[tuple[str, ...]] = ("event-driven", "soft-spheres")
+    of_methods_alone: ClassVar[bool] = True
+    needs_fluid: ClassVar[bool] = False
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError without a wall."""
+        if not case.walls:
+            raise CaseError("wall-force needs a [[wall]]")
+
+    def accumulator(self, case: Case) -> WallForceAccumulator:
+        """An empty memory for it."""
+        return WallForceAccumulator(self, case)
+
+
+class WallForceAccumulator:
+    """Block averages of what surfaces take between two samples, of the mass of all spheres, and of
+    the momentum that they gain meanwhile."""
+
+    def __init__(self, observable: WallForce, case: Case) -> None:
+        observable.check(case)
+        self.name, self.case = observable.label, case
+        self.names = surface_names(case)
+        self.taken, d = len(self.names) * case.box.dimension, case.box.dimension
+        self.blocks = Blocks((self.taken + 1 + d,))
+        self.before = np.full(1 + self.taken + d, np.nan)  # time, momentum taken and there so far
+
+    def observe(self, spheres: RunningSpheres) -> None:
+        """Take one sample: of what has been taken since the last."""
+        now = np.array([spheres.time, *spheres.wall_impulse.ravel(), *spheres.totals()[1]])
+        if now[0] > self.before[0]:
+            rates = (now - self.before)[1:] / (now[0] - self.before[0])
+            self.blocks.add(np.insert(rates, self.taken, spheres.masses().sum()))
+        self.before = now
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks, before=self.before)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        self.before = np.array(state["before"])
+
+    def pool(self, other: WallForceAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.blocks.pool(other.blocks)
+
+    def result(self) -> Result:
+        """Forces, and their sum along the axis of gravity."""
+        axes = np.array(self.case.box.axes)
+        forces = self.forces() if self.blocks.count else of_mean(self.blocks)
+        shape = len(self.names), len(axes)
+        return Result(
+            quantity="wall-force",
+            drawing="curve",
+            name=self.name,
+            x={"surface": np.array(self.names), "component": axes},
+            value=forces.value[: self.taken].reshape(shape),
+            error=exact(forces)[: self.taken].reshape(shape),
+            label="force on a surface",
+            units={"value": "m a/tau^2", "surface": "", "component": ""},
+            comparisons=tuple(self.comparisons(forces)) if self.blocks.count else (),
+            samples=self.blocks.count,
+        )
+
+    def steady(self, axis: int) -> bool:
+        """Whether the spheres gain no momentum along an axis, but for what is there by chance."""
+        found, section = of_mean(self.blocks), self.case.spheres
+        mass, gained = self.taken, self.taken + 1 + axis
+        g = section.gravity[axis] if section.gravity else 0.0
+        least = max(float(found.error[gained]), STILL * float(found.value[mass]) * abs(g))
+        return abs(float(found.value[gained])) <= least
+
+    def forces(self) -> Estimate:
+        """All means of the blocks; forces with the momentum that spheres gained by chance.
+
+        What a surface has not taken by the end of the run is still in the spheres. Of several
+        surfaces each has the share by which its force falls as the momentum grows.
+        """
+        found, d = of_mean(self.blocks), self.case.box.dimension
+        matrix = np.eye(len(found.value))
+        for k in filter(self.steady, range(d)):
+            gained = found.residuals[:, self.taken + 1 + k]
+            if (square := float(gained @ gained)) > 0:
+                chosen = np.arange(k, self.taken, d)
+                shares = -(found.residuals[:, chosen].T @ gained) / square
+                matrix[chosen, self.taken + 1 + k] = shares
+        return found.linear(matrix)
+
+    def comparisons(self, forces: Estimate) -> list[Comparison]:
+        """The force on all walls along each axis of gravity: the weight, if the spheres gain no
+        momentum on average."""
+        section, box = self.case.spheres, self.case.box
+        mass, listed = float(forces.value[self.taken]), []
+        for k, (axis, g) in enumerate(zip(box.axes, section.gravity, strict=False)):
+            if g:
+                chosen = np.zeros((1, len(forces.value)))
+                chosen[0, k : self.taken : box.dimension] = 1.0
+                total = forces.linear(chosen)
+                note = "approximate: they gain momentum meanwhile"
+                if self.steady(k):
+                    note = "the weight; with the momentum that spheres gained by chance"
+                what = f"force on all walls along {axis}"
+                value, error = float(total.value[0]), float(exact(total)[0])
+                listed.append(Comparison(what, value, error, mass * g, "m a/tau^2", note))
+        return listed
+
+
+def exact(found: Estimate) -> Array:
+    """Standard errors, 0 where they are rounding."""
+    error = found.error
+    return np.where(error <= ROUNDING * np.abs(found.value), 0.0, error)

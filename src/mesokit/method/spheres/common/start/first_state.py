@@ -1,0 +1,105 @@
+"""What a run of spheres starts from: the start of its case, or arrays, all checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.component import show
+from mesokit.case.given.outside_box import warn_outside
+from mesokit.errors import CaseError
+from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.method.spheres.common.made import Made
+from mesokit.method.spheres.common.start import thermal
+from mesokit.method.spheres.common.start.lattice import shut
+from mesokit.method.spheres.common.start.protocol import Array, Placed, Started
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+ROUNDING = 1e-5  # of a diameter: files keep places as float32
+ARRAYS = ("positions", "velocities", "spins")
+
+
+def first_state(case: Case, made: Made, arrays: Mapping[str, Any], spin_kT: float) -> Started:
+    """Places, velocities and spins of all. Raises CaseError for arrays that do not fit.
+
+    Velocities and spins that nobody gives are drawn. Only hard spheres must not overlap.
+    """
+    d, known = case.box.dimension, given_state(case, made, arrays)
+    at_rest = not case.walls and not case.spheres.gravity
+    kT, velocities, spins = case.spheres.kT, known.velocities, known.spins
+    if velocities is None:
+        velocities = thermal.velocities(case.run.seed, made, kT, d, at_rest)
+    if spins is None:
+        spins = thermal.spins(case.run.seed, made, spin_kT, d)
+    if arrays.get("positions") is not None or case.spheres.start.files():
+        own = made.diameters if known.diameters is None else known.diameters
+        if case.spheres.hard:
+            require_apart(known.positions, own, np.array(case.box.size, float), shut(case))
+        warn_outside("positions", known.positions, case.box, closed_axes(case.walls))
+    return Started(known.positions, velocities, spins, known.diameters)
+
+
+def given_state(case: Case, made: Made, arrays: Mapping[str, Any]) -> Placed:
+    """What arrays give, and else the start of the case. Raises CaseError for what does not fit."""
+    d, n = case.box.dimension, len(made.diameters)
+    shapes = {"positions": (n, d), "velocities": (n, d), "spins": (n,) if d == 2 else (n, 3)}
+    given = {
+        name: _checked(name, arrays[name], shape)
+        for name, shape in shapes.items()
+        if arrays.get(name) is not None
+    }
+    if "positions" in given:
+        return Placed(**given)
+    return case.spheres.start.place(case, made)._replace(**given)
+
+
+def require_apart(places: Array, diameters: Array, size: Array, closed: NDArray[np.bool_]) -> None:
+    """Raise CaseError for spheres that lie on one another, or on plates, by more than rounding."""
+    from scipy.spatial import cKDTree
+
+    largest = float(diameters.max())
+    beyond = np.minimum(places, size - places) - 0.5 * diameters[:, None]
+    lowest = np.where(closed, beyond, np.inf).min(axis=1)
+    if (lowest < -ROUNDING * largest).any():
+        raise CaseError(f"positions: sphere {int(lowest.argmin())} lies in a plate")
+    around = np.where(closed, 3 * size, size)
+    tree = cKDTree(np.where(closed, places, np.mod(places, size)), boxsize=around)
+    pairs = tree.query_pairs(largest, output_type="ndarray")
+    way = places[pairs[:, 0]] - places[pairs[:, 1]]
+    way -= around * np.rint(way / around)
+    gaps = np.linalg.norm(way, axis=1) - 0.5 * (diameters[pairs[:, 0]] + diameters[pairs[:, 1]])
+    if len(gaps) and gaps.min() < -ROUNDING * largest:
+        i, j = pairs[gaps.argmin()]
+        raise CaseError(f"positions: spheres {i} and {j} overlap by {-gaps.min():.3g}")
+
+
+def _checked(name: str, given: Any, shape: tuple[int, ...]) -> Array:
+    try:
+        found = np.asarray(given, float)
+    except (ValueError, TypeError):
+        raise CaseError(f"{name}: expected an array of numbers") from None
+    if found.shape != shape:
+        raise CaseError(f"{name}: shape {found.shape}: expected {shape}")
+    if not np.isfinite(found).all():
+        raise CaseError(f"{name}: row {int(np.argwhere(~np.isfinite(found))[0][0])} is not finite")
+    return found
+
+
+def starts(case: Case) -> dict[str, Path]:
+    """The files and folders of runs that a case starts from, by their keys."""
+    return {f"spheres.start.{key}": path for key, path in case.spheres.start.files().items()}
+
+
+def missing_files(case: Case) -> list[str]:
+    """A line for each of them that is not there."""
+    return [
+        f"{key} = {show(str(path), 500)}: no such {'folder' if key.endswith('run') else 'file'}"
+        for key, path in starts(case).items()
+        if not path.exists()
+    ]

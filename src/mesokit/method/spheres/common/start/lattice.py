@@ -1,0 +1,127 @@
+"""Spheres on a lattice that fills the box."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.component import component, param, show, tag
+from mesokit.errors import CaseError
+from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.method.spheres.common.start.protocol import Array, Placed, SphereStart
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.method.spheres.common.made import Made
+
+Integers = NDArray[np.int64]
+# places within a unit cell, in units of its sides, and how long these are relative to one another
+CELLS: dict[tuple[str, int], tuple[Sequence[Sequence[float]], Sequence[float]]] = {
+    ("close-packed", 2): ([(0.25, 0.25), (0.75, 0.75)], (1.0, math.sqrt(3.0))),
+    ("close-packed", 3): (
+        [(0.25, 0.25, 0.25), (0.75, 0.75, 0.25), (0.75, 0.25, 0.75), (0.25, 0.75, 0.75)],
+        (1.0, 1.0, 1.0),
+    ),
+    ("square", 2): ([(0.5, 0.5)], (1.0, 1.0)),
+    ("square", 3): ([(0.5, 0.5, 0.5)], (1.0, 1.0, 1.0)),
+}
+
+
+@component
+class LatticeStart(SphereStart):
+    """Evenly spread over the box, on sites of a lattice stretched to fit it.
+
+    Where there are more sites than spheres, those left empty are spread evenly too. Kinds of
+    spheres are mixed at random over the sites.
+    """
+
+    rule: Literal["lattice"] = tag("lattice")
+    lattice: Literal["close-packed", "square"] = param(
+        "close-packed",
+        doc="'close-packed': triangular in 2D, face-centred cubic in 3D; 'square': square or cubic",
+    )
+
+    def check(self, case: Case) -> None:
+        """Raise CaseError where neighbours would overlap, or solids are in the way."""
+        if any(not wall.closed_axes for wall in case.walls):
+            raise CaseError(
+                f"spheres.start.rule = {show(self.rule)}: not with solids other than plates; "
+                "expected 'random'"
+            )
+        section, box = case.spheres, case.box
+        largest = section.largest(box)
+        free = self.free(case, largest)
+        if free.min() <= 0:
+            raise CaseError(f"spheres: no room for a diameter of {largest:.4g} between the walls")
+        number = section.count(box)
+        if self.spacing(number, free) >= largest:
+            return
+        sites = self.sites(number, free, shut(case))  # of which some may be left empty
+        gap = nearest(sites, free, shut(case)) - largest if len(sites) > 1 else 0.0
+        if gap < 0:
+            raise CaseError(
+                f"spheres.start.rule = {show(self.rule)}: neighbours on this lattice would overlap "
+                f"by {-gap:.3g}; expected fewer or smaller spheres, or rule 'random'"
+            )
+
+    def free(self, case: Case, largest: float) -> Array:
+        """Lengths of the box that centres may be in."""
+        return np.array(case.box.size, float) - largest * shut(case)
+
+    def place(self, case: Case, made: Made) -> Placed:
+        """Sites for all, a radius off the walls."""
+        largest, n = case.spheres.largest(case.box), len(made.diameters)
+        sites = self.sites(n, self.free(case, largest), shut(case)) + 0.5 * largest * shut(case)
+        return Placed(sites[mixed(case.run.seed, n, len(case.spheres.kinds))])
+
+    def spacing(self, n: int, size: Array) -> float:
+        """The shortest distance of two sites of the lattice on which so many find room."""
+        within = np.array(CELLS[self.lattice, len(size)][0])
+        cells = np.array(list(itertools.product((-1, 0, 1), repeat=len(size))))
+        ways = (within[:, None, None] - within[None, :, None] + cells).reshape(-1, len(size))
+        found = np.linalg.norm(ways * (size / unit_cells(self.lattice, size, n)), axis=1)
+        return float(found[found > 0].min())
+
+    def sites(self, n: int, size: Array, shut: NDArray[np.bool_]) -> Array:
+        """So many places (n, d) in a room."""
+        cells, within = unit_cells(self.lattice, size, n), CELLS[self.lattice, len(size)][0]
+        corners = np.stack(np.meshgrid(*map(np.arange, cells), indexing="ij"), -1)
+        every = (corners.reshape(-1, 1, len(size)) + np.array(within)).reshape(-1, len(size))
+        chosen = np.linspace(0, len(every), n, endpoint=False).astype(int)
+        return np.asarray(every[chosen] * (size / cells))
+
+
+def shut(case: Case) -> NDArray[np.bool_]:
+    """Which axes plates close."""
+    closed = closed_axes(case.walls)
+    return np.array([axis in closed for axis in case.box.axes])
+
+
+def unit_cells(lattice: str, size: Array, n: int) -> Integers:
+    """How many unit cells along each axis hold n sites, as little stretched as may be."""
+    sites, sides = CELLS[lattice, len(size)]
+    relative = size / np.array(sides)
+    edge = (relative.prod() * len(sites) / n) ** (1 / len(size))
+    found = np.maximum(1, np.round(relative / edge)).astype(int)
+    while found.prod() * len(sites) < n:
+        found[np.argmax(relative / found)] += 1
+    return found
+
+
+def mixed(seed: int, n: int, kinds: int) -> Integers:
+    """The order in which spheres take sites: as they are numbered, unless kinds are to be mixed."""
+    return np.arange(n) if kinds == 1 else np.random.default_rng(seed).permutation(n)
+
+
+def nearest(places: Array, size: Array, shut: NDArray[np.bool_]) -> float:
+    """The shortest distance of two places, in a box that is periodic but along shut axes."""
+    from scipy.spatial import cKDTree
+
+    around = np.where(shut, 3 * size, size)  # images far away
+    distance, _ = cKDTree(places, boxsize=around).query(places, k=2)
+    return float(distance[:, 1].min())

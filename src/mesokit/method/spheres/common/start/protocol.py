@@ -1,0 +1,57 @@
+"""What a start answers: places of spheres, and velocities where they are not to be drawn."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.component import component
+from mesokit.case.registry import family
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.method.spheres.common.made import Made
+
+Array = NDArray[np.float64]
+
+
+class Started(NamedTuple):
+    """What an engine is filled with, by particle number: positions and velocities (n, d), spins
+    ((n,) in 2D, (n, 3) in 3D), and diameters (n,) where they are not those of the case."""
+
+    positions: Array
+    velocities: Array
+    spins: Array
+    diameters: Array | None = None
+
+
+class Placed(NamedTuple):
+    """By particle number: positions (n, d), and velocities (n, d) and spins ((n,) in 2D, (n, 3) in
+    3D) unless they are to be drawn; diameters (n,) where the start brings its own."""
+
+    positions: Array
+    velocities: Array | None = None
+    spins: Array | None = None
+    diameters: Array | None = None
+
+
+@family("start of spheres", "rule", "mesokit.sphere_start")
+@component
+class SphereStart(ABC):
+    """Where spheres are at first."""
+
+    def check(self, case: Case) -> None:  # noqa: B027  # most can begin anywhere
+        """Raise CaseError where there is no room for all."""
+
+    @abstractmethod
+    def place(self, case: Case, made: Made) -> Placed:
+        """Places for all spheres, none on another. Raises CaseError if there is no room."""
+
+    def files(self) -> Mapping[str, Path]:
+        """The files and folders of runs that it reads, by key."""
+        return {}

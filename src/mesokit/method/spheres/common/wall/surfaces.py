@@ -1,0 +1,178 @@
+"""The surfaces of a case as rows of numbers, whatever they do to spheres."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.component import show
+from mesokit.errors import CaseError
+from mesokit.geometry.region import Part, Room, Term
+from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.geometry.surface import Surface
+from mesokit.method.spheres.common.wall import rows as columns
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+Array = NDArray[np.float64]
+ROUND = {"ball": columns.OUTSIDE, "rod": columns.OUTSIDE}
+ALLOWED = "expected plates, or something round, or a rectangle or cuboid with fluid = 'inside'"
+
+
+class SurfaceRows(NamedTuple):
+    """rows (walls, 14); surfaces: the number of the wall and the surface of each; surface (walls,):
+    number of each one's body; names of the bodies."""
+
+    rows: Array
+    surfaces: list[tuple[int, Surface]]
+    surface: NDArray[np.int64]
+    names: tuple[str, ...]
+
+
+class NotARow(CaseError):
+    """A wall of a shape that is no row of numbers."""
+
+
+def other_walls(case: Case) -> list[int]:
+    """Numbers of the walls that are no rows: neither planes nor round, nor boxes from within."""
+    room, found = room_of(case), []
+    for i, wall in enumerate(case.walls):
+        try:
+            for body in wall.bodies(room, ""):
+                if body.surface.rotation is not None:
+                    raise NotARow("it turns")
+                list(_parts(body, room, i, case.run.method))
+        except NotARow:
+            found.append(i)
+    return found
+
+
+def surface_rows(case: Case, without: Sequence[int] = ()) -> SurfaceRows:
+    """Where the walls of a case are and how they move, whatever they do to spheres.
+
+    Raises CaseError for those that are no rows, but for the walls that are left out.
+    """
+    room, method = room_of(case), case.run.method
+    rows: list[Array] = []
+    surfaces: list[tuple[int, Surface]] = []
+    body_of: list[int] = []
+    names: list[str] = []
+    for i, wall in enumerate(case.walls):
+        if i in without:
+            continue
+        if not wall.closed_axes and any(length != int(length) for length in case.box.size):
+            raise CaseError(
+                f"wall[#{i + 1}]: solids other than plates need a box of whole lengths, not "
+                f"box.size = {show(list(case.box.size))}"
+            )
+        if wall.virtual != "extrapolate":
+            raise CaseError(f"wall[#{i + 1}].virtual = {show(wall.virtual)}: spheres need none")
+        for body in wall.bodies(room, f"{type(wall).__name__.lower()}-{i + 1}"):
+            if body.surface.rotation is not None:
+                raise CaseError(f"wall[#{i + 1}]: rotation: not with method {method!r}")
+            for part in _parts(body, room, i, method):
+                rows.append(_row(part, body.surface, case.box.dimension))
+                surfaces.append((i, body.surface))
+                body_of.append(len(names))
+            names.append(body.name)
+    return SurfaceRows(
+        np.array(rows, float).reshape(-1, columns.COLUMNS),
+        surfaces,
+        np.array(body_of, np.int64),
+        tuple(names),
+    )
+
+
+def room_of(case: Case) -> Room:
+    """The box, and which of its axes plates close."""
+    shut = closed_axes(case.walls)
+    return Room(case.box.size, tuple(axis in shut for axis in case.box.axes))
+
+
+def _parts(body: Any, room: Room, i: int, method: str) -> Iterator[Part]:
+    """The planes and round surfaces of a body, each once."""
+    contact = body.surface.contact
+    for piece in body.pieces:
+        part = _alone(piece.term, room)
+        if part is None:
+            raise NotARow(f"wall[#{i + 1}]: not with method {method!r}; {ALLOWED}")
+        if contact is not None and contact.amplitude > 0 and part.kind != "half_space":
+            raise CaseError(
+                f"wall[#{i + 1}].surface.contact.amplitude = {show(contact.amplitude)}: only "
+                "plates vibrate"
+            )
+        if part.kind == "brick" and part.sign < 0:
+            yield from _sides(part, room.dimension)
+        elif part.kind == "half_space" and part.sign > 0:
+            yield part
+        elif part.kind in ROUND:
+            if _in_box(part, room):
+                yield part  # its images are found by the nearest one
+        else:
+            raise NotARow(f"wall[#{i + 1}]: not with method {method!r}; {ALLOWED}")
+
+
+def _alone(term: Term, room: Room) -> Part | None:
+    """The one part of a term, its images aside; None of several parts."""
+    if len(term) == 1:
+        return term[0]
+    part = next((part for part in term if _in_box(part, room)), None)
+    if part is None or part.sign > 0 or part.kind not in (*ROUND, "brick"):
+        return None
+    for other in term:  # images that do not overlap
+        way = [a - b for a, b in zip(other.numbers[:3], part.numbers[:3], strict=True)]
+        if any(x % length for x, length in zip(way, room.size, strict=False)):
+            return None
+        if any(way) and not _apart(part, way):
+            return None
+        if other.numbers[3:] != part.numbers[3:] or other.kind != part.kind:
+            return None
+    return part
+
+
+def _apart(part: Part, way: Sequence[float]) -> bool:
+    """Whether a part and its image so far away do not overlap."""
+    half = part.numbers[3:6]
+    if part.kind != "brick":
+        return math.hypot(*way) >= 2 * part.numbers[6]
+    upright = part.numbers[7] == 0.0
+    beside = upright and any(abs(x) >= 2 * h for x, h in zip(way, half, strict=True) if x)
+    return beside or math.hypot(*way) >= 2 * math.hypot(*half)
+
+
+def _in_box(part: Part, room: Room) -> bool:
+    return all(0 <= x < length for x, length in zip(part.numbers, room.size, strict=False))
+
+
+def _sides(part: Part, dimension: int) -> Iterator[Part]:
+    """The faces of a rectangle or cuboid from within, as planes that look inwards."""
+    centre, half = np.array(part.numbers[:3]), part.numbers[3:6]
+    cos, sin = part.numbers[6], part.numbers[7]
+    axes = np.array([(cos, sin, 0.0), (-sin, cos, 0.0), (0.0, 0.0, 1.0)])
+    for k in range(dimension):
+        for sign in (1.0, -1.0):
+            place = centre + sign * half[k] * axes[k]
+            yield Part("half_space", (*place, *(-sign * axes[k])))
+
+
+def _row(part: Part, surface: Surface, dimension: int) -> Array:
+    row = np.zeros(columns.COLUMNS)
+    row[columns.PLACE : columns.PLACE + 3] = part.numbers[:3]
+    if part.kind == "half_space":
+        row[columns.KIND] = columns.PLANE
+        row[columns.AXIS : columns.AXIS + 3] = part.numbers[3:6]
+    else:
+        row[columns.KIND] = part.sign  # +1: solid within, spheres outside
+        row[columns.ROUND] = part.numbers[6]
+        if part.kind == "rod":
+            row[columns.AXIS : columns.AXIS + 3] = part.numbers[3:6]
+    row[columns.MOVES : columns.MOVES + dimension] = surface.velocity or 0.0
+    if surface.contact is not None:
+        row[columns.AMPLITUDE] = surface.contact.amplitude
+        row[columns.FREQUENCY] = surface.contact.frequency
+    return row

@@ -1,0 +1,10 @@
+"""What two hard spheres do to one another. A new rule is a file here."""
+
+from __future__ import annotations
+
+from mesokit.case.registry import parts_in
+from mesokit.method.spheres.hard.collision.protocol import SphereCollision
+
+__getattr__ = parts_in(__name__, RULES=SphereCollision)
+
+__all__ = ["RULES", "SphereCollision"]

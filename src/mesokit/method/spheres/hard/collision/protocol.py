@@ -1,0 +1,97 @@
+"""What a collision rule of hard spheres is."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any
+
+from mesokit.case.component import component, option
+from mesokit.case.registry import family
+from mesokit.method.spheres.hard.engine.touching import touching
+from mesokit.scalar.jit import generic
+
+
+@family("collision rule of hard spheres", "rule", "mesokit.sphere_collision")
+@component
+class SphereCollision(ABC):
+    """What two spheres do to one another when they touch.
+
+    The tangential velocity of the contact after a collision is minus `tangential` times that
+    before, unless the impulse would be more than `friction` times the normal one (Walton 1993): -1
+    is smooth, 1 perfectly rough.
+    """
+
+    tangential: float = option(
+        default=-1.0,
+        doc="tangential velocity of the contact after over minus before: -1 smooth, 1 rough",
+        kw_only=True,
+        ge=-1,
+        le=1,
+    )
+    friction: float | None = option(
+        default=None,
+        doc="largest tangential over normal impulse (no limit unless said)",
+        kw_only=True,
+        ge=0,
+        le=1e6,
+    )
+    contact_time: float = option(
+        default=0.0,
+        doc="collisions sooner than this after the last of one of both lose nothing, against "
+        "inelastic collapse (Luding and McNamara 1998)",
+        unit="time",
+        kw_only=True,
+        ge=0,
+    )
+
+    @abstractmethod
+    def kernel(self) -> Any:
+        """Parameters for `restitution` below."""
+
+    @property
+    @abstractmethod
+    def elastic(self) -> bool:
+        """Whether it keeps energy."""
+
+    @property
+    def reach(self) -> float:
+        """Distance in diameters at which two spheres first feel one another."""
+        return 1.0
+
+    @property
+    def hard(self) -> bool:
+        """Whether spheres act on one another only where they touch."""
+        return self.reach <= 1.0
+
+    @property
+    def energy_within(self) -> float:
+        """Potential energy of two spheres nearer than `reach`."""
+        return 0.0
+
+    @property
+    def rough(self) -> bool:
+        """Whether it changes spins."""
+        return self.tangential > -1.0 and self.friction != 0.0
+
+
+@generic
+def restitution(rule, speed):
+    """Normal velocity after over minus that before, of spheres that meet at this speed."""
+
+
+@generic
+def next_contact(rule, r, v, reach, growth):
+    """The time after which something happens between two spheres, infinite if nothing does.
+
+    r and v lead from one to the other; their surfaces meet at the distance reach + growth t.
+    """
+
+
+@generic
+def step_of_energy(rule, distance, reach):
+    """How much less energy the pair has nearer than this distance, and whether there is such a step
+    and not a collision of surfaces."""
+
+
+next_contact.otherwise(lambda rule, r, v, reach, growth: touching(r, v, reach, growth))
+step_of_energy.otherwise(lambda rule, distance, reach: (0.0, False))

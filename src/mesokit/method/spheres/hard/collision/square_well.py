@@ -1,0 +1,101 @@
+"""Hard spheres that attract one another within a distance."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal, NamedTuple
+
+from mesokit.case.component import component, param, tag
+from mesokit.method.spheres.hard.collision.protocol import (
+    SphereCollision,
+    next_contact,
+    restitution,
+    step_of_energy,
+)
+from mesokit.method.spheres.hard.engine.touching import touching
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.vector import dot
+
+ON_EDGE = 1e-12  # of the distance: nobody is as near to it but by having come there
+
+
+@component
+class SquareWell(SphereCollision):
+    """A potential of -depth between touching and `width` diameters; a shoulder where depth < 0.
+
+    Pairs that come in gain the depth, those without as much energy of their own stay in.
+
+    Examples
+    --------
+    >>> SquareWell(depth=1.0, width=1.5).reach
+    1.5
+    """
+
+    rule: Literal["square-well"] = tag("square-well")
+    depth: float = param(
+        1.0, doc="energy of a bound pair is minus this", unit="kT", ge=-1e6, le=1e6
+    )
+    width: float = param(1.5, doc="distance up to which it acts", unit="diameters", gt=1, le=3)
+    restitution: float = param(
+        1.0, doc="normal velocity after a collision over minus that before", ge=0, le=1
+    )
+
+    @property
+    def elastic(self) -> bool:
+        """Whether it keeps energy: that of spins and pairs as well."""
+        rough = self.tangential == 1.0 and self.friction is None
+        return self.restitution == 1.0 and (not self.rough or rough)
+
+    @property
+    def reach(self) -> float:
+        """Distance in diameters at which two spheres first feel one another."""
+        return self.width
+
+    @property
+    def energy_within(self) -> float:
+        """Potential energy of two spheres nearer than `reach`."""
+        return -self.depth
+
+    def kernel(self) -> Well:
+        """Parameters for the scalar functions below."""
+        return Well(self.depth, self.width, self.restitution)
+
+
+class Well(NamedTuple):
+    """Depth, width in diameters, and restitution."""
+
+    depth: float
+    width: float
+    value: float
+
+
+@restitution.register(Well)
+def _(rule, speed):
+    return rule.value
+
+
+@scalar
+def is_inside(rule, r, v, reach):
+    """Whether a pair is in the well; on its edge it is if it moves inwards."""
+    edge = rule.width * reach
+    past = dot(r, r) / (edge * edge) - 1.0
+    return past < -ON_EDGE or (past < ON_EDGE and dot(r, v) < 0.0)
+
+
+@next_contact.register(Well)
+def _(rule, r, v, reach, growth):
+    edge = rule.width * reach
+    if not is_inside(rule, r, v, reach):
+        return touching(r, v, edge, 0.0)
+    meets = touching(r, v, reach, growth)
+    if meets < math.inf:
+        return meets
+    a, b, c = dot(v, v), dot(r, v), dot(r, r) - edge * edge
+    if a == 0.0:
+        return math.inf
+    return (math.sqrt(max(b * b - a * c, 0.0)) - b) / a
+
+
+@step_of_energy.register(Well)
+def _(rule, distance, reach):
+    return rule.depth, distance > 0.5 * (1.0 + rule.width) * reach

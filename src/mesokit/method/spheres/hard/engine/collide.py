@@ -1,0 +1,231 @@
+"""What happens when spheres touch one another, or a wall."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mesokit.method.spheres.common.wall.rows import MOVES, vibration
+from mesokit.method.spheres.hard.collision.protocol import restitution, step_of_energy
+from mesokit.method.spheres.hard.engine.flights import note_flight
+from mesokit.method.spheres.hard.engine.groups import (
+    ELASTIC,
+    IN_A_ROW,
+    INERTIA,
+    LAST,
+    MASS,
+    PAIRS,
+    RADIUS,
+    SPIN,
+    VELOCITY,
+    VIRIAL,
+    WALLS,
+)
+from mesokit.method.spheres.hard.engine.motion import bring_to, entries, nearest_image, put_entries
+from mesokit.method.spheres.hard.engine.walls import outward
+from mesokit.scalar.jit import by_type, scalar
+from mesokit.scalar.random import METHOD, Counter, normals, unit, words
+from mesokit.scalar.vector import added_scaled, dot, outer, scaled
+
+THERMAL = METHOD + np.uint64(70)  # purpose of the random numbers of thermal walls
+
+
+class Rules(NamedTuple):
+    """pair: the collision rule of two spheres; tangential, friction: of a pair; at_walls (walls,
+    4): restitution, tangential, friction and temperature (0: none) of each; seed."""
+
+    pair: Any
+    tangential: float
+    friction: float
+    at_walls: Any
+    seed: np.uint64
+
+
+class Contact(NamedTuple):
+    """Two surfaces that touch: inverse masses, radius and inverse inertia of each; of a wall 0."""
+
+    inverse: float
+    inverse_other: float
+    lever: float
+    lever_other: float
+
+
+@by_type
+def spin_of(body, i, like):
+    """Angular velocity: of one number in 2D, of three in 3D."""
+    if len(like) == 2:
+        return lambda body, i, like: (body[i, SPIN],)
+    return lambda body, i, like: (body[i, SPIN], body[i, SPIN + 1], body[i, SPIN + 2])
+
+
+@by_type
+def rolled(spin, n):
+    """The vector product of an angular velocity and a vector."""
+    if len(n) == 2:
+        return lambda spin, n: (-spin[0] * n[1], spin[0] * n[0])
+    return lambda spin, n: outer(spin, n)
+
+
+@scalar
+def impulse_of(masses, levers, u, n, e, tangential, friction):
+    """The impulse on the first of two surfaces: normal part, and vector along the surface.
+
+    `masses` is the sum of inverse masses, `levers` that of R^2/I; u is the velocity of the first
+    surface relative to the second, n leads from the second to the first (Walton 1993; Luding 1995).
+    """
+    closing = dot(u, n)
+    normal = -(1.0 + e) * closing / masses
+    slip = added_scaled(u, -closing, n)
+    speed = math.sqrt(dot(slip, slip))
+    along = (1.0 + tangential) * speed / (masses + levers)
+    along = min(along, friction * normal)
+    if speed > 0.0:
+        return normal, scaled(-along / speed, slip)
+    return normal, scaled(0.0, slip)
+
+
+@scalar
+def push(spheres, i, v, impulse, turned):
+    """Give sphere i an impulse, and an angular one."""
+    body = spheres.body
+    put_entries(spheres.state, i, VELOCITY, added_scaled(v, 1.0 / body[i, MASS], impulse))
+    if body[i, INERTIA] > 0.0:
+        spin = added_scaled(spin_of(body, i, v), 1.0 / body[i, INERTIA], turned)
+        put_entries(body, i, SPIN, spin)
+
+
+@scalar
+def surface_velocity(spheres, i, v, lever):
+    """How fast the surface of sphere i moves at the end of a lever."""
+    return added_scaled(v, 1.0, rolled(spin_of(spheres.body, i, v), lever))
+
+
+@scalar
+def collide_pair(world, rules, spheres, tally, i, j, time):
+    """Two spheres touch: their velocities and spins change at once."""
+    if spheres.number[j] < spheres.number[i]:
+        i, j = j, i  # whoever noticed it
+    state, body = spheres.state, spheres.body
+    r_i, v_i = bring_to(world, spheres, i, time)
+    r_j, v_j = bring_to(world, spheres, j, time)
+    apart = nearest_image(world, added_scaled(r_i, -1.0, r_j))
+    distance = math.sqrt(dot(apart, apart))
+    n = scaled(1.0 / distance, apart)
+    spheres.hits[i] += 1
+    spheres.hits[j] += 1
+    energy, is_step = step_of_energy(rules.pair, distance, state[i, RADIUS] + state[j, RADIUS])
+    if is_step:
+        masses = 1.0 / body[i, MASS] + 1.0 / body[j, MASS]
+        total = scaled(over_step(masses, dot(added_scaled(v_i, -1.0, v_j), n), energy), n)
+        put_entries(state, i, VELOCITY, added_scaled(v_i, 1.0 / body[i, MASS], total))
+        put_entries(state, j, VELOCITY, added_scaled(v_j, -1.0 / body[j, MASS], total))
+        tally.sums[VIRIAL] += dot(apart, total)
+        return
+    lever_i, lever_j = scaled(-state[i, RADIUS], n), scaled(state[j, RADIUS], n)
+    u = added_scaled(
+        surface_velocity(spheres, i, v_i, lever_i),
+        -1.0,
+        surface_velocity(spheres, j, v_j, lever_j),
+    )
+    masses = 1.0 / body[i, MASS] + 1.0 / body[j, MASS]
+    levers = turning(state, body, i) + turning(state, body, j)
+    closing = -dot(u, n)
+    e, tangential, friction = restitution(rules.pair, closing), rules.tangential, rules.friction
+    since = time - max(body[i, LAST], body[j, LAST])
+    note_pause(world, tally, since)
+    if since < world.lasting:
+        e, tangential = 1.0, -1.0
+        tally.counts[ELASTIC] += 1
+    normal, along = impulse_of(masses, levers, u, n, e, tangential, friction)
+    total = added_scaled(along, normal, n)
+    # surfaces that grow push one another apart
+    growing = (state[i, RADIUS] + state[j, RADIUS]) * world.growth / masses
+    total = added_scaled(total, 2.0 * growing, n)
+    # only what is along the surface turns: rounding must not
+    push(spheres, i, v_i, total, outer(lever_i, along))
+    push(spheres, j, v_j, scaled(-1.0, total), outer(lever_j, scaled(-1.0, along)))
+    note_flight(tally.flights, time - body[i, LAST])
+    note_flight(tally.flights, time - body[j, LAST])
+    body[i, LAST] = body[j, LAST] = time
+    tally.counts[PAIRS] += 1
+    tally.sums[VIRIAL] += dot(apart, total)
+
+
+@scalar
+def note_pause(world, tally, since):
+    """Count collisions in a row that come no time after the last of one of both."""
+    tally.counts[IN_A_ROW] = tally.counts[IN_A_ROW] + 1 if since < world.instant else 0
+
+
+@scalar
+def over_step(masses, parting, energy):
+    """The impulse along the line of centres at a step of the potential, which is lower by `energy`
+    within; `masses` is the sum of inverse masses, `parting` the velocity along the line."""
+    square = parting * parting
+    if parting < 0.0:
+        after = square + 2.0 * energy * masses
+        return (-math.sqrt(after) - parting) / masses if after > 0.0 else -2.0 * parting / masses
+    after = square - 2.0 * energy * masses
+    return (math.sqrt(after) - parting) / masses if after > 0.0 else -2.0 * parting / masses
+
+
+@scalar
+def turning(state, body, i):
+    """R^2/I of sphere i."""
+    return state[i, RADIUS] * state[i, RADIUS] / body[i, INERTIA]
+
+
+@scalar
+def collide_wall(world, rules, spheres, tally, i, w, time):
+    """A sphere touches a wall."""
+    state, body, walls = spheres.state, spheres.body, world.walls
+    r, v = bring_to(world, spheres, i, time)
+    _, n = outward(world, w, r)
+    _, speed, _ = vibration(walls, w, time)
+    wall_velocity = added_scaled(entries(walls, w, MOVES, r), speed, n)
+    tally.counts[WALLS] += 1
+    spheres.hits[i] += 1
+    if rules.at_walls[w, 3] > 0.0:
+        after = sent_out(rules, spheres, i, n, rules.at_walls[w, 3])
+        after = added_scaled(after, 1.0, wall_velocity)
+        total = scaled(body[i, MASS], added_scaled(after, -1.0, v))
+        put_entries(state, i, VELOCITY, after)
+    else:
+        lever = scaled(-state[i, RADIUS], n)
+        u = added_scaled(surface_velocity(spheres, i, v, lever), -1.0, wall_velocity)
+        e, tangential = wall_restitution(rules, w, -dot(u, n)), rules.at_walls[w, 1]
+        note_pause(world, tally, time - body[i, LAST])
+        if time - body[i, LAST] < world.lasting:
+            e, tangential = 1.0, -1.0
+            tally.counts[ELASTIC] += 1
+        normal, along = impulse_of(
+            1.0 / body[i, MASS], turning(state, body, i), u, n, e, tangential, rules.at_walls[w, 2]
+        )
+        total = added_scaled(along, normal, n)
+        total = added_scaled(total, body[i, MASS] * state[i, RADIUS] * world.growth, n)
+        push(spheres, i, v, total, outer(lever, along))
+    note_flight(tally.flights, time - body[i, LAST])
+    body[i, LAST] = time
+    for k in range(len(n)):
+        tally.impulse[w, k] -= total[k]
+
+
+@scalar
+def wall_restitution(rules, w, speed):
+    """That of the wall, or of two spheres where it has none of its own."""
+    given = rules.at_walls[w, 0]
+    return given if given >= 0.0 else restitution(rules.pair, speed)
+
+
+@scalar
+def sent_out(rules, spheres, i, n, kT):
+    """A velocity of those that leave a wall in equilibrium: along the normal by their flux."""
+    number, hits = spheres.number[i], spheres.hits[i]
+    a, b, c, d = words(Counter(rules.seed, np.uint64(hits)), THERMAL, number, 0)
+    e, f, _, _ = words(Counter(rules.seed, np.uint64(hits)), THERMAL, number, 1)
+    width = math.sqrt(kT / spheres.body[i, MASS])
+    xi = normals(n, a, b, c, d)
+    along = added_scaled(xi, -dot(xi, n), n)
+    # 1 - u lies in (0, 1]
+    speed = math.sqrt(-2.0 * math.log(1.0 - unit(e, f)))
+    return scaled(width, added_scaled(along, speed, n))

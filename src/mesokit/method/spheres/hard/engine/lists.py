@@ -1,0 +1,139 @@
+"""Lists of neighbours: two spheres are on one another's list if their centres allow them to meet.
+
+A centre is where a sphere was when its list was made. It is renewed when the sphere has come a
+shell away from it, alone: others are told. So a grid of centres serves, and nobody crosses cells.
+"""
+
+import math
+
+from mesokit.method.spheres.hard.engine.groups import RADIUS
+from mesokit.method.spheres.hard.engine.motion import entries, nearest_image, put_entries
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.vector import added_scaled, dot
+
+
+@scalar
+def cell_along(lists, k, x):
+    """Number of the cell along an axis."""
+    return min(max(int(x * lists.per_length[k]), 0), lists.cells[k] - 1)
+
+
+@scalar
+def link(lists, i, r):
+    """Put a centre into its cell; r lies in the box."""
+    cell = 0
+    for k in range(len(r)):
+        cell = cell * lists.cells[k] + cell_along(lists, k, r[k])
+    after = lists.head[cell]
+    lists.cell[i], lists.following[i], lists.before[i] = cell, after, -1
+    if after >= 0:
+        lists.before[after] = i
+    lists.head[cell] = i
+
+
+@scalar
+def unlink(lists, i):
+    """Take a centre out of its cell."""
+    after, before = lists.following[i], lists.before[i]
+    if after >= 0:
+        lists.before[after] = before
+    if before >= 0:
+        lists.following[before] = after
+    else:
+        lists.head[lists.cell[i]] = after
+
+
+@scalar
+def forget(lists, i):
+    """Take i off the lists of all others, and empty its own."""
+    for a in range(lists.count[i]):
+        j = lists.near[i, a]
+        last = lists.count[j] - 1
+        b = 0
+        while lists.near[j, b] != i:
+            b += 1
+        lists.near[j, b] = lists.near[j, last]
+        lists.count[j] = last
+    lists.count[i] = 0
+
+
+@scalar
+def renew(world, lists, state, i, r):
+    """Make the list of i anew about r, in the box; whether all lists had room."""
+    unlink(lists, i)
+    forget(lists, i)
+    put_entries(lists.centre, i, 0, r)
+    link(lists, i, r)
+    return find(world, lists, state, i, r)
+
+
+@scalar
+def find(world, lists, state, i, r):
+    """All that may meet i, on its list and i on theirs; whether there was room."""
+    d, room = len(r), True
+    for a in range(-1, 2):
+        x = wrapped(world, lists, 0, cell_along(lists, 0, r[0]) + a)
+        for b in range(-1, 2):
+            y = wrapped(world, lists, 1, cell_along(lists, 1, r[1]) + b)
+            for c in range(-1, 2 if d == 3 else 0):
+                z = wrapped(world, lists, 2, cell_along(lists, 2, r[d - 1]) + c) if d == 3 else 0
+                if min(x, y, z) >= 0:
+                    cell = x * lists.cells[1] + y
+                    if d == 3:
+                        cell = cell * lists.cells[2] + z
+                    room &= take(world, lists, state, i, r, cell)
+    return room
+
+
+@scalar
+def wrapped(world, lists, k, cell):
+    """The number of a cell along an axis beyond the ends of the box; -1 where there is none.
+
+    Of fewer than three cells each is looked at once.
+    """
+    cells = lists.cells[k]
+    if cell < 0:
+        return cells - 1 if world.inverse[k] > 0.0 and cells > 2 else -1
+    if cell >= cells:
+        return 0 if world.inverse[k] > 0.0 and cells > 2 else -1
+    return cell
+
+
+@scalar
+def take(world, lists, state, i, r, cell):
+    """Those of a cell that may meet i."""
+    most, j, room = lists.near.shape[1], lists.head[cell], True
+    mine = state[i, RADIUS] * lists.widest + 2.0 * lists.shell
+    while j >= 0:
+        apart = nearest_image(world, added_scaled(entries(lists.centre, j, 0, r), -1.0, r))
+        reach = mine + state[j, RADIUS] * lists.widest
+        if j != i and dot(apart, apart) < reach * reach:
+            if lists.count[i] < most and lists.count[j] < most:
+                lists.near[i, lists.count[i]] = j
+                lists.near[j, lists.count[j]] = i
+                lists.count[i] += 1
+                lists.count[j] += 1
+            else:
+                room = False
+        j = lists.following[j]
+    return room
+
+
+@scalar
+def time_to_leave(world, lists, r, v, centre):
+    """A time after which a sphere may be a shell away from its centre, not later than it is.
+
+    With gravity it is a lower bound, from the speed that it could have.
+    """
+    gone = nearest_image(world, added_scaled(r, -1.0, centre))
+    square, shell = dot(gone, gone), lists.shell
+    pull = math.sqrt(dot(world.gravity, world.gravity))
+    speed = dot(v, v)
+    if pull > 0.0:
+        left = max(shell - math.sqrt(square), 0.0)
+        u = math.sqrt(speed)
+        return 2.0 * left / (u + math.sqrt(u * u + 2.0 * pull * left))
+    if speed < 1e-200:  # whose square is nothing
+        return math.inf
+    b = dot(gone, v)
+    return (math.sqrt(max(b * b + speed * (shell * shell - square), 0.0)) - b) / speed

@@ -1,0 +1,75 @@
+"""What happens to a sphere next."""
+
+import math
+
+import numpy as np
+
+from mesokit.method.spheres.hard.engine.groups import (
+    FIRST_WALL,
+    LEAVES,
+    LOST,
+    NOTHING,
+    PARTNER,
+    PARTNER_HITS,
+    WIDTH,
+)
+from mesokit.method.spheres.hard.engine.lists import time_to_leave
+from mesokit.method.spheres.hard.engine.motion import (
+    entries,
+    meeting,
+    of_column,
+    of_row,
+    place_at,
+    velocity_at,
+)
+from mesokit.method.spheres.hard.engine.walls import time_to_wall
+from mesokit.scalar.jit import scalar
+
+EIGHT = 8  # lengths of lists are multiples of it
+
+
+@scalar
+def predict(world, rules, spheres, lists, queue, i, now):
+    """Find the next event of sphere i, and write it down; the queue is told by the caller."""
+    state, number = spheres.state, spheres.number
+    r, v = place_at(world, state, i, now), velocity_at(world, state, i, now)
+    leaves = time_to_leave(world, lists, r, v, entries(lists.centre, i, 0, r))
+    best = now + leaves
+    partner = np.int64(LEAVES if leaves < math.inf else NOTHING)
+    one = of_row(state, i, r)
+    near, times = lists.count[i], lists.times
+    if world.growth != 0.0:
+        meet_all(world, rules, state, lists, i, one, now, world.growth)
+    else:
+        meet_all(world, rules, state, lists, i, one, now, 0.0)
+    for a in range(near):
+        if times[a] <= best:
+            j = lists.near[i, a]
+            if times[a] < best or (partner >= 0 and number[j] < number[partner]):
+                best, partner = times[a], np.int64(j)
+    for w in range(len(world.walls)):
+        time = time_to_wall(world, state, i, w, best)
+        if time < best:
+            best, partner = time, np.int64(FIRST_WALL - w)
+        elif math.isnan(time):
+            best, partner = now, np.int64(LOST)
+    queue.time[i], queue.event[i, PARTNER] = best, partner
+    if partner >= 0:
+        queue.event[i, PARTNER_HITS] = np.int32(spheres.hits[partner])
+
+
+@scalar
+def meet_all(world, rules, state, lists, i, one, now, growth):
+    """When sphere i meets each of those on its list; growth 0 is to be said as that number.
+
+    They are gathered by columns first: the times then follow for eight of them at once, as vectors.
+    What lies beyond the end of the list is old and never read.
+    """
+    near, columns = lists.count[i], lists.columns
+    for a in range(near):
+        j = lists.near[i, a]
+        for k in range(WIDTH):
+            columns[k, a] = state[j, k]
+    for a in range((near + EIGHT - 1) & -EIGHT):
+        other = of_column(columns, a, one.r)
+        lists.times[a] = meeting(world, rules.pair, one, other, now, growth)

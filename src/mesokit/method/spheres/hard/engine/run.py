@@ -1,0 +1,127 @@
+"""The loops: all events up to a time, and all predictions made anew."""
+
+import numpy as np
+
+from mesokit.kernels.kernel import kernel
+from mesokit.method.spheres.hard.engine.ahead import ask_for_lists, ask_for_next
+from mesokit.method.spheres.hard.engine.collide import collide_pair, collide_wall
+from mesokit.method.spheres.hard.engine.groups import (
+    COLLAPSED,
+    DONE,
+    FAILED,
+    FIRST_WALL,
+    FULL,
+    IN_A_ROW,
+    LAST,
+    LEAVES,
+    LOST,
+    PARTNER,
+    PARTNER_HITS,
+    PAUSED,
+    RADIUS,
+    TIME,
+)
+from mesokit.method.spheres.hard.engine.lists import find, link, renew
+from mesokit.method.spheres.hard.engine.motion import (
+    bring_to,
+    place_at,
+    put_entries,
+    velocity_at,
+)
+from mesokit.method.spheres.hard.engine.predict import predict
+from mesokit.method.spheres.hard.engine.queue import CURRENT, SIZE, insert, next_event, remove
+from mesokit.scalar.intrinsics import floor, with_item
+from mesokit.scalar.jit import scalar
+
+MANY = 100  # collisions in a row that take no time
+AT_ONCE = 1_000_000  # events, so that signals are heard
+
+
+@kernel
+def advance(world, rules, spheres, lists, queue, tally, end):
+    """Do all events before a time; how it ended: DONE, FULL lists, COLLAPSED, PAUSED, or
+    FAILED where no time was found at which a sphere meets a wall."""
+    number, bin_before = spheres.number, np.int64(-1)
+    for _ in range(AT_ONCE):
+        i = next_event(queue, number, end)
+        if i < 0:
+            return DONE
+        if queue.now[CURRENT] != bin_before:
+            bin_before = queue.now[CURRENT]
+            for place in range(queue.now[SIZE]):
+                ask_for_lists(spheres, lists, queue, queue.heap[place])
+        ask_for_next(spheres, lists, queue)
+        now, partner = queue.time[i], queue.event[i, PARTNER]
+        other = i  # whose next event is to be found as well
+        if partner >= 0:
+            if np.int32(spheres.hits[partner]) == queue.event[i, PARTNER_HITS]:
+                collide_pair(world, rules, spheres, tally, i, partner, now)
+                other = partner
+                if tally.counts[IN_A_ROW] >= MANY:
+                    return COLLAPSED
+        elif partner == LEAVES:
+            if not renew(world, lists, spheres.state, i, boxed(world, spheres.state, i, now)):
+                return FULL
+        elif partner == LOST:
+            return FAILED
+        elif partner <= FIRST_WALL:
+            collide_wall(world, rules, spheres, tally, i, FIRST_WALL - partner, now)
+            if tally.counts[IN_A_ROW] >= MANY:
+                return COLLAPSED
+        for k in (i, other):
+            remove(queue, number, k)
+            predict(world, rules, spheres, lists, queue, k, now)
+            insert(queue, number, k)
+            if other == i:
+                break
+    return PAUSED
+
+
+@scalar
+def boxed(world, state, i, now):
+    """Where sphere i is, in the box."""
+    r = place_at(world, state, i, now)
+    for k in range(len(r)):
+        r = with_item(r, k, r[k] - floor(r[k] * world.inverse[k]) * world.size[k])
+    return r
+
+
+@kernel
+def rebuild(world, rules, spheres, lists, queue, now):
+    """All lists and all predictions anew, from the states as they are; whether lists had room."""
+    n, room = len(spheres.number), True
+    lists.head[:] = -1
+    lists.count[:] = 0
+    for i in range(n):
+        r = boxed(world, spheres.state, i, now)
+        put_entries(lists.centre, i, 0, r)
+        room &= find(world, lists, spheres.state, i, r)
+        link(lists, i, r)
+    if not room:
+        return False
+    queue.first[:] = -1
+    queue.now[0] = int(now * queue.per_time)
+    queue.now[1] = 0
+    for i in range(n):
+        predict(world, rules, spheres, lists, queue, i, now)
+        insert(queue, spheres.number, i)
+    return True
+
+
+@kernel
+def synchronise(world, spheres, time):
+    """Bring all to the end of a window, which is the start of the next; their diameters too."""
+    for i in range(len(spheres.number)):
+        bring_to(world, spheres, i, time)
+        spheres.state[i, TIME] = 0.0
+        spheres.state[i, RADIUS] *= 1.0 + world.growth * time
+        spheres.body[i, LAST] -= time
+
+
+@kernel
+def read(world, spheres, now, places, velocities):
+    """Where all are now, not brought into the box, and how fast, by particle number; their states
+    stay as they are."""
+    for i in range(len(spheres.number)):
+        put_entries(places, spheres.number[i], 0, place_at(world, spheres.state, i, now))
+        put_entries(velocities, spheres.number[i], 0, velocity_at(world, spheres.state, i, now))

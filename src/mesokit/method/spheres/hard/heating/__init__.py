@@ -1,0 +1,10 @@
+"""What puts energy into hard spheres, or takes it out. A new one is a file here."""
+
+from __future__ import annotations
+
+from mesokit.case.registry import parts_in
+from mesokit.method.spheres.hard.heating.protocol import Heating
+
+__getattr__ = parts_in(__name__, HEATINGS=Heating)
+
+__all__ = ["HEATINGS", "Heating"]

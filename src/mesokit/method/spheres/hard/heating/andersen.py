@@ -1,0 +1,32 @@
+"""Collisions with a bath."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import numpy as np
+
+from mesokit.case.component import component, param, tag
+from mesokit.method.spheres.common.draws import normal_rows, uniform_rows
+from mesokit.method.spheres.hard.heating.protocol import Heating, Motion
+
+CHANCE, VELOCITY = 81, 82  # purposes of the random numbers, above METHOD
+
+
+@component
+class Andersen(Heating):
+    """Now and then a sphere gets a velocity of the bath (Andersen 1980). Momentum is not kept."""
+
+    rule: Literal["andersen"] = tag("andersen")
+    rate: float = param(1.0, doc="how often for each sphere", unit="1/time", gt=0, le=1e9)
+    kT: float = param(1.0, doc="thermal energy of the bath", unit="kT", gt=0, le=1e9)
+
+    def act(self, motion: Motion, interval: float) -> None:
+        """Change the velocities, after so much time."""
+        n, d = motion.velocities.shape
+        chance = uniform_rows(motion.seed, motion.turn, CHANCE, n)
+        chosen = chance < -math.expm1(-self.rate * interval)
+        fresh = normal_rows(motion.seed, motion.turn, VELOCITY, n, d)
+        fresh *= np.sqrt(self.kT / motion.masses)[:, None]
+        motion.velocities[chosen] = fresh[chosen]

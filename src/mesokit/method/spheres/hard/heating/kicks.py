@@ -1,0 +1,33 @@
+"""Random kicks to all spheres."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from mesokit.case.component import component, param, tag
+from mesokit.method.spheres.common.draws import normal_rows
+from mesokit.method.spheres.hard.heating.protocol import Heating, Motion
+
+PURPOSE = 80  # of the random numbers, above METHOD
+
+
+@component
+class Kicks(Heating):
+    """Normal random kicks, whose sum is zero, as of a vibrated plate below.
+
+    After Williams and MacKintosh (1996). Inelastic spheres come to a temperature at which they lose
+    as much in collisions (`mesokit.theory.kicked_temperature`).
+    """
+
+    rule: Literal["kicks"] = tag("kicks")
+    power: float = param(0.1, doc="energy that a sphere gets per time", unit="kT/time", gt=0)
+
+    def act(self, motion: Motion, interval: float) -> None:
+        """Change the velocities, after so much time."""
+        n, d = motion.velocities.shape
+        kicks = normal_rows(motion.seed, motion.turn, PURPOSE, n, d)
+        kicks *= np.sqrt(2 * self.power * interval / (d * motion.masses))[:, None]
+        kicks -= motion.masses @ kicks / motion.masses.sum()
+        motion.velocities[:] += kicks

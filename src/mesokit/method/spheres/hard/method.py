@@ -1,0 +1,82 @@
+"""Event-driven dynamics, as the rest of the package knows it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from mesokit.method.spheres.common.expected.answers import answers
+from mesokit.method.spheres.common.groups import FIELDS, groups
+from mesokit.method.spheres.common.made import made
+from mesokit.method.spheres.common.observe import MeanSquareDisplacement
+from mesokit.method.spheres.common.start.first_state import (
+    ARRAYS,
+    first_state,
+    missing_files,
+    starts,
+)
+from mesokit.method.spheres.common.wall.solids import closed_axes, solids
+from mesokit.method.spheres.hard.checks import check
+from mesokit.method.spheres.hard.cooling import HardCooling
+from mesokit.method.spheres.hard.displacement import Displacement
+from mesokit.method.spheres.hard.engine.engine import EventDriven
+from mesokit.method.spheres.hard.equilibrium import equilibrium
+from mesokit.method.spheres.hard.neighbours import Neighbours
+from mesokit.method.spheres.hard.section import KEYS, Sections
+from mesokit.method.spheres.hard.summary import summary
+from mesokit.method.spheres.hard.velocity_memory import EnskogMemory
+from mesokit.seam.method import Columns, Method
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.method.spheres.common.start.protocol import Started
+
+
+def _first_state(case: Case, arrays: Mapping[str, Any]) -> Started:
+    own = made(case)
+    return first_state(case, own, arrays, case.spheres.first_spin_kT)
+
+
+def _engine(case: Case, threads: int, measures: Sequence[str]) -> EventDriven:
+    case.spheres.require_memory(case.box)
+    return EventDriven(case, threads, measures)
+
+
+def columns(case: Case) -> Columns:
+    """Energies and numbers of collisions, of which the log of a run may tell."""
+    names = ("translation", "rotation", "potential", "collisions", "wall collisions")
+
+    def read(engine: Any, wanted: Collection[str]) -> dict[str, float]:
+        pairs, walls, _ = engine.collisions
+        known = {**engine.energies(), "collisions": pairs, "wall collisions": walls}
+        return {name: float(known[name]) for name in wanted}
+
+    return Columns(names, ("translation", "collisions"), read)
+
+
+EXPECTED = (HardCooling, Displacement, EnskogMemory, Neighbours)
+METHOD = Method(
+    name="event-driven",
+    sections=Sections,
+    keys=KEYS,
+    whole_cells=False,
+    fields=FIELDS,
+    spheres=True,
+    picture="disks",
+    closed_axes=closed_axes,
+    solids=solids,
+    observables=(MeanSquareDisplacement,),
+    expected={theory.answers: theory for theory in EXPECTED} | answers(equilibrium),
+    check=check,
+    groups=groups,
+    timestep=lambda case: float(case.spheres.timestep),
+    kT=lambda case: float(case.spheres.kT),
+    summary=summary,
+    starts=starts,
+    missing_files=missing_files,
+    arrays=ARRAYS,
+    first_state=_first_state,
+    engine=_engine,
+    start=EventDriven.start,
+    log=columns,
+)

@@ -1,0 +1,132 @@
+"""What does not go together in a case of soft spheres."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mesokit.case.component import show
+from mesokit.errors import CaseError
+from mesokit.geometry.solids.solids import Solids
+from mesokit.geometry.surface import Surface
+from mesokit.method.spheres.common import falls
+from mesokit.method.spheres.common.wall import plates, solids
+from mesokit.method.spheres.common.wall.surfaces import other_walls, surface_rows
+from mesokit.method.spheres.soft import scales
+from mesokit.method.spheres.soft.pair.protocol import ContactLaw
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+ROUNDING = 1e-5  # relative, of diameters as people write them
+CONTACT = ("temperature", "tangential", "restitution", "friction")  # of a surface
+
+
+def check(case: Case) -> None:
+    """Raise CaseError for a case without a meaning."""
+    section, box = case.spheres, case.box
+    solids.check(case)
+    section.check(box)
+    section.start.check(case)
+    _walls(case)
+    plates.check(case)
+    _potential(case)
+    reach = section.reach(box)
+    shut = {axis for wall in case.walls for axis in wall.closed_axes}
+    for axis, length in zip(box.axes, box.size, strict=True):
+        if axis not in shut and length < 2 * reach:
+            raise CaseError(
+                f"box.size = {show(list(box.size))}: expected at least twice the reach of the pair "
+                f"law ({2 * reach:g}) along {axis}"
+            )
+        if axis not in shut and length < 2 * (reach + section.skin_of(box, shut)):
+            raise CaseError(
+                f"spheres.skin = {show(section.skin)}: expected less than "
+                f"{0.5 * length - reach:.3g}, half of the box along {axis} less the reach"
+            )
+    falls.check(case)
+    _timestep(case)
+    if section.spin_kT and not (section.turns or rubs(case)):
+        raise CaseError(
+            f"spheres.spin_kT = {show(section.spin_kT)}: no effect on smooth spheres, which "
+            "nothing turns; leave it out, or expected spheres.pair.friction above 0"
+        )
+
+
+def _walls(case: Case) -> None:
+    """Walls do what contacts do, and no more."""
+    touching, others = isinstance(case.spheres.pair, ContactLaw), other_walls(case)
+    surface_rows(case, others)
+    if others and not touching:
+        raise CaseError(
+            f"wall[#{others[0] + 1}]: a potential acts at plates, at round walls and within boxes; "
+            "other shapes are for laws of contact"
+        )
+    if others:
+        Solids(case.walls, case.box, only=others)
+    for i, wall in enumerate(case.walls):
+        if wall.virtual != "extrapolate":
+            raise CaseError(f"wall[#{i + 1}].virtual = {show(wall.virtual)}: spheres need none")
+        for name, surface in wall.surfaces().items():
+            _surface(f"wall[#{i + 1}].{name}", surface, case, i in others)
+
+
+def _surface(key: str, surface: Surface, case: Case, other: bool) -> None:
+    contact, touching = surface.contact, isinstance(case.spheres.pair, ContactLaw)
+    if surface.rule == "diffuse":
+        raise CaseError(f"{key}.rule = 'diffuse': not with method 'soft-spheres'")
+    if contact is None:
+        return
+    if other and contact.amplitude > 0:
+        raise CaseError(f"{key}.contact.amplitude = {show(contact.amplitude)}: only plates vibrate")
+    given = {name: getattr(contact, name) for name in CONTACT}
+    said = {name: f"{key}.contact.{name} = {show(value)}" for name, value in given.items()}
+    for name in ("temperature", "tangential"):
+        if given[name] is not None:
+            raise CaseError(f"{said[name]}: not with method 'soft-spheres'")
+    if contact.restitution == 0:
+        raise CaseError(f"{said['restitution']}: expected more than 0")
+    for name in ("restitution", "friction"):
+        if not touching and given[name] is not None:
+            raise CaseError(f"{said[name]}: a potential has none")
+    if given["friction"] and surface.rule == "slip":
+        raise CaseError(f"{said['friction']}: no effect with {key}.rule = 'slip'; leave one out")
+
+
+def _potential(case: Case) -> None:
+    """Potentials act between equal spheres."""
+    section = case.spheres
+    if isinstance(section.pair, ContactLaw):
+        return
+    if section.speed is not None:
+        raise CaseError(
+            f"spheres.speed = {show(section.speed)}: only for laws of contact; with a potential "
+            "give spheres.timestep"
+        )
+    kinds, scale = section.kinds, section.scale(case.box)
+    if any(kind.spread for kind in kinds) or len({kind.diameter for kind in kinds}) > 1:
+        raise CaseError("spheres.kinds: a potential acts between spheres of one diameter alone")
+    given, own = kinds[0].diameter * scale, section.pair.diameter
+    if abs(given - own) > ROUNDING * own:
+        raise CaseError(
+            f"spheres.kinds: diameter {given:.9g}; expected that of the potential, {own:.9g}, as "
+            "kinds have that say none (with number or density, and no packing fraction beside)"
+        )
+
+
+def rubs(case: Case) -> bool:
+    """Whether a wall has friction of its own."""
+    contacts = [surface.contact for _, surface in solids.surfaces(case)]
+    return any(contact is not None and bool(contact.friction) for contact in contacts)
+
+
+def _timestep(case: Case) -> None:
+    """A contact must be followed."""
+    section = case.spheres
+    if section.timestep is None or not isinstance(section.pair, ContactLaw):
+        return
+    time = scales.shortest_contact(case)
+    if section.timestep > time / scales.REFUSED:
+        raise CaseError(
+            f"spheres.timestep = {show(section.timestep)}: expected at most a tenth of the contact "
+            f"time, {time / scales.REFUSED:.3g} (better a fiftieth)"
+        )

@@ -1,0 +1,131 @@
+"""Forces along the line between two centres, by a potential of mesokit: one loop over a list.
+
+It has no branches, so that it becomes a loop over vectors of neighbours. Terms are rounded to whole
+quanta before they are added up: sums are exact, whatever the order of a list and its length.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mesokit.method.spheres.soft.engine.acting import act, ahead, quantum, tell, turns
+from mesokit.method.spheres.soft.engine.geometry import from_to, from_wall, reach, row
+from mesokit.method.spheres.soft.engine.groups import ENERGY, NEAREST, VIRIAL
+from mesokit.method.spheres.soft.engine.taken import take
+from mesokit.potential.protocol import central
+from mesokit.scalar.fixed_point import ROUNDER_BITS, bits, fixed, quanta
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.vector import dot, scaled
+
+FAR = np.int64(0x7FF0000000000000)  # bits of infinity: those of positive numbers have their order
+
+
+class Central(NamedTuple):
+    """A potential, the force that counts as one, and its inverse."""
+
+    potential: Any
+    quantum: float
+    scale: float
+
+
+@quantum.register(Central)
+def _(law):
+    return law.quantum
+
+
+@ahead.register(Central)
+def _(law):
+    return 0.0
+
+
+@turns.register(Central)
+def _(law):
+    return False
+
+
+@act.register(Central)
+def _(law, mine, time, step, world, noted, room):
+    low = FAR
+    for i in range(mine[0], mine[1]):
+        low = min(low, push_from_list(law, i, world), push_from_walls(law, i, time, world, room))
+    noted[NEAREST] = min(noted[NEAREST], low)
+
+
+@scalar
+def push_from_list(law, i, world):
+    """The force on sphere i from others; bits of the square of the least distance."""
+    bodies, box, lists = world.bodies, world.box, world.lists
+    r = row(bodies.place, i)
+    a, b, c, low = np.int64(0), np.int64(0), np.int64(0), FAR
+    for s in range(lists.count[i]):
+        dx, dy, dz = from_to(box, bodies.place, lists.near[i, s], r)
+        square = dx * dx + dy * dy + dz * dz
+        _, push = central(law.potential, square)
+        a += fixed(push * dx, law.scale)
+        b += fixed(push * dy, law.scale)
+        c += fixed(push * dz, law.scale)
+        low = min(low, apart(square))
+    rounders = np.int64(lists.count[i]) * np.int64(ROUNDER_BITS)
+    bodies.force[i, 0], bodies.force[i, 1], bodies.force[i, 2] = (
+        a - rounders,
+        b - rounders,
+        c - rounders,
+    )
+    return low
+
+
+@scalar
+def push_from_walls(law, i, time, world, room):
+    """Add the force of walls on sphere i; bits of the square of the least distance."""
+    bodies, box, walls = world.bodies, world.box, world.walls
+    low, r = FAR, row(bodies.place, i)
+    for w in range(len(walls.rows)):
+        distance, out, _ = from_wall(walls.rows, w, box, r, time)
+        if distance < 2.0 * reach(bodies, i):
+            _, push = central(law.potential, distance * distance)
+            low = min(low, bits(distance * distance) if distance > 0.0 else np.int64(0))
+            pull = scaled(push * distance, out)
+            counts = (
+                quanta(pull[0], law.scale),
+                quanta(pull[1], law.scale),
+                quanta(pull[2], law.scale),
+            )
+            for k in range(3):
+                bodies.force[i, k] += counts[k]
+            take(room.taken, w, counts)
+    return low
+
+
+@scalar
+def apart(square):
+    """Bits of a squared distance; of none, with which lists are filled up, those of infinity."""
+    return bits(square) if square > 0.0 else FAR
+
+
+@tell.register(Central)
+def _(law, i, time, world, told):
+    bodies, box, lists, walls = world.bodies, world.box, world.lists, world.walls
+    r = row(bodies.place, i)
+    for s in range(lists.count[i]):
+        j = lists.near[i, s]
+        if j != i:
+            way = from_to(box, bodies.place, j, r)
+            energy, push = central(law.potential, dot(way, way))
+            told[ENERGY] += quanta(energy, law.scale)
+            add_product(told, law.scale, scaled(push, way), way)
+    for w in range(len(walls.rows)):
+        distance, _, _ = from_wall(walls.rows, w, box, r, time)
+        if distance < 2.0 * reach(bodies, i):
+            energy, _ = central(law.potential, distance * distance)
+            told[ENERGY] += quanta(2.0 * energy, law.scale)
+
+
+@scalar
+def add_product(told, scale, force, way):
+    """Add the products of a force and a vector to the virial of a sphere."""
+    told[VIRIAL] += quanta(force[0] * way[0], scale)
+    told[VIRIAL + 1] += quanta(force[1] * way[1], scale)
+    told[VIRIAL + 2] += quanta(force[2] * way[2], scale)
+    told[VIRIAL + 3] += quanta(force[0] * way[1], scale)
+    told[VIRIAL + 4] += quanta(force[0] * way[2], scale)
+    told[VIRIAL + 5] += quanta(force[1] * way[2], scale)

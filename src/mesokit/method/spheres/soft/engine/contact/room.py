@@ -1,0 +1,90 @@
+"""Room for a batch of contacts: rows at constant offsets, one number of each contact side by side.
+
+LLVM then sees that rows do not overlap, and makes of the loop over contacts one over vectors.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mesokit.loops.layout import zeros
+from mesokit.method.spheres.soft.engine.contact.force import Meeting
+from mesokit.method.spheres.soft.engine.contact.spring import Springs
+from mesokit.method.spheres.soft.engine.taken import nothing_taken
+from mesokit.scalar.jit import elementwise, for_each, scalar
+
+BATCH = 64  # contacts; what they need fits in the first-level cache
+GROUP = 8  # of which so many are a vector at most
+ROW = np.uint64(BATCH + 8)
+# how much there is of each
+COUNT, VECTOR, MEETING, SPRINGS = (0,) * 3, (0.0,) * 3, (0.0,) * 15, (0.0,) * 6
+# rows of numbers: where the vector, what the two have and springs begin, and the bound of forces
+WAY, MET, KEPT, BOUND, NUMBERS = 0, 3, 18, 24, 25
+FORCE, TORQUE, BACK, COUNTS = 0, 3, 6, 9  # rows of counts: on the one, and the torque on the other
+FIRST, SECOND, PLACE = np.uint64(0), ROW, np.uint64(2) * ROW  # who, with whom, which contact
+
+
+class Room(NamedTuple):
+    """numbers (25 rows), counts (9 rows), in quanta, and who (3 rows) of a batch of contacts; taken
+    (surfaces, 8): what surfaces have taken, see `machine.taken`."""
+
+    numbers: Any
+    counts: Any
+    who: Any
+    taken: Any
+
+
+def rooms(threads: int, surfaces: int) -> Room:
+    """One for each thread."""
+    row = int(ROW)
+    return Room(
+        zeros((threads, NUMBERS * row)),
+        zeros((threads, COUNTS * row), np.int64),
+        zeros((threads, 3 * row), np.uint64),
+        nothing_taken(threads, surfaces),
+    )
+
+
+@elementwise
+def load(numbers, start, c, like):
+    """Contact c of consecutive rows, as a tuple as long as `like`."""
+    return "numbers[np.uint64(start + {k}) * ROW + c]"
+
+
+@for_each
+def store(numbers, start, c, values):
+    """Write a tuple into consecutive rows of contact c."""
+    return "numbers[np.uint64(start + {k}) * ROW + c] = values[{k}]"
+
+
+@scalar
+def load_meeting(numbers, c):
+    """What the two of contact c have."""
+    a = load(numbers, MET, c, MEETING)
+    foreseen, velocity = (a[3], a[4], a[5]), (a[6], a[7], a[8])
+    rolled, turning = (a[9], a[10], a[11]), (a[12], a[13], a[14])
+    return Meeting(a[0], a[1], a[2], foreseen, velocity, rolled, turning)
+
+
+@scalar
+def store_meeting(numbers, c, met):
+    """Write what the two of contact c have."""
+    store(numbers, MET, c, (met.reach, met.other, met.inverse))
+    store(numbers, MET + 3, c, met.foreseen)
+    store(numbers, MET + 6, c, met.velocity)
+    store(numbers, MET + 9, c, met.rolled)
+    store(numbers, MET + 12, c, met.turning)
+
+
+@scalar
+def load_springs(numbers, c):
+    """What contact c remembers."""
+    a = load(numbers, KEPT, c, SPRINGS)
+    return Springs((a[0], a[1], a[2]), (a[3], a[4], a[5]))
+
+
+@scalar
+def store_springs(numbers, c, springs):
+    """Write what contact c remembers."""
+    store(numbers, KEPT, c, springs.sliding)
+    store(numbers, KEPT + 3, c, springs.rolling)

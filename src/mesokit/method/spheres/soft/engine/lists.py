@@ -1,0 +1,127 @@
+"""Spheres sorted by cells in memory, and lists of who is near whom."""
+
+import numpy as np
+
+from mesokit.kernels.kernel import kernel
+from mesokit.loops.cells import cell_after, cell_along, cell_of
+from mesokit.loops.layout import share
+from mesokit.method.spheres.soft.engine.geometry import nearest, row
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.vector import dot
+
+GROUP = 8  # lists are filled up to whole groups, for which loops over vectors need no rest
+
+
+@kernel
+def sort(grid, place, cell, begins, order):
+    """The order of memory in which spheres of one cell lie together, and where each cell begins."""
+    begins[:] = 0
+    for i in range(len(cell)):
+        cell[i] = cell_of(grid, row(place, i))
+        begins[cell[i] + 1] += 1
+    for c in range(1, len(begins)):
+        begins[c] += begins[c - 1]
+    for i in range(len(cell)):
+        order[begins[cell[i]]] = i
+        begins[cell[i]] += 1
+    for c in range(len(begins) - 1, 0, -1):
+        begins[c] = begins[c - 1]
+    begins[0] = 0
+
+
+@kernel
+def make_lists(team, grid, begins, columns, bodies, box, lists, scratch):
+    """All within reach and skin of each sphere. A list that has too little room is cut off, and
+    tells its length. `columns` (4, n) are places once more, each coordinate together; `scratch`
+    (threads, n) is for the loops here alone."""
+    first, last = share(len(bodies.number), team.thread, team.threads)
+    beside = scratch[team.thread]
+    for i in range(first, last):
+        found = 0
+        y, z = bodies.place[i, 1], bodies.place[i, 2]
+        x_cell = cell_along(grid, 0, bodies.place[i, 0])
+        y_cell, z_cell = cell_along(grid, 1, y), cell_along(grid, 2, z)
+        for c in range(-grid.wide[2], grid.wide[2] + 1):
+            z_there = cell_after(grid, box, 2, z_cell, c)
+            up = off(grid, 2, z, z_cell, c)
+            for b in range(-grid.wide[1], grid.wide[1] + 1):
+                y_there = cell_after(grid, box, 1, y_cell, b)
+                side = off(grid, 1, y, y_cell, b)
+                if min(y_there, z_there) >= 0 and up * up + side * side <= grid.farthest:
+                    line = grid.cells[0] * (y_there + grid.cells[1] * z_there)
+                    for span in spans(grid, box, begins, line, x_cell):
+                        found = list_span(columns, box, lists, i, span, found, beside)
+        if lists.halves:
+            lists.own[i] = own_first(lists, i, found, first)
+        lists.count[i] = fill_up(lists, i, found)
+        for k in range(3):
+            lists.made_at[i, k] = bodies.place[i, k]
+
+
+@scalar
+def off(grid, k, x, here, offset):
+    """How far the nearest place of a cell, so many after that of x, is from x along an axis."""
+    if offset == 0:
+        return 0.0
+    edge = float(here + offset + (0 if offset > 0 else 1)) / grid.inverse[k]
+    return max(edge - x if offset > 0 else x - edge, 0.0)
+
+
+@scalar
+def spans(grid, box, begins, line, here):
+    """Where the spheres of the cells around one along x lie in memory: together, but for those
+    beyond an end of the box."""
+    low, high, cells = here - grid.wide[0], here + grid.wide[0], grid.cells[0]
+    middle = begins[line + max(low, 0)], begins[line + min(high, cells - 1) + 1]
+    other = (0, 0)
+    if box.inverse[0] > 0.0 and low < 0:
+        other = begins[line + low + cells], begins[line + cells]
+    elif box.inverse[0] > 0.0 and high >= cells:
+        other = begins[line], begins[line + high - cells + 1]
+    return middle, other
+
+
+@scalar
+def list_span(columns, box, lists, i, span, found, beside):
+    """Add those between two places in memory; how many are listed then.
+
+    First all distances, in a loop over vectors, and then the choice, in one without branches.
+    """
+    begin, end = span
+    x, y, z = columns[0, i], columns[1, i], columns[2, i]
+    whole = begin + ((end - begin + GROUP - 1) & -GROUP)
+    xs, ys, zs = columns[0, begin:whole], columns[1, begin:whole], columns[2, begin:whole]
+    beyond, reaches = columns[3, i] + lists.skin, columns[3, begin:whole]
+    for k in range(np.uint64(whole - begin)):
+        way = nearest(box, (x - xs[k], y - ys[k], z - zs[k]))
+        far = beyond + reaches[k]
+        beside[k] = 1 if dot(way, way) <= far * far else 0
+    if begin <= i < end:
+        beside[i - begin] = 0
+    last_place = lists.near.shape[1] - 1
+    for k in range(np.uint64(end - begin)):
+        lists.near[i, np.uint64(min(found, last_place))] = np.int32(np.uint64(begin) + k)
+        found += beside[k]
+    return found
+
+
+@scalar
+def own_first(lists, i, found, first):
+    """Put those in front that are not found from the sphere before in memory; how many they are."""
+    own, room = 0, lists.near.shape[1]
+    for s in range(min(found, room)):
+        j, other = lists.near[i, s], lists.near[i, own]
+        mine = not first <= j < i
+        lists.near[i, s] = other if mine else j
+        lists.near[i, own] = j if mine else other
+        own += mine
+    return own
+
+
+@scalar
+def fill_up(lists, i, found):
+    """Fill a list with the sphere itself, to whole groups; its length then."""
+    whole = (found + GROUP - 1) // GROUP * GROUP
+    for s in range(found, min(whole, lists.near.shape[1])):
+        lists.near[i, s] = np.int32(i)
+    return whole

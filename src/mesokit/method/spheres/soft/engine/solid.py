@@ -1,0 +1,138 @@
+"""Spheres at walls of any shape, by the distance of their centres.
+
+A sphere touches the nearest term of a solid and, in a corner, two others whose surfaces face other
+ways. Between two that face nearly the same way, as where one wall goes on into its periodic image,
+the nearer one acts alone.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from mesokit.geometry.primitive import KINDS as NUMBER
+from mesokit.geometry.solids.bodies import (
+    BODY,
+    KINDS,
+    NEAR,
+    NOBODY,
+    STARTS,
+    home_cell,
+    part_clearance,
+    part_normal,
+    surface_velocity,
+    term_clearance,
+)
+from mesokit.method.spheres.soft.engine.contact.remembered import NO_SPRINGS, keep
+from mesokit.scalar.jit import by_type, elementwise, scalar, seldom
+from mesokit.scalar.pointer import whole, word
+from mesokit.scalar.vector import added_scaled, dot, scaled
+
+MOST = 3  # surfaces that a sphere touches at once
+ALIKE = 0.9  # cosine of the angle between two normals that face nearly the same way
+BENT = NUMBER["wave"]  # primitives from here on know a bound of the distance alone
+FEET = 6  # steps to the nearest place of these
+NEARER = 40  # steps of a ray to their surface
+
+
+class Place(NamedTuple):
+    """Distance from a term, the normal out of it, and the term, NOBODY if there is none."""
+
+    distance: float
+    normal: tuple[float, float, float]
+    term: int
+
+
+@elementwise
+def shortened(r, like):
+    """As many numbers of r as there are axes."""
+    return "r[{k}]"
+
+
+@by_type
+def lengthened(x):
+    """A vector of three numbers."""
+    if len(x) == 2:
+        return lambda x: (x[0], x[1], 0.0)
+    return lambda x: x
+
+
+@seldom
+def nearest_place(tables, x, within, one, other):
+    """The nearest term whose surface faces another way than these two normals do."""
+    least, normal, term = within, scaled(0.0, x), NOBODY
+    cell = home_cell(tables, x)
+    for j in range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1)):
+        candidate = whole(word(tables, NEAR), j)
+        bound, part = term_clearance(tables, candidate, x)
+        if bound < least:
+            c, n = part_place(tables, part, x, bound)
+            if c < least and dot(n, one) < ALIKE and dot(n, other) < ALIKE:
+                least, normal, term = c, n, candidate
+    return least, normal, term
+
+
+@seldom
+def part_place(tables, part, x, bound):
+    """Distance of x from a part, and the normal there.
+
+    Of bent surfaces the distance is that of the nearest place: where a ray from x along the normal
+    of the last foot meets the surface, again and again.
+    """
+    n = part_normal(tables, part, x)
+    if whole(word(tables, KINDS), part) < BENT:
+        return bound, n
+    way = bound
+    for _ in range(FEET):
+        way = 0.0
+        for _ in range(NEARER):
+            c = part_clearance(tables, part, added_scaled(x, -way, n))
+            way += c
+            if abs(c) < 1e-13:
+                break
+        n = part_normal(tables, part, added_scaled(x, -way, n))
+    return way, n
+
+
+@scalar
+def place_at_solid(solid, r, within, one, other):
+    """The nearest term whose surface faces another way than these two normals do."""
+    x = shortened(r, solid.like)
+    distance, normal, term = nearest_place(
+        solid.bodies.tables, x, within, shortened(one, solid.like), shortened(other, solid.like)
+    )
+    return Place(distance, lengthened(normal), term)
+
+
+@scalar
+def solid_moves(solid, term, r):
+    """Velocity of the surface of a term at r."""
+    return lengthened(surface_velocity(solid.bodies.tables, term, shortened(r, solid.like)))
+
+
+@scalar
+def body_of(solid, term):
+    """The body that a term belongs to."""
+    return whole(word(solid.bodies.tables, BODY), term)
+
+
+@scalar
+def contact_of(solid, i, term):
+    """Which contact sphere i has with a term: one that is free if it is new."""
+    free = 0
+    for s in range(MOST):
+        if solid.terms[i, s] == term:
+            return i * MOST + s
+        if solid.terms[i, s] == NOBODY:
+            free = s
+    keep(solid.springs, i * MOST + free, NO_SPRINGS)
+    solid.terms[i, free] = np.int64(term)
+    return i * MOST + free
+
+
+@scalar
+def forget_others(solid, i, one, two, three):
+    """Free what sphere i remembers of terms other than these."""
+    for s in range(MOST):
+        term = solid.terms[i, s]
+        if term != one and term != two and term != three:
+            solid.terms[i, s] = NOBODY

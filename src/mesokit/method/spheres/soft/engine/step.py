@@ -1,0 +1,168 @@
+"""Velocity Verlet, by the threads of a team, until the lists are stale.
+
+Half a kick and the drift, the forces at the new places, half a kick. Dashpots along
+the normal see the velocities at the end of the step, others those of the half step. Forces are
+whole numbers of quanta, each of which a sphere adds up for itself: the sum has no order. With a
+bath velocities are drawn between two halves of the drift (BAOAB; Leimkuhler and Matthews 2013).
+"""
+
+import math
+
+import numpy as np
+
+from mesokit.kernels.kernel import kernel
+from mesokit.loops.cells import worn
+from mesokit.loops.layout import share
+from mesokit.loops.threads import meet
+from mesokit.method.spheres.soft.engine.acting import act, ahead, quantum, turns
+from mesokit.method.spheres.soft.engine.contact.room import Room
+from mesokit.method.spheres.soft.engine.groups import DONE, FARTHEST, INVERSE, PENDING
+from mesokit.scalar.elementary import rint
+from mesokit.scalar.jit import scalar
+from mesokit.scalar.random import METHOD, Counter, normals, words
+
+BATH, BATH_OF_SPINS = METHOD + np.uint64(1), METHOD + np.uint64(2)
+
+
+@kernel
+def advance(team, counter, steps, law, motion, world, noted, rooms):
+    """So many steps, or fewer where lists must be made anew.
+
+    `noted` says whether forces are due first, and then how many steps are done and whether forces
+    are due, with new lists.
+    """
+    first, last = share(len(world.bodies.number), team.thread, team.threads)
+    mine = noted[team.thread]
+    thread = team.thread
+    room = Room(rooms.numbers[thread], rooms.counts[thread], rooms.who[thread], rooms.taken[thread])
+    done, pending = 0, mine[PENDING] != 0.0
+    while done < steps:
+        now = Counter(counter.seed, counter.step + np.uint64(done))
+        if not pending:
+            farthest = 0.0
+            for i in range(first, last):
+                kick(law, motion, world.bodies, i)
+                drift(motion, now, world.bodies, world.box, i)
+                foresee(law, motion, world.bodies, i)
+                farthest = max(farthest, moved(world.bodies, world.box, world.lists, i))
+            mine[FARTHEST] = farthest
+            meet(team)
+            for t in range(team.threads):
+                farthest = max(farthest, noted[t, FARTHEST])
+            if worn(farthest, 0.0, world.lists.skin - ahead(law)):
+                pending = True
+                break
+        time = motion.step * float(now.step + np.uint64(1))
+        clear(law, world.bodies, first, last)
+        act(law, (first, last), time, motion.step, world, mine, room)
+        meet(team)
+        for i in range(first, last):
+            kick(law, motion, world.bodies, i)
+        pending = False
+        done += 1
+    mine[DONE], mine[PENDING] = float(done), 1.0 if pending else 0.0
+
+
+@kernel
+def find_forces(team, time, law, world, noted, rooms):
+    """The forces on spheres where they start from. No contact grows meanwhile."""
+    first, last = share(len(world.bodies.number), team.thread, team.threads)
+    clear(law, world.bodies, first, last)
+    for i in range(len(world.bodies.number)):
+        for k in range(3):
+            world.bodies.seen[i, k] = world.bodies.velocity[i, k]
+    thread = team.thread
+    room = Room(rooms.numbers[thread], rooms.counts[thread], rooms.who[thread], rooms.taken[thread])
+    act(law, (first, last), time, 0.0, world, noted[team.thread], room)
+
+
+@scalar
+def clear(law, bodies, first, last):
+    """No forces yet, for laws that add to them from both sides of a contact."""
+    if turns(law):
+        bodies.force[first:last] = 0
+        bodies.torque[first:last] = 0
+
+
+@scalar
+def kick(law, motion, bodies, i):
+    """Half a step of forces and torques."""
+    half = 0.5 * motion.step
+    per_mass = bodies.velocity[i, INVERSE] * quantum(law)
+    for k in range(3):
+        acceleration = float(bodies.force[i, k]) * per_mass + motion.gravity[k]
+        bodies.velocity[i, k] += half * acceleration
+    if turns(law):
+        per_inertia = bodies.spin[i, INVERSE] * quantum(law)
+        for k in range(3):
+            bodies.spin[i, k] += half * (float(bodies.torque[i, k]) * per_inertia)
+
+
+@scalar
+def foresee(law, motion, bodies, i):
+    """The velocity at the end of the step, if forces are then what they were at its start."""
+    if turns(law):
+        per_mass = bodies.velocity[i, INVERSE] * quantum(law)
+        for k in range(3):
+            acceleration = float(bodies.force[i, k]) * per_mass + motion.gravity[k]
+            bodies.seen[i, k] = bodies.velocity[i, k] + 0.5 * motion.step * acceleration
+
+
+@scalar
+def drift(motion, counter, bodies, box, i):
+    """A step of flight, with the bath in the middle of it."""
+    if motion.decay == 1.0:
+        for k in range(3):
+            fly(bodies, box, i, k, motion.step)
+        return
+    for k in range(3):
+        fly(bodies, box, i, k, 0.5 * motion.step)
+    bathe(motion, counter, bodies, i)
+    for k in range(3):
+        fly(bodies, box, i, k, 0.5 * motion.step)
+
+
+@scalar
+def bathe(motion, counter, bodies, i):
+    """The exact solution of friction and noise over a step."""
+    number = bodies.number[i]
+    noise = math.sqrt((1.0 - motion.decay * motion.decay) * motion.kT)
+    a, b, c, d = words(counter, BATH, number, 0)
+    xi = normals((0.0, 0.0, 0.0), a, b, c, d)
+    spread = noise * math.sqrt(bodies.velocity[i, INVERSE])
+    for k in range(3):
+        v = motion.decay * bodies.velocity[i, k] + spread * xi[k]
+        bodies.velocity[i, k] = motion.axes[k] * v
+    if motion.turns[2] != 0.0:
+        a, b, c, d = words(counter, BATH_OF_SPINS, number, 0)
+        xi = normals((0.0, 0.0, 0.0), a, b, c, d)
+        spread = noise * math.sqrt(bodies.spin[i, INVERSE])
+        for k in range(3):
+            w = motion.decay * bodies.spin[i, k] + spread * xi[2 - k]
+            bodies.spin[i, k] = motion.turns[k] * w
+
+
+@scalar
+def fly(bodies, box, i, k, time):
+    """Along one axis, and back into the box."""
+    x = bodies.place[i, k] + time * bodies.velocity[i, k]
+    if box.inverse[k] != 0.0:
+        if x < 0.0:
+            x += box.size[k]
+            bodies.images[i, k] -= np.int32(1)
+            x = x if x < box.size[k] else 0.0
+        elif x >= box.size[k]:
+            x -= box.size[k]
+            bodies.images[i, k] += np.int32(1)
+    bodies.place[i, k] = x
+
+
+@scalar
+def moved(bodies, box, lists, i):
+    """Square of the way since the lists were made; infinite for what is no number any more."""
+    square = 0.0
+    for k in range(3):
+        way = bodies.place[i, k] - lists.made_at[i, k]
+        way -= box.size[k] * rint(way * box.inverse[k])
+        square += way * way
+    return square if square >= 0.0 else np.inf

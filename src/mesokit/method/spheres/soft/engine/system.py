@@ -1,0 +1,391 @@
+"""Soft spheres in memory: what is laid out how, sorted when, and read by particle number."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import RunError
+from mesokit.geometry.solids.bodies import NOBODY
+from mesokit.geometry.solids.none import Nothing
+from mesokit.kernels.group import Packing
+from mesokit.loops.threads import Threads
+from mesokit.method.spheres.common.wall.rows import AMPLITUDE, AXIS, KIND, PLACE, PLANE
+from mesokit.method.spheres.soft.engine import groups
+from mesokit.method.spheres.soft.engine.contact.by_number import pairs_of, remember
+from mesokit.method.spheres.soft.engine.contact.remembered import carry_springs
+from mesokit.method.spheres.soft.engine.contact.room import rooms
+from mesokit.method.spheres.soft.engine.groups import (
+    Bodies,
+    Box,
+    Lists,
+    Motion,
+    Solid,
+    Walls,
+    World,
+)
+from mesokit.method.spheres.soft.engine.lists import GROUP, make_lists, sort
+from mesokit.method.spheres.soft.engine.reading import tell_all
+from mesokit.method.spheres.soft.engine.solid import MOST
+from mesokit.method.spheres.soft.engine.step import advance, find_forces
+from mesokit.method.spheres.soft.engine.taken import all_taken, in_numbers
+from mesokit.scalar.random import Counter
+
+Array = NDArray[np.float64]
+CELLS = 4_000_000  # at most
+ROUNDING = 1 + 1e-9  # what cells are larger than they need
+
+
+class Grid(NamedTuple):
+    """Cells along each axis, their number per length, how many of them on both sides are looked
+    through, and the square of the farthest that anybody is listed."""
+
+    cells: tuple[int, int, int]
+    inverse: tuple[float, float, float]
+    wide: tuple[int, int, int]
+    farthest: float
+
+
+class Others(NamedTuple):
+    """Walls of any shape: what compiled code takes, a place, own (bodies, 2), see `groups.Solid`;
+    and what keeps their tables in memory."""
+
+    bodies: Any
+    like: tuple[float, ...]
+    own: Array
+    kept: Any
+
+
+class Given(NamedTuple):
+    """What does not change.
+
+    size of the box and closed axes; reach, masses, inertia (n,); law of the forces, see `acting`;
+    halves: whether each pair is taken once; width: numbers that a contact remembers; nearest: no
+    two come nearer, largest: no force exceeds it; motion; walls: rows and own, see `Walls`; seed;
+    skin; others: walls of any shape; fastest: the speed beyond which steps do not follow contacts.
+    """
+
+    size: tuple[float, ...]
+    closed: tuple[bool, ...]
+    reach: Array
+    masses: Array
+    inertia: Array
+    law: Any
+    halves: bool
+    width: int
+    nearest: float
+    motion: Motion
+    rows: Array
+    own: Array
+    seed: int
+    skin: float
+    others: Others | None = None
+    fastest: float = math.inf
+
+
+class System:
+    """The spheres, their lists, and the threads that move them."""
+
+    def __init__(self, given: Given, threads: int) -> None:
+        n, self.given, self.team = len(given.reach), given, Threads(threads)
+        self.n, self.dimension = n, len(given.size)
+        self.box, self._packing = _box(given), Packing()
+        self.grid = _grid(given, self.box)
+        self.bodies = _bodies(n)
+        self.spare = _bodies(n)
+        self.walls = self._no_contacts()
+        self.lists = self._lists(GROUP)
+        self.old = self._lists(GROUP)
+        self.cell, self.order = np.zeros(n, np.int64), np.zeros(n, np.int64)
+        self.begins = np.zeros(int(np.prod(self.grid.cells)) + 1, np.int64)
+        self.scratch = np.zeros((threads, n + GROUP), np.int64)
+        self.noted = np.zeros((threads, groups.GAP))
+        surfaces = len(given.rows) + (0 if given.others is None else len(given.others.own))
+        self.rooms = rooms(threads, surfaces)
+        self.noted_forces()
+        self.team.compile_ahead(advance, *self._arguments(0, 0))
+
+    def noted_forces(self) -> None:
+        """Forget how near spheres came."""
+        self.noted.view(np.int64)[:, groups.NEAREST] = np.float64(np.inf).view(np.int64)
+        self.noted[:, groups.LARGEST] = 0.0
+
+    def _walls(self, springs: Array, solid_terms: Any, solid_springs: Array) -> Walls:
+        given = self.given
+        solid: Any = Nothing()
+        if (others := given.others) is not None:
+            solid = Solid(others.bodies, others.like, others.own, solid_terms, solid_springs)
+        return Walls(given.rows, given.own, springs, solid)
+
+    def _no_contacts(self) -> Walls:
+        n, width = self.n, self.given.width
+        terms, solid_springs = np.full((n, MOST), NOBODY, np.int32), np.zeros((n * MOST, width))
+        return self._walls(np.zeros((n * len(self.given.rows), width)), terms, solid_springs)
+
+    def _lists(self, most: int) -> Lists:
+        n, width = self.n, self.given.width
+        count, own, near = (
+            np.zeros(n, np.int64),
+            np.zeros(n, np.int64),
+            np.zeros((n, most), np.int32),
+        )
+        begin, springs = np.zeros(n, np.int64), np.zeros((n * width, width))
+        return Lists(
+            self.given.skin, self.given.halves, count, own, near, begin, springs, np.zeros((n, 4))
+        )
+
+    # --- start and steps --------------------------------------------------------------------------
+
+    def fill(self, places: Array, velocities: Array, spins: Array) -> None:
+        """Put spheres at these places (n, d), with velocities (n, d) and spins ((n,) or (n, 3))."""
+        given, bodies, d = self.given, self.bodies, self.dimension
+        size, repeats = np.array(given.size), ~np.array(given.closed)
+        images = np.where(repeats, np.floor(places / size), 0).astype(np.int32)
+        inside = places - images * size
+        inside = np.where(repeats & (inside >= size), 0.0, inside)
+        for array in bodies:
+            array[:] = 0
+        bodies.number[:] = np.arange(self.n)
+        bodies.place[:, :d], bodies.place[:, groups.REACH] = inside, given.reach
+        bodies.images[:, :d] = images
+        bodies.velocity[:, :d], bodies.velocity[:, groups.INVERSE] = velocities, 1 / given.masses
+        self._set_spins(spins)
+        bodies.spin[:, groups.INVERSE] = 1 / given.inertia
+        self.walls = self._no_contacts()
+        self.lists = self._lists(GROUP)
+        self.renew()
+
+    def _set_spins(self, spins: Array) -> None:
+        if self.dimension == 2:
+            self.bodies.spin[:, 2] = spins
+        else:
+            self.bodies.spin[:, :3] = spins
+
+    @property
+    def world(self) -> World:
+        """What the loops work on, as it lies now."""
+        return World(self.bodies, self.box, self.lists, self.walls)
+
+    def find_forces(self, time: float) -> None:
+        """The forces at the start."""
+        self.team.run(find_forces, time, self.given.law, self.world, self.noted, self.rooms)
+        self.forget_taken()
+        self._look()
+
+    def forget_taken(self) -> None:
+        """Surfaces have taken nothing yet."""
+        self.rooms.taken[:] = 0
+
+    def taken(self) -> Array:
+        """Forces on surfaces, (surfaces, 3), summed over steps: rows, then bodies of others."""
+        found: Array = in_numbers(all_taken(self.rooms.taken)) * self.given.law.quantum
+        return found
+
+    def run(self, step: int, steps: int) -> None:
+        """So many steps from a step on. Raises RunError where forces are beyond all bounds."""
+        done = 0
+        self.noted[:, groups.PENDING] = 0.0
+        while done < steps or steps == 0:
+            self.team.run(advance, *self._arguments(step + done, steps - done))
+            done += int(self.noted[0, groups.DONE])
+            self._look()
+            if self.noted[0, groups.PENDING]:
+                self.renew()
+            if steps == 0:
+                return
+
+    def _arguments(self, step: int, steps: int) -> tuple[Any, ...]:
+        given, counter = self.given, Counter(np.uint64(self.given.seed), np.uint64(step))
+        law, motion, world, rooms = self._packing(given.law, given.motion, self.world, self.rooms)
+        return counter, steps, law, motion, world, self.noted, rooms
+
+    def _look(self) -> None:
+        law, given = self.noted, self.given
+        nearest = np.sqrt(law.view(np.int64)[:, groups.NEAREST].view(np.float64).min())
+        if nearest < given.nearest:
+            raise RunError(
+                f"two spheres, or a sphere and a wall, are {nearest:.3g} apart: the force is "
+                "beyond all bounds; expected a shorter timestep, or a start without overlaps"
+            )
+        if law[:, groups.LARGEST].max() > 2.0**61:
+            raise RunError(
+                "a force of a contact is beyond all bounds; expected a shorter timestep, or a "
+                "start without overlaps"
+            )
+
+    # --- lists ------------------------------------------------------------------------------------
+
+    def renew(self) -> None:
+        """Sort spheres by cells, and list who is near whom."""
+        bodies, spare = self.bodies, self.spare
+        if not np.isfinite(bodies.place).all():
+            raise RunError("places are no numbers any more; expected a shorter timestep")
+        if math.isfinite(self.given.fastest):
+            self._require_followed()
+        self._require_inside()
+        sort(self.grid, bodies.place, self.cell, self.begins, self.order)
+        for old, new in zip(bodies, spare, strict=True):
+            np.take(old, self.order, axis=0, out=new, mode="clip")
+        self.bodies, self.spare = spare, bodies
+        self.lists, self.old = self.old, self.lists
+        self._sort_walls()
+        columns = np.zeros((4, self.n + GROUP))
+        columns[:, : self.n] = self.bodies.place.T
+        while True:
+            self.team.run(
+                make_lists,
+                self.grid,
+                self.begins,
+                columns,
+                self.bodies,
+                self.box,
+                self.lists,
+                self.scratch,
+            )
+            longest = int(self.lists.count.max())
+            if longest < self.lists.near.shape[1]:  # one place is written beyond the end
+                break
+            self.lists = self._lists(longest + GROUP)
+        if self.given.halves:
+            self._carry_springs()
+
+    def _require_followed(self) -> None:
+        """Raise RunError for a sphere so fast that a contact with one at rest has few steps."""
+        v, given = self.bodies.velocity[:, :3], self.given
+        if not len(given.rows) and given.others is None:
+            v = v - v.mean(axis=0)
+        fastest = math.sqrt(float(np.einsum("ij,ij->i", v, v).max()))
+        if fastest > given.fastest:
+            raise RunError(
+                f"a sphere moves at {fastest:.3g}: with a timestep of {given.motion.step:.3g} "
+                f"contacts take less than ten steps above {given.fastest:.3g}; expected a shorter "
+                "spheres.timestep, or a larger spheres.speed, from which that follows"
+            )
+
+    def _require_inside(self) -> None:
+        """Raise RunError for a sphere whose centre lies behind a plane wall."""
+        places = self.bodies.place[:, :3]
+        for row in self.given.rows:
+            if row[KIND] != PLANE:
+                continue
+            inside = (places - row[PLACE : PLACE + 3]) @ row[AXIS : AXIS + 3] + row[AMPLITUDE]
+            if inside.min() < 0:
+                raise RunError(
+                    f"the centre of a sphere has passed a wall by {-float(inside.min()):.3g}: "
+                    "contacts are too soft for what falls or moves; expected shorter contacts"
+                )
+
+    def _carry_springs(self) -> None:
+        lists = self.lists
+        np.cumsum(lists.own[:-1], out=lists.begin[1:])
+        contacts = int(lists.own.sum())
+        if len(lists.springs) < contacts:
+            springs = np.zeros((contacts + contacts // 8, self.given.width))
+            self.lists = lists._replace(springs=springs)
+        self.team.run(carry_springs, self.order, self.old, self.lists)
+
+    def _sort_walls(self) -> None:
+        """Contacts with walls, in the order of memory."""
+        walls, order = self.walls, self.order
+        springs = self._of_each(walls.springs)[order].reshape(walls.springs.shape)
+        if self.given.others is not None:
+            solid = walls.solid
+            beside = self._of_each(solid.springs)[order].reshape(solid.springs.shape)
+            self.walls = self._walls(springs, solid.terms[order], beside)
+        elif walls.springs.size:
+            self.walls = walls._replace(springs=springs)
+
+    def _of_each(self, springs: Array) -> Array:
+        """What contacts with walls remember, sphere by sphere."""
+        return springs.reshape(self.n, len(springs) // self.n, springs.shape[1])
+
+    # --- reading ----------------------------------------------------------------------------------
+
+    def by_number(self, rows: NDArray[Any]) -> NDArray[Any]:
+        """Rows in the order of memory, by particle number."""
+        found = np.empty_like(rows)
+        found[self.bodies.number] = rows
+        return found
+
+    def told(self, time: float) -> NDArray[np.int64]:
+        """What `acting.tell` says of every sphere, by number, in quanta."""
+        told = np.zeros((self.n, groups.TOLD), np.int64)
+        self.team.run(tell_all, time, self.given.law, self.world, told)
+        return self.by_number(told)
+
+    def state(self) -> dict[str, NDArray[Any]]:
+        """All that the next step depends on, by particle number."""
+        bodies, found = self.bodies, {}
+        for name in ("place", "velocity", "spin", "force", "torque", "images"):
+            found[name] = self.by_number(getattr(bodies, name)[:, :3])
+        if self.given.width:
+            found["pairs"], found["springs"] = pairs_of(self.lists, bodies.number)
+            found["wall_springs"] = self.by_number(self._of_each(self.walls.springs))
+        if self.given.others is not None:
+            found["solid_terms"] = self.by_number(self.walls.solid.terms)
+            found["solid_springs"] = self.by_number(self._of_each(self.walls.solid.springs))
+        if self.rooms.taken.size:
+            found["taken"] = all_taken(self.rooms.taken)
+        return found
+
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
+        """Go on from a state."""
+        bodies, given = self.bodies, self.given
+        bodies.number[:] = np.arange(self.n)
+        bodies.place[:, groups.REACH] = given.reach
+        bodies.velocity[:, groups.INVERSE] = 1 / given.masses
+        bodies.spin[:, groups.INVERSE] = 1 / given.inertia
+        for name in ("place", "velocity", "spin", "force", "torque", "images"):
+            getattr(bodies, name)[:, :3] = state[name]
+        self.lists = self._lists(GROUP)
+        self.walls = self._no_contacts()
+        if given.width:
+            self._of_each(self.walls.springs)[:] = state["wall_springs"]
+        if given.others is not None:
+            self.walls.solid.terms[:] = state["solid_terms"]
+            self._of_each(self.walls.solid.springs)[:] = state["solid_springs"]
+        self.forget_taken()
+        if self.rooms.taken.size:
+            self.rooms.taken[0] = state["taken"]
+        self.renew()
+        if given.width:
+            remember(self.lists, self.bodies.number, state["pairs"], state["springs"])
+
+
+def _box(given: Given) -> Box:
+    size = [*given.size, 1.0, 1.0][:3]
+    shut = [*given.closed, True, True][:3]
+    inverse = [0.0 if closed else 1.0 / length for length, closed in zip(size, shut, strict=True)]
+    return Box(_three(size), _three(inverse))
+
+
+def _three(numbers: Any) -> tuple[float, float, float]:
+    x, y, z = (float(number) for number in numbers)
+    return x, y, z
+
+
+def _grid(given: Given, box: Box) -> Grid:
+    """Cells of half the length that lists reach, of which five lie along an axis at least; or of
+    all of it, three at least; or one."""
+    d, reach = len(given.size), 2 * float(given.reach.max()) + given.skin
+    least = (float(np.prod(given.size)) / CELLS) ** (1 / d)
+    cells, wide = [1, 1, 1], [0, 0, 0]
+    for k, length in enumerate(given.size):
+        for width in (1, 2):
+            number = int(length / max(reach / width * ROUNDING, least))
+            if number >= 2 * width + 1:
+                cells[k], wide[k] = number, width
+    inverse = [number / length for number, length in zip(cells, box.size, strict=True)]
+    a, b, c = cells
+    e, f, g = wide
+    return Grid((a, b, c), _three(inverse), (e, f, g), (reach * ROUNDING) ** 2)
+
+
+def _bodies(n: int) -> Bodies:
+    place, velocity, seen, spin = (np.zeros((n, 4)) for _ in range(4))
+    force, torque = np.zeros((n, 3), np.int64), np.zeros((n, 3), np.int64)
+    images, number = np.zeros((n, 3), np.int32), np.zeros(n, np.int64)
+    return Bodies(place, velocity, seen, spin, force, torque, images, number)

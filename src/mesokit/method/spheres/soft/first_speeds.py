@@ -1,0 +1,72 @@
+"""How fast spheres meet that start with the velocities of arrays, files and earlier runs."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mesokit.method.spheres.common.made import made
+from mesokit.method.spheres.common.start.first_state import given_state
+from mesokit.method.spheres.common.wall.surfaces import room_of
+from mesokit.method.spheres.soft import scales
+from mesokit.method.spheres.soft.pair.protocol import ContactLaw
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.method.spheres.common.start.protocol import Array, Placed
+
+
+def with_speed(case: Case, arrays: Mapping[str, Any]) -> Case:
+    """The case with `spheres.speed`, where arrays or the start of the case decide on it.
+
+    They do where they give velocities: the two fastest may meet head-on; and where spheres overlap
+    by more than collisions at the usual speed would press them, which drives them apart. Nothing
+    changes where velocities are drawn. Raises CaseError for arrays and files that do not fit.
+    """
+    section = case.spheres
+    usual = scales.speed_of_collision(case)
+    if section.speed is not None or not isinstance(section.pair, ContactLaw):
+        return case
+    if usual > 0 and not arrays and not section.start.files():
+        return case
+    known = given_state(case, made(case), arrays)
+    overlap = _largest_overlap(case, known)
+    driven = scales.speed_of_overlap(case, overlap) if overlap > 0 else 0.0
+    speed = usual
+    if known.velocities is not None and (arrays or section.start.files()):
+        others = scales.speed_of_heat(case, 0.0), scales.speed_of_fall(case)
+        speed = max(_head_on(case, known.velocities), *others) + scales.speed_of_walls(case)
+    elif driven <= usual:
+        return case
+    speed = max(speed, driven)
+    if speed == 0:
+        return case
+    return dataclasses.replace(case, spheres=dataclasses.replace(section, speed=speed))
+
+
+def _head_on(case: Case, velocities: Array) -> float:
+    """The sum of the two largest speeds, against the mean velocity where no walls are."""
+    v = velocities if case.walls else velocities - velocities.mean(axis=0)
+    return math.fsum(np.sort(np.linalg.norm(v, axis=1))[-2:])
+
+
+def _largest_overlap(case: Case, known: Placed) -> float:
+    """Of two spheres, 0 where none overlap."""
+    from scipy.spatial import cKDTree
+
+    diameters = made(case).diameters if known.diameters is None else known.diameters
+    size = np.array(case.box.size, float)
+    around, closed = np.where(room_of(case).closed, 3 * size, size), room_of(case).closed
+    places = np.where(closed, known.positions, np.mod(known.positions, size))
+    places = np.where(places < around, np.maximum(places, 0.0), 0.0)
+    pairs = cKDTree(places, boxsize=around).query_pairs(
+        float(diameters.max()), output_type="ndarray"
+    )
+    way = places[pairs[:, 0]] - places[pairs[:, 1]]
+    way -= around * np.rint(way / around)
+    apart = 0.5 * (diameters[pairs[:, 0]] + diameters[pairs[:, 1]])
+    return float(np.max(apart - np.linalg.norm(way, axis=1), initial=0.0))

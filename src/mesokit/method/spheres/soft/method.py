@@ -1,0 +1,82 @@
+"""Soft spheres, as the rest of the package knows them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from mesokit.method.spheres.common.expected.answers import answers
+from mesokit.method.spheres.common.groups import FIELDS, groups
+from mesokit.method.spheres.common.made import made
+from mesokit.method.spheres.common.observe import MeanSquareDisplacement
+from mesokit.method.spheres.common.start.first_state import (
+    ARRAYS,
+    first_state,
+    missing_files,
+    starts,
+)
+from mesokit.method.spheres.common.velocity_memory import VelocityMemory
+from mesokit.method.spheres.common.wall.solids import closed_axes, solids
+from mesokit.method.spheres.soft.checks import check
+from mesokit.method.spheres.soft.cooling import SoftCooling
+from mesokit.method.spheres.soft.displacement import Displacement
+from mesokit.method.spheres.soft.engine.engine import SoftEngine
+from mesokit.method.spheres.soft.equilibrium import equilibrium
+from mesokit.method.spheres.soft.first_speeds import with_speed
+from mesokit.method.spheres.soft.scales import timestep_of
+from mesokit.method.spheres.soft.section import KEYS, Sections
+from mesokit.method.spheres.soft.summary import summary
+from mesokit.seam.method import Columns, Method
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.method.spheres.common.start.protocol import Started
+
+
+def _first_state(case: Case, arrays: Mapping[str, Any]) -> Started:
+    return first_state(case, made(case), arrays, case.spheres.first_spin_kT)
+
+
+def _engine(case: Case, threads: int, measures: Sequence[str]) -> SoftEngine:
+    case.spheres.require_memory(case.box)
+    return SoftEngine(case, threads)
+
+
+def columns(case: Case) -> Columns:
+    """Energies, of which the log of a run may tell."""
+    names = ("translation", "rotation", "potential", "contact")
+
+    def read(engine: Any, wanted: Collection[str]) -> dict[str, float]:
+        known = engine.energies()
+        return {name: float(known[name]) for name in wanted}
+
+    return Columns(names, ("translation", "potential"), read)
+
+
+METHOD = Method(
+    name="soft-spheres",
+    sections=Sections,
+    keys=KEYS,
+    whole_cells=False,
+    fields=FIELDS,
+    spheres=True,
+    picture="disks",
+    observables=(MeanSquareDisplacement,),
+    expected={theory.answers: theory for theory in (SoftCooling, Displacement, VelocityMemory)}
+    | answers(equilibrium),
+    check=check,
+    groups=groups,
+    timestep=timestep_of,
+    kT=lambda case: float(case.spheres.kT),
+    summary=summary,
+    starts=starts,
+    missing_files=missing_files,
+    arrays=ARRAYS,
+    first_state=_first_state,
+    prepared=with_speed,
+    engine=_engine,
+    start=SoftEngine.start,
+    log=columns,
+    closed_axes=closed_axes,
+    solids=solids,
+)

@@ -1,0 +1,110 @@
+"""Times and speeds of a case of soft spheres: how long a contact takes, what a step may be."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from mesokit.method.spheres.common.wall.solids import surfaces
+from mesokit.method.spheres.soft.pair.protocol import ContactLaw
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.geometry.surface import Surface
+
+IN_CONTACT, WARNED, REFUSED = 50, 20, 10  # steps in a contact: usual, and fewest without complaint
+OF_FLIGHT = 0.005  # of the time in which a sphere of a fluid flies its diameter
+FASTEST = 3.0  # thermal velocities of two that collide, hardly more
+EXTREME = 100.0  # decades of speeds on both sides of 1
+
+
+def lightest(case: Case) -> float:
+    """The smallest mass."""
+    d = case.box.dimension
+    return min(kind.mean_mass(d) * (1 - kind.spread) ** d for kind in case.spheres.kinds)
+
+
+def speed_of_collision(case: Case) -> float:
+    """How fast spheres may meet: as the case says; else by thermal motion, or after a fall through
+    the box, and by what walls that move add."""
+    section = case.spheres
+    if section.speed is not None:
+        return float(section.speed)
+    return max(speed_of_heat(case, section.kT), speed_of_fall(case)) + speed_of_walls(case)
+
+
+def speed_of_heat(case: Case, kT: float) -> float:
+    """How fast spheres meet by thermal motion, of this energy or of a bath."""
+    bath = case.spheres.thermostat
+    return FASTEST * math.sqrt(max(kT, 0.0 if bath is None else bath.held_kT) / lightest(case))
+
+
+def speed_of_fall(case: Case) -> float:
+    """The speed after a fall through the box."""
+    pulls = zip(case.spheres.gravity, case.box.size, strict=False)
+    return math.sqrt(2 * sum(abs(g) * length for g, length in pulls))
+
+
+def speed_of_walls(case: Case) -> float:
+    """The largest speed that a wall gives to a sphere at rest."""
+    farthest = 0.5 * math.hypot(*case.box.size)  # from the axis of a wall that turns
+    return max((_speed_of(surface, farthest) for _, surface in surfaces(case)), default=0.0)
+
+
+def _speed_of(surface: Surface, farthest: float) -> float:
+    turning, contact = surface.rotation or 0.0, surface.contact
+    rate = math.hypot(*(turning if isinstance(turning, tuple) else (turning,)))
+    # a sphere at rest leaves a plate that comes at some speed with twice that
+    struck = 0.0 if contact is None else 2 * contact.amplitude * contact.frequency
+    return math.hypot(*(surface.velocity or (0.0,))) + rate * farthest + struck
+
+
+def shortest_contact(case: Case) -> float:
+    """The shortest time that a contact takes; infinite for spheres that never meet."""
+    law = case.spheres.pair
+    assert isinstance(law, ContactLaw)
+    return law.contact_time_of(0.5 * lightest(case), speed_of_collision(case))
+
+
+def timestep_of(case: Case) -> float:
+    """Time of a step."""
+    given = case.spheres.timestep
+    return usual_timestep(case) if given is None else float(given)
+
+
+def usual_timestep(case: Case) -> float:
+    """Time of a step unless the case says one."""
+    section, law = case.spheres, case.spheres.pair
+    if isinstance(law, ContactLaw):
+        time = shortest_contact(case)
+        return time / IN_CONTACT if math.isfinite(time) else OF_FLIGHT
+    kT = max(section.kT, section.thermostat.held_kT if section.thermostat else 0.0, 1.0)
+    return float(OF_FLIGHT * law.diameter * math.sqrt(lightest(case) / kT))
+
+
+def fastest_followed(case: Case) -> float:
+    """The speed at which a contact takes ten steps; infinite where the speed does not matter."""
+    law, mass, step = case.spheres.pair, 0.5 * lightest(case), timestep_of(case)
+    if not isinstance(law, ContactLaw):
+        return math.inf
+    return _least_speed(lambda speed: law.contact_time_of(mass, speed) < REFUSED * step)
+
+
+def speed_of_overlap(case: Case, overlap: float) -> float:
+    """The speed at which two spheres meet that come to overlap so far: that of two which such an
+    overlap drives apart, at most."""
+    law, mass = case.spheres.pair, 0.5 * lightest(case)
+    assert isinstance(law, ContactLaw)
+    return _least_speed(lambda speed: law.overlap_of(mass, speed) >= overlap)
+
+
+def _least_speed(holds: Callable[[float], bool]) -> float:
+    """The least speed of which something holds that holds of all faster ones; infinite of none."""
+    low, high = -EXTREME, EXTREME
+    if not holds(10.0**high):
+        return math.inf
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if holds(10.0**middle) else (middle, high)
+    return float(10.0**high)

@@ -1,0 +1,92 @@
+"""Spheres that fall, collide and come to rest."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.errors import CaseError
+from mesokit.method.spheres.common.wall.rows import AMPLITUDE, MOVES
+from mesokit.method.spheres.common.wall.surfaces import other_walls, room_of, surface_rows
+from mesokit.method.spheres.soft.engine.contact.force import OWN
+from mesokit.method.spheres.soft.engine.groups import INVERSE, Motion
+from mesokit.method.spheres.soft.engine.system import Given, System
+from mesokit.method.spheres.soft.laws import contact_of, others_of
+from mesokit.method.spheres.soft.pair.spring_dashpot import SpringDashpot
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.method.spheres.common.made import Made
+
+Array = NDArray[np.float64]
+RESTITUTION = 0.3  # low, so that they soon lie
+SOFT = 1e-3  # overlap of the lowest, in diameters, under a column as high as the box
+IN_CONTACT = 20  # steps: nobody looks at single collisions
+SKIN = 0.15  # of the largest diameter
+LOOK = 2000  # steps between two looks whether they are at rest
+QUIET = 1e-5  # kinetic energy of the fastest over its weight times a diameter: at rest
+MOST_FALLS = 400  # times that a fall through the box takes
+
+
+def settled(case: Case, made: Made, places: Array, friction: float) -> Array:
+    """Places (n, d) of spheres that have fallen from places (n, d) and lie still.
+
+    They touch as springs and dashpots of the stiffness of the case do, or stiff ones. Walls are
+    rough, and at rest meanwhile. Raises CaseError where they do not come to rest.
+    """
+    size, gravity, room = case.box.size, case.spheres.gravity, room_of(case)
+    walls, (n, d) = surface_rows(case, other_walls(case)).rows, places.shape
+    others = others_of(case, made)
+    if others is not None:
+        others.own[:] = -1.0, friction
+    g = math.hypot(*gravity)
+    height = math.fsum(abs(a) / g * length for a, length in zip(gravity, size, strict=True))
+    largest, mass = float(made.diameters.max()), float(made.masses.max())
+    pair = getattr(case.spheres, "pair", None)
+    if isinstance(pair, SpringDashpot):
+        stiffness, _ = pair.constants(0.5 * mass)
+    else:
+        stiffness = mass * g * (height / largest) / (SOFT * largest)
+    law = SpringDashpot(restitution=RESTITUTION, stiffness=stiffness, friction=friction)
+    step = law.contact_time_of(0.5 * float(made.masses.min()), 1.0) / IN_CONTACT
+    still = walls.copy()
+    still[:, AMPLITUDE] = still[:, MOVES : MOVES + 3] = 0.0
+    own = np.zeros((len(walls), OWN))
+    own[:] = -1.0, friction
+    pull = [*gravity, 0.0, 0.0][:3]
+    turns = (float(d == 3), float(d == 3), 1.0)
+    given = Given(
+        tuple(float(length) for length in size),
+        tuple(room.closed),
+        made.diameters / 2,
+        made.masses,
+        made.inertia,
+        contact_of(law, stiffness * largest, 0.0),
+        True,
+        law.width(rubs=friction > 0),
+        0.0,
+        Motion(step, (pull[0], pull[1], pull[2]), 1.0, 0.0, (1.0, 1.0, float(d == 3)), turns),
+        still,
+        own,
+        0,
+        SKIN * largest,
+        others,
+    )
+    system = System(given, threads=1)
+    system.fill(places, np.zeros((n, d)), np.zeros(n if d == 2 else (n, 3)))
+    system.find_forces(0.0)
+    done, fall = 0, math.sqrt(2 * height / g)
+    while done * step < MOST_FALLS * fall:
+        system.run(done, LOOK)
+        done += LOOK
+        v = system.bodies.velocity
+        fastest = float(((v[:, :3] ** 2).sum(axis=1) / v[:, INVERSE]).max())
+        if done * step > fall and 0.5 * fastest < QUIET * mass * g * largest:
+            found = system.by_number(system.bodies.place[:, :d])
+            return found + system.by_number(system.bodies.images[:, :d]) * np.array(size)
+    raise CaseError(
+        "spheres.start: rule = 'poured': they do not come to rest; expected walls that hold them"
+    )

@@ -1,0 +1,143 @@
+"""Derived numbers of a case of soft spheres, its cost, and warnings."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from mesokit.case.amounts import duration_text, number, size_text
+from mesokit.case.trajectory import stored_bytes
+from mesokit.case.warnings import run_warnings
+from mesokit.method.spheres.common import cost, falls
+from mesokit.method.spheres.common.kinds import ball_volume
+from mesokit.method.spheres.soft import scales
+from mesokit.method.spheres.soft.checks import rubs
+from mesokit.method.spheres.soft.pair.protocol import ContactLaw
+from mesokit.processes.cores import usable_cores
+from mesokit.seam.method import Row, Summary
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+RATE_OF_POTENTIALS = 2.5e6  # sphere-steps per second and core (docs/benchmark)
+USUAL_NEIGHBOURS = 66.0  # within the reach, where this was measured
+FEWEST = 500  # spheres for each thread that gain by it
+DEEP = 0.05  # overlap, in diameters, beyond which spheres are not hard
+LONG = 4.0  # steps of the usual length beyond which a fluid of a potential loses its energy
+
+
+def summary(case: Case, threads: int | None = None) -> Summary:
+    """Derived numbers, cost, and warnings."""
+    section, box = case.spheres, case.box
+    cores = usable_cores() if threads is None else threads
+    steps, step = case.run.warmup + case.run.steps, scales.timestep_of(case)
+    phi = section.fraction(box)
+    memory = case.particles * section.bytes_each + 200_000_000
+    stored = stored_bytes(case.trajectory, case.groups, box.dimension, case.run.steps)
+    rows: list[Row] = [
+        ("spheres", f"{case.particles:,}".replace(",", " "), ""),
+        ("packing fraction", number(phi), ""),
+        ("timestep", number(step, "tau"), "" if section.timestep else "unless said"),
+    ]
+    numbers: dict[str, Any] = {"packing_fraction": phi, "timestep": step}
+    reach, density = section.reach(box), case.particles / box.volume
+    if isinstance(section.pair, ContactLaw):
+        rows += _contacts(case, numbers)
+        # grains at rest lie closer than where they fall from, and have more others on their lists
+        rests = cost.comes_to_rest(case, _loses(case), section.thermostat is not None)
+        closer = max(phi, cost.AT_REST_FILLED[box.dimension]) / phi if rests else 1.0
+        listed = closer * density * ball_volume(box.dimension, 2 * cost.LIST_REACH * reach)
+        of_core = steps * cost.soft_seconds(case.particles, listed, section.turns)
+    else:
+        within = density * ball_volume(box.dimension, 2 * reach)
+        rate = RATE_OF_POTENTIALS * USUAL_NEIGHBOURS / max(within, 10.0)
+        of_core = steps * case.particles / rate
+    used = min(cores, max(case.particles // FEWEST, 1))
+    seconds = of_core / used
+    numbers["seconds"] = seconds
+    few = f", as fast as {used}: few spheres" if used < cores else ""
+    told = f"estimate: {cores} thread{'s' * (cores > 1)}{few}"
+    rows.append(("run time", duration_text(max(seconds, 0.1)), told))
+    rows += _beside(case, steps, of_core, numbers)
+    rows += [
+        ("memory", size_text(memory), "estimate"),
+    ]
+    if stored:
+        rows.append(("trajectory", size_text(stored), "estimate"))
+    warnings = (*run_warnings(case, memory, stored), *_warnings(case, numbers))
+    return Summary(tuple(rows), warnings, seconds, numbers, memory)
+
+
+def _contacts(case: Case, numbers: dict[str, Any]) -> Iterator[Row]:
+    """How long contacts take, and how far spheres overlap meanwhile, where anything moves."""
+    section, speed = case.spheres, scales.speed_of_collision(case)
+    time, mass = scales.shortest_contact(case), 0.5 * scales.lightest(case)
+    if math.isfinite(time):
+        numbers |= {"contact_time": time, "steps_per_contact": time / numbers["timestep"]}
+        yield "contact time", number(time, "tau"), "of the lightest two"
+        yield "steps per contact", number(numbers["steps_per_contact"]), ""
+    if speed == 0:
+        yield "collision speed", "0", "nothing moves: kT, gravity and walls are without motion"
+        return
+    numbers["overlap"] = overlap = section.pair.overlap_of(mass, speed) / section.reach(case.box)
+    said = "thermal, or after a fall through the box, and of walls that move"
+    note = said if section.speed is None else "spheres.speed"
+    yield "collision speed", number(speed, "a/tau"), note
+    yield "overlap", number(overlap, "diameters"), "expected at that speed"
+
+
+def _beside(case: Case, steps: int, of_core: float, numbers: dict[str, Any]) -> Iterator[Row]:
+    """What the same spheres would cost as hard ones, and which method is cheaper."""
+    section, step = case.spheres, numbers["timestep"]
+    flight = cost.flight_of(section, case.box)
+    if flight is None or not isinstance(section.pair, ContactLaw):
+        return
+    hard = steps * step * cost.hard_seconds(flight)
+    rests = cost.comes_to_rest(case, _loses(case), section.thermostat is not None)
+    numbers |= {
+        "hard_seconds": hard,
+        "steps_per_flight": 1 / (flight.rate * step),
+        "cheaper": "soft-spheres" if rests or of_core < hard else "event-driven",
+    }
+    yield "steps per flight", number(numbers["steps_per_flight"]), "from a collision to the next"
+    yield (
+        "as hard spheres",
+        duration_text(max(hard, 0.1)),
+        "estimate: event-driven, while they fly as at first",
+    )
+    if rests:
+        yield cost.AT_REST
+    elif of_core < hard:
+        yield cost.cheaper("soft spheres", hard / of_core)
+    else:
+        yield cost.cheaper("event-driven", of_core / hard)
+
+
+def _loses(case: Case) -> bool:
+    """Whether contacts take energy."""
+    section, mass = case.spheres, 0.5 * scales.lightest(case)
+    speed = scales.speed_of_collision(case)
+    return section.turns or section.pair.restitution_of(mass, speed) < 1
+
+
+def _warnings(case: Case, numbers: dict[str, float]) -> Iterator[str]:
+    section, touching = case.spheres, isinstance(case.spheres.pair, ContactLaw)
+    yield from falls.warnings(case, touching and (section.pair.friction > 0 or rubs(case)))
+    usual = scales.usual_timestep(case)
+    if not touching and numbers["timestep"] > LONG * usual:
+        yield (
+            f"spheres.timestep = {numbers['timestep']:.3g}: energy drifts, or the run breaks down; "
+            f"expected some {usual:.3g}"
+        )
+    per_contact = numbers.get("steps_per_contact", math.inf)
+    if per_contact < scales.WARNED:
+        yield (
+            f"spheres.timestep: {per_contact:.3g} steps in a contact; restitution and energy are "
+            "off by a percent or more below 20"
+        )
+    if numbers.get("overlap", 0.0) > DEEP:
+        yield (
+            f"spheres.pair: spheres overlap by {numbers['overlap']:.2g} diameters where they "
+            "collide; hard ones ask for a shorter contact time or a larger stiffness"
+        )

@@ -1,0 +1,89 @@
+"""The log of a run: what it tells in time, on the screen and in a file."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mesokit.io.log_file import LogFile
+from mesokit.report.log_lines import ERROR, LogLines
+from mesokit.run.callbacks import Callback
+from mesokit.seam.method import method_of
+from mesokit.seam.named import find
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+
+class RunLog:
+    """Tells what the section [log] of a case asks for; of a case without one, nothing.
+
+    A run calls it as it calls functions of the user (`callbacks`). `tell` is who says a line on
+    the screen.
+    """
+
+    def __init__(self, case: Case) -> None:
+        self.every = case.log.every if case.log else 0
+        self.known = method_of(case).log(case)
+        self.columns = (case.log.columns or self.known.usual) if case.log else ()
+        self.names = ["step", "time", *self._names()]
+        self.lines = LogLines(self.names)
+        self.file: LogFile | None = None
+        self.tell: Callable[[str], Any] = lambda text: None
+        self.doubts: set[str] = set()  # columns of which was said that they cannot be found
+
+    def callbacks(self) -> list[Callback]:
+        """How the run is to call it."""
+        return [Callback(self.every, self)] if self.every else []
+
+    def write_to(self, path: Path) -> None:
+        """Write lines to this file from now on."""
+        self.file = LogFile(path, self.names) if self.every else None
+
+    def resume(self, step: int) -> None:
+        """Go on from a checkpoint. Raises RunError."""
+        if self.file is not None:
+            self.file.cut(step)
+
+    def sync(self) -> None:
+        """Make the lines so far as safe as a checkpoint. Raises RunError."""
+        if self.file is not None:
+            self.file.sync()
+
+    def __call__(self, simulation: Any) -> None:
+        """Tell how it is now."""
+        row = [simulation.step, simulation.time, *self._numbers(simulation)]
+        if self.file is not None:
+            self.file.append(row)
+        for line in self.lines.next(row):
+            self.tell(line)
+
+    def _names(self) -> Iterator[str]:
+        for column in self.columns:
+            yield column
+            if column not in self.known.names:
+                yield f"{column}{ERROR}"
+
+    def _numbers(self, simulation: Any) -> Iterator[float]:
+        own = [column for column in self.columns if column in self.known.names]
+        found = self.known.read(simulation.engine, own)
+        for column in self.columns:
+            if column in found:
+                yield found[column]
+            else:
+                yield from self._compared(simulation, column)
+
+    def _compared(self, simulation: Any, column: str) -> tuple[float, float]:
+        """What an observable has found so far, and its error; nan as long as it has nothing."""
+        label, _, name = column.partition(".")
+        result = simulation[label]
+        try:
+            comparison = find(result.comparisons, name)
+        except KeyError as error:
+            if result.comparisons and column not in self.doubts:
+                self.doubts.add(column)
+                self.tell(f"log.columns: {column}: {error.args[0]}")
+            return math.nan, math.nan
+        return comparison.measured, comparison.error

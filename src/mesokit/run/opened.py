@@ -1,0 +1,357 @@
+"""Open what a run has written."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from numpy.typing import NDArray
+
+from mesokit.case import toml
+from mesokit.case.component import require_known, show
+from mesokit.case.describe.shown import Shown
+from mesokit.errors import CaseError, RunError
+from mesokit.io import checkpoint, h5md, log_file, tables
+from mesokit.io.frames import require_frames, seen_until
+from mesokit.io.measured import fitting, measured
+from mesokit.io.pooled import merge_again, pooled_words
+from mesokit.io.run_directory import RunDirectory
+from mesokit.io.shared_work import work_words
+from mesokit.io.trajectory_reader import TrajectoryReader
+from mesokit.observe.shared.build_up import result_of
+from mesokit.seam.method import method_of
+from mesokit.seam.named import keyed
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.report.flow import Film
+    from mesokit.seam.result import Comparison, Result
+
+
+class RunFiles(Shown, Mapping[str, "Result"]):
+    """What a run has written, read when asked for: a mapping of its results by name.
+
+    `files["velocity-profile"]` is a result, `list(files)` their names; `case`, `provenance`,
+    `results`, `trajectory`, `log` and `si` are the rest. Raises RunError where a file is missing
+    or damaged.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.directory = RunDirectory.existing(path)
+        self.path = self.directory.path
+
+    @cached_property
+    def case(self) -> Case:
+        """The resolved case."""
+        from mesokit.case.case import Case
+
+        return Case.from_toml(self.directory.case_file)
+
+    @cached_property
+    def provenance(self) -> dict[str, Any]:
+        """Versions, seed, host, times."""
+        return self.directory.read_provenance()
+
+    @property
+    def pooled(self) -> str:
+        """From how many runs and which seeds it was merged, nothing if it is a run itself."""
+        with contextlib.suppress(RunError):  # results can be read without the record
+            return pooled_words(self.provenance)
+        return ""
+
+    @property
+    def results(self) -> dict[str, Result]:
+        """Results by name: those so far, by the last checkpoint, if the run has not ended.
+
+        Raises RunError if there are none yet.
+        """
+        if self.ended:
+            return self._final
+        if not self.directory.checkpoint_file.exists():
+            raise RunError(f"{self.path}: the run {self.state}")
+        made, _ = measured(self.directory, self.case)
+        with fitting(self.directory.checkpoint_file):
+            return {name: result_of(one, self.case) for name, one in made.items()}
+
+    @cached_property
+    def _final(self) -> dict[str, Result]:
+        with self._advising():
+            return h5md.read_results(self._data())
+
+    @cached_property
+    def si(self) -> Any:
+        """What the numbers are in SI units. Raises CaseError for a case without `units`."""
+        convert = method_of(self.case).si
+        if convert is None:
+            raise CaseError(f"units: method {show(self.case.run.method)} does not know them in SI")
+        return convert(self.case)
+
+    @property
+    def log(self) -> NDArray[Any]:
+        """Numbers in time, as `files.log["temperature"]`; also while the run goes on.
+
+        A structured array with a field for each column: `pandas.DataFrame(files.log)` is a table.
+        Raises RunError if the case asks for none.
+        """
+        if self.case.log is None:
+            raise RunError(f"{self.path}: the case has no [log]")
+        return log_file.read(self.directory.log_file)
+
+    @cached_property
+    def trajectory(self) -> TrajectoryReader | None:
+        """Frames, None if the case asked for none. Raises RunError if the run has not ended."""
+        with self._advising():
+            reader = TrajectoryReader(self._data())
+        return reader if reader.fields else None
+
+    def __getitem__(self, name: str) -> Result:
+        """The result of that name; KeyError says which there are."""
+        if name not in self.results:
+            raise KeyError(f"no result {name!r}; there are {', '.join(self.results) or 'none'}")
+        return self.results[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Names of the results."""
+        return iter(self.results)
+
+    def __len__(self) -> int:
+        """Number of results."""
+        return len(self.results)
+
+    def __bool__(self) -> bool:
+        """There is a run, whether it has results or not."""
+        return True
+
+    __eq__ = object.__eq__  # two runs are not equal because their results are
+    __hash__ = object.__hash__
+
+    def comparisons(self) -> dict[str, Comparison]:
+        """All comparisons of the run, by `result.key`: `velocity-profile.slip-at-the-walls`."""
+        return {
+            f"{name}.{key}": comparison
+            for name, result in self.results.items()
+            for key, comparison in keyed(result.comparisons).items()
+        }
+
+    def to_dataframe(self) -> Any:
+        """All comparisons as a pandas.DataFrame, a row for each.
+
+        Raises CaseError without `pip install 'mesokit[tables]'`.
+        """
+        return tables.rows_dataframe(self.results)
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write all comparisons as a CSV file, a row for each. Raises RunError."""
+        return tables.write_rows(self.results, path)
+
+    def record(self) -> dict[str, Any]:
+        """What `mesokit info --json` prints: plain numbers and texts."""
+        results = self.so_far()
+        return {
+            "run": str(self.path),
+            "title": self.case.title,
+            "ended": self.ended,
+            "state": (self.pooled or "has ended") if self.ended else self.state,
+            "case": toml.parse(self.case.to_toml()),
+            "provenance": self.provenance,
+            "results": [
+                {
+                    "name": r.name,
+                    "quantity": r.quantity,
+                    "label": r.label,
+                    "samples": r.samples,
+                    "shape": {key: len(axis) for key, axis in r.x.items()},
+                }
+                for r in results.values()
+            ],
+            "comparisons": tables.rows(results),
+        }
+
+    @property
+    def ended(self) -> bool:
+        """Whether the run has come to its end, and has results.
+
+        A case that was made longer since has not.
+        """
+        if not self.directory.data_file.exists():
+            return False
+        with contextlib.suppress(RunError):  # results outlive a checkpoint
+            step = checkpoint.read_meta(self.directory.checkpoint_file)["step"]
+            return bool(step >= self.case.run.warmup + self.case.run.steps)
+        return True
+
+    def report(self, path: str | Path | None = None, films: bool = False) -> Path:
+        """Write one HTML file with all of the run: see `mesokit.report.document.write_report`.
+
+        `files.report()` writes `report.html` into the folder of the run; `films` puts small films
+        into it. Raises RunError if it cannot be written.
+        """
+        from mesokit.report.document import write_report
+
+        return write_report(self, path, films)
+
+    def plot(
+        self,
+        folder: str | Path | None = None,
+        *,
+        ending: str = ".png",
+        width: float | None = None,
+    ) -> list[Path]:
+        """Draw every result into the folder (that of the run unless said).
+
+        `ending` is ".png", ".pdf" or ".svg", `width` that of the figures, in inches.
+        """
+        from mesokit.report import save_all
+
+        name = self.path.resolve().name
+        where, results = folder or self.path, self.results.values()
+        return save_all(results, where, self.case, ending=ending, width=width, run=name)
+
+    def flow(self, kind: str | None = None, **choices: Any) -> Any:
+        """A picture of the flow; `mesokit.report.flow.picture` says what may be chosen.
+
+        `files.flow("speed", region=((0, 20), (0, 10)), window=(50, 90))` is a Matplotlib figure;
+        `width` is that of the figure, in inches.
+        """
+        from mesokit.report.finish.origin import origin_of
+        from mesokit.report.flow import CHOICES, page_width, picture
+
+        with page_width(choices.pop("width", None)):
+            require_known(choices, CHOICES)
+            figure = picture(self.case, self.results, self.trajectory, kind, **choices)
+        figure.origin = origin_of(self.case, self.path.resolve().name)
+        return figure
+
+    def animate(self, path: str | Path, kind: str | None = None, **choices: Any) -> Film:
+        """Write a film of the flow, MP4 or GIF by its ending; see `mesokit.report.flow.animate`.
+
+        `files.animate("film.mp4", "vorticity", window=(50, 90), fps=10)` writes the file.
+        """
+        from mesokit.report.flow import CHOICES, animate
+
+        require_known(choices, [*CHOICES, "fps", "progress"])
+        name = self.path.resolve().name
+        return animate(self.case, self.results, self.trajectory, path, kind, run=name, **choices)
+
+    def universe(self) -> Any:
+        """The trajectory as an MDAnalysis `Universe`, with kinds, masses, molecules and bonds.
+
+        All frames are in memory; a cell is an angstrom there, and a unit of time a picosecond.
+        Raises CaseError where MDAnalysis is not installed, RunError where there are no frames.
+        """
+        from mesokit.io.export import contents
+        from mesokit.io.mdanalysis import require, universe
+
+        require()
+        return universe(*contents(self.directory, self.case, lambda: self.trajectory))
+
+    def export(self, path: str | Path) -> Path:
+        """Write the trajectory for another program; the ending says the format.
+
+        `.gsd` is for OVITO, HOOMD-blue and MDAnalysis; `.lammpstrj` and `.xyz` are text; `.h5md`,
+        `.dcd`, `.xtc` and `.trr` have all frames, `.data` (LAMMPS) the last. Raises CaseError for
+        any other, RunError where there are no frames with positions.
+        """
+        from mesokit.io.export import export
+
+        return export(self.directory, self.case, lambda: self.trajectory, path)
+
+    def _data(self) -> Path:
+        if not self.directory.data_file.exists():
+            raise RunError(f"{self.path}: the run {self.state}")
+        return self.directory.data_file
+
+    @contextlib.contextmanager
+    def _advising(self) -> Iterator[None]:
+        """Say what brings back a damaged data file."""
+        try:
+            yield
+        except RunError as error:
+            if not self.directory.data_file.exists():  # that error has said it
+                raise
+            raise RunError(f"{error}; {self._advice()}") from None
+
+    def _advice(self) -> str:
+        if self.pooled:
+            return f"merge its runs again: {merge_again(self.provenance, self.path)}"
+        try:
+            _, meta = checkpoint.read(self.directory.checkpoint_file)
+            require_frames(self.directory, self.case, seen_until(meta))
+        except RunError:
+            return f"put a copy in its place, or run anew: {self.directory.again}"
+        return f"mesokit resume {self.path} writes it again"
+
+    @property
+    def state(self) -> str:
+        """How far a run has come that has no results yet, and how to go on."""
+        failed, file = None, self.directory.checkpoint_file
+        with contextlib.suppress(RunError):  # to go on, a damaged record does not matter
+            failed = self.provenance.get("failed")
+        if self.pooled:
+            return f"was {self.pooled}, but has no results; {self._advice()}"
+        last = self.case.run.warmup + self.case.run.steps
+        reached = "it has no checkpoint yet"
+        if file.exists():
+            meta = checkpoint.read_meta(file)
+            reached = f"its last checkpoint is at step {meta['step']} of {last}"
+            try:
+                require_frames(self.directory, self.case, seen_until(meta))
+            except RunError as error:
+                return f"cannot go on: {reached}, but {error}"
+        if failed:
+            return f"failed: {failed} ({reached})"
+        return (
+            f"has not ended: {reached}; if it is not running any more, go on with: "
+            f"mesokit resume {self.path}"
+        )
+
+    def so_far(self) -> dict[str, Result]:
+        """The results, none if there are none yet or what they were in is lost."""
+        with contextlib.suppress(RunError) if not self.ended else contextlib.nullcontext():
+            return self.results
+        return {}
+
+    def _card(self) -> dict[str, Any]:
+        how = self.pooled if self.ended else self.state
+        words = ": ".join(filter(None, [self.case.title, how]))
+        found = self.so_far().values()
+        text = self.case.to_toml()
+        return {
+            "title": f"mesokit run {self.path}",
+            "words": words,
+            "results": found,
+            "text": text,
+            "fold": "the case",
+        }
+
+    def __repr__(self) -> str:
+        lines = [f"mesokit run {self.path}", f"  {self.case.title or 'untitled'}"]
+        if self.case.units is not None:
+            lines.append("  " + str(self.si).replace("\n", "\n  "))
+        if not self.ended:
+            lines.append(f"  {self.state}")
+        elif self.pooled:
+            lines.append(f"  {self.pooled}")
+        with contextlib.suppress(RunError):  # results can be read without the record
+            lines += [f"  {line}" for line in work_words(self.provenance)]
+            lines += [f"  warning: {words}" for words in self.provenance.get("warnings", ())]
+        lines += ["  " + repr(result).replace("\n", "\n  ") for result in self.so_far().values()]
+        if self.ended and self.trajectory is not None:
+            lines.append(f"  {self.trajectory!r}")
+        return "\n".join(lines)
+
+
+def open(path: str | Path) -> RunFiles:
+    """What the run in the folder `path` has written. Raises RunError if there is no run.
+
+    Several runs of the same case become one by `mesokit.merge`.
+    """
+    if not isinstance(path, str | Path):
+        raise RunError(
+            f"open({show(path)}): expected the folder of one run; mesokit.merge(runs, output) "
+            "makes one of several of the same case"
+        )
+    return RunFiles(path)

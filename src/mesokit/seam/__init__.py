@@ -1,0 +1,1 @@
+"""What methods, engines and observables answer, and what a result is."""

@@ -1,0 +1,215 @@
+"""What a method of simulation is: all that the rest of the package asks of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case import methods
+from mesokit.case.amounts import duration_text
+from mesokit.processes.cores import usable_cores
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.case.trajectory import Group
+    from mesokit.seam.engine import Engine
+
+Row = tuple[str, str, str]  # what, its value, and a word on it
+
+
+class Summary(NamedTuple):
+    """What follows from a case before it runs: a table for `mesokit check`, warnings, about how
+    many seconds the run takes, the same as plain numbers by name, for scripts, and about how many
+    bytes of memory it takes."""
+
+    rows: tuple[Row, ...]
+    warnings: tuple[str, ...]
+    seconds: float
+    numbers: Mapping[str, Any] = MappingProxyType({})
+    memory: float = 0.0
+
+    def record(self) -> dict[str, Any]:
+        """What `mesokit check --json` prints of it."""
+        rows = [{"what": what, "value": value, "note": note} for what, value, note in self.rows]
+        return {
+            "numbers": dict(self.numbers),
+            "rows": rows,
+            "warnings": list(self.warnings),
+            "seconds": self.seconds,
+        }
+
+
+class Columns(NamedTuple):
+    """What a log may tell of the particles: all names, those that are usual, and how to find some
+    of them in an engine."""
+
+    names: tuple[str, ...]
+    usual: tuple[str, ...]
+    read: Callable[[Any, Collection[str]], Mapping[str, float]]
+
+
+NO_COLUMNS = Columns((), (), lambda engine, wanted: {})
+
+
+class BuildUp(NamedTuple):
+    """How a flow from rest comes to its steady state: what it lacks falls as an exponential.
+
+    steps: in which that falls to 1/e; need: that `mesokit check` asks to wait for before the first
+    sample; had: that the run waited.
+    """
+
+    steps: float
+    need: int
+    had: int
+
+    def lacks(self, length: float) -> float:
+        """The part of the steady flow that the mean over so many steps lacks.
+
+        >>> round(BuildUp(1200.0, 3600, 100).lacks(500), 2)
+        0.75
+        """
+        left = math.exp(-self.had / self.steps)
+        return left * -math.expm1(-length / self.steps) * self.steps / length
+
+
+@dataclass(frozen=True)
+class Method:
+    """A method of simulation.
+
+    Parameters
+    ----------
+    name : str
+        What `run.method` says.
+    sections : class
+        Its annotated fields, made by `param`, are the sections of its cases.
+    observables : sequence of type
+        The observables that it offers, or bases of them. Others may say in `methods` that they
+        are for it.
+    check : function of a case
+        Raises CaseError for values that are fine alone and have no physics together.
+    groups : function of a case
+        The groups of its particles, in the order of particle numbers.
+    timestep : function of a case
+        The time that a step takes.
+    summary : function of a case and a number of threads (None: all cores)
+        Derived numbers, estimated cost and warnings.
+    first_state : function of a case and arrays by name
+        What to start from, checked; raises CaseError. Whatever it returns goes to `start`.
+    engine : function of a case, a number of threads and what observables need measured
+        The engine, with nothing in it yet.
+    start : function of an engine and a first state
+        Fills the engine.
+    whole_cells : bool, optional
+        Whether the lengths of its box are whole numbers of cells; True unless said.
+    box : sequence of str, optional
+        Keys of the box that it takes beside `size`; all others are refused.
+    keys : mapping, optional
+        Names of sections as they are in a file where these differ from those in Python: of a list
+        of tables, `[[wall]]` for `walls`.
+    arrays : sequence of str, optional
+        Names of the arrays that a `Simulation` may be started from.
+    expected : mapping, optional
+        By the name of an observable that several methods share, what theory expects of it:
+        a function of a case and the observable, whose answer that observable's file describes.
+    bonds : function of a case, optional
+        Pairs (bonds, 2) of the numbers of particles that are bonded.
+    closed_axes : function of a case, optional
+        Numbers of the axes that are not periodic.
+    solids : function of a case, optional
+        The solids that pictures show (`mesokit.geometry.solids.solids.Solids`), or None.
+    kT : function of a case, optional
+        Thermal energy, where particles have velocities.
+    fields : sequence of str, optional
+        What a trajectory may hold of its particles: all but spins unless said.
+    spheres : bool, optional
+        Whether its particles are disks or spheres, each with a size and a mass of its own: then its
+        engine answers `diameters`, `masses`, `velocities` and `spins`.
+    headings : bool, optional
+        Whether the velocities of single particles, at one time, are what pictures show of it.
+    picture : str, optional
+        The kind of pictures and films of its particles, where none is asked for.
+    start_from_run : str, optional
+        The key by which a case starts from where another run ended.
+    starts : function of a case, optional
+        The files and folders of runs that a case starts from, by their keys.
+    missing_files : function of a case, optional
+        A line for each file that a case needs and that is not there.
+    keep_files : function of a case and the folder of its run, optional
+        The case, with copies in that folder of the files that it was made from.
+    log : function of a case, optional
+        What the log of its run may tell.
+    si : function of a case, optional
+        What its units are in SI; without it, a case must not have the section `[units]`.
+    build_up : function of a case, optional
+        How its flow comes from rest to its steady state (`BuildUp`), or None.
+    check_ranks : function of a case and a number of ranks, optional
+        Raises CaseError for a case that cannot be run on so many ranks of MPI; without it, none
+        can. Its engine is then asked by all ranks at once.
+    prepared : function of a case and arrays by name, optional
+        The case with keys that follow from the state it starts from; raises CaseError.
+    """
+
+    name: str
+    sections: type
+    observables: tuple[type, ...]
+    check: Callable[[Case], None]
+    groups: Callable[[Case], tuple[Group, ...]]
+    timestep: Callable[[Case], float]
+    summary: Callable[[Case, int | None], Summary]
+    first_state: Callable[[Case, Mapping[str, Any]], Any]
+    engine: Callable[[Case, int, Sequence[str]], Engine]
+    start: Callable[[Any, Any], None]
+    whole_cells: bool = True
+    box: tuple[str, ...] = ()
+    keys: Mapping[str, str] = field(default_factory=dict)
+    arrays: tuple[str, ...] = ()
+    expected: Mapping[str, Callable[[Case, Any], Any]] = field(default_factory=dict)
+    bonds: Callable[[Case], NDArray[np.int64]] = lambda case: np.zeros((0, 2), np.int64)
+    closed_axes: Callable[[Case], set[int]] = lambda case: set()
+    solids: Callable[[Case], Any] = lambda case: None
+    kT: Callable[[Case], float] | None = None
+    fields: tuple[str, ...] = ("position", "velocity", "image", "id")
+    spheres: bool = False
+    headings: bool = False
+    picture: str = ""
+    start_from_run: str = ""
+    starts: Callable[[Case], Mapping[str, Path]] = lambda case: {}
+    missing_files: Callable[[Case], list[str]] = lambda case: []
+    keep_files: Callable[[Case, Path], Case] = lambda case, folder: case
+    log: Callable[[Case], Columns] = lambda case: NO_COLUMNS
+    si: Callable[[Case], Any] | None = None
+    build_up: Callable[[Case], BuildUp | None] | None = None
+    check_ranks: Callable[[Case, int], None] | None = None
+    prepared: Callable[[Case, Mapping[str, Any]], Case] = lambda case, arrays: case
+
+
+def method_of(case: Case) -> Method:
+    """The method of a case."""
+    found: Method = methods.load(case.run.method)
+    return found
+
+
+def summary_of(case: Case, threads: int | None = None) -> Summary:
+    """What follows from a case, by its method; of replicas how long all of them take."""
+    number = case.run.replicas
+    if number == 1:
+        return method_of(case).summary(case, threads)
+    cores = usable_cores() if threads is None else threads
+    one = method_of(case).summary(case, max(1, cores // number))
+    seconds = one.seconds * math.ceil(number / cores)
+    last = case.run.seed + number - 1
+    rows = [("replicas", str(number), f"seeds {case.run.seed} to {last}, side by side")]
+    for name, value, note in one.rows:
+        if name == "run time":
+            rows.append((name, duration_text(seconds), f"estimate: of all, {cores} threads"))
+        else:
+            rows.append((name, value, "estimate: of each" if name == "memory" else note))
+    numbers = {**one.numbers, "replicas": number}
+    return Summary(tuple(rows), one.warnings, seconds, numbers, one.memory * number)

@@ -1,0 +1,126 @@
+"""What an observable is, and how it keeps its numbers."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesokit.case.component import component, name_of, option
+from mesokit.case.registry import family
+from mesokit.seam.result import Result
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+Array = NDArray[np.floating[Any]]
+State = dict[str, NDArray[Any]]
+
+
+class Accumulator(Protocol):
+    """The memory of an observable during a run: bounded, and the same bits after any resume."""
+
+    def observe(self, engine: Any) -> None:
+        """Take one sample."""
+
+    def state(self) -> State:
+        """All it has to remember, as arrays."""
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+
+    def pool(self, other: Any) -> None:
+        """Take in the samples of an independent run of the same case: only to read from then on."""
+
+    def result(self) -> Result:
+        """What the samples so far say."""
+
+
+@family(
+    "observable",
+    "quantity",
+    "mesokit.observable",
+    "Simulation(..., callbacks=[every(10, function)]) calls one, a class makes an observable",
+)
+@component
+class Observable(ABC):
+    """Something measured while the fluid runs."""
+
+    methods: ClassVar[tuple[str, ...]] = ()  # it is for, beside those that offer it
+    of_methods_alone: ClassVar[bool] = False  # whether it is for no others
+    needs_fluid: ClassVar[bool] = True  # whether solutes alone cannot answer it
+    in_open_box: ClassVar[bool] = False  # whether it can be told of particles far outside the box
+    # whether its theory needs the transport coefficients of the fluid as it is, molecules and all
+    asks_transport: ClassVar[bool] = False
+    of_built_up_flow: ClassVar[bool] = False  # whether its theory is of the steady flow
+    measures: ClassVar[tuple[str, ...]] = ()  # "stress" or "walls": what the step has to sum for it
+    every: int = option(default=10, doc="steps between two samples", ge=1, kw_only=True)
+    name: str | None = option(
+        default=None,
+        doc="name of the results (the quantity unless said)",
+        kw_only=True,
+        min_length=1,
+    )
+
+    @property
+    def label(self) -> str:
+        """The name under which its results are kept."""
+        return self.name or name_of(self)
+
+    def check(self, case: Case) -> None:  # noqa: B027  # most can be measured anywhere
+        """Raise CaseError if it cannot be measured in this case."""
+
+    def warnings(self, case: Case) -> Iterator[str]:
+        """What one should know before it is measured in this case, key first."""
+        yield from ()
+
+    @abstractmethod
+    def accumulator(self, case: Case) -> Accumulator:
+        """An empty memory for it."""
+
+
+def pack(**parts: Any) -> State:
+    """The states of several parts (Blocks, MultipleTau, arrays) as one.
+
+    >>> pack(rows=np.zeros(2))
+    {'rows': array([0., 0.])}
+    """
+    state: State = {}
+    for name, part in parts.items():
+        if hasattr(part, "state"):
+            state |= {f"{name}/{key}": array for key, array in part.state().items()}
+        else:
+            state[name] = np.array(part)
+    return state
+
+
+def unpack(state: Mapping[str, NDArray[Any]], name: str) -> State:
+    """The state of one part.
+
+    >>> unpack({"a/sums": np.ones(1), "b": np.zeros(1)}, "a")
+    {'sums': array([1.])}
+    """
+    start = name + "/"
+    return {key[len(start) :]: value for key, value in state.items() if key.startswith(start)}
+
+
+class BlockAccumulator(ABC):
+    """An accumulator that remembers block averages and nothing else."""
+
+    blocks: Blocks
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+
+    def pool(self, other: BlockAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        self.blocks.pool(other.blocks)
