@@ -23,7 +23,9 @@ from mesokit import Case, Simulation
 from mesokit.case.checks import is_offered
 from mesokit.case.toml import override, parse, read
 from mesokit.errors import CaseError
-from mesokit.observe import OBSERVABLES
+from mesokit.method.mpcd.observe import OBSERVABLES as OF_MPCD
+from mesokit.method.spheres.common.observe import OBSERVABLES as OF_SPHERES
+from mesokit.observe import OBSERVABLES as OF_SEVERAL
 from mesokit.seam.method import method_of
 from mesokit.seam.observable import Observable
 from mesokit.statistics import spread_ids
@@ -131,7 +133,7 @@ def case_of(scene: Scene, seed: int) -> Case:
     method = method_of(plain)
     bases = [base for base in method.observables if base is not Observable]
     own = [kind for base in bases for kind in base.__subclasses__()]
-    for kind in (*OBSERVABLES, *own):
+    for kind in (*OF_SEVERAL, *OF_MPCD, *OF_SPHERES, *own):
         if not is_offered(kind, method.name, method.observables):
             continue
         try:

@@ -8,7 +8,7 @@ import numpy as np
 from common import BLUE, RED, Page, long, main, mean_and_error, plt
 
 from mesokit import Box, Comparison, HardSpheres, Run, Simulation
-from mesokit.method.spheres.common.observe.hexatic_order import psi_6
+from mesokit.observe.hexatic_order import psi_6
 
 SIDE = 128  # disks along one
 TIMES = 1200.0  # measured for so long, after half of it

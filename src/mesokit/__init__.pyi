@@ -80,11 +80,9 @@ from mesokit.method.mpcd.numbers import Derived as Derived
 from mesokit.method.mpcd.observe.bond_correlation import BondCorrelation as BondCorrelation
 from mesokit.method.mpcd.observe.bond_length import BondLength as BondLength
 from mesokit.method.mpcd.observe.cell_occupancy import CellOccupancy as CellOccupancy
-from mesokit.method.mpcd.observe.density_field import DensityField as DensityField
 from mesokit.method.mpcd.observe.density_gradient import DensityGradient as DensityGradient
 from mesokit.method.mpcd.observe.domain_size import DomainSize as DomainSize
 from mesokit.method.mpcd.observe.dynamic_moduli import DynamicModuli as DynamicModuli
-from mesokit.method.mpcd.observe.flow_frames import FlowFrames as FlowFrames
 from mesokit.method.mpcd.observe.flow_rate import FlowRate as FlowRate
 from mesokit.method.mpcd.observe.forces import Forces as Forces
 from mesokit.method.mpcd.observe.longitudinal_modes import LongitudinalModes as LongitudinalModes
@@ -104,7 +102,6 @@ from mesokit.method.mpcd.observe.surface_profile import SurfaceProfile as Surfac
 from mesokit.method.mpcd.observe.transit_time import TransitTime as TransitTime
 from mesokit.method.mpcd.observe.translocation_time import TranslocationTime as TranslocationTime
 from mesokit.method.mpcd.observe.transverse_modes import TransverseModes as TransverseModes
-from mesokit.method.mpcd.observe.velocity_field import VelocityField as VelocityField
 from mesokit.method.mpcd.observe.wake import Wake as Wake
 from mesokit.method.mpcd.observe.wall_stress import WallStress as WallStress
 from mesokit.method.mpcd.si import SI as SI
@@ -134,7 +131,6 @@ from mesokit.method.spheres.common.observe.granular_temperature import (
 )
 from mesokit.method.spheres.common.observe.height_in_time import HeightInTime as HeightInTime
 from mesokit.method.spheres.common.observe.height_profile import HeightProfile as HeightProfile
-from mesokit.method.spheres.common.observe.hexatic_order import HexaticOrder as HexaticOrder
 from mesokit.method.spheres.common.observe.kind_temperature import (
     KindTemperature as KindTemperature,
 )
@@ -165,7 +161,10 @@ from mesokit.method.spheres.soft.thermostat.langevin import Langevin as Langevin
 from mesokit.method.spheres.soft.thermostat.protocol import SoftThermostat as SoftThermostat
 from mesokit.method.spheres.soft.thermostat.rescale import RescaleAll as RescaleAll
 from mesokit.observe.conservation import Conservation as Conservation
+from mesokit.observe.density_field import DensityField as DensityField
 from mesokit.observe.density_profile import DensityProfile as DensityProfile
+from mesokit.observe.flow_frames import FlowFrames as FlowFrames
+from mesokit.observe.hexatic_order import HexaticOrder as HexaticOrder
 from mesokit.observe.mean_square_displacement import (
     MeanSquareDisplacement as MeanSquareDisplacement,
 )
@@ -177,6 +176,7 @@ from mesokit.observe.velocity_autocorrelation import (
     VelocityAutocorrelation as VelocityAutocorrelation,
 )
 from mesokit.observe.velocity_distribution import VelocityDistribution as VelocityDistribution
+from mesokit.observe.velocity_field import VelocityField as VelocityField
 from mesokit.observe.velocity_profile import VelocityProfile as VelocityProfile
 from mesokit.potential.bending import Bending as Bending
 from mesokit.potential.fene import FENE as FENE

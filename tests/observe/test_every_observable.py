@@ -7,11 +7,14 @@ import pytest
 from fake_fluid import FakeFluid, case_for, taken
 
 from mesokit import AT
+from mesokit.method.mpcd.observe import OBSERVABLES as OF_MPCD
 from mesokit.method.mpcd.species import Species
-from mesokit.observe import OBSERVABLES
+from mesokit.method.spheres.common.observe import OBSERVABLES as OF_SPHERES
+from mesokit.observe import OBSERVABLES as OF_SEVERAL
 from mesokit.seam.result import with_error
 
 # those of spheres have their own tests: no fluid can answer them
+OBSERVABLES = (*OF_SEVERAL, *OF_MPCD, *OF_SPHERES)
 OF_FLUIDS = [kind for kind in OBSERVABLES if not kind.methods]
 
 

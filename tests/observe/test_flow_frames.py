@@ -9,8 +9,8 @@ from fake_fluid import FakeFluid
 from mesokit import DensityField, FlowFrames, VelocityField
 from mesokit.errors import CaseError
 from mesokit.io import h5md
-from mesokit.method.mpcd.observe.flow_frames import average
 from mesokit.method.mpcd.species import Species
+from mesokit.observe.flow_frames import average
 
 
 def watched(case, observables, samples, every=10, **options):

@@ -22,10 +22,11 @@ from mesokit import (
     theory,
 )
 from mesokit.errors import CaseError
+from mesokit.method.spheres.common.observe import OBSERVABLES as OF_SPHERES_ALONE
 from mesokit.method.spheres.common.observe.cluster_size import cluster_sizes
-from mesokit.observe import OBSERVABLES
+from mesokit.observe import OBSERVABLES as OF_SEVERAL
 
-OF_SPHERES = [kind for kind in OBSERVABLES if "event-driven" in kind.methods]
+OF_SPHERES = [kind for kind in (*OF_SEVERAL, *OF_SPHERES_ALONE) if "event-driven" in kind.methods]
 
 
 def sampled(accumulator, spheres, samples):

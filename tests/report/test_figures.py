@@ -12,12 +12,13 @@ from rich.console import Console
 
 from mesokit import Comparison, DynamicModuli, Forces, Stress, VelocityAutocorrelation, Wake
 from mesokit.errors import RunError
-from mesokit.observe import OBSERVABLES as ALL
+from mesokit.method.mpcd.observe import OBSERVABLES as OF_MPCD
+from mesokit.observe import OBSERVABLES as OF_SEVERAL
 from mesokit.observe import Result
 from mesokit.report import plot, print_comparisons, save, save_all
 from mesokit.report.caption import MOST, compared, mathematics
 
-OBSERVABLES = [kind for kind in ALL if not kind.methods]  # those of fluids
+OBSERVABLES = [kind for kind in (*OF_SEVERAL, *OF_MPCD) if not kind.methods]  # those of fluids
 
 
 def result_of(kind, make_case, samples):

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesokit.case.snapshot import Snapshot
+from mesokit.case.given.snapshot import Snapshot
 from mesokit.errors import CaseError
 from mesokit.io.optional import package
 

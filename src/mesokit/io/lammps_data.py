@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.component import one_of, show
-from mesokit.case.snapshot import Snapshot, rows_of
+from mesokit.case.given.snapshot import Snapshot, rows_of
 from mesokit.errors import CaseError
 
 # columns before the coordinates

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from mesokit.case.component import show
-from mesokit.case.snapshot import Snapshot
+from mesokit.case.given.snapshot import Snapshot
 from mesokit.errors import CaseError
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesokit.method.mpcd.observe.flow_frames import average
+from mesokit.observe.flow_frames import average
 from mesokit.report.caption import symbols
 from mesokit.report.flow import density, quiver, speed
 from mesokit.report.flow.data import Flow

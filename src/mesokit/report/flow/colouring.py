@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError, RunError
-from mesokit.method.spheres.common.observe.hexatic_order import psi_6
+from mesokit.observe.hexatic_order import psi_6
 from mesokit.report import style
 from mesokit.report.caption import rounded, symbols
 from mesokit.report.flow.data import Array

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.method.mpcd.observe.flow_frames import weights
+from mesokit.observe.flow_frames import weights
 from mesokit.report.flow.data import Array, Flow
 from mesokit.report.flow.setting import Setting
 from mesokit.seam.result import Result

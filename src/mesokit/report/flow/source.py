@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import show
 from mesokit.errors import CaseError, RunError
-from mesokit.method.mpcd.observe.flow_frames import FlowFrames
+from mesokit.observe.flow_frames import FlowFrames
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.view import View
 from mesokit.seam.method import method_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mesokit.case.registry import parts_in
 from mesokit.method.flock.observe.protocol import FlockObservable
-from mesokit.seam.observable import Observable
+from mesokit.observe import Observable
 
 __getattr__ = parts_in(__name__, OBSERVABLES=Observable)
 

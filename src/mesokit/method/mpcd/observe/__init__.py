@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mesokit.case.registry import parts_in
-from mesokit.seam.observable import Observable
+from mesokit.observe import Observable
 
 __getattr__ = parts_in(__name__, OBSERVABLES=Observable)
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.box import AXES
 from mesokit.case.component import show
-from mesokit.case.snapshot import Snapshot
+from mesokit.case.given.snapshot import Snapshot
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import free_volume

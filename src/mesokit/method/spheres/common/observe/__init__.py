@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from mesokit.case.registry import parts_in
+from mesokit.observe import Observable
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
-from mesokit.seam.observable import Observable
 
 __getattr__ = parts_in(__name__, OBSERVABLES=Observable)
 
-__all__ = ["OBSERVABLES", "MeanSquareDisplacement"]
+__all__ = ["OBSERVABLES", "MeanSquareDisplacement", "Observable"]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.component import show
-from mesokit.case.snapshot import Snapshot
+from mesokit.case.given.snapshot import Snapshot
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.start.protocol import Array, Placed
 

@@ -9,7 +9,7 @@ import numpy as np
 from mesokit.case.component import component, tag
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.observe.shared.field import Array, Field, FieldAccumulator
+from mesokit.observe.shared.field import Array, Field, FieldAccumulator
 from mesokit.seam.result import Comparison, Result
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from mesokit.case.box import AXES
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
-from mesokit.method.mpcd.observe.shared.field import Array, Field
+from mesokit.observe.shared.field import Array, Field
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import of_ratio
 from mesokit.seam.observable import State

@@ -9,7 +9,7 @@ import numpy as np
 from mesokit.case.box import AXES
 from mesokit.case.component import component, tag
 from mesokit.method.mpcd.expected import setting
-from mesokit.method.mpcd.observe.shared.field import Array, Field, FieldAccumulator
+from mesokit.observe.shared.field import Array, Field, FieldAccumulator
 from mesokit.seam.estimate import Estimate, of_ratio, per_block
 from mesokit.seam.result import Comparison, Result
 
