@@ -98,7 +98,7 @@ def data_file(path, speed):
 def test_check_knows_the_speeds_of_a_file_and_a_run_keeps_them(tmp_path):
     law = HertzLaw(stiffness=5e6)
     case = case_of(law, start=FileStart(file=data_file(tmp_path / "a.data", 7.0)))
-    known = method_of(case).prepared(case, {})
+    known = method_of(case).initial.prepared(case, {})
     assert known.spheres.speed == pytest.approx(7.0)
     numbers = summary_of(known).numbers
     assert numbers["contact_time"] == pytest.approx(law.contact_time_of(0.5, 7.0))
@@ -109,7 +109,7 @@ def test_check_knows_the_speeds_of_a_file_and_a_run_keeps_them(tmp_path):
     still = dataclasses.replace(
         case, spheres=dataclasses.replace(case.spheres, start=at_rest_again)
     )
-    found = method_of(still).prepared(still, {})
+    found = method_of(still).initial.prepared(still, {})
     assert found == still  # nothing moves, and nothing is pressed together
     rows = {what: value for what, value, _ in summary_of(found).rows}
     assert rows["collision speed"] == "0" and "contact time" not in rows
@@ -117,7 +117,7 @@ def test_check_knows_the_speeds_of_a_file_and_a_run_keeps_them(tmp_path):
 
 def test_velocities_that_are_drawn_change_no_case():
     case = case_of(HertzLaw(stiffness=1e6), number=20, kT=0.5)
-    assert method_of(case).prepared(case, {}) is case
+    assert method_of(case).initial.prepared(case, {}) is case
     fastest = scales.FASTEST * math.sqrt(0.5)
     assert scales.speed_of_collision(case) == fastest
 

@@ -6,12 +6,12 @@ import numpy as np
 
 from mesokit.case.component import param
 from mesokit.geometry.shape import Wall
-from mesokit.method.spheres.common.groups import FIELDS, groups
+from mesokit.method.spheres.common.groups import groups
 from mesokit.method.spheres.common.made import made
 from mesokit.method.spheres.common.section import Spheres
 from mesokit.method.spheres.common.start.thermal import spins, velocities
 from mesokit.observe import Observable
-from mesokit.seam.method import Method, Summary
+from mesokit.seam.method import InitialState, Method, Summary
 
 NAME, TIMESTEP = "flying-spheres", 0.1
 
@@ -89,11 +89,8 @@ METHOD = Method(
     groups=groups,
     timestep=lambda case: TIMESTEP,
     summary=lambda case, threads: Summary((), (), 1.0),
-    first_state=lambda case, arrays: case.spheres.start.place(case, made(case)),
+    initial=InitialState(
+        lambda case, arrays: case.spheres.start.place(case, made(case)), Flying.start
+    ),
     engine=lambda case, threads, measures: Flying(case),
-    start=Flying.start,
-    whole_cells=False,
-    fields=FIELDS,
-    spheres=True,
-    picture="disks",
 )

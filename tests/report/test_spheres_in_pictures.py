@@ -22,6 +22,7 @@ from mesokit.report.flow.colouring import COLOURS, MOST, in_film
 from mesokit.report.flow.moving_plates import plates_at
 from mesokit.report.flow.shaded import PALE, SHADE, Balls, shaded
 from mesokit.report.flow.solids import Section
+from mesokit.seam.method import Enclosure
 
 TWO = (SphereKind(0.8, share=2.0, name="small"), SphereKind(1.2, spread=0.3, name="large"))
 
@@ -121,7 +122,7 @@ class TestScale:
     def test_nothing_comes_in_through_a_wall(self, case_of, monkeypatch, flying):
         import fake_spheres
 
-        closed = dataclasses.replace(METHOD, closed_axes=lambda case: {1})
+        closed = dataclasses.replace(METHOD, enclosure=Enclosure(lambda case: {1}))
         monkeypatch.setattr(fake_spheres, "METHOD", closed)
         places, _, _ = drawn_disks(picture(case_of((6, 5)), {}, frames_of([[5.9, 4.8]])))
         assert sorted(places[:, 0].round(9)) == [-0.1, 5.9] and set(places[:, 1]) == {4.8}

@@ -95,8 +95,6 @@ class Case(Shown):
             )
         if self.units is not None and method.si is None:
             raise CaseError(f"units: method {show(method.name)} does not know them in SI")
-        if method.whole_cells:
-            checks.whole_cells(self.box)
         checks.box_keys(self.box, method)
         method.check(self)
         checks.check(self, method)
@@ -116,6 +114,10 @@ class Case(Shown):
         """The groups of particles, in the order of their numbers."""
         groups: tuple[Group, ...] = self._method.groups(self)
         return groups
+
+    def particles_have(self, what: str) -> bool:
+        """Whether an engine tells something, such as "diameter", of each particle (`Group.has`)."""
+        return any(what in group.has for group in self.groups)
 
     @property
     def particles(self) -> int:
@@ -163,7 +165,7 @@ class Case(Shown):
 
     def missing_files(self) -> list[str]:
         """'key = file' for each file or folder that the start needs and that is not there."""
-        missing: list[str] = self._method.missing_files(self)
+        missing: list[str] = self._method.initial.missing(self)
         return missing
 
     @classmethod

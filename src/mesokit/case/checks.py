@@ -6,12 +6,12 @@ import dataclasses
 import math
 import re
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, get_args
 
 from mesokit.case.box import AXES
 from mesokit.case.component import is_component, name_of, nearest, one_of, show
 from mesokit.case.registry import family_of
-from mesokit.case.trajectory import Group, written
+from mesokit.case.trajectory import Group, Quantity, written
 from mesokit.errors import CaseError
 
 MOST_BINS = 2**24  # of one observable: some gigabytes
@@ -25,7 +25,7 @@ def check(case: Any, method: Any) -> None:
         *names(case),
         *bins(case),
         *trajectory(case, case.groups),
-        *fields(case, method),
+        *fields(case, case.groups),
     ):
         raise CaseError(problem)
     for i, observable in enumerate(case.observe):
@@ -125,15 +125,18 @@ def trajectory(case: Any, groups: Sequence[Group]) -> Iterator[str]:
         yield f"trajectory.fields = {show(given.fields)}: expected each field once"
 
 
-def fields(case: Any, method: Any) -> Iterator[str]:
-    """What a trajectory may hold of the particles of the method."""
-    for field in () if case.trajectory is None else case.trajectory.fields:
-        if field not in method.fields:
-            yield (
-                f"trajectory.fields = {show(case.trajectory.fields)}: particles of method "
-                f"{show(method.name)} have no {show(field)}; expected some of "
-                f"{', '.join(map(show, method.fields))}"
-            )
+def fields(case: Any, groups: Sequence[Group]) -> Iterator[str]:
+    """What a trajectory may hold of these particles."""
+    given = case.trajectory
+    for group in groups if given is not None else ():
+        for field in given.fields if given.of in ("all", group.name) else ():
+            if field not in group.has:
+                known = [name for name in get_args(Quantity) if name in group.has]
+                yield (
+                    f"trajectory.fields = {show(given.fields)}: {group.name} of method "
+                    f"{show(case.run.method)} have no {show(field)}; expected some of "
+                    f"{', '.join(map(show, known))}"
+                )
 
 
 def box_keys(box: Any, method: Any) -> None:
@@ -149,7 +152,7 @@ def box_keys(box: Any, method: Any) -> None:
 
 
 def whole_cells(box: Any) -> None:
-    """Raise CaseError for a length that is no whole number, or too few cells, where the method has
+    """Raise CaseError for a length that is no whole number, or too few cells, of a method that has
     cells."""
     if min(box.size) < 2:
         raise CaseError(

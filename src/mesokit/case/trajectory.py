@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from mesokit.case.component import component, param
 from mesokit.case.describe.hints import Many
 
-Quantity = Literal["position", "velocity", "spin", "image", "id"]
-WIDTHS = {"image": 4, "id": 8}  # bytes of a field; the others follow the precision
+Quantity = Literal["position", "velocity", "spin", "image", "site", "id"]
+WIDTHS = {"image": 4, "site": 2, "id": 8}  # bytes of a field; the others follow the precision
 COMPRESSED = 0.9  # thermal noise hardly compresses
 
 
@@ -29,10 +29,21 @@ class Kind(NamedTuple):
 
 
 class Group(NamedTuple):
-    """Particles with consecutive numbers, such as a fluid or its solutes, kind after kind."""
+    """Particles with consecutive numbers, such as a fluid or its solutes, kind after kind.
+
+    `has` is what an engine tells of each: quantities that trajectories may hold; "mass" and
+    "diameter" where each has its own; "heading" where the direction of a velocity at one time is
+    what pictures show. Sites of a lattice are a group that has "site", their states: the sites of
+    a box of the shape `lattice`, the last axis first. `kT` is the thermal energy of velocities;
+    `picture` the kind of pictures that shows it unless another is chosen.
+    """
 
     name: str
     kinds: tuple[Kind, ...]
+    has: tuple[str, ...] = ("position", "velocity", "image", "id")
+    kT: float = 0.0
+    picture: str = ""
+    lattice: tuple[int, ...] = ()
 
     @property
     def number(self) -> int:
@@ -120,7 +131,7 @@ def components(field: str, dimension: int) -> int:
     """
     if field == "spin":
         return 1 if dimension == 2 else 3
-    return 1 if field == "id" else dimension
+    return 1 if field in ("id", "site") else dimension
 
 
 def stored_bytes(

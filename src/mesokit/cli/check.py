@@ -47,8 +47,8 @@ def check(
         summary = summary_of(full, threads)
         if has_memory(summary.memory):  # else it warns of that
             with naming(case):
-                full = method.prepared(full, {})
-                method.first_state(full, {})
+                full = method.initial.prepared(full, {})
+                method.initial.read(full, {})
             summary = summary_of(full, threads)
     if axes is not None and picture is None:
         raise CaseError("--axes: only for a picture; add --picture")
@@ -75,8 +75,7 @@ def _draw(full: Case, case: Path, picture: str, axes: tuple[str, ...] | None) ->
     """Draw what a case starts from, without a step."""
     from mesokit.report import save_figure
     from mesokit.run.simulation import Simulation
-    from mesokit.seam.method import method_of
 
     with naming(case):
-        figure = Simulation(full).flow(method_of(full).picture or "particles", axes=axes)
+        figure = Simulation(full).flow(full.groups[0].picture or "particles", axes=axes)
     return save_figure(figure, picture or f"{case.stem}-start.png")

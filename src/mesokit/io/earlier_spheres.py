@@ -25,7 +25,7 @@ def spheres_of(path: str) -> Snapshot:
     directory = RunDirectory.existing(path)
     earlier = Case.from_toml(directory.case_file)
     method, d = method_of(earlier), earlier.box.dimension
-    if not method.spheres:
+    if not earlier.particles_have("diameter"):
         raise CaseError(
             f"that is a run of method {show(earlier.run.method)}, whose particles have no size"
         )

@@ -98,7 +98,7 @@ def _contents(
     if not directory.data_file.exists():
         folder = directory.trajectory_folder
         here = written(case.trajectory, case.groups)
-        writer = TrajectoryWriter(case.trajectory, folder, *here, method_of(case).spheres)
+        writer = TrajectoryWriter(case.trajectory, folder, *here, case.particles_have("diameter"))
         if writer.segments():
             mass, kind = masses_and_kinds(case.groups)
             kind, own = kind[writer.ids], writer.own
@@ -123,7 +123,7 @@ def _particles(
     bonds = bonds[((bonds >= 0) & (bonds < len(number))).all(axis=1)]
     size = np.ones(3)
     size[: case.box.dimension] = case.box.size
-    shut = method_of(case).closed_axes(case)
+    shut = method_of(case).enclosure.closed_axes(case)
     names, drawn = names_and_diameters(case.groups)
     return Particles(
         number=number,

@@ -345,7 +345,7 @@ def _element(parent: Any, name: str, clock: Any) -> Any:
 
 def _box(group: Any, case: Case, frames: int) -> Any:
     box = group.create_group("box")
-    closed = method_of(case).closed_axes(case)
+    closed = method_of(case).enclosure.closed_axes(case)
     boundary = ["none" if axis in closed else "periodic" for axis in range(3)]
     box.attrs["dimension"] = 3
     box.attrs["boundary"] = np.array(boundary, dtype=h5py.string_dtype("ascii"))

@@ -71,7 +71,7 @@ def _read(
     directory: RunDirectory, case: Case, large: float = math.inf
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     path, motion = directory.checkpoint_file, _motion(directory, case)
-    return checkpoint.read(path, motion, method_of(case).start_from_run, large)
+    return checkpoint.read(path, motion, method_of(case).initial.run, large)
 
 
 def _read_by_one(

@@ -215,7 +215,7 @@ def provenance(case: Case, threads: int, ranks: int = 1) -> dict[str, Any]:
         **recorded_case(case),
         "seed": case.run.seed,
         "sources": sources(),
-        "starts_from": parents(method_of(case).starts(case)),
+        "starts_from": parents(method_of(case).initial.files(case)),
         "parts": outside_parts(case),
         "versions": {"python": platform.python_version()} | _versions(),
         "host": platform.node(),

@@ -23,7 +23,6 @@ from mesokit.observe.shared.profile import (
 from mesokit.observe.shared.whose import groups_of
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import Estimate, of_mean
-from mesokit.seam.method import method_of
 from mesokit.seam.result import Comparison, Result
 
 if TYPE_CHECKING:
@@ -63,7 +62,7 @@ class DensityProfile(Profile):
     def check(self, case: Case) -> None:
         """Raise CaseError for an axis that the box has not, and for what molecules have not."""
         super().check(case)
-        if method_of(case).spheres:
+        if case.particles_have("diameter"):
             groups_of(case, self.of, self.kind)
             return
         molecule = group_of(case, self.of, self.kind).molecule

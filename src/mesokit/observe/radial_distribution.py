@@ -128,7 +128,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
         )
         self.box = np.array(case.box.size, float)
         method = method_of(case)
-        unit = case.spheres.largest(case.box) if method.spheres else 1.0
+        unit = case.spheres.largest(case.box) if case.particles_have("diameter") else 1.0
         reach = observable.reach or min(FARTHEST * unit, min(case.box.size) / 2)
         self.edges = np.linspace(0.0, reach, observable.bins + 1)
         self.shells = shells(self.edges, case.box.dimension)
@@ -268,7 +268,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
 
     def diffusion(self, group: Group, of: str) -> float | None:
         """Coefficient of the molecules of a group, by molecular chaos: Rouse's."""
-        if method_of(self.case).spheres:
+        if self.case.particles_have("diameter"):
             return None
         alone = free_diffusion(self.case, of, kind_of(self.case, group))
         return None if alone is None else alone / group.length
@@ -288,7 +288,7 @@ def _unless_fixed(value: Array | float, error: Array | float) -> Array:
 
 def _sample(case: Case, group: Group, most: int) -> Ids:
     """Beads (molecules, length) of a group; of the fluid of so many as have `most` at least."""
-    if group.first >= case.particles or method_of(case).spheres:
+    if group.first >= case.particles or case.particles_have("diameter"):
         return group.beads()
     return group.beads(min(group.number, max(2, most // group.length)))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
@@ -19,7 +20,6 @@ from mesokit.observe.shared.profile import (
 )
 from mesokit.observe.shared.whose import KIND, ids_of_kind
 from mesokit.seam.estimate import Estimate, fit, noted, of_ratio
-from mesokit.seam.method import method_of
 from mesokit.seam.result import Comparison, Result
 
 if TYPE_CHECKING:
@@ -51,11 +51,16 @@ class VelocityProfile(Profile):
         case.box.index(self.seen(case), "component")
         ids_of_kind(case, self.kind)
 
+    def warnings(self, case: Case) -> Iterator[str]:
+        """A component along which nothing flows."""
+        if not case.particles_have("diameter"):
+            yield from setting.across_the_flow(case, self.component)
+
     def seen(self, case: Case) -> Axis:
         """The axis of the velocity in this case."""
         if self.component is not None:
             return self.component
-        flowing = [] if method_of(case).spheres else setting.flowing_axes(case)
+        flowing = [] if case.particles_have("diameter") else setting.flowing_axes(case)
         return flowing[0] if len(flowing) == 1 else "y" if self.axis == "x" else "x"
 
     def accumulator(self, case: Case) -> VelocityProfileAccumulator:

@@ -36,7 +36,7 @@ def case_and_arrays(given: Any, parts: dict[str, Any]) -> tuple[Case, dict[str, 
             f"Simulation: case = {show(given)}: expected a case, or the path of its file"
         )
     name = method_named(parts.get("run")) if given is None else given.run.method
-    known = methods.load(name).arrays
+    known = methods.load(name).initial.arrays
     arrays = {name: parts.pop(name) for name in known if name in parts}
     if (given is None) == (not parts):
         key = next(iter(parts), None)

@@ -93,7 +93,7 @@ class Replicas:
         """Put the particles of each where they start from."""
         for one in self.all:
             method = method_of(one.case)
-            method.start(one.engine, method.first_state(one.case, arrays))
+            method.initial.fill(one.engine, method.initial.read(one.case, arrays))
 
     def go(self, legs: Iterable[Leg]) -> None:
         """Steps and samples of all: they wait for one another at the end alone."""

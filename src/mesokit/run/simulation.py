@@ -83,7 +83,7 @@ class Simulation(Course):
         facts = {"output": str(output)}
         self.ranks.require_same(lambda: told(self.case, self.callbacks, arrays) | facts)
         with blaming(self.case):
-            self.case = method_of(self.case).prepared(self.case, arrays)
+            self.case = method_of(self.case).initial.prepared(self.case, arrays)
             self._build()
             self.replicas.start(arrays)
         self.directory: RunDirectory | None = None

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from mesokit.case import methods
 from mesokit.case.amounts import duration_text
+from mesokit.case.component import show
 from mesokit.processes.cores import usable_cores
 
 if TYPE_CHECKING:
@@ -79,6 +80,43 @@ class BuildUp(NamedTuple):
         return left * -math.expm1(-length / self.steps) * self.steps / length
 
 
+class InitialState(NamedTuple):
+    """What a case starts from.
+
+    read: of a case and arrays by name, what to start from, checked; raises CaseError. Whatever it
+    returns goes to `fill`, which puts it into an engine. arrays: names of those that a `Simulation`
+    may be started from. files: the files and folders of runs that a case starts from, by their
+    keys. run: the key by which a case starts from where another run ended. prepared: the case with
+    keys that follow from the state it starts from; raises CaseError.
+    """
+
+    read: Callable[[Case, Mapping[str, Any]], Any]
+    fill: Callable[[Any, Any], None]
+    arrays: tuple[str, ...] = ()
+    files: Callable[[Case], Mapping[str, Path]] = lambda case: {}
+    run: str = ""
+    prepared: Callable[[Case, Mapping[str, Any]], Case] = lambda case, arrays: case
+
+    def missing(self, case: Case) -> list[str]:
+        """A line for each file or folder that is not there."""
+        return [
+            f"{key} = {show(str(path), 500)}: no such {'folder' if key.endswith('run') else 'file'}"
+            for key, path in self.files(case).items()
+            if not path.exists()
+        ]
+
+
+class Enclosure(NamedTuple):
+    """What shuts particles in: numbers of the axes that are not periodic, and the solids that
+    pictures show (`mesokit.geometry.solids.solids.Solids`) or None, both of a case."""
+
+    closed_axes: Callable[[Case], set[int]] = lambda case: set()
+    solids: Callable[[Case], Any] = lambda case: None
+
+
+NOT_ENCLOSED = Enclosure()
+
+
 @dataclass(frozen=True)
 class Method:
     """A method of simulation.
@@ -95,52 +133,28 @@ class Method:
     check : function of a case
         Raises CaseError for values that are fine alone and have no physics together.
     groups : function of a case
-        The groups of its particles, in the order of particle numbers.
+        The groups of its particles or sites, in the order of their numbers, and what an engine
+        tells of each (`mesokit.case.trajectory.Group`).
     timestep : function of a case
         The time that a step takes.
     summary : function of a case and a number of threads (None: all cores)
         Derived numbers, estimated cost and warnings.
-    first_state : function of a case and arrays by name
-        What to start from, checked; raises CaseError. Whatever it returns goes to `start`.
+    initial : InitialState
+        What a case starts from.
     engine : function of a case, a number of threads and what observables need measured
         The engine, with nothing in it yet.
-    start : function of an engine and a first state
-        Fills the engine.
-    whole_cells : bool, optional
-        Whether the lengths of its box are whole numbers of cells; True unless said.
     box : sequence of str, optional
         Keys of the box that it takes beside `size`; all others are refused.
     keys : mapping, optional
         Names of sections as they are in a file where these differ from those in Python: of a list
         of tables, `[[wall]]` for `walls`.
-    arrays : sequence of str, optional
-        Names of the arrays that a `Simulation` may be started from.
     expected : mapping, optional
         By the name of an observable that several methods share, what theory expects of it:
         a function of a case and the observable, whose answer that observable's file describes.
+    enclosure : Enclosure, optional
+        What shuts its particles in.
     bonds : function of a case, optional
         Pairs (bonds, 2) of the numbers of particles that are bonded.
-    closed_axes : function of a case, optional
-        Numbers of the axes that are not periodic.
-    solids : function of a case, optional
-        The solids that pictures show (`mesokit.geometry.solids.solids.Solids`), or None.
-    kT : function of a case, optional
-        Thermal energy, where particles have velocities.
-    fields : sequence of str, optional
-        What a trajectory may hold of its particles: all but spins unless said.
-    spheres : bool, optional
-        Whether its particles are disks or spheres, each with a size and a mass of its own: then its
-        engine answers `diameters`, `masses`, `velocities` and `spins`.
-    headings : bool, optional
-        Whether the velocities of single particles, at one time, are what pictures show of it.
-    picture : str, optional
-        The kind of pictures and films of its particles, where none is asked for.
-    start_from_run : str, optional
-        The key by which a case starts from where another run ended.
-    starts : function of a case, optional
-        The files and folders of runs that a case starts from, by their keys.
-    missing_files : function of a case, optional
-        A line for each file that a case needs and that is not there.
     keep_files : function of a case and the folder of its run, optional
         The case, with copies in that folder of the files that it was made from.
     log : function of a case, optional
@@ -152,8 +166,6 @@ class Method:
     check_ranks : function of a case and a number of ranks, optional
         Raises CaseError for a case that cannot be run on so many ranks of MPI; without it, none
         can. Its engine is then asked by all ranks at once.
-    prepared : function of a case and arrays by name, optional
-        The case with keys that follow from the state it starts from; raises CaseError.
     """
 
     name: str
@@ -163,31 +175,18 @@ class Method:
     groups: Callable[[Case], tuple[Group, ...]]
     timestep: Callable[[Case], float]
     summary: Callable[[Case, int | None], Summary]
-    first_state: Callable[[Case, Mapping[str, Any]], Any]
+    initial: InitialState
     engine: Callable[[Case, int, Sequence[str]], Engine]
-    start: Callable[[Any, Any], None]
-    whole_cells: bool = True
     box: tuple[str, ...] = ()
     keys: Mapping[str, str] = field(default_factory=dict)
-    arrays: tuple[str, ...] = ()
     expected: Mapping[str, Callable[[Case, Any], Any]] = field(default_factory=dict)
+    enclosure: Enclosure = NOT_ENCLOSED
     bonds: Callable[[Case], NDArray[np.int64]] = lambda case: np.zeros((0, 2), np.int64)
-    closed_axes: Callable[[Case], set[int]] = lambda case: set()
-    solids: Callable[[Case], Any] = lambda case: None
-    kT: Callable[[Case], float] | None = None
-    fields: tuple[str, ...] = ("position", "velocity", "image", "id")
-    spheres: bool = False
-    headings: bool = False
-    picture: str = ""
-    start_from_run: str = ""
-    starts: Callable[[Case], Mapping[str, Path]] = lambda case: {}
-    missing_files: Callable[[Case], list[str]] = lambda case: []
     keep_files: Callable[[Case, Path], Case] = lambda case, folder: case
     log: Callable[[Case], Columns] = lambda case: NO_COLUMNS
     si: Callable[[Case], Any] | None = None
     build_up: Callable[[Case], BuildUp | None] | None = None
     check_ranks: Callable[[Case, int], None] | None = None
-    prepared: Callable[[Case, Mapping[str, Any]], Case] = lambda case, arrays: case
 
 
 def method_of(case: Case) -> Method:

@@ -251,7 +251,7 @@ def make(runs: Sequence[Planned], base: Base) -> list[Planned]:
 
 def _prepared(case: Case) -> Case:
     """With the keys that follow from the state it starts from."""
-    return method_of(case).prepared(case, {})
+    return method_of(case).initial.prepared(case, {})
 
 
 def _require_same(run: Planned, case: Case) -> None:

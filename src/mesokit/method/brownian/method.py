@@ -20,7 +20,7 @@ from mesokit.method.brownian.engine import Brownians
 from mesokit.method.brownian.section import Sections
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
 from mesokit.processes.cores import usable_cores
-from mesokit.seam.method import Columns, Method, Row, Summary
+from mesokit.seam.method import Columns, InitialState, Method, Row, Summary
 from mesokit.statistics import spread_ids
 
 if TYPE_CHECKING:
@@ -91,7 +91,8 @@ def check(case: Case) -> None:
 
 def groups(case: Case) -> tuple[Group, ...]:
     """One group of particles without a mass of their own: it is written as 1."""
-    return (Group("particles", (Kind(1.0, case.brownian.number(case.box)),)),)
+    kinds = (Kind(1.0, case.brownian.number(case.box)),)
+    return (Group("particles", kinds, has=("position", "image", "id")),)
 
 
 def summary(case: Case, threads: int | None = None) -> Summary:
@@ -156,10 +157,9 @@ def _engine(case: Case, threads: int, measures: Sequence[str]) -> Brownians:
     return Brownians(case, threads)
 
 
-def _missing_files(case: Case) -> list[str]:
+def _files(case: Case) -> dict[str, Path]:
     file = case.brownian.positions
-    missing = file is not None and not Path(file).exists()
-    return [f"brownian.positions = {show(file, 500)}: no such file"] if missing else []
+    return {} if file is None else {"brownian.positions": Path(file)}
 
 
 METHOD = Method(
@@ -170,12 +170,8 @@ METHOD = Method(
     check=check,
     groups=groups,
     timestep=lambda case: float(case.brownian.timestep),
-    fields=("position", "image", "id"),
     summary=summary,
-    missing_files=_missing_files,
-    arrays=("positions",),
-    first_state=first_state,
+    initial=InitialState(first_state, Brownians.start, arrays=("positions",), files=_files),
     engine=_engine,
-    start=Brownians.start,
     log=columns,
 )

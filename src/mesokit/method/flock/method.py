@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesokit.case.component import show
 from mesokit.case.trajectory import Group, Kind
 from mesokit.geometry.shape_protocol import closed_axes
 from mesokit.geometry.solids.solids import Solids, solids_of
@@ -20,7 +19,7 @@ from mesokit.method.flock.section import KEYS, Sections
 from mesokit.method.flock.start import FirstState, first_state
 from mesokit.method.flock.summary import summary
 from mesokit.observe.mean_square_displacement import MeanSquareDisplacement
-from mesokit.seam.method import Columns, Method
+from mesokit.seam.method import Columns, Enclosure, InitialState, Method
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -30,7 +29,8 @@ STARTS = ("positions", "velocities", "run", "file")
 
 def groups(case: Case) -> tuple[Group, ...]:
     """One group of birds, without a mass of their own: it is written as 1."""
-    return (Group("birds", (Kind(1.0, case.flock.birds(case.box)),)),)
+    has = ("position", "velocity", "image", "id", "heading")
+    return (Group("birds", (Kind(1.0, case.flock.birds(case.box)),), has, picture="flock"),)
 
 
 def columns(case: Case) -> Columns:
@@ -67,35 +67,20 @@ def _starts(case: Case) -> Mapping[str, Path]:
     return {f"flock.start.{key}": Path(name) for key, name in given.items() if name is not None}
 
 
-def _missing_files(case: Case) -> list[str]:
-    return [
-        f"{key} = {show(str(path), 500)}: no such {'folder' if key.endswith('run') else 'file'}"
-        for key, path in _starts(case).items()
-        if not path.exists()
-    ]
-
-
 METHOD = Method(
     name="flock",
     sections=Sections,
     keys=KEYS,
-    whole_cells=False,
-    headings=True,
-    picture="flock",
     observables=(MeanSquareDisplacement, FlockObservable),
     expected={"mean-square-displacement": Displacement},
     check=check,
     groups=groups,
     timestep=lambda case: float(case.flock.timestep),
     summary=summary,
-    closed_axes=_closed,
-    solids=_solids,
-    start_from_run="flock.start.run",
-    starts=_starts,
-    missing_files=_missing_files,
-    arrays=("positions", "velocities"),
-    first_state=first_state,
+    enclosure=Enclosure(_closed, _solids),
+    initial=InitialState(
+        first_state, _start, ("positions", "velocities"), _starts, "flock.start.run"
+    ),
     engine=_engine,
-    start=_start,
     log=columns,
 )

@@ -23,14 +23,15 @@ def groups(case: Case) -> tuple[Group, ...]:
     """
     solutes = case.solutes
     if solutes is None:
-        return Group("fluid", _fluid(case)), Group("solutes", ())
+        return Group("fluid", _fluid(case), kT=float(case.fluid.kT)), Group("solutes", ())
     kinds = tuple(
         Kind(
             solutes.mass_of(i), kind.number * kind.length, solutes.names[i], *_diameter(solutes, i)
         )
         for i, kind in enumerate(solutes.polymers)
     )
-    return Group("fluid", _fluid(case)), Group("solutes", kinds)
+    kT = float(case.fluid.kT)
+    return Group("fluid", _fluid(case), kT=kT), Group("solutes", kinds, kT=kT)
 
 
 def _diameter(solutes: Solutes, kind: int) -> tuple[float, ...]:

@@ -10,7 +10,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.solids.solids import solids_of
@@ -24,7 +23,7 @@ from mesokit.method.mpcd.groups import bonds, groups
 from mesokit.method.mpcd.observe import Observable
 from mesokit.method.mpcd.sections import KEYS, Sections
 from mesokit.processes.world import world
-from mesokit.seam.method import Method
+from mesokit.seam.method import Enclosure, InitialState, Method
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -106,14 +105,6 @@ def _starts(case: Case) -> dict[str, Path]:
     }
 
 
-def _missing_files(case: Case) -> list[str]:
-    return [
-        f"{key} = {show(str(path), 500)}: no such {'folder' if key.endswith('run') else 'file'}"
-        for key, path in _starts(case).items()
-        if not path.exists()
-    ]
-
-
 def _keep_files(case: Case, folder: Path) -> Case:
     from mesokit.io.part_files import kept_part
     from mesokit.io.solid_files import kept
@@ -149,9 +140,9 @@ def _si(case: Case) -> SI:
     return convert(case)
 
 
+ARRAYS = ("positions", "velocities", "beads", "bead_velocities")
 METHOD = Method(
     name="mpcd",
-    start_from_run="fluid.start.run",
     sections=Sections,
     keys=KEYS,
     box=("shear_rate", "shear_frequency", "open", "shear"),
@@ -159,17 +150,11 @@ METHOD = Method(
     check=combinations.check,
     groups=groups,
     bonds=bonds,
-    closed_axes=aperiodic_axes,
-    solids=_solids,
+    enclosure=Enclosure(aperiodic_axes, _solids),
     timestep=lambda case: float(case.fluid.timestep),
-    kT=lambda case: float(case.fluid.kT),
     summary=_summary,
-    starts=_starts,
-    missing_files=_missing_files,
-    arrays=("positions", "velocities", "beads", "bead_velocities"),
-    first_state=_first_state,
+    initial=InitialState(_first_state, _start, ARRAYS, _starts, "fluid.start.run"),
     engine=_engine,
-    start=_start,
     keep_files=_keep_files,
     expected={theory.answers: theory for theory in (Displacement, Velocities, VelocityMemory)},
     log=columns,

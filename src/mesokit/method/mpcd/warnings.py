@@ -43,15 +43,14 @@ def cautions(case: Case, numbers: Derived, across: int) -> Iterator[str]:
     yield from _method_warnings(case, numbers)
     yield from _solid_warnings(case)
     yield from _flow_warnings(case, numbers, across)
-    yield from _observable_warnings(case)
     yield from run_warnings(case, numbers.memory, numbers.trajectory)
 
 
 def _method_warnings(case: Case, numbers: Derived) -> Iterator[str]:
     fluid, transport = case.fluid, numbers.transport
     path = fluid.timestep * math.sqrt(fluid.kT / fluid.mass)
-    angle = getattr(fluid.collision, "angle", 90.0)
-    if angle < 7:
+    angle = (fluid.collision.in_theory() or {}).get("angle")  # of rules that turn velocities
+    if angle is not None and angle < 7:
         yield (
             f"fluid.collision.angle = {angle:g}: the angle is in degrees"
             + (f"; {angle:g} rad is {math.degrees(angle):.2f}" if angle > RADIANS else "")
@@ -293,17 +292,6 @@ def _start_of_shear(case: Case, numbers: Derived) -> Iterator[str]:
             "times) until shear has turned and stretched them; observables will average over the "
             "start"
         )
-
-
-def _observable_warnings(case: Case) -> Iterator[str]:
-    flowing = setting.flowing_axes(case)
-    for i, observable in enumerate(case.observe):
-        seen = getattr(observable, "component", None)
-        if seen is not None and flowing and seen not in flowing:
-            yield (
-                f"observe[#{i + 1}].component = {seen!r}: nothing flows along {seen}; "
-                f"the flow is along {' and '.join(flowing)}"
-            )
 
 
 def _above(value: float, limit: float, digits: int = 2) -> bool:

@@ -12,7 +12,6 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import Group, group_of, kind_of
 from mesokit.method.mpcd.molecule import FLUID
-from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -25,7 +24,7 @@ def default_of(case: Case, of: str | None) -> str:
     """What was asked for, or else beads where there are any."""
     if of is not None:
         return of
-    if method_of(case).spheres:
+    if case.particles_have("diameter"):
         return "particles"
     beads = case.solutes is not None or case.fluid.molecule is not None
     return "beads" if beads else "particles"
@@ -36,7 +35,7 @@ def groups_of(case: Case, of: str, kind: int | str | None = None) -> list[Group]
 
     Beads of all kinds of solutes are a group for each, particles of all species are one.
     """
-    if method_of(case).spheres:
+    if case.particles_have("diameter"):
         return [_spheres(case, of, kind)]
     if kind is None and of != "particles" and case.solutes is not None:
         kinds = range(1, len(case.solutes.polymers) + 1)
@@ -64,7 +63,7 @@ def ids_of_kind(case: Case, kind: int | str | None) -> NDArray[np.int64] | None:
     """Numbers (n,) of the spheres of a kind, None of all. Raises CaseError if there are none."""
     if kind is None:
         return None
-    if not method_of(case).spheres:
+    if not case.particles_have("diameter"):
         raise CaseError(f"kind = {show(kind)}: of spheres alone")
     return _spheres(case, "particles", kind).beads().ravel()
 
@@ -76,7 +75,7 @@ def at_rest(case: Case) -> bool:
 
 def strangers(case: Case, of: str, groups: list[Group]) -> bool:
     """Whether particles, or molecules as wholes, are independent of all others."""
-    if method_of(case).spheres:
+    if case.particles_have("diameter"):
         return False
     solutes = case.solutes
     if not at_rest(case) or (solutes is not None and solutes.solvent_pair is not None):

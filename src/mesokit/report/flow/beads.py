@@ -43,7 +43,7 @@ class BeadFrames:
             f"kind {i}" if kind.name in ("", f"polymer-{i}") else kind.name
             for i, kind in enumerate(others[0].kinds, start=1)
         )
-        closed = method.closed_axes(case)
+        closed = method.enclosure.closed_axes(case)
         sizes = enumerate(case.box.size)
         self.periods = np.array([np.inf if k in closed else float(n) for k, n in sizes])
 

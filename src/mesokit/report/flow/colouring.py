@@ -86,7 +86,7 @@ def neighbours(now: Frame) -> Array:
     case, radii = now.case, 0.5 * now.diameters
     if case.box.sheared:
         raise CaseError("colour = 'neighbours': not under shear, where images slide")
-    size, closed = np.array(case.box.size, float), method_of(case).closed_axes(case)
+    size, closed = np.array(case.box.size, float), method_of(case).enclosure.closed_axes(case)
     periods = np.where([k in closed for k in range(len(size))], 0.0, size)
     places = np.asarray(now.fields["position"], float)
     tree = cKDTree(places, boxsize=periods)
@@ -100,7 +100,11 @@ def neighbours(now: Frame) -> Array:
 def hexatic(now: Frame) -> Array:
     """Size of psi_6, by Voronoi neighbours: 1 in a triangular lattice."""
     size = np.array(now.case.box.size, float)
-    if len(size) != 2 or now.case.box.sheared or method_of(now.case).closed_axes(now.case):
+    if (
+        len(size) != 2
+        or now.case.box.sheared
+        or method_of(now.case).enclosure.closed_axes(now.case)
+    ):
         raise CaseError("colour = 'psi6': expected disks in a periodic 2D box without shear")
     return np.abs(psi_6(np.asarray(now.fields["position"], float), size))
 

@@ -26,7 +26,7 @@ class FluidBonds:
         shown = (ids[order][place] == bonds).all(axis=1) if len(ids) else np.zeros(len(bonds), bool)
         self.rows = order[place[shown]] if len(ids) else np.zeros((0, 2), np.int64)
         self.lengths = np.array(case.box.size, float)
-        self.open = np.isin(np.arange(len(self.lengths)), list(method.closed_axes(case)))
+        self.open = np.isin(np.arange(len(self.lengths)), list(method.enclosure.closed_axes(case)))
 
     def at(self, position: Array, time: float) -> Array | None:
         """Both ends (lines, 2, 2) in the picture of bonds as short as images allow, at a time.

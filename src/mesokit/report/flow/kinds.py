@@ -20,7 +20,6 @@ from mesokit.report.flow import (
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.region import Region
 from mesokit.report.flow.scale import Scale
-from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -71,7 +70,7 @@ def usual(case: Case, found: Found, first: str, in_time: bool) -> str:
     That of the method, then `first`, then what needs less. Where nothing is enough it is the first
     of these, whose refusal says what to add to the case.
     """
-    wanted = [method_of(case).picture or first, first, "speed", "density", "particles"]
+    wanted = [case.groups[0].picture or first, first, "speed", "density", "particles"]
     for kind in wanted:
         needs = {panel.NEEDS for panel in KINDS[kind]}
         drawn = [source for source in found if len(source.time) or not in_time]
@@ -92,7 +91,7 @@ def panels_of(kind: str, case: Case, colour: str | None = None) -> tuple[Panel, 
         raise CaseError(
             f"colour = {show(colour)}: not with kind {show(kind)}; expected 'disks', of spheres"
         )
-    if of_spheres and not method_of(case).spheres:
+    if of_spheres and not case.particles_have("diameter"):
         raise CaseError(
             f"kind = {show(kind)}: particles of method {show(case.run.method)} have no size; "
             "expected 'particles', or another kind"

@@ -46,7 +46,7 @@ class Setting:
 
     def share(self, shape: tuple[int, ...]) -> Array | None:
         """Part of each bin (nx, ny) that is fluid, None where no solid is in the way."""
-        solids = None if self.case is None else method_of(self.case).solids(self.case)
+        solids = None if self.case is None else method_of(self.case).enclosure.solids(self.case)
         if solids is None or not solids.obstruct:
             return None
         kept = self._shares

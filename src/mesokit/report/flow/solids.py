@@ -26,7 +26,7 @@ FILL, EDGE, HATCH = "0.85", "black", "////"
 
 def solids_of(case: Case) -> Solids | None:
     """What says where the solids of a case are, None without any."""
-    solids: Solids | None = method_of(case).solids(case)
+    solids: Solids | None = method_of(case).enclosure.solids(case)
     return solids
 
 

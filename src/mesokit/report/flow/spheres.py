@@ -83,7 +83,7 @@ class SphereSource:
 
     def _repeats(self, time: float) -> tuple[tuple[float, float], ...]:
         """No displacement, and those by one box along each periodic axis of the picture."""
-        box, closed = self.case.box, method_of(self.case).closed_axes(self.case)
+        box, closed = self.case.box, method_of(self.case).enclosure.closed_axes(self.case)
         edges = np.diag(np.array(box.size, float))
         if box.sheared:
             edges[1, 0] = box.displacement(time) % edges[0, 0]

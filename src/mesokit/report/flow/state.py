@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.trajectory import masses_and_kinds
-from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -23,12 +22,12 @@ class State:
     """
 
     def __init__(self, case: Case, engine: Any) -> None:
-        number, spheres = case.particles, method_of(case).spheres
+        number, spheres = case.particles, case.particles_have("diameter")
         shown = number if spheres else min(MOST, number)
         self.fields: tuple[str, ...] = (
             ("position", "velocity", "spin") if spheres else ("position",)
         )
-        if method_of(case).headings:
+        if case.particles_have("heading"):
             self.fields = ("position", "velocity")
         picked = np.arange(shown) * number // max(shown, 1)
         others = np.arange(number, sum(group.number for group in case.groups))

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.fluid_bonds import FluidBonds
 from mesokit.report.flow.setting import Setting
-from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -24,8 +23,7 @@ class TrajectorySource:
 
     def __init__(self, case: Case, reader: TrajectoryReader | State, axes: tuple[str, str]) -> None:
         self.reader, self.axes, self.time = reader, axes, reader.time
-        thermal = method_of(case).kT
-        self.setting, self.kT = Setting.of(case, axes), thermal(case) if thermal else 0.0
+        self.setting, self.kT = Setting.of(case, axes), case.groups[0].kT
         self.whole = np.arange(len(reader))
         self.rows = np.flatnonzero(reader.id < case.particles)
         self.bonds = FluidBonds(case, reader.id[self.rows], self.setting.columns)

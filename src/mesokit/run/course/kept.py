@@ -15,7 +15,6 @@ from mesokit.io.run_directory import RunDirectory
 from mesokit.io.trajectory import TrajectoryWriter
 from mesokit.run import record
 from mesokit.run.course.held import Held
-from mesokit.seam.method import method_of
 
 
 def existing(output: str | Path, held: contextlib.ExitStack) -> RunDirectory:
@@ -44,7 +43,7 @@ class Kept(Held):
         if self.case.trajectory is not None:
             folder = directory.trajectory_folder
             number, first = written(self.case.trajectory, self.case.groups)
-            spheres = method_of(self.case).spheres
+            spheres = self.case.particles_have("diameter")
             kept = spheres, self.ranks.root
             self.writer = TrajectoryWriter(self.case.trajectory, folder, number, first, *kept)
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from mesokit.case.amounts import count_text
+from mesokit.case.checks import whole_cells
 from mesokit.case.component import name_of, show
 from mesokit.case.units import MATCHES
 from mesokit.errors import CaseError
@@ -30,6 +31,7 @@ LONGEST_PATH = 10.0  # cells
 
 def check(case: Case) -> None:
     """Raise CaseError for the first combination that has no physics."""
+    whole_cells(case.box)
     for rule in RULES:
         for problem in rule(case):
             raise CaseError(problem)

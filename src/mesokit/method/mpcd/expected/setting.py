@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -392,3 +392,13 @@ def _slit(case: Case, wall: Plates, component: int) -> Flow:
         return wall_speed + theory.poiseuille_velocity(distance, 2 * height, push, nu)
 
     return Flow("half poiseuille", across, half)
+
+
+def across_the_flow(case: Case, component: str | None) -> Iterator[str]:
+    """A warning of an observable whose velocity component is not along the flow."""
+    flowing = flowing_axes(case)
+    if component is not None and flowing and component not in flowing:
+        yield (
+            f"component = {component!r}: nothing flows along {component}; "
+            f"the flow is along {' and '.join(flowing)}"
+        )

@@ -83,6 +83,10 @@ class Probe(Observable):
         if case.walls and solids_of(case).distance(self.place(case))[0] <= 0:
             raise CaseError(f"centre = {show(self.place(case))}: lies in a solid")
 
+    def warnings(self, case: Case) -> Iterator[str]:
+        """A component along which nothing flows."""
+        yield from setting.across_the_flow(case, self.component)
+
     def _require_between_plates(self, case: Case) -> None:
         """Raise CaseError for a small box that reaches over a plate."""
         place, sides = self.place(case), self.size or (2.0,) * case.box.dimension

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 NAME = "spheres"
-FIELDS = ("position", "velocity", "spin", "image", "id")  # what trajectories may hold of them
+HAVE = ("position", "velocity", "spin", "image", "id", "mass", "diameter")
 
 
 def groups(case: Case) -> tuple[Group, ...]:
@@ -21,4 +21,4 @@ def groups(case: Case) -> tuple[Group, ...]:
         Kind(kind.mean_mass(box.dimension), number, kind.name or "", kind.diameter * scale)
         for kind, number in zip(section.kinds, section.counts(box), strict=True)
     )
-    return (Group(NAME, kinds),)
+    return (Group(NAME, kinds, HAVE, kT=float(section.kT), picture="disks"),)

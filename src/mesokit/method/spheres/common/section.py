@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from pydantic import field_validator, model_validator
 
@@ -17,6 +17,10 @@ from mesokit.errors import CaseError
 from mesokit.method.spheres.common.kinds import SphereKind, ball_volume, closest_packing
 from mesokit.method.spheres.common.start import SphereStart
 from mesokit.method.spheres.common.start.lattice import LatticeStart
+
+if TYPE_CHECKING:
+    from mesokit.method.spheres.hard.collision.protocol import SphereCollision
+    from mesokit.method.spheres.hard.heating.protocol import Heating
 
 USUAL_FRACTION = 0.3  # of the box that spheres fill, unless anything is said
 MOST_PARTICLES = 2**31 - 1  # numbers of random words are 32-bit
@@ -74,6 +78,21 @@ class Spheres:
         kinds = tuple(unsaid if kind is ONE else kind.filled_in(usual) for kind in self.kinds)
         object.__setattr__(self, "kinds", kinds)  # of a frozen dataclass, while it is made
         return self
+
+    @property
+    def instant_collision(self) -> SphereCollision | None:
+        """The rule of collisions that take no time, None where spheres act by forces."""
+        return None
+
+    @property
+    def energy_source(self) -> Heating | None:
+        """What puts energy in at fixed times, None where nothing does."""
+        return None
+
+    @property
+    def thermostatted(self) -> bool:
+        """Whether a thermostat acts in every step."""
+        return False
 
     @property
     def usual_diameter(self) -> float:

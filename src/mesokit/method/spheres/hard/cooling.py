@@ -25,10 +25,10 @@ class HardCooling:
         if warm and state is not None and not math.isnan(state.kT):
             held = state.kT if section.heating is not None or self._warm_walls() else math.nan
             self.known = self.known._replace(held=held, fluctuates=True)
-        constant = hasattr(collision, "restitution") and collision.reach == 1.0
-        smooth = constant and not collision.rough and section.heating is None
-        if uniform(case) and smooth:
-            self.known = self.known._replace(restitution=float(collision.restitution))
+        constant = collision.constant_restitution
+        smooth = not collision.rough and section.heating is None
+        if constant is not None and uniform(case) and smooth:
+            self.known = self.known._replace(restitution=constant)
 
     def _warm_walls(self) -> bool:
         return any(

@@ -23,9 +23,9 @@ def equilibrium(case: Case) -> Equilibrium | None:
         return None
     heating, warm = section.heating, set()
     if heating is not None:
-        if not hasattr(heating, "kT"):
-            return None  # kicks
-        warm.add(float(heating.kT))
+        if heating.bath_kT is None:
+            return None
+        warm.add(heating.bath_kT)
     for surface in surfaces(case):
         if surface.rule == "diffuse":
             given = surface.contact.temperature if surface.contact is not None else None

@@ -6,13 +6,13 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from mesokit.method.spheres.common.expected.answers import answers
-from mesokit.method.spheres.common.groups import FIELDS, groups
+from mesokit.method.spheres.common.groups import groups
 from mesokit.method.spheres.common.made import made
 from mesokit.method.spheres.common.observe import MeanSquareDisplacement
 from mesokit.method.spheres.common.start.first_state import (
     ARRAYS,
+    RUN,
     first_state,
-    missing_files,
     starts,
 )
 from mesokit.method.spheres.common.wall.solids import closed_axes, solids
@@ -25,7 +25,7 @@ from mesokit.method.spheres.hard.neighbours import Neighbours
 from mesokit.method.spheres.hard.section import KEYS, Sections
 from mesokit.method.spheres.hard.summary import summary
 from mesokit.method.spheres.hard.velocity_memory import EnskogMemory
-from mesokit.seam.method import Columns, Method
+from mesokit.seam.method import Columns, Enclosure, InitialState, Method
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -59,24 +59,14 @@ METHOD = Method(
     name="event-driven",
     sections=Sections,
     keys=KEYS,
-    whole_cells=False,
-    fields=FIELDS,
-    spheres=True,
-    picture="disks",
-    closed_axes=closed_axes,
-    solids=solids,
     observables=(MeanSquareDisplacement,),
     expected={theory.answers: theory for theory in EXPECTED} | answers(equilibrium),
     check=check,
     groups=groups,
     timestep=lambda case: float(case.spheres.timestep),
-    kT=lambda case: float(case.spheres.kT),
     summary=summary,
-    starts=starts,
-    missing_files=missing_files,
-    arrays=ARRAYS,
-    first_state=_first_state,
+    initial=InitialState(_first_state, EventDriven.start, ARRAYS, starts, RUN),
     engine=_engine,
-    start=EventDriven.start,
+    enclosure=Enclosure(closed_axes, solids),
     log=columns,
 )

@@ -42,6 +42,16 @@ class HardSpheres(Spheres):
     )
 
     @property
+    def instant_collision(self) -> SphereCollision:
+        """The collision rule."""
+        return self.collision
+
+    @property
+    def energy_source(self) -> Heating | None:
+        """What puts energy in."""
+        return self.heating
+
+    @property
     def first_spin_kT(self) -> float:
         """Thermal energy of rotation at the start."""
         if self.spin_kT is not None:

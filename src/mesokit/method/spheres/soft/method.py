@@ -6,13 +6,13 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from mesokit.method.spheres.common.expected.answers import answers
-from mesokit.method.spheres.common.groups import FIELDS, groups
+from mesokit.method.spheres.common.groups import groups
 from mesokit.method.spheres.common.made import made
 from mesokit.method.spheres.common.observe import MeanSquareDisplacement
 from mesokit.method.spheres.common.start.first_state import (
     ARRAYS,
+    RUN,
     first_state,
-    missing_files,
     starts,
 )
 from mesokit.method.spheres.common.velocity_memory import VelocityMemory
@@ -26,7 +26,7 @@ from mesokit.method.spheres.soft.first_speeds import with_speed
 from mesokit.method.spheres.soft.scales import timestep_of
 from mesokit.method.spheres.soft.section import KEYS, Sections
 from mesokit.method.spheres.soft.summary import summary
-from mesokit.seam.method import Columns, Method
+from mesokit.seam.method import Columns, Enclosure, InitialState, Method
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -57,26 +57,15 @@ METHOD = Method(
     name="soft-spheres",
     sections=Sections,
     keys=KEYS,
-    whole_cells=False,
-    fields=FIELDS,
-    spheres=True,
-    picture="disks",
     observables=(MeanSquareDisplacement,),
     expected={theory.answers: theory for theory in (SoftCooling, Displacement, VelocityMemory)}
     | answers(equilibrium),
     check=check,
     groups=groups,
     timestep=timestep_of,
-    kT=lambda case: float(case.spheres.kT),
     summary=summary,
-    starts=starts,
-    missing_files=missing_files,
-    arrays=ARRAYS,
-    first_state=_first_state,
-    prepared=with_speed,
+    initial=InitialState(_first_state, SoftEngine.start, ARRAYS, starts, RUN, prepared=with_speed),
     engine=_engine,
-    start=SoftEngine.start,
+    enclosure=Enclosure(closed_axes, solids),
     log=columns,
-    closed_axes=closed_axes,
-    solids=solids,
 )

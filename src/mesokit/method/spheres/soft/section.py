@@ -76,6 +76,11 @@ class SoftSpheres(Spheres):
     )
 
     @property
+    def thermostatted(self) -> bool:
+        """Whether there is a thermostat."""
+        return self.thermostat is not None
+
+    @property
     def usual_diameter(self) -> float:
         """That of the potential, of contacts 1."""
         touching = isinstance(self.pair, ContactLaw)

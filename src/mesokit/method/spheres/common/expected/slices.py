@@ -39,7 +39,7 @@ class Slices:
     @property
     def steady(self) -> bool:
         """Whether nothing changes any more: in equilibrium, or where heat comes in as it goes."""
-        heated = getattr(self.case.spheres, "heating", None) is not None
+        heated = self.case.spheres.energy_source is not None
         return self.state is not None or (heated and still_walls(self.case))
 
 
@@ -124,7 +124,7 @@ class FlowInSlices(Slices):
             return 0.0
         if self.pull[component]:
             return math.nan
-        holds = getattr(self.case.spheres, "thermostat", None) or self.holding
+        holds = self.case.spheres.thermostatted or self.holding
         return 0.0 if holds or not (self.case.walls or any(self.pull)) else found
 
     @property
@@ -132,8 +132,9 @@ class FlowInSlices(Slices):
         """Whether walls, or what heats, take momentum along walls."""
         rough = any(wall.closed_axes == () for wall in self.case.walls)
         warm = any(surface.rule == "diffuse" for surface in surfaces(self.case))
-        turning = getattr(getattr(self.case.spheres, "collision", None), "rough", False)
-        bath = hasattr(getattr(self.case.spheres, "heating", None), "kT")
+        collision, source = self.case.spheres.instant_collision, self.case.spheres.energy_source
+        turning = collision is not None and collision.rough
+        bath = source is not None and source.bath_kT is not None
         return rough or warm or turning or bath
 
 

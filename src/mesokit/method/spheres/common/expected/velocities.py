@@ -28,21 +28,21 @@ def cumulant(find: Find, case: Case) -> Known:
     section = case.spheres
     if find(case) is not None:
         return 0.0, "Maxwell"
-    collision = getattr(section, "collision", None)
+    collision = section.instant_collision
     if collision is None or case.walls or section.gravity:
         return math.nan, ""
     if collision.elastic:
         return 0.0, "Maxwell"
-    kind, heating = section.kinds[0], section.heating
+    kind, heating = section.kinds[0], section.energy_source
     if len(section.kinds) > 1 or kind.spread:
         return math.nan, ""
-    kicked = hasattr(heating, "power")  # a white noise, unlike a bath
-    constant = hasattr(collision, "restitution") and collision.hard
-    if not constant or collision.rough or (heating and not kicked):
+    kicked = heating is not None and heating.white_noise
+    constant = collision.constant_restitution
+    if constant is None or collision.rough or (heating and not kicked):
         return math.nan, ""
     if theory.elastic_share(rate(case, section.kT), collision.contact_time) > FEW:
         return math.nan, ""
-    known = theory.fourth_cumulant(collision.restitution, case.box.dimension, heated=kicked)
+    known = theory.fourth_cumulant(constant, case.box.dimension, heated=kicked)
     return known, "van Noije and Ernst"
 
 

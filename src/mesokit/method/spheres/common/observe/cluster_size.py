@@ -54,7 +54,7 @@ class ClusterSizeAccumulator(BlockAccumulator):
         self.gap = usual if observable.gap is None else observable.gap
         self.classes = case.particles.bit_length()
         self.blocks = Blocks((self.classes + 2,))
-        closed = method_of(case).closed_axes(case)
+        closed = method_of(case).enclosure.closed_axes(case)
         self.repeats = np.array([k not in closed for k in range(case.box.dimension)])
 
     def observe(self, spheres: RunningSpheres) -> None:

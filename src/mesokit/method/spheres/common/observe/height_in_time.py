@@ -36,7 +36,7 @@ class HeightInTime(Observable):
     def check(self, case: Case) -> None:
         """Raise CaseError without gravity along one axis that plates close."""
         along = np.flatnonzero(case.spheres.gravity)
-        if len(along) != 1 or int(along[0]) not in method_of(case).closed_axes(case):
+        if len(along) != 1 or int(along[0]) not in method_of(case).enclosure.closed_axes(case):
             raise CaseError("height-in-time: expected gravity along one axis, which plates close")
 
     def accumulator(self, case: Case) -> HeightInTimeAccumulator:
@@ -115,14 +115,14 @@ class Ball:
     @classmethod
     def of(cls, case: Case, rows: Array, gravity: float, stride: int) -> Ball | None:
         """The ball of a case, None where theory knows nothing of what it does."""
-        section, given = case.spheres, getattr(case.spheres, "collision", None)
-        if given is None or not hasattr(given, "restitution") or given.reach > 1:
+        section, given = case.spheres, case.spheres.instant_collision
+        if given is None or given.constant_restitution is None:
             return None
-        if case.particles != 1 or section.heating or len(case.walls) != 1:
+        if case.particles != 1 or section.energy_source or len(case.walls) != 1:
             return None
         plates = case.walls[0]
         floor = plates.lower if gravity < 0 else plates.upper
-        contact, e = floor.contact, given.restitution
+        contact, e = floor.contact, given.constant_restitution
         if contact is not None:
             e = e if contact.restitution is None else contact.restitution
             if contact.amplitude or contact.temperature is not None:

@@ -40,7 +40,7 @@ class HeightProfile(Observable):
     def check(self, case: Case) -> None:
         """Raise CaseError without gravity along one axis that plates close."""
         along = np.flatnonzero(case.spheres.gravity)
-        closed = method_of(case).closed_axes(case)
+        closed = method_of(case).enclosure.closed_axes(case)
         if len(along) != 1 or int(along[0]) not in closed:
             raise CaseError("height-profile: expected gravity along one axis, which plates close")
 
@@ -98,7 +98,7 @@ class HeightProfileAccumulator(BlockAccumulator):
         """The profile and the mean height of an ideal gas; nan of what is no gas of this kind."""
         section, d = self.case.spheres, self.case.box.dimension
         kinds = section.kinds
-        collision = getattr(section, "collision", None)
+        collision = section.instant_collision
         alike = len(kinds) == 1 and kinds[0].spread == 0
         gas = collision is not None and collision.elastic and collision.hard
         if not alike or not gas or not kT > 0:

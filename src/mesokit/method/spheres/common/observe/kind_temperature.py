@@ -96,7 +96,7 @@ class KindTemperatureAccumulator(BlockAccumulator):
     def shared_out(self) -> bool:
         """Whether collisions alone share out the energy: elastic ones, without walls or kicks."""
         section = self.case.spheres
-        collision = getattr(section, "collision", None)
+        collision, source = section.instant_collision, section.energy_source
         if collision is None or self.case.walls:
             return False
-        return collision.elastic and not hasattr(section.heating, "power")
+        return collision.elastic and not (source is not None and source.white_noise)

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.case.component import show
 from mesokit.case.given.outside_box import warn_outside
 from mesokit.errors import CaseError
 from mesokit.geometry.shape_protocol import closed_axes
@@ -22,7 +21,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 ROUNDING = 1e-5  # of a diameter: files keep places as float32
-ARRAYS = ("positions", "velocities", "spins")
+ARRAYS, RUN = ("positions", "velocities", "spins"), "spheres.start.run"
 
 
 def first_state(case: Case, made: Made, arrays: Mapping[str, Any], spin_kT: float) -> Started:
@@ -94,12 +93,3 @@ def _checked(name: str, given: Any, shape: tuple[int, ...]) -> Array:
 def starts(case: Case) -> dict[str, Path]:
     """The files and folders of runs that a case starts from, by their keys."""
     return {f"spheres.start.{key}": path for key, path in case.spheres.start.files().items()}
-
-
-def missing_files(case: Case) -> list[str]:
-    """A line for each of them that is not there."""
-    return [
-        f"{key} = {show(str(path), 500)}: no such {'folder' if key.endswith('run') else 'file'}"
-        for key, path in starts(case).items()
-        if not path.exists()
-    ]

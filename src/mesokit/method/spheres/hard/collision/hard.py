@@ -29,6 +29,11 @@ class HardCollision(SphereCollision):
         rough = self.tangential == 1.0 and self.friction is None
         return self.restitution == 1.0 and (not self.rough or rough)
 
+    @property
+    def constant_restitution(self) -> float:
+        """The coefficient of restitution, at any speed."""
+        return self.restitution
+
     def kernel(self) -> Constant:
         """Parameters for the scalar function below."""
         return Constant(self.restitution)

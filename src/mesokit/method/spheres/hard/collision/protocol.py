@@ -54,6 +54,11 @@ class SphereCollision(ABC):
         """Whether it keeps energy."""
 
     @property
+    def constant_restitution(self) -> float | None:
+        """Coefficient of restitution of hard spheres if it is the same at any speed, else None."""
+        return None
+
+    @property
     def reach(self) -> float:
         """Distance in diameters at which two spheres first feel one another."""
         return 1.0

@@ -22,6 +22,11 @@ class Andersen(Heating):
     rate: float = param(1.0, doc="how often for each sphere", unit="1/time", gt=0, le=1e9)
     kT: float = param(1.0, doc="thermal energy of the bath", unit="kT", gt=0, le=1e9)
 
+    @property
+    def bath_kT(self) -> float:
+        """Thermal energy of the bath."""
+        return self.kT
+
     def act(self, motion: Motion, interval: float) -> None:
         """Change the velocities, after so much time."""
         n, d = motion.velocities.shape

@@ -24,6 +24,11 @@ class Kicks(Heating):
     rule: Literal["kicks"] = tag("kicks")
     power: float = param(0.1, doc="energy that a sphere gets per time", unit="kT/time", gt=0)
 
+    @property
+    def white_noise(self) -> bool:
+        """It is: kicks have no memory."""
+        return True
+
     def act(self, motion: Motion, interval: float) -> None:
         """Change the velocities, after so much time."""
         n, d = motion.velocities.shape

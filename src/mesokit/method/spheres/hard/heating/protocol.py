@@ -38,6 +38,16 @@ class Heating(ABC):
         le=1e9,
     )
 
+    @property
+    def bath_kT(self) -> float | None:
+        """Thermal energy of the bath that it couples spheres to, None where it is none."""
+        return None
+
+    @property
+    def white_noise(self) -> bool:
+        """Whether it is a force without memory, of zero mean, on each sphere."""
+        return False
+
     @abstractmethod
     def act(self, motion: Motion, interval: float) -> None:
         """Change the velocities, after so much time."""
