@@ -137,7 +137,7 @@ def _sample_seconds(observable: mesokit.Observable, rounds: int) -> float:
     fluid.advance(50)
     for k in range(10 * rounds):
         start = time.perf_counter()
-        fluid.advance(1, measure_stress=stress)
+        fluid.advance(1, ["stress"] if stress else ())
         accumulator.observe(fluid)
         middle = time.perf_counter()
         fluid.advance(10)

@@ -119,7 +119,7 @@ def film() -> tuple[Comparison, Comparison, np.ndarray, np.ndarray, np.ndarray]:
     for _ in range(BLOCKS):
         stress, heights = [], []
         for j in range(long(2000)):
-            engine.advance(1, measure_stress=True)
+            engine.advance(1, measure=["stress"])
             stress.append(sum(engine.stress.values()))
             if j % 20 == 0:
                 heights.append(modes(engine.positions(), charge, waves))

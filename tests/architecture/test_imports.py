@@ -28,7 +28,10 @@ MPCD = (
 )  # fmt: skip
 # type hints only, as the test of what is loaded shows
 START = (*MPCD, "processes.world")
-ENGINE = ("case", "errors", "geometry", "loops", "method.mpcd", "potential", "scalar", "seam")
+ENGINE = (
+    "case", "errors", "geometry", "loops", "method.mpcd", "potential", "scalar", "seam",
+    "statistics",
+)  # fmt: skip
 SPHERES = (
     "case", "errors", "geometry", "loops", "method.spheres", "observe", "potential",
     "processes.cores", "scalar", "seam", "statistics", "theory",

@@ -113,7 +113,7 @@ def film_tension(size=(30, 20), samples=20, start=1000):
     for _ in range(samples):
         total = np.zeros((d, d))
         for _ in range(300):
-            fluid.advance(1, measure_stress=True)
+            fluid.advance(1, measure=["stress"])
             total += sum(fluid.stress.values()) / 300
         found.append((np.diag(total)[1:].mean() - total[0, 0]) * width / 2)
     return mean(found)

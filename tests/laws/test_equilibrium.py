@@ -62,7 +62,7 @@ def quiet_fluid():
     for _ in range(40):
         fluid.advance(10)
         for _ in range(5):
-            fluid.advance(1, measure_stress=True)
+            fluid.advance(1, measure=["stress"])
             parts = {name: np.trace(tensor) / 3 for name, tensor in fluid.stress.items()}
             pressures.append(-parts["kinetic"] - parts["collisional"])
             collisional.append(-parts["collisional"])

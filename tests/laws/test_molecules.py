@@ -83,7 +83,7 @@ def test_exact_dimers_are_what_many_substeps_come_to():
             (6, 6, 6), density=4, molecule=molecule, measures=("stress",),
             force=Uniform(acceleration=(0.1, 0.0, -0.2)), timestep=0.3,
         )  # fmt: skip
-        fluid.advance(1, measure_stress=True)
+        fluid.advance(1, measure=["stress"])
         found.append((fluid.positions(unwrapped=True), fluid.velocities(), fluid.stress["bond"]))
     for a, b in zip(*found, strict=True):
         np.testing.assert_allclose(a, b, atol=1e-6)
@@ -153,7 +153,7 @@ def test_pressure_is_that_of_an_ideal_gas_of_molecules(propagation):
     kinetic, bond = [], []
     for _ in range(40):
         fluid.advance(9)
-        fluid.advance(1, measure_stress=True)
+        fluid.advance(1, measure=["stress"])
         kinetic.append(-np.trace(fluid.stress["kinetic"]) / 3)
         bond.append(-np.trace(fluid.stress["bond"]) / 3)
     assert mean(kinetic).agrees(10.0, systematic=0.005), mean(kinetic)

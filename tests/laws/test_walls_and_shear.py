@@ -140,11 +140,11 @@ def test_what_the_force_gives_the_walls_take(virtual):
     fluid = slit(g, u, virtual, measures=("walls",))
     fluid.advance(7)
     assert fluid.wall_steps == 7
-    _ = fluid.wall_impulse  # what came before is not to count
-    before = fluid.totals()[1]
+    before, at_first = fluid.totals()[1], fluid.wall_impulse
     fluid.advance(50)
     gained = fluid.totals()[1] - before
-    taken = fluid.wall_impulse[:, :2]
+    taken = (fluid.wall_impulse - at_first)[:, :2]
+    assert fluid.wall_steps == 57
     given = np.array([fluid.n * g * 50 * fluid.numbers.timestep, 0.0])
     np.testing.assert_allclose(gained + taken.sum(axis=0), given, atol=1e-7)
     # pressure on each plate: an ideal gas of density 10, 5 % by chance

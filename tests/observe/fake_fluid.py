@@ -12,7 +12,9 @@ from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.species import Species
+from mesokit.statistics import Tally
 
+FINE = 2.0**40  # whole numbers in a unit of momentum
 TWO = (Species(1.0, 3.0), Species(4.0, 2.0))
 
 
@@ -62,17 +64,14 @@ class FakeFluid(AtOnce):
         self.unwrapped = self._places()
         self.density = density  # along y, drawn by rejection at every step
         self.stress = {}
-        self.on_walls, self.wall_steps = np.zeros((2, self.dimension)), 0
+        self.wall_tally, self.wall_steps = None, 0
 
-    @property
-    def wall_impulse(self):
-        """Since the last call: reading it starts the count anew."""
-        self.wall_steps = 0
-        return self.on_walls
-
-    @wall_impulse.setter
-    def wall_impulse(self, value):
-        self.on_walls = value
+    def hit_walls(self, impulse, steps):
+        """Let the walls take momentum (surfaces, d + 1 or d + 3) in so many steps."""
+        if self.wall_tally is None:
+            self.wall_tally = Tally((np.size(impulse),), FINE)
+        self.wall_tally.add(np.rint(FINE * np.ravel(impulse)).astype(np.int64))
+        self.wall_steps += steps
 
     @property
     def time(self):

@@ -40,7 +40,7 @@ class Flying:
         drawn = spins(seed, self.made, kT, self.dimension)
         self.w = drawn if placed.spins is None else placed.spins
 
-    def advance(self, steps, measure_stress=False):
+    def advance(self, steps, measure=()):
         self.step += steps
         self.r += steps * TIMESTEP * self.v
 

@@ -23,7 +23,7 @@ def sampled(accumulator, fluid, samples, rng):
         fluid.advance(10)
         d = fluid.dimension
         fluid.stress = {n: rng.normal(size=(d, d)) for n in ("kinetic", "collisional")}
-        fluid.wall_impulse, fluid.wall_steps = taken(fluid.case, rng), 10
+        fluid.hit_walls(taken(fluid.case, rng), 10)
         accumulator.observe(fluid)
 
 

@@ -46,7 +46,7 @@ def fed(case, observable, mean, samples=400, noise=1.0, seed=1, **fluid):
     for _ in range(samples):
         fake.jump(10)
         taken = np.array(mean) + noise * rng.normal(size=np.shape(mean))
-        fake.wall_impulse, fake.wall_steps = taken * 10 * fake.timestep, 10
+        fake.hit_walls(taken * 10 * fake.timestep, 10)
         accumulator.observe(fake)
     return accumulator.result()
 
@@ -81,7 +81,7 @@ def test_momentum_that_is_given_back_does_not_widen_error_bars(make_case):
         accumulator, fake = Forces().accumulator(case), FakeFluid(case, 1)
         momentum = rng.normal(size=(801, 3)) * (10 * free_volume(case)) ** 0.5
         for gained in np.diff(momentum, axis=0):
-            fake.wall_impulse, fake.wall_steps = -gained[None], 10
+            fake.hit_walls(-gained[None], 10)
             accumulator.observe(fake)
         result = accumulator.result()
         ends.append([result.value[0], result.error[0]])
@@ -179,7 +179,7 @@ def test_time_series_of_many_bodies_stays_bounded(make_case):
     accumulator = Forces().accumulator(case)
     fake = FakeFluid(case)
     for _ in range(5000):
-        fake.wall_impulse, fake.wall_steps = np.ones((8, 3)), 10
+        fake.hit_walls(np.ones((8, 3)), 10)
         accumulator.observe(fake)
     result = accumulator.result()
     assert result.extra["series"].shape == (2500, 8, 3)
@@ -190,7 +190,6 @@ def test_time_series_of_many_bodies_stays_bounded(make_case):
 @pytest.mark.parametrize(
     ("observe", "words"),
     [
-        ([Forces(), Forces(name="b")], "expected one forces: each reading"),
         ([Forces(speed=0.1)], "speed: no effect without length"),
         ([Forces(length=1.0, area=2.0)], "area: only in 3D"),
         ([Forces(length=1.0, flow="z")], "flow = 'z': a 2D box"),
@@ -204,9 +203,8 @@ def test_what_makes_no_sense_is_refused(make_case, observe, words):
     assert "\n" not in str(error.value)
 
 
-def test_forces_are_read_by_one_observer(make_case):
-    with pytest.raises(CaseError, match="expected one wall-stress or forces"):
-        make_case((8, 8), [WallStress(), Forces()], [Plates(axis="y")])
+def test_forces_are_those_on_walls_that_count_them(make_case):
+    assert make_case((8, 8), [WallStress(), Forces()], [Plates(axis="y")])
     with pytest.raises(CaseError, match="needs a"):
         make_case((8, 8), [Forces()])
     with pytest.raises(CaseError, match="not counted with virtual = 'top-up'"):
@@ -376,3 +374,21 @@ def test_a_body_force_pulls_beads_too(make_case):
         case = make_case((12, 12), [Forces()], [disk], density=5, force=push, solutes=given)
         total[given is None] = case.observe[0].accumulator(case).total()[0]
     assert total[False] - total[True] == pytest.approx(0.01 * 30 * 10)
+
+
+def test_several_observers_of_the_walls_see_the_same_and_go_on_after_a_stop(make_case):
+    """What walls take is cumulative: no reading takes it from another, at any interval."""
+    disk = [Disk(centre=[6, 6], radius=2)]
+    case = make_case((12, 12), [Forces(every=10), Forces(every=20, name="b")], disk, **PUSHED)
+    often, seldom, fake = case.observe[0].accumulator(case), case.observe[1].accumulator(case), None
+    rng, fake = np.random.default_rng(5), FakeFluid(case, 1)
+    for step in range(1, 9):
+        fake.hit_walls(rng.normal(size=(1, 3)), 10)
+        often.observe(fake)
+        if step % 2 == 0:
+            seldom.observe(fake)
+        if step == 4:
+            again = case.observe[0].accumulator(case)
+            again.restore(often.state())
+            often = again
+    np.testing.assert_allclose(often.result().value, seldom.result().value, rtol=0, atol=1e-9)

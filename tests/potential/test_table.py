@@ -85,7 +85,7 @@ def test_beads_in_a_run(table):
     fluid = two(table, 20, measures=("stress",), timestep=0.002)
     way = np.array([0.3, 1.05, 0.2])
     push = force(np.linalg.norm(way)) / np.linalg.norm(way)
-    fluid.advance(1, measure_stress=True)
+    fluid.advance(1, measure=["stress"])
     mean = fluid.stress["bond"]
     assert mean[0, 1] == pytest.approx(mean[1, 0])
     np.testing.assert_allclose(mean, -push * np.outer(way, way) / 1440, rtol=0.02, atol=1e-6)

@@ -67,7 +67,7 @@ def course(engine, case, moves):
         engine.advance(10)
         if moves:
             engine.live_in(anywhere(engine, k))
-    engine.advance(2, True)
+    engine.advance(2, ["stress"])
     found |= {f"stress {name}": part for name, part in engine.stress.items()}
     found["totals"] = np.concatenate([np.atleast_1d(part) for part in engine.totals()])
     for name, part in zip(

@@ -29,7 +29,7 @@ def result_of(kind, make_case, samples):
     for _ in range(samples):
         fluid.advance(observable.every)
         fluid.stress = {n: rng.normal(size=(3, 3)) for n in ("kinetic", "collisional")}
-        fluid.wall_impulse, fluid.wall_steps = taken(case, rng), 10
+        fluid.hit_walls(taken(case, rng), 10)
         accumulator.observe(fluid)
     return accumulator.result()
 
@@ -160,7 +160,7 @@ def test_plates_have_panels_of_their_own_and_no_torques(make_case):
     case = make_case((16, 8), [forces], walls)
     accumulator, fluid = forces.accumulator(case), FakeFluid(case)
     for _ in range(5):
-        fluid.wall_impulse, fluid.wall_steps = np.array([[1, -900, 7], [1, 900, 7], [2, 1, 3]]), 1
+        fluid.hit_walls([[1, -900, 7], [1, 900, 7], [2, 1, 3]], 1)
         fluid.advance(1)
         accumulator.observe(fluid)
     result = accumulator.result()

@@ -122,7 +122,7 @@ class Case(Shown):
     @property
     def particles(self) -> int:
         """Number of particles of the first group: of a fluid, without what is dissolved in it."""
-        return self.groups[0].number
+        return self.groups[0].number if self.groups else 0
 
     @classmethod
     def from_toml(cls, path: str | Path, overrides: Mapping[str, Any] | None = None) -> Case:

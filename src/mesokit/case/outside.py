@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+from mesokit.case import methods
 from mesokit.case.component import is_component, name_of, tag_of
 from mesokit.case.registry import FAMILIES, address, family_of
 from mesokit.errors import MesokitError, RunError
@@ -66,8 +67,11 @@ def require_parts(record: Any) -> None:
             family = FAMILIES[getattr(importlib.import_module(module), base)]
         except (ImportError, AttributeError, KeyError, TypeError):
             raise RunError(f"{part['family']} is no family of parts") from None
+        module = part["class"].partition(":")[0]
+        for method in methods.modules().values():  # one from outside brings parts of its own
+            if method.split(".")[0] == module.split(".")[0]:
+                importlib.import_module(method)
         if family.find(part["name"]) is None:
-            module = part["class"].partition(":")[0]
             cure = f"import it first: `import {module}`, or mesokit --import {module} ..."
             if "distribution" in part:
                 cure = f"install {part['distribution']} {part['version']}"

@@ -33,8 +33,9 @@ class Group(NamedTuple):
 
     `has` is what an engine tells of each: quantities that trajectories may hold; "mass" and
     "diameter" where each has its own; "heading" where the direction of a velocity at one time is
-    what pictures show. Sites of a lattice are a group that has "site", their states: the sites of
-    a box of the shape `lattice`, the last axis first. `kT` is the thermal energy of velocities;
+    what pictures show. Sites of a lattice are a group that has "site", the number of the state of
+    each: `lattice` is how many there are along each axis, numbered along the last one first, and
+    `states` are the names of the states. `kT` is the thermal energy of velocities;
     `picture` the kind of pictures that shows it unless another is chosen.
     """
 
@@ -44,6 +45,7 @@ class Group(NamedTuple):
     kT: float = 0.0
     picture: str = ""
     lattice: tuple[int, ...] = ()
+    states: tuple[str, ...] = ()
 
     @property
     def number(self) -> int:

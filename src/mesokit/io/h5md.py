@@ -4,7 +4,8 @@
 /parameters  case (TOML) and provenance (JSON); units: what a reduced unit is in SI, if known
 /connectivity  bonds (bonds, 2): places, in the rows of particles, of those that are linked
 /particles   one group, such as fluid: box, position, velocity, spin (angular velocity), image with
-             step, time and value; id, mass, species, and radius of spheres
+             step, time and value; id, mass, species, and radius of spheres; of a lattice the
+             state of each site (frames, sites), in the order of the axes of the box
 /observables time series, one row for each frame of the trajectory if there is one
 /results     what each observable measured: value, error, expected, fit, x, comparisons
 
@@ -44,7 +45,8 @@ if TYPE_CHECKING:
     from mesokit.io.trajectory import TrajectoryWriter
 
 UNITS = {"position": "a", "velocity": "a/tau", "spin": "1/tau", "time": "tau", "radius": "a"}
-FIELDS = ("position", "velocity", "spin", "image")
+FIELDS = ("position", "velocity", "spin", "image", "site")
+DTYPES = {"image": np.int32, "site": np.int16}  # of the others by the precision of the trajectory
 CHUNK = 65536  # particles
 MOST_IN_MEMORY = 2**28  # bytes kept in memory once the disk is full
 LARGE = 2**20  # numbers of one result, beyond which it is compressed
@@ -108,7 +110,7 @@ def frames(path: str | Path) -> Iterator[dict[str, NDArray[Any]]]:
         clock, d = group["box/edges"], int(group.attrs["dimension"])
         fields = [name for name in FIELDS if name in group]
         for index in range(len(clock["step"])):
-            frame = {name: group[name]["value"][index][..., columns(name, d)] for name in fields}
+            frame = {name: in_frames(group[name]["value"], index, name, d) for name in fields}
             yield {"step": clock["step"][index], "time": clock["time"][index], **frame}
 
 
@@ -119,6 +121,12 @@ def own(path: str | Path) -> dict[str, NDArray[Any]]:
         if group is None or "radius" not in group:
             return {}
         return {"mass": group["mass"][()], "diameter": 2 * group["radius"][()]}
+
+
+def in_frames(data: Any, frames: Any, field: str, dimension: int) -> NDArray[Any]:
+    """A field in some frames: a site has one number, all else three columns in the file."""
+    found = np.asarray(data[frames])
+    return found if field == "site" else found[..., columns(field, dimension)]
 
 
 def columns(field: str, dimension: int) -> Any:
@@ -285,12 +293,12 @@ def _particles(
     sets = {}
     for name in trajectory.trajectory.fields:
         if name != "id":
-            dtype = np.int32 if name == "image" else trajectory.trajectory.precision
+            deep = () if name == "site" else (3,)
             sets[name] = _element(group, name, group).create_dataset(
                 "value",
-                (frames, n, 3),
-                dtype,
-                chunks=(1, min(max(n, 1), CHUNK), 3) if frames and n else None,
+                (frames, n, *deep),
+                DTYPES.get(name, trajectory.trajectory.precision),
+                chunks=(1, min(max(n, 1), CHUNK), *deep) if frames and n else None,
                 compression=trajectory.trajectory.compression or None if frames and n else None,
                 shuffle=bool(trajectory.trajectory.compression) if frames and n else None,
             )
@@ -303,10 +311,12 @@ def _particles(
         edges[index] = _edges(case, float(frame["time"]), edges.shape[1:])
         for name, data in sets.items():
             for start in range(0, n, CHUNK):
-                rows = frame[name][start : start + CHUNK]
-                deep = np.zeros((len(rows), 3), data.dtype)
-                deep[:, columns(name, case.box.dimension)] = rows
-                data[index, start : start + len(rows)] = deep
+                part = frame[name][start : start + CHUNK]
+                if name != "site":
+                    wide = np.zeros((len(part), 3), data.dtype)
+                    wide[:, columns(name, case.box.dimension)] = part
+                    part = wide
+                data[index, start : start + len(part)] = part
     del group["step"], group["time"]  # the elements have linked them
 
 

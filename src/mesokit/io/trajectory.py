@@ -72,6 +72,8 @@ class TrajectoryWriter:
             frame["velocity"] = of.velocities(ids).astype(real)
         if "spin" in fields:
             frame["spin"] = of.spins(ids).astype(real)
+        if "site" in fields:
+            frame["site"] = of.sites(ids).astype(np.int16)
         if "image" in fields:
             frame["image"] = of.images(ids).astype(np.int32)
         if self.spheres and not self._own:

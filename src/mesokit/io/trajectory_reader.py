@@ -50,7 +50,7 @@ class TrajectoryReader:
         return frame | {"step": self.step[index], "time": self.time[index]}
 
     def read(self, field: str, frames: slice = slice(None)) -> NDArray[Any]:
-        """One field of some or all frames, (frames, n, d), spins of disks (frames, n).
+        """One field of some or all frames, (frames, n, d), spins of disks and sites (frames, n).
 
         Raises KeyError if it is not there.
         """
@@ -58,7 +58,7 @@ class TrajectoryReader:
             raise KeyError(f"no field {field!r}; there are {', '.join(self.fields)}")
         with h5md.opened(self.path) as file:
             data = h5md.particles_of(file)[f"{field}/value"]
-            return np.asarray(data[frames][..., h5md.columns(field, self.dimension)])
+            return h5md.in_frames(data, frames, field, self.dimension)
 
     def __repr__(self) -> str:
         return (

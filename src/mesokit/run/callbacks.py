@@ -39,9 +39,8 @@ def every(steps: int, call: Function) -> Callback:
         Steps between two calls, counted from the first step of the warm-up on.
     call : function of a Simulation
         May read `simulation.step`, `time`, `results`, `engine.positions()` and all else that
-        observables ask, but for `engine.wall_impulse`, which is counted anew by being read. It may
-        raise `StopRun`. What else it raises ends the run as a RunError from it. All ranks call it,
-        and must ask the same.
+        observables ask. It may raise `StopRun`. What else it raises ends the run as a RunError from
+        it. All ranks call it, and must ask the same.
 
     Raises
     ------

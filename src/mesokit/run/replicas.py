@@ -44,7 +44,7 @@ class Replica:
         """Do steps and take samples."""
         for leg in legs:
             if leg.steps:
-                self.engine.advance(leg.steps, measure_stress=leg.stress)
+                self.engine.advance(leg.steps, leg.measure)
             if leg.ends_warmup:
                 self.engine.end_warmup()
             for name in leg.samples:

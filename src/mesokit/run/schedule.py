@@ -10,12 +10,12 @@ if TYPE_CHECKING:
 
 
 class Leg(NamedTuple):
-    """So many steps, whether the last of them measures stress, and what is done after it: what was
-    counted is forgotten where the warm-up ends, and samples are taken by observables of these
-    names."""
+    """So many steps, what the last of them measures (`Observable.measures`), and what is done after
+    it: what was counted is forgotten where the warm-up ends, and samples are taken by observables
+    of these names."""
 
     steps: int
-    stress: bool
+    measure: frozenset[str]
     ends_warmup: bool
     samples: tuple[str, ...]
 
@@ -73,8 +73,8 @@ class Schedule:
     def leg(self, steps: int, end: int) -> Leg:
         """So many steps that end at this one."""
         due = self.due(end)
-        stress = any("stress" in observable.measures for observable in due)
-        return Leg(steps, stress, end == self.warmup, tuple(one.label for one in due))
+        measure = frozenset(name for observable in due for name in observable.measures)
+        return Leg(steps, measure, end == self.warmup, tuple(one.label for one in due))
 
     def due(self, step: int) -> list[Observable]:
         """The observables that take a sample at this step."""

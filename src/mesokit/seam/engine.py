@@ -7,19 +7,30 @@ arrays here are in the order of particle numbers, whatever the layout in memory 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
+from mesokit.statistics.tally import Tally
 
 Array = NDArray[np.floating[Any]]
 Integers = NDArray[np.int64]
 State = dict[str, NDArray[Any]]
 
 
-class Particles(Protocol):
-    """What observables and trajectories may ask of any engine; d is the dimension.
+class Clock(Protocol):
+    """How far an engine has come."""
+
+    @property
+    def step(self) -> int: ...
+    @property
+    def time(self) -> float: ...
+
+
+class Particles(Clock, Protocol):
+    """What observables and trajectories may ask of an engine of particles; d is the dimension.
 
     `positions` (n, d) lie in the box, or where the particles have really gone to if `unwrapped`;
     `images` (n, d) counts the boxes between the two. `ids` picks some particles (all unless said).
@@ -29,22 +40,28 @@ class Particles(Protocol):
     dimension: int
     box: Array
 
-    @property
-    def step(self) -> int: ...
-    @property
-    def time(self) -> float: ...
     def positions(self, ids: Integers | None = None, unwrapped: bool = False) -> Array: ...
     def images(self, ids: Integers | None = None) -> NDArray[np.int32]: ...
 
 
-class Engine(Particles, Protocol):
-    """What a simulation asks of an engine."""
+class Sites(Clock, Protocol):
+    """What observables and trajectories may ask of an engine of a lattice.
 
-    def advance(self, steps: int, measure_stress: bool = False) -> None:
+    `sites` (n,) are the numbers of their states, of some or all, numbered along the last axis of
+    the box first.
+    """
+
+    def sites(self, ids: Integers | None = None) -> NDArray[np.integer[Any]]: ...
+
+
+class Engine(Clock, Protocol):
+    """What a simulation asks of an engine, whatever it holds."""
+
+    def advance(self, steps: int, measure: Collection[str] = ()) -> None:
         """Run some steps, in compiled code; 0 only loads or compiles it.
 
-        `measure_stress` says that an observable needs the stress of the last of them. Raises
-        RunError where the physics has broken down.
+        `measure` is what observables need of the last of them (`Observable.measures`), such as
+        "stress". Raises RunError where the physics has broken down.
         """
 
     def check(self) -> None:
@@ -107,7 +124,8 @@ class RunningFluid(Particles, Protocol):
     `stress` holds "kinetic", "collisional" and, of molecules, "bond" (d, d) of the last step if an
     observer due at it declares `measures = ("stress",)`. `wall_impulse` (surfaces, d + 1 or d + 3)
     is the momentum and angular momentum given to the lower and the upper plate of a slit, or to
-    each body, during the last `wall_steps` steps, for `measures = ("walls",)`.
+    each body, in the `wall_steps` steps since the warm-up, for `measures = ("walls",)`; and
+    `wall_tally` has the same exactly, all in a row.
     """
 
     def totals(self) -> tuple[int, Array, float]: ...
@@ -141,6 +159,8 @@ class RunningFluid(Particles, Protocol):
     def stress(self) -> Mapping[str, Array]: ...
     @property
     def wall_impulse(self) -> Array: ...
+    @property
+    def wall_tally(self) -> Tally: ...
     @property
     def wall_steps(self) -> int: ...
 

@@ -22,6 +22,7 @@ from mesokit.statistics.spectrum import (
     spectrum,
 )
 from mesokit.statistics.student import student
+from mesokit.statistics.tally import Tally
 from mesokit.statistics.time_series import TimeSeries
 
 __all__ = [
@@ -32,6 +33,7 @@ __all__ = [
     "Frequency",
     "MultipleTau",
     "Spectrum",
+    "Tally",
     "TimeSeries",
     "blocking_error",
     "chi_square",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from concurrent.futures import ThreadPoolExecutor
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -41,7 +41,7 @@ class Brownians:
         self.counts[:] = np.floor(positions / self.box)
         self.places[:] = positions - self.counts * self.box
 
-    def advance(self, steps: int, measure_stress: bool = False) -> None:
+    def advance(self, steps: int, measure: Collection[str] = ()) -> None:
         """Run some steps."""
         began = perf_counter()
         self._run(wander, steps, self.motion, self.places, self.counts)

@@ -69,7 +69,9 @@ class Flow:
     bonds: ends (m, 2, 2) of those between the `particles`, or None.
     spheres: at the end of the time, or None.
     headings: velocities (n, 2) of the `particles` along the two axes, or None.
-    time: of the `particles`, where they have headings.
+    sites: states (nx, ny) of the sites of a lattice at one time, or None.
+    states: their names, by number.
+    time: of the `particles`, where they have headings, and of the `sites`.
     """
 
     axes: tuple[str, str]
@@ -88,6 +90,8 @@ class Flow:
     bonds: Array | None = None
     spheres: Spheres | None = None
     headings: Array | None = None
+    sites: NDArray[np.integer[Any]] | None = None
+    states: tuple[str, ...] = ()
     time: float = 0.0
 
     @property

@@ -13,6 +13,7 @@ from mesokit.report.flow import (
     disks,
     particles,
     quiver,
+    sites,
     speed,
     streamlines,
     vorticity,
@@ -29,8 +30,8 @@ if TYPE_CHECKING:
 class Panel(Protocol):
     """How one panel is drawn: a module.
 
-    NEEDS: "velocity", "density", "particles", "spheres" or "headings"; TITLE: its name where
-    several are side by side.
+    NEEDS: "velocity", "density", "particles", "spheres", "headings" or "sites"; TITLE: its name
+    where several are side by side.
     """
 
     NEEDS: str
@@ -55,6 +56,7 @@ KINDS: dict[str, tuple[Panel, ...]] = {
     "vorticity": (vorticity,),
     "disks": (disks,),
     "flock": (birds,),
+    "sites": (sites,),
     "four": (quiver, streamlines, particles, density),
 }
 

@@ -29,8 +29,14 @@ WORDS = {
     "particles": "positions of particles",
     "spheres": "positions of spheres",
     "headings": "positions and velocities of particles",
+    "sites": "states of sites",
 }
-AT_ONCE = ("particles", "spheres", "headings")  # shown as they are at one time, and not as a mean
+AT_ONCE = (
+    "particles",
+    "spheres",
+    "headings",
+    "sites",
+)  # shown as they are at one time, and not as a mean
 FRAMES = '[[observe]] quantity = "flow-frames"'
 REMEDY = {
     "velocity": FRAMES,
@@ -38,6 +44,7 @@ REMEDY = {
     "particles": f"{FRAMES} with particles > 0, or [trajectory]",
     "spheres": "[trajectory]",
     "headings": '[trajectory] with fields = ["position", "velocity"]',
+    "sites": '[trajectory] with fields = ["site"]',
 }
 OF_TRAJECTORIES = {  # of methods that offer no flow-frames
     **REMEDY,
@@ -100,6 +107,7 @@ def sources(
     from mesokit.report.flow.field_source import FieldSource
     from mesokit.report.flow.frame_source import FrameSource
     from mesokit.report.flow.setting import Setting
+    from mesokit.report.flow.sites import SiteSource
     from mesokit.report.flow.spheres import SphereSource
     from mesokit.report.flow.trajectory_source import TrajectorySource
 
@@ -117,6 +125,9 @@ def sources(
         if set(over) == set(chosen):
             make = FrameSource if result.drawing == "frames" else FieldSource
             found.append(make(Setting.of(case, chosen), result))
+    if trajectory is not None and "site" in trajectory.fields and len(trajectory):
+        group = next(group for group in case.groups if "site" in group.has)
+        found.append(SiteSource(case, trajectory, group, view._replace(axes=chosen)))
     if trajectory is not None and "position" in trajectory.fields and len(trajectory):
         found.append(TrajectorySource(case, trajectory, chosen))
         if trajectory.diameter is not None:

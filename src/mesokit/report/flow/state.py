@@ -24,11 +24,13 @@ class State:
     def __init__(self, case: Case, engine: Any) -> None:
         number, spheres = case.particles, case.particles_have("diameter")
         shown = number if spheres else min(MOST, number)
-        self.fields: tuple[str, ...] = (
-            ("position", "velocity", "spin") if spheres else ("position",)
-        )
-        if case.particles_have("heading"):
+        self.fields: tuple[str, ...] = ("position",)
+        if spheres:
+            self.fields = ("position", "velocity", "spin")
+        elif case.particles_have("heading"):
             self.fields = ("position", "velocity")
+        elif case.particles_have("site"):
+            self.fields, shown = ("site",), number
         picked = np.arange(shown) * number // max(shown, 1)
         others = np.arange(number, sum(group.number for group in case.groups))
         masses, kinds = masses_and_kinds(case.groups)
@@ -46,6 +48,8 @@ class State:
 
     def __getitem__(self, index: int) -> dict[str, Any]:
         """The frame."""
+        if "site" in self.fields:
+            return {"site": self.engine.sites(self.id)}
         frame = {"position": self.engine.positions(self.id)}
         if self.diameter is not None:
             frame |= {

@@ -84,7 +84,7 @@ def picture(
     notes = [section.note(how), mean, note(panels, flows[0], clear), legend_of(panels)]
     notes += [_few(case, panels, flows), when]
     notes += [text for flow in flows for text in _spheres(flow)]
-    if any(panel.NEEDS == "headings" for panel in panels):
+    if any(panel.NEEDS in ("headings", "sites") for panel in panels):
         notes.append(rf"at $t = {rounded(flows[0].time, 6)}\,\tau$")
     drawn = Canvas(panels, flows, reaches, shown, section, notes=notes)
     drawn.show(flows)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -70,7 +71,7 @@ class Flocks:
         birds.images[0], birds.numbers[0] = images.T, np.arange(self.n)
         self.side = 0
 
-    def advance(self, steps: int, measure_stress: bool = False) -> None:
+    def advance(self, steps: int, measure: Collection[str] = ()) -> None:
         """Run some steps."""
         began = perf_counter()
         self.team.run(step, *self._arguments(steps))

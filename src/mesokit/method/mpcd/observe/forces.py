@@ -15,7 +15,7 @@ from mesokit.errors import CaseError
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import free_volume, slit_of, solids_of
 from mesokit.method.mpcd.expected import recognise, setting
-from mesokit.method.mpcd.observe.shared.walls import require_counted
+from mesokit.method.mpcd.observe.shared.walls import SinceLast, require_counted
 from mesokit.method.mpcd.observe.wall_stress import PLATES, balance
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate, noted, of_mean
@@ -95,26 +95,28 @@ class ForcesAccumulator:
         self.components = (*(f"f{axis}" for axis in AXES[:d]), *turns)
         self.shape = len(self.bodies), len(self.components)
         size = len(self.bodies) * len(self.components)
+        self.walls = SinceLast(*self.shape)
         self.blocks = Blocks((size + d,))
         self.series = TimeSeries(size, min(MOST_ROWS, 2 * max(NUMBERS // size // 2, 1)))
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        steps = fluid.wall_steps  # before the impulse, whose reading starts the count anew
+        impulse, steps = self.walls.take(fluid)
         if steps:
-            taken = fluid.wall_impulse.ravel() / (steps * self.case.fluid.timestep)
+            taken = impulse.ravel() / (steps * self.case.fluid.timestep)
             _, momentum, _ = fluid.totals()
             self.blocks.add(np.concatenate([taken, momentum]))
             self.series.add(fluid.time - 0.5 * steps * self.case.fluid.timestep, taken)
 
     def state(self) -> State:
         """All it has to remember."""
-        return pack(blocks=self.blocks, series=self.series)
+        return pack(blocks=self.blocks, series=self.series, walls=self.walls)
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Go on from `state()`."""
         self.blocks = Blocks.from_state(unpack(state, "blocks"))
         self.series = TimeSeries.from_state(unpack(state, "series"))
+        self.walls.restore(unpack(state, "walls"))
 
     def pool(self, other: ForcesAccumulator) -> None:
         """Take in the samples of an independent run of the same case: only to read."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.box import AXES
@@ -13,10 +15,10 @@ from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import slit_of
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.molecules import spring_of
-from mesokit.method.mpcd.observe.shared.walls import require_counted
+from mesokit.method.mpcd.observe.shared.walls import SinceLast, require_counted
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import of_mean
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, State, pack, unpack
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -69,14 +71,25 @@ class WallStressAccumulator(BlockAccumulator):
         plates: Any = case.walls[0]
         self.axis = AXES.index(plates.axis)
         self.area = np.prod(case.box.size) / case.box.size[self.axis]
-        self.blocks = Blocks((2, case.box.dimension))
+        d = case.box.dimension
+        self.walls = SinceLast(2, d + (1 if d == 2 else 3))
+        self.blocks = Blocks((2, d))
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
-        steps = fluid.wall_steps  # before the impulse, whose reading starts the count anew
+        taken, steps = self.walls.take(fluid)
         if steps:
-            taken = fluid.wall_impulse[:, : self.case.box.dimension]
-            self.blocks.add(taken / (steps * self.case.fluid.timestep * self.area))
+            momentum = taken[:, : self.case.box.dimension]
+            self.blocks.add(momentum / (steps * self.case.fluid.timestep * self.area))
+
+    def state(self) -> State:
+        """All it has to remember."""
+        return pack(blocks=self.blocks, walls=self.walls)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        super().restore(state)
+        self.walls.restore(unpack(state, "walls"))
 
     def result(self) -> Result:
         """Every component at both plates."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,6 +27,7 @@ from mesokit.method.mpcd.engine.measure.readings import Moments, Readings
 from mesokit.method.mpcd.engine.pieces import Piece, of_state, pieces, require_finite
 from mesokit.method.mpcd.molecule import Springs
 from mesokit.scalar.system import TICK
+from mesokit.statistics import Tally
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -92,7 +93,7 @@ class CPU:
         for piece in particles:
             self.memory.put(*piece, first=int(piece.who[0]) // self.numbers.beads)
 
-    def advance(self, steps: int, measure_stress: bool = False) -> None:
+    def advance(self, steps: int, measure: Collection[str] = ()) -> None:
         """Run some steps; velocities are then those after the collision of the last."""
         if steps == 0:
             self._advance(0, False)
@@ -100,7 +101,7 @@ class CPU:
             every = self.numbers.sort_every
             due = every - self.step % every
             now = min(steps, due)
-            self._advance(now, measure_stress and now == steps)
+            self._advance(now, "stress" in measure and now == steps)
             steps -= now
             if now == due:
                 self.sort()
@@ -214,8 +215,7 @@ class CPU:
             "velocities": velocities,
             "images": images,
             "step": np.int64(self.step),
-            "impulse": self.readings.impulse,
-            "wall_steps": np.int64(self.readings.wall_steps),
+            **self.readings.state_of_walls(),
             "wall_rates": memory.wall_rates.copy(),
         }
 
@@ -227,9 +227,7 @@ class CPU:
         taken.faults[:] = 0
         self._take(of_state(state, (self.n, self.dimension), self.numbers.beads))
         memory.step = int(state["step"])
-        taken.impulse[:] = 0
-        taken.impulse[0] = state["impulse"]
-        self.readings.wall_steps = int(state["wall_steps"])
+        self.readings.restore_walls(state)
         memory.wall_rates[:] = state["wall_rates"]
         if self.solutes is not None:
             self.solutes.restore(dict(state))
@@ -326,8 +324,14 @@ class CPU:
 
     @property
     def wall_impulse(self) -> Floats:
-        """What surfaces took since the last call."""
-        return self.readings.wall_impulse
+        """What each surface took since the warm-up: momentum (d), angular momentum (1 or 3)."""
+        columns = self.dimension + (1 if self.dimension == 2 else 3)
+        return self.readings.wall_tally.value.reshape(-1, columns)
+
+    @property
+    def wall_tally(self) -> Tally:
+        """The same, exact, all in a row."""
+        return self.readings.wall_tally
 
     @property
     def wall_steps(self) -> int:

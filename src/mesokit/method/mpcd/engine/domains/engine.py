@@ -283,8 +283,7 @@ class Ranks(CPU):
             "velocities": Spread(comm, shape, np.float64, partial(rows, "velocities")),
             "images": Spread(comm, shape, np.int32, partial(rows, "images")),
             "step": np.int64(self.step),
-            "impulse": self.readings.impulse,
-            "wall_steps": np.int64(self.readings.wall_steps),
+            **self.readings.state_of_walls(),
             "wall_rates": self.readings.wall_rates(),
         }
 
@@ -296,11 +295,9 @@ class Ranks(CPU):
         self.readings.forget()
         self.memory.fluid.taken.faults[:] = 0
         self._take(self._given(state) if root else ())
-        memory, taken = self.memory, self.memory.fluid.taken
+        memory = self.memory
         memory.step = int(plain["step"])
-        taken.impulse[:] = 0
-        taken.impulse[0] = plain["impulse"] if root else 0
-        self.readings.wall_steps = int(plain["wall_steps"])
+        self.readings.restore_walls(plain)
         memory.wall_rates[:] = plain["wall_rates"]
         if self.solutes is not None:
             self.solutes.restore(plain)

@@ -35,7 +35,7 @@ class SharedReadings(Readings):
     def go_on_from(self, earlier: SharedReadings | None) -> None:
         """Take over what is counted from readings of memory that was given up."""
         if earlier is not None:
-            self.wall_steps = earlier.wall_steps
+            self.wall_steps, self._walls = earlier.wall_steps, earlier._walls
             if isinstance(self.solutes, SharedSolutes):
                 self.solutes.known = getattr(earlier.solutes, "known", True)
 

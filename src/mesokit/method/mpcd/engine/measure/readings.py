@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,6 +22,7 @@ from mesokit.method.mpcd.engine.beads.readings import SoluteReadings
 from mesokit.method.mpcd.engine.cpu.memory import Floats, Memory
 from mesokit.method.mpcd.engine.measure import sums as measure
 from mesokit.scalar.fixed_point import ROUNDER_BITS, added_halves, halves, joined
+from mesokit.statistics import Tally
 
 Moments = tuple[Floats, Floats, Floats, Floats]
 AT_ONCE = 2**10  # strips of a thread: sums of the terms of more particles may overflow
@@ -44,7 +46,8 @@ class Readings:
             memory.numbers.beads,
             memory.numbers.dimension,
         )
-        self.wall_steps = 0
+        self.wall_steps = 0  # since the warm-up
+        self._walls = Tally((memory.fluid.taken.impulse.shape[-1],), self.numbers.units["momentum"])
         self._asked: NDArray | None = None  # ids, for the next time
         self._slots_of_asked = np.zeros(0, np.int32)
         self._seen: dict[tuple, Moments] = {}  # moments at this step, for several observables
@@ -310,24 +313,32 @@ class Readings:
             self.stress["bond"] = -virial / (volume * self.numbers.timestep)
 
     @property
-    def wall_impulse(self) -> Floats:
-        """What surfaces took since the last call: momentum (d), then angular momentum (1 or 3).
+    def wall_tally(self) -> Tally:
+        """What surfaces took since the warm-up: momentum (d), then angular momentum (1 or 3).
 
-        A row for each: the lower and upper plate of a slit, or the bodies in order.
+        These for the lower and upper plate of a slit, or for the bodies in order, all in a row.
         """
-        columns = self.dimension + (1 if self.dimension == 2 else 3)
-        taken = self.impulse.astype(float).reshape(-1, columns)
-        self.forget_walls()
-        return taken / self.numbers.units["momentum"]
+        counts = self.memory.fluid.taken.impulse
+        self._walls.add(self.added(counts))
+        counts[:] = 0
+        return self._walls
 
-    @property
-    def impulse(self) -> NDArray[np.int64]:
-        """The same as whole numbers, all in a row."""
-        return self.added(self.memory.fluid.taken.impulse)
+    def restore_walls(self, state: Mapping[str, NDArray]) -> None:
+        """Go on with what surfaces took from the state of an engine."""
+        self.memory.fluid.taken.impulse[:] = 0
+        self._walls.restore({name: state[f"walls/{name}"] for name in self._walls.state()})
+        self.wall_steps = int(state["wall_steps"])
+
+    def state_of_walls(self) -> dict[str, NDArray]:
+        """What surfaces took, for the state of an engine."""
+        taken = self.wall_tally.state().items()
+        steps = {"wall_steps": np.array(self.wall_steps)}
+        return {f"walls/{name}": array.copy() for name, array in taken} | steps
 
     def forget_walls(self) -> None:
         """Count anew what surfaces take."""
         self.memory.fluid.taken.impulse[:] = 0
+        self._walls = Tally(self._walls.high.shape, self._walls.unit)
         self.wall_steps = 0
 
 

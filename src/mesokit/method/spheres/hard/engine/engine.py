@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -91,7 +92,7 @@ class EventDriven:
         self.system.fill(placed.positions, placed.velocities, placed.spins)
         self._seen = None
 
-    def advance(self, steps: int, measure_stress: bool = False) -> None:
+    def advance(self, steps: int, measure: Collection[str] = ()) -> None:
         """Do the events of some steps. Raises RunError for inelastic collapse."""
         began = perf_counter()
         self._seen = None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
@@ -46,7 +47,7 @@ class SoftEngine:
         self.system.fill(placed.positions, placed.velocities, placed.spins)
         self.system.find_forces(self.time)
 
-    def advance(self, steps: int, measure_stress: bool = False) -> None:
+    def advance(self, steps: int, measure: Collection[str] = ()) -> None:
         """Run some steps. Raises RunError where forces are beyond all bounds."""
         began, left = perf_counter(), steps
         bath = self.case.spheres.thermostat
