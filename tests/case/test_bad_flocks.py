@@ -109,19 +109,19 @@ WRONG = {
     ),
     "turning wall": (
         {"": WALL + "surface = { rotation = 1 }"},
-        ("wall[#1].surface.rotation", "at rest"),
+        ("wall[#1].surface.rotation", "not with method 'flock'"),
     ),
     "moving plate": (
         {"": PLATES + "lower = { velocity = [1, 0] }"},
-        ("wall[#1].lower.velocity", "at rest"),
+        ("wall[#1].lower.velocity", "not with method 'flock'"),
     ),
     "plate that moves in 3D": (
         {"": PLATES + "lower = { velocity = [1, 0, 0] }"},
-        ("wall[#1].lower.velocity = [1, 0, 0]: expected 2 numbers",),
+        ("wall[#1].lower.velocity = [1, 0, 0]: not with method 'flock'",),
     ),
     "contact of a wall": (
         {"": WALL + "surface = { contact = { friction = 1 } }"},
-        ("wall[#1].surface.contact", "no size"),
+        ("wall[#1].surface.contact", "not with method 'flock'"),
     ),
     "sphere in 2D": (
         {"": WALL.replace("disk", "sphere").replace("[6, 6]", "[6, 6, 6]")},

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mesokit.case.trajectory import Group, Kind
-from mesokit.geometry.shape_protocol import closed_axes
-from mesokit.geometry.solids.solids import Solids, solids_of
+from mesokit.geometry.walls import closed_axes, solids
 from mesokit.method.flock.checks import check, room_in_memory
 from mesokit.method.flock.displacement import Displacement
 from mesokit.method.flock.engine.flocks import Flocks
@@ -54,14 +53,6 @@ def _start(engine: Flocks, state: FirstState) -> None:
     engine.start(*state)
 
 
-def _closed(case: Case) -> set[int]:
-    return {case.box.axes.index(axis) for axis in closed_axes(case.walls)}
-
-
-def _solids(case: Case) -> Solids | None:
-    return solids_of(case) if case.walls else None
-
-
 def _starts(case: Case) -> Mapping[str, Path]:
     given = {key: getattr(case.flock.start, key) for key in STARTS}
     return {f"flock.start.{key}": Path(name) for key, name in given.items() if name is not None}
@@ -77,7 +68,7 @@ METHOD = Method(
     groups=groups,
     timestep=lambda case: float(case.flock.timestep),
     summary=summary,
-    enclosure=Enclosure(_closed, _solids),
+    enclosure=Enclosure(closed_axes, solids),
     initial=InitialState(
         first_state, _start, ("positions", "velocities"), _starts, "flock.start.run"
     ),

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from mesokit.errors import CaseError
 from mesokit.geometry.samples.from_file import FromFile
 from mesokit.geometry.solids.solids import solids_of
+from mesokit.geometry.walls import solids
 from mesokit.method.mpcd.checks import combinations
 from mesokit.method.mpcd.columns import columns
 from mesokit.method.mpcd.expected.displacement import Displacement
@@ -27,7 +28,6 @@ from mesokit.seam.method import Enclosure, InitialState, Method
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
-    from mesokit.geometry.solids.solids import Solids
     from mesokit.method.mpcd.si import SI
     from mesokit.method.mpcd.solutes import Solutes
     from mesokit.method.mpcd.start.first_state import FirstState
@@ -89,10 +89,6 @@ def _start(engine: Any, state: FirstState) -> None:
     start(engine, *state)
 
 
-def _solids(case: Case) -> Solids | None:
-    return solids_of(case) if case.walls else None
-
-
 def _starts(case: Case) -> dict[str, Path]:
     starts = {"fluid.start": case.fluid.start}
     if case.solutes is not None:
@@ -150,7 +146,7 @@ METHOD = Method(
     check=combinations.check,
     groups=groups,
     bonds=bonds,
-    enclosure=Enclosure(aperiodic_axes, _solids),
+    enclosure=Enclosure(aperiodic_axes, solids),
     timestep=lambda case: float(case.fluid.timestep),
     summary=_summary,
     initial=InitialState(_first_state, _start, ARRAYS, _starts, "fluid.start.run"),

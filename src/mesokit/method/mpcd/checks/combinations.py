@@ -13,10 +13,11 @@ from mesokit.case.units import MATCHES
 from mesokit.errors import CaseError
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.shape_protocol import closed_axes
+from mesokit.geometry.walls import surfaces
 from mesokit.method.mpcd.checks.free_flight import free_flight, open_box
 from mesokit.method.mpcd.checks.kernels import kernels
 from mesokit.method.mpcd.checks.solutes import solutes
-from mesokit.method.mpcd.checks.walls import contacts, moving_surfaces, room, surfaces, walls
+from mesokit.method.mpcd.checks.walls import moving_surfaces, room, walls
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.molecule import COARSE, MOST_SUBSTEPS, UNSTABLE
 from mesokit.potential.thermal import mean_square
@@ -244,7 +245,6 @@ RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
     vectors,
     walls,
     room,
-    contacts,
     moving_surfaces,
     size,
     mean_free_path,

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from mesokit.errors import CaseError
-from mesokit.method.spheres.common.wall.solids import closed_axes
+from mesokit.geometry.walls import closed_axes
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -6,25 +6,25 @@ from typing import TYPE_CHECKING
 
 from mesokit.case.component import show
 from mesokit.errors import CaseError
+from mesokit.geometry import walls
 from mesokit.method.spheres.common import falls
-from mesokit.method.spheres.common.wall import plates, solids
+from mesokit.method.spheres.common.wall import plates
 from mesokit.method.spheres.hard.walls import wall_rows
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
     from mesokit.geometry.surface import Surface
 
+WALLS = walls.Walls(("no-slip", "slip", "diffuse"), moving=True, contact=walls.CONTACT)
+
 
 def check(case: Case) -> None:
     """Raise CaseError for a case without a meaning."""
     section, box = case.spheres, case.box
     section.check(box)
-    solids.check(case)
-    for key, surface in solids.surfaces(case):
-        if surface.rotation is not None:
-            raise CaseError(
-                f"{key}.rotation = {show(surface.rotation)}: not with method 'event-driven'"
-            )
+    for problem in WALLS.problems(case):
+        raise CaseError(problem)
+    for key, surface, _ in walls.surfaces(case):
         _contact(case, key, surface)
     wall_rows(case)
     plates.check(case)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from mesokit.geometry.walls import closed_axes, solids
 from mesokit.method.spheres.common.expected.answers import answers
 from mesokit.method.spheres.common.groups import groups
 from mesokit.method.spheres.common.made import made
@@ -15,7 +16,6 @@ from mesokit.method.spheres.common.start.first_state import (
     first_state,
     starts,
 )
-from mesokit.method.spheres.common.wall.solids import closed_axes, solids
 from mesokit.method.spheres.hard.checks import check
 from mesokit.method.spheres.hard.cooling import HardCooling
 from mesokit.method.spheres.hard.displacement import Displacement

@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 from mesokit.case.component import show
 from mesokit.errors import CaseError
+from mesokit.geometry import walls
 from mesokit.geometry.solids.solids import Solids
 from mesokit.geometry.surface import Surface
 from mesokit.method.spheres.common import falls
-from mesokit.method.spheres.common.wall import plates, solids
+from mesokit.method.spheres.common.wall import plates
 from mesokit.method.spheres.common.wall.surfaces import other_walls, surface_rows
 from mesokit.method.spheres.soft import scales
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw
@@ -18,13 +19,16 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 ROUNDING = 1e-5  # relative, of diameters as people write them
-CONTACT = ("temperature", "tangential", "restitution", "friction")  # of a surface
+WALLS = walls.Walls(
+    moving=True, turning=True, contact=("restitution", "friction", "amplitude", "frequency")
+)
 
 
 def check(case: Case) -> None:
     """Raise CaseError for a case without a meaning."""
     section, box = case.spheres, case.box
-    solids.check(case)
+    for problem in WALLS.problems(case):
+        raise CaseError(problem)
     section.check(box)
     section.start.check(case)
     _walls(case)
@@ -63,33 +67,26 @@ def _walls(case: Case) -> None:
         )
     if others:
         Solids(case.walls, case.box, only=others)
-    for i, wall in enumerate(case.walls):
-        if wall.virtual != "extrapolate":
-            raise CaseError(f"wall[#{i + 1}].virtual = {show(wall.virtual)}: spheres need none")
-        for name, surface in wall.surfaces().items():
-            _surface(f"wall[#{i + 1}].{name}", surface, case, i in others)
+    for key, surface, _ in walls.surfaces(case):
+        _surface(key, surface, case, key.partition(".")[0] in {f"wall[#{i + 1}]" for i in others})
 
 
 def _surface(key: str, surface: Surface, case: Case, other: bool) -> None:
     contact, touching = surface.contact, isinstance(case.spheres.pair, ContactLaw)
-    if surface.rule == "diffuse":
-        raise CaseError(f"{key}.rule = 'diffuse': not with method 'soft-spheres'")
     if contact is None:
         return
     if other and contact.amplitude > 0:
         raise CaseError(f"{key}.contact.amplitude = {show(contact.amplitude)}: only plates vibrate")
-    given = {name: getattr(contact, name) for name in CONTACT}
-    said = {name: f"{key}.contact.{name} = {show(value)}" for name, value in given.items()}
-    for name in ("temperature", "tangential"):
-        if given[name] is not None:
-            raise CaseError(f"{said[name]}: not with method 'soft-spheres'")
     if contact.restitution == 0:
-        raise CaseError(f"{said['restitution']}: expected more than 0")
+        raise CaseError(f"{key}.contact.restitution = 0: expected more than 0")
     for name in ("restitution", "friction"):
-        if not touching and given[name] is not None:
-            raise CaseError(f"{said[name]}: a potential has none")
-    if given["friction"] and surface.rule == "slip":
-        raise CaseError(f"{said['friction']}: no effect with {key}.rule = 'slip'; leave one out")
+        if not touching and (value := getattr(contact, name)) is not None:
+            raise CaseError(f"{key}.contact.{name} = {show(value)}: a potential has none")
+    if contact.friction and surface.rule == "slip":
+        raise CaseError(
+            f"{key}.contact.friction = {show(contact.friction)}: no effect with {key}.rule = "
+            "'slip'; leave one out"
+        )
 
 
 def _potential(case: Case) -> None:
@@ -115,7 +112,7 @@ def _potential(case: Case) -> None:
 
 def rubs(case: Case) -> bool:
     """Whether a wall has friction of its own."""
-    contacts = [surface.contact for _, surface in solids.surfaces(case)]
+    contacts = [surface.contact for _, surface, _ in walls.surfaces(case)]
     return any(contact is not None and bool(contact.friction) for contact in contacts)
 
 

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from mesokit.errors import CaseError
-from mesokit.method.spheres.common.wall.solids import closed_axes
+from mesokit.geometry.walls import closed_axes
 from mesokit.seam.method import method_of
 from mesokit.statistics import spread_ids
 

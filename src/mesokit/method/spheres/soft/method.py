@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from mesokit.geometry.walls import closed_axes, solids
 from mesokit.method.spheres.common.expected.answers import answers
 from mesokit.method.spheres.common.groups import groups
 from mesokit.method.spheres.common.made import made
@@ -16,7 +17,6 @@ from mesokit.method.spheres.common.start.first_state import (
     starts,
 )
 from mesokit.method.spheres.common.velocity_memory import VelocityMemory
-from mesokit.method.spheres.common.wall.solids import closed_axes, solids
 from mesokit.method.spheres.soft.checks import check
 from mesokit.method.spheres.soft.cooling import SoftCooling
 from mesokit.method.spheres.soft.displacement import Displacement

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from mesokit.method.spheres.common.wall.solids import surfaces
+from mesokit.geometry.walls import surfaces
 from mesokit.method.spheres.soft.pair.protocol import ContactLaw
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def speed_of_fall(case: Case) -> float:
 def speed_of_walls(case: Case) -> float:
     """The largest speed that a wall gives to a sphere at rest."""
     farthest = 0.5 * math.hypot(*case.box.size)  # from the axis of a wall that turns
-    return max((_speed_of(surface, farthest) for _, surface in surfaces(case)), default=0.0)
+    return max((_speed_of(surface, farthest) for _, surface, _ in surfaces(case)), default=0.0)
 
 
 def _speed_of(surface: Surface, farthest: float) -> float:

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit import theory
+from mesokit.geometry.walls import closed_axes
 from mesokit.method.spheres.common.expected.equilibrium import Equilibrium, still_walls, surfaces
-from mesokit.method.spheres.common.wall.solids import closed_axes
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case

@@ -70,8 +70,6 @@ def surface_rows(case: Case, without: Sequence[int] = ()) -> SurfaceRows:
                 f"wall[#{i + 1}]: solids other than plates need a box of whole lengths, not "
                 f"box.size = {show(list(case.box.size))}"
             )
-        if wall.virtual != "extrapolate":
-            raise CaseError(f"wall[#{i + 1}].virtual = {show(wall.virtual)}: spheres need none")
         for body in wall.bodies(room, f"{type(wall).__name__.lower()}-{i + 1}"):
             if body.surface.rotation is not None:
                 raise CaseError(f"wall[#{i + 1}]: rotation: not with method {method!r}")
