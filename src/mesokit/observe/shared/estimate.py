@@ -47,6 +47,10 @@ class Estimate(NamedTuple):
             reached = reached & (self.in_time.spans <= SEEN)
         return of_both(groups, times, reached)
 
+    def part(self, use: slice) -> Estimate:
+        """Some of the values (n,), of blocks alone."""
+        return self._replace(value=self.value[use], residuals=self.residuals[:, use])
+
     def divided(self, number: float) -> Estimate:
         """The value divided by a number."""
         return self._replace(
