@@ -90,16 +90,14 @@ def scatter(case: Case, seeds: int, wanted: dict[str, str]) -> dict[str, tuple[f
     }
 
 
-@pytest.mark.parametrize("length", [1, 3])
-def test_neighbours_that_hardly_move(length):
+@pytest.mark.parametrize(("size", "length"), [([9, 9, 9], 3), ([20, 20], 5)])
+def test_neighbours_that_hardly_move(size, length):
     """Blocks of a run in which molecules stay near saw a third of the scatter."""
     case = Case(
         run=Run(1200, warmup=20),
-        box=Box([9, 9, 9]),
+        box=Box(size),
         fluid=Fluid(),
-        solutes=Solutes(
-            [Polymer(24, length)], bond=Harmonic(K=1.0) if length > 1 else None, solvent="random"
-        ),
+        solutes=Solutes([Polymer(24, length)], bond=Harmonic(K=1.0), solvent="random"),
         observe=[RadialDistribution(every=20, reach=3)],
     )
     seen, quoted = scatter(case, 24, {"radial-distribution": "neighbours"})["radial-distribution"]
