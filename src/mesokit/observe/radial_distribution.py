@@ -244,6 +244,8 @@ class RadialDistributionAccumulator(BlockAccumulator):
     def errors(self, found: Estimate, combine: Array) -> Array:
         """Standard errors (n,) of linear combinations (n, bins) of g: in a short run those of the
         scatter of pairs, where they are larger."""
+        if not self.blocks.count:
+            return np.full(len(combine), np.nan)
         error = found.linear(combine).error
         if self.own is None or not self.short_run():
             return error

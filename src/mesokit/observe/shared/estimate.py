@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.statistics import Blocks, plateau, plateau_error
+from mesokit.statistics import Blocks, independent_error, plateau, plateau_error
 
 Array = NDArray[np.floating[Any]]
 SURE = 2.0  # standard errors from zero, within which nothing is divided by a number
@@ -39,9 +39,9 @@ class Estimate(NamedTuple):
     @property
     def error(self) -> Array:
         """Standard error, (*shape): of blocks, or the one of groups and time that counts."""
-        groups = plateau_error(self.residuals, self.weights, self.falling)
         if self.in_time is None:
-            return groups
+            return plateau_error(self.residuals, self.weights, self.falling)
+        groups = independent_error(self.residuals, self.weights)
         times, reached = plateau(self.in_time.residuals, self.in_time.weights)
         if self.in_time.spans is not None:
             reached = reached & (self.in_time.spans <= SEEN)
