@@ -58,6 +58,10 @@ SCENES = (
         {"run.steps": 1000, "box.size": [9, 9, 9]},
     ),
     Scene(
+        "brownian particles in 2D", "brownian", template("brownian"),
+        {"run.steps": 1500, "box.size": [14, 12]},
+    ),
+    Scene(
         "an ordered flock", "flock", template("flock"),
         {"run.steps": 6000, "box.size": [10, 10], "flock.density": 1}, 20,
     ),

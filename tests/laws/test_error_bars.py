@@ -1,4 +1,6 @@
-"""Error bars of hard spheres against the scatter of seeds (all: validation/error_bars.py)."""
+"""Error bars against the scatter of seeds (all: validation/error_bars.py)."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,11 +11,15 @@ from mesokit import (
     Case,
     CollisionRate,
     EquationOfState,
+    Fluid,
     HardSpheres,
+    Harmonic,
     MeanSquareDisplacement,
+    Polymer,
     RadialDistribution,
     Run,
     Simulation,
+    Solutes,
     VelocityAutocorrelation,
     VelocityCumulant,
 )
@@ -66,3 +72,33 @@ def test_they_are_the_scatter_of_seeds():
         squares.append(root**2)
     known = 1 / np.sqrt((SEEDS - 1) * len(names))
     assert HONEST[0] * (1 - 3 * known) < np.sqrt(np.mean(squares)) < HONEST[1] * (1 + 3 * known)
+
+
+def scatter(case: Case, seeds: int, wanted: dict[str, str]) -> dict[str, tuple[float, float]]:
+    """Scatter of the seeds of some numbers, by observable, and what they quote in the mean."""
+    found: dict[str, list[tuple[float, float]]] = {name: [] for name in wanted}
+    for seed in range(1, seeds + 1):
+        simulation = Simulation(replace(case, run=replace(case.run, seed=seed)), threads=1)
+        simulation.run()
+        for name, what in wanted.items():
+            number = simulation[name][what]
+            found[name].append((number.measured, number.error))
+    every = {name: np.array(rows).T for name, rows in found.items()}
+    return {
+        name: (value.std(ddof=1), np.sqrt(np.mean(error**2)))
+        for name, (value, error) in every.items()
+    }
+
+
+@pytest.mark.parametrize(("size", "length"), [([9, 9, 9], 3), ([20, 20], 5)])
+def test_neighbours_that_hardly_move(size, length):
+    """Blocks of a run in which molecules stay near saw a third of the scatter."""
+    case = Case(
+        run=Run(1200, warmup=20),
+        box=Box(size),
+        fluid=Fluid(),
+        solutes=Solutes([Polymer(24, length)], bond=Harmonic(K=1.0), solvent="random"),
+        observe=[RadialDistribution(every=20, reach=3)],
+    )
+    seen, quoted = scatter(case, 24, {"radial-distribution": "neighbours"})["radial-distribution"]
+    assert 0.6 < seen / quoted < 1.5

@@ -25,6 +25,7 @@ from mesokit import (
 )
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.ideal import drift_of
+from mesokit.observe.shared.over_molecules import MeansOverMolecules
 
 ROD = np.array([[-1.5, 0.0], [-0.5, 0.0], [0.5, 0.0], [1.5, 0.0]])
 PUSH = {"force": Uniform((0.1, 0.0))}
@@ -151,6 +152,30 @@ def test_walkers_that_drift_pass_planes_as_schroedinger_says(steps):
         counts, wanted = (number * width * y for y in (found.value, found.expected))
         chi = ((counts - wanted) ** 2 / wanted)[some]
         assert some.sum() > 8 and chi2.sf(chi.sum(), some.sum()) > 1e-3
+
+
+def test_few_transits_scatter_as_their_number_does():
+    """Error bars knew of the mean alone, half of the scatter."""
+    observable = TransitTime(length=2, every=20)
+    case, known = case_with(observable, 300, 1, timestep=0.1), []
+    for seed in range(24):
+        found = walk(observable, case, 100, 300, seed)
+        time = found["mean transit time"]
+        assert "few" in time.note and found["transits"].measured < 150
+        known.append((time.measured, time.error))
+    value, error = np.array(known).T
+    assert 0.6 < value.std(ddof=1) / np.sqrt(np.mean(error**2)) < 1.4
+
+
+@pytest.mark.parametrize("everything", [False, True])
+def test_momentum_that_all_have_together_is_sure(everything):
+    """A mean that cannot change had the scatter of the molecules as its error."""
+    rng, means = np.random.default_rng(2), MeansOverMolecules(50, 1, everything)
+    for _ in range(100):
+        velocity = rng.normal(size=(50, 1))
+        means.add(velocity - velocity.mean() + 0.3)
+    assert means.mean()[0] == pytest.approx(0.3)
+    assert (means.error()[0] < 1e-9) == everything
 
 
 @pytest.mark.parametrize("of", ["gyration", "end-to-end", "orientation"])

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from mesokit.observe.shared.origins import BLOCKS, Origins
+from mesokit.observe.shared.slope import late_slope
 
 SEEDS = 40
 
@@ -46,6 +47,27 @@ def test_they_are_the_scatter_of_seeds(make):
     root = values.std(axis=0, ddof=1) / np.sqrt((errors**2).mean(axis=0))
     # the scatter of 40 is known to 11 %, and blocks of time to some 10 %
     assert (root > 0.65).all() and (root < 1.35).all()
+
+
+def square_distance(old, new):
+    return ((new - old) ** 2).sum(axis=1)
+
+
+def walks(seed, samples=300, longest=250):
+    """Square displacements of independent walks; the longest lag is most of the run."""
+    rng, origins = np.random.default_rng(seed), Origins(96, 2, longest)
+    for place in rng.normal(size=(samples, 96, 2)).cumsum(axis=0):
+        origins.add(place, square_distance)
+    return origins.sampled(), origins.estimate()
+
+
+def test_blocks_of_time_count_for_no_lag_that_they_do_not_see():
+    """At lags of most of the run all products are of the same time, so that blocks hardly differ:
+    slopes had errors down to a tenth of their scatter."""
+    slopes = [late_slope(*walks(seed), 1.0) for seed in range(SEEDS)]
+    value, error = np.array([(slope.value, slope.error) for slope in slopes]).T
+    assert abs(value.mean() - 2) < 4 * value.std() / np.sqrt(SEEDS)
+    assert 0.65 < np.std((value - 2) / error) < 1.35
 
 
 def test_blocks_of_time_are_bounded_and_hold_every_product():

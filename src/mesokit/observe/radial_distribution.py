@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
 import numpy as np
@@ -13,12 +14,13 @@ from mesokit.case.component import component, param, show, tag
 from mesokit.case.describe.hints import Many
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.molecules import Group, free_diffusion, kind_of
+from mesokit.observe.shared.over_pairs import OwnPairs
 from mesokit.observe.shared.pair_counts import count_pairs, count_within, shells
 from mesokit.observe.shared.whose import OF, default_of, groups_of, periodic_all_over, strangers
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate, of_mean
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import BlockAccumulator, Observable
+from mesokit.seam.observable import BlockAccumulator, Observable, State, pack, unpack
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -116,7 +118,10 @@ class RadialDistribution(Observable):
 
 
 class RadialDistributionAccumulator(BlockAccumulator):
-    """Block averages of g in bins."""
+    """Block averages of g in bins, and of molecules that know nothing of others their own pairs.
+
+    Blocks of a run in which molecules stay near see little of what their pairs scatter.
+    """
 
     def __init__(self, observable: RadialDistribution, case: Case) -> None:
         observable.check(case)
@@ -136,6 +141,13 @@ class RadialDistributionAccumulator(BlockAccumulator):
         self.theory: Neighbours | None = None if known is None else known(case, observable)
         self.near = np.zeros(0) if self.theory is None else _beyond(self.theory.diameter)
         self.blocks = Blocks((observable.bins + max(0, len(self.near) - 1),))
+        self.own = OwnPairs(len(self.beads[0]), observable.bins) if self.alone() else None
+
+    def alone(self) -> bool:
+        """Whether all molecules of one kind are looked at, and know nothing of one another."""
+        of, groups = default_of(self.case, self.observable.of), self.first
+        whole = len(groups) == 1 and len(self.beads[0]) == groups[0].number > 1
+        return whole and not self.second and strangers(self.case, of, groups)
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
@@ -144,6 +156,28 @@ class RadialDistributionAccumulator(BlockAccumulator):
             beyond = self.counts(fluid, self.near) / shells(self.near, self.case.box.dimension)
             found = np.concatenate([found, beyond])
         self.blocks.add(found * self.box.prod() / self.number())
+        if self.own is not None:
+            places = self.places(fluid, self.first, self.beads)[0]
+            molecules = places.reshape(*self.beads[0].shape, -1)
+            self.own.add(molecules, self.box, self.edges)
+
+    def state(self) -> State:
+        """All it has to remember."""
+        own = {} if self.own is None else pack(own=self.own)
+        return super().state() | own
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from `state()`."""
+        super().restore(state)
+        if self.own is not None:
+            self.own.restore(unpack(state, "own"))
+
+    def pool(self, other: BlockAccumulator) -> None:
+        """Take in the samples of an independent run of the same case: only to read."""
+        assert isinstance(other, RadialDistributionAccumulator)
+        super().pool(other)
+        if self.own is not None and other.own is not None:
+            self.own.pool(other.own)
 
     def number(self) -> float:
         """Pairs that there are at any distance, of all molecules and not only the sample."""
@@ -192,7 +226,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
             name=self.name,
             x={"r": (self.edges[1:] + self.edges[:-1]) / 2},
             value=found.value,
-            error=_unless_fixed(found.value, found.error),
+            error=_unless_fixed(found.value, self.errors(found, np.eye(len(self.shells)))),
             label="g(r)",
             units={"value": "", "r": "a"},
             expected=None if expected is None else np.full(len(self.shells), expected),
@@ -206,6 +240,18 @@ class RadialDistributionAccumulator(BlockAccumulator):
         """g in the bins."""
         found, bins = of_mean(self.blocks), len(self.shells)
         return found._replace(value=found.value[:bins], residuals=found.residuals[:, :bins])
+
+    def errors(self, found: Estimate, combine: Array) -> Array:
+        """Standard errors (n,) of linear combinations (n, bins) of g: in a short run those of the
+        scatter of pairs, where they are larger."""
+        if not self.blocks.count:
+            return np.full(len(combine), np.nan)
+        error = found.linear(combine).error
+        if self.own is None or not self.short_run():
+            return error
+        scale = self.box.prod() / (self.number() * self.shells)
+        least = self.own.error(combine * scale, self.observable.pairs == "all")
+        return np.where(np.isnan(error), error, np.fmax(error, least))
 
     def expected(self) -> float | None:
         """1 of what is independent of all others; None within molecules, and with potentials."""
@@ -222,7 +268,7 @@ class RadialDistributionAccumulator(BlockAccumulator):
         found, about = self.means(), self.number() / _size(self.first)
         density = about * (1 if self.second else 2) / float(self.box.prod())
         weights = density * self.shells
-        value, error = found.scalar(weights @ found.value, weights)
+        value, error = float(weights @ found.value), self.errors(found, weights[None])[0]
         error = float(_unless_fixed(value, error))
         known = np.nan if expected is None else expected * float(weights.sum())
         short = self.short_run()
@@ -233,7 +279,8 @@ class RadialDistributionAccumulator(BlockAccumulator):
             note = f"at r = {(self.edges[top] + self.edges[top + 1]) / 2:.3g}"
             note = "; ".join(filter(None, (note, short)))
             height = float(found.value[top])
-            error = float(_unless_fixed(height, found.error[top]))
+            each = self.errors(found, np.eye(len(self.shells)))
+            error = float(_unless_fixed(height, each[top]))
             listed.append(Comparison("largest g(r)", height, error, note=note))
         if self.theory is not None and len(self.near):
             listed.append(self.contact(self.theory))

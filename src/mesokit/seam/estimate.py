@@ -13,10 +13,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.statistics import Blocks, plateau, plateau_error
+from mesokit.statistics import Blocks, independent_error, plateau, plateau_error
 
 Array = NDArray[np.floating[Any]]
 SURE = 2.0  # standard errors from zero, within which nothing is divided by a number
+SEEN = 1 / 16  # of the run: blocks of time, eight at least, hold two products that span it
 DIVISOR = "its divisor is within two standard errors of zero"
 
 
@@ -25,21 +26,30 @@ class Estimate(NamedTuple):
     whether one block may take back what another has added (see `plateau_error`).
 
     Blocks are of time, or groups of particles. With groups, `in_time` is the same value in blocks
-    of time: those see what all particles do together, groups see what outlasts the run."""
+    of time: those see what all particles do together, groups see what outlasts the run. `spans`
+    (*shape) of the latter are the parts of the run over which the products of each value reach."""
 
     value: Array
     residuals: Array
     weights: Array
     falling: bool = False
     in_time: Estimate | None = None
+    spans: Array | None = None
 
     @property
     def error(self) -> Array:
         """Standard error, (*shape): of blocks, or the one of groups and time that counts."""
-        groups = plateau_error(self.residuals, self.weights, self.falling)
         if self.in_time is None:
-            return groups
-        return of_both(groups, *plateau(self.in_time.residuals, self.in_time.weights))
+            return plateau_error(self.residuals, self.weights, self.falling)
+        groups = independent_error(self.residuals, self.weights)
+        times, reached = plateau(self.in_time.residuals, self.in_time.weights)
+        if self.in_time.spans is not None:
+            reached = reached & (self.in_time.spans <= SEEN)
+        return of_both(groups, times, reached)
+
+    def part(self, use: slice) -> Estimate:
+        """Some of the values (n,), of blocks alone."""
+        return self._replace(value=self.value[use], residuals=self.residuals[:, use])
 
     def divided(self, number: float) -> Estimate:
         """The value divided by a number."""
@@ -56,7 +66,15 @@ class Estimate(NamedTuple):
             residuals=self.residuals @ matrix.T,
             weights=per_block(self.weights),
             in_time=None if self.in_time is None else self.in_time.linear(matrix),
+            spans=None if self.spans is None else self.mean_spans(matrix),
         )
+
+    def mean_spans(self, matrix: Array) -> Array:
+        """Spans (p,) of linear combinations: each value weighs by the scatter that it adds."""
+        assert self.spans is not None
+        added = np.abs(matrix) * np.sqrt((self.residuals**2).sum(axis=0))
+        total = added.sum(axis=1)
+        return np.asarray(added @ self.spans / np.where(total > 0, total, 1.0))
 
     def scalar(
         self,

@@ -1,6 +1,6 @@
 """Running averages, correlations and fits, each with an honest error bar, in bounded memory."""
 
-from mesokit.statistics.blocking import blocking_error, plateau, plateau_error
+from mesokit.statistics.blocking import blocking_error, independent_error, plateau, plateau_error
 from mesokit.statistics.blocks import Blocks
 from mesokit.statistics.fit import (
     ChiSquare,
@@ -39,6 +39,7 @@ __all__ = [
     "chi_square",
     "deviation",
     "dominant_frequency",
+    "independent_error",
     "mean_frequency",
     "mean_spectrum",
     "plateau",

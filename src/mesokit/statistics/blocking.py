@@ -95,6 +95,22 @@ def plateau(
     return np.asarray(error), np.asarray(reached)
 
 
+def independent_error(residuals: ArrayLike, weights: ArrayLike) -> NDArray[np.float64]:
+    """Standard error of an estimate from what independent parts contribute to its deviation.
+
+    Such parts are groups of particles: they have no order, so that merging neighbours would only
+    let chance raise the error. Parameters and result: those of `plateau_error`.
+
+    >>> round(float(independent_error(np.repeat([1.0, -1.0], 8) / 16, np.ones(16))), 4)
+    0.2582
+    """
+    residuals, weights = np.asarray(residuals, float), np.asarray(weights, float)
+    weights = weights.reshape(weights.shape + (1,) * (residuals.ndim - weights.ndim))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        number, error = _level(residuals, weights)
+    return np.where(number > FEWEST_BLOCKS - _SLACK, error, np.nan)
+
+
 def _level(
     residuals: NDArray[np.float64], weights: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -130,7 +130,8 @@ class Origins:
             [one.in_time[:, : -(-one.added // one.block_length)] for one in (self, *self.others)],
             axis=1,
         )[:, :, reached]
-        return Estimate(value, (sums - value * counts) / counts.sum(axis=0), counts)
+        residuals = (sums - value * counts) / counts.sum(axis=0)
+        return Estimate(value, residuals, counts, spans=self.lags[reached] / self.added)
 
     def state(self) -> State:
         """All it has to remember."""

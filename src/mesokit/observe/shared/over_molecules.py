@@ -13,6 +13,8 @@ from mesokit.seam.estimate import Array, of_mean
 from mesokit.seam.observable import State, pack, unpack
 from mesokit.statistics import Blocks, student
 
+ROUNDING = 1e-9  # of the scatter of molecules: what they have together never changed
+
 
 class OwnMeans:
     """Each molecule's own mean over the run, of groups of them where there are many.
@@ -95,12 +97,14 @@ class MeansOverMolecules:
 
     Two error bars are kept, and the larger counts: blocks of time see what all molecules do
     together, the scatter of the molecules' own means sees what takes longer than the run, such as
-    a chain that is caught behind an obstacle.
+    a chain that is caught behind an obstacle. What all there is has together may be conserved,
+    however: where blocks of time differ by rounding alone, nothing else is uncertain.
 
     Parameters
     ----------
     molecules: how many.
     width: numbers of each.
+    everything: whether they are all there is.
 
     >>> means = MeansOverMolecules(8, 1)
     >>> for time in range(16):
@@ -109,8 +113,9 @@ class MeansOverMolecules:
     ([3.5], [0.93])
     """
 
-    def __init__(self, molecules: int, width: int) -> None:
+    def __init__(self, molecules: int, width: int, everything: bool = False) -> None:
         self.blocks, self.own = Blocks((width,)), OwnMeans(molecules, width)
+        self.everything = everything
 
     def add(self, each: Array) -> None:
         """Take one sample, (molecules, width)."""
@@ -143,8 +148,10 @@ class MeansOverMolecules:
         found = of_mean(self.blocks)
         if combine is not None:
             found = found.linear(combine)
-        error = found.error
-        return np.where(np.isnan(error), error, np.fmax(error, self.own.error(combine)))
+        error, own = found.error, self.own.error(combine)
+        if self.everything:
+            own = np.where(error <= ROUNDING * own, ROUNDING * own, own)
+        return np.where(np.isnan(error), error, np.fmax(error, own))
 
     def caution(self) -> str:
         """What to say of error bars that blocks of time alone give."""

@@ -81,7 +81,8 @@ class MoleculeTracksAccumulator:
         width = self.number * len(self.components)
         self.rows = min(MOST_ROWS, 2 * max(NUMBERS // width // 2, 1))
         self.series = TimeSeries(width, self.rows)
-        self.means = MeansOverMolecules(self.number, 3 + self.dimension)
+        everything = self.beads.size == case.particles and case.solutes is None
+        self.means = MeansOverMolecules(self.number, 3 + self.dimension, everything)
 
     @property
     def components(self) -> list[str]:

@@ -14,6 +14,7 @@ from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected.compression import unit_cell
 from mesokit.method.mpcd.expected.ideal import drift_of, flow_axis, flow_sign
 from mesokit.method.mpcd.expected.molecules import KIND, group_of
+from mesokit.method.mpcd.observe.shared.durations import sum_error
 from mesokit.method.mpcd.observe.shared.events import (
     EventAccumulator,
     Words,
@@ -82,7 +83,7 @@ class TransitTimeAccumulator(EventAccumulator):
         self.axis = observable.axis_of(case)
         self.sign = flow_sign(case, self.axis)
         self.length = observable.length or unit_cell(case, self.axis)
-        self.velocity = MeansOverMolecules(len(self.beads), 1)
+        self.velocity = MeansOverMolecules(len(self.beads), 1, self.everything)
 
     def observe(self, fluid: RunningFluid) -> None:
         """Take one sample."""
@@ -145,13 +146,21 @@ class TransitTimeAccumulator(EventAccumulator):
 
         The last, unfinished one is more often a long one. Of n transits one after the other that
         makes the mean short by its variance over n times its square, to the first order in 1/n.
+        Where transits are few, that scatters as their number does: blocks of time see the mean
+        alone, groups of molecules all of it, and the larger error counts.
         """
         value, error = self.durations.mean()
         lasted = self.durations.lasted
         if not self.durations.number:
             return value, error
-        more = 1 + lasted.var() / value**2 * self.followed / self.durations.number
-        return value * more, error * more
+        square, each = float((lasted**2).mean()), self.followed / self.durations.number
+        more = 1 + lasted.var() / value**2 * each
+        powers = np.stack([lasted, lasted**2, np.ones(len(lasted))], axis=1) / len(lasted)
+        groups = self.durations.by_molecule(powers, [len(self.beads), *(n for n, _ in self.others)])
+        by_mean = 1 - each * (square / value**2 + 1)
+        by_number = -value * by_mean - each * (2 * square / value - value)
+        scatter = sum_error(groups @ [by_mean, each / value, by_number])
+        return value * more, max(error * more, scatter)
 
     def comparisons(self, speed: float, note: str) -> Iterator[Comparison]:
         """Mean time, number, and the velocity that must agree with it."""

@@ -19,7 +19,7 @@ from mesokit.method.mpcd.expected.molecules import (
 )
 from mesokit.method.mpcd.molecule import FLUID
 from mesokit.method.mpcd.observe.shared.bonded_decay import BondedLaw, fit_bonded
-from mesokit.method.mpcd.observe.shared.decay import fit_curve, normalised
+from mesokit.method.mpcd.observe.shared.decay import fit_curve, largest_error, normalised
 from mesokit.method.mpcd.observe.shared.modes import (
     SHOWN,
     Array,
@@ -183,17 +183,18 @@ class TransverseModesAccumulator(ModesAccumulator):
             law = self.bonded_law(time, finite)
             if law is None:
                 break
-            for i, k in enumerate(self.wavenumbers[:SHOWN]):
+            for i, (k, _, correlator) in enumerate(self.shells[:SHOWN]):
                 drowned = np.flatnonzero(~(np.abs(value[:, i]) > DROWNED * error[:, i]))
                 end = drowned[drowned > FIRST][:1]
-                use = slice(0, int(end[0]) if len(end) else len(time))
+                _, curve = normalised(correlator)
+                use = slice(0, min(int(end[0]) if len(end) else len(time), len(curve.value)))
                 off = value[use, i] - law[use, i]
                 worst = int(np.argmax(np.abs(off)))
                 found.append(
                     Comparison(
                         f"largest deviation at k = {k:.4g}/a, {name}",
                         float(off[worst]),
-                        float(error[worst, i]),
+                        largest_error(off, curve.part(use)),
                         0.0,
                         "",
                         f"at {time[worst]:.3g} tau",

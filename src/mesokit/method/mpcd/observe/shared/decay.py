@@ -12,6 +12,8 @@ from mesokit.seam.estimate import Estimate
 from mesokit.statistics import MultipleTau
 
 Array = NDArray[np.floating[Any]]
+DRAWS = 400  # of noise
+BEYOND = 1.4  # times the root mean square of the largest of noise: what is none of it
 
 
 def normalised(correlator: MultipleTau) -> tuple[NDArray[np.int64], Estimate]:
@@ -38,6 +40,22 @@ def normalised(correlator: MultipleTau) -> tuple[NDArray[np.int64], Estimate]:
         return np.zeros(0, np.int64), Estimate(np.zeros(0), np.zeros((0, 0)), weights)
     joined = Estimate(np.concatenate(values), np.concatenate(residuals, axis=1), weights)
     return np.concatenate(lags), joined
+
+
+def largest_error(off: Array, curve: Estimate) -> float:
+    """Standard error of the largest of the deviations (n,) of a curve from theory.
+
+    Which one is the largest is chance as well: of noise alone it scatters more than any that is
+    chosen beforehand. Such noise, with the scatter of the blocks, is drawn many times. A deviation
+    that is none of it has its own error.
+    """
+    error = curve.error
+    alone = np.sqrt((curve.residuals**2).sum(axis=0))
+    scale = np.divide(error, alone, out=np.zeros_like(alone), where=alone > 0)
+    draws = np.random.default_rng(1).normal(size=(DRAWS, len(curve.residuals)))
+    noise = np.abs(draws @ (curve.residuals * scale)).max(axis=1)
+    by_chance, worst = float(np.sqrt((noise**2).mean())), int(np.argmax(np.abs(off)))
+    return float(error[worst]) if abs(off[worst]) > BEYOND * by_chance else by_chance
 
 
 def fit_curve(

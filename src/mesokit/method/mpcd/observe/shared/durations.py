@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.observe.shared.origins import GROUPS
 from mesokit.seam.estimate import Array, Estimate, of_ratio
 from mesokit.seam.observable import State, pack
+from mesokit.statistics import student
 
 MOST = 2**16  # events kept; every other one is dropped when they are full
 PARTS = 64  # of the time of a run, for error bars
@@ -117,6 +119,18 @@ class Durations:
         runs = zip(self.every, ends, numbers, strict=True)
         return np.concatenate([in_parts(run.span, end, n) for run, end, n in runs])
 
+    def by_molecule(self, of: Array, molecules: Sequence[int]) -> Array:
+        """The same of the molecules of each group (groups, n), whenever the events end.
+
+        `molecules`: of each run.
+        """
+        groups = np.minimum(GROUPS, molecules)
+        firsts = np.cumsum(groups) - groups
+        runs = zip(self.every, groups, firsts, strict=True)
+        sums = np.zeros((groups.sum(), of.shape[1]))
+        np.add.at(sums, np.concatenate([r.who[r.whole] % n + first for r, n, first in runs]), of)
+        return sums
+
     def mean(self) -> tuple[float, float]:
         """Mean duration and its standard error; nan without events, the error with too few."""
         if not len(self.lasted):
@@ -152,6 +166,17 @@ def in_parts(span: Array, ends: Array, of: Array) -> Array:
     sums = np.zeros((PARTS, of.shape[1]))
     np.add.at(sums, np.searchsorted(edges, ends, side="right"), of)
     return sums
+
+
+def sum_error(parts: Array) -> float:
+    """Standard error of the sum of independent parts (n,) that are alike.
+
+    >>> round(sum_error(np.array([1.0, 3.0] * 8)), 2)  # 4 of a scatter of 1, by Student's factor
+    4.27
+    """
+    if len(parts) < 2:
+        return np.nan
+    return float(student(len(parts)) * parts.std(ddof=1) * np.sqrt(len(parts)))
 
 
 def ratio(sums: Array) -> tuple[float, float]:

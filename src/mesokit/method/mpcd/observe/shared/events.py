@@ -40,6 +40,7 @@ class EventAccumulator:
         self.case, self.words, self.name, self.kind = case, words, words.name, kind
         self.group = group_of(case, of, kind)
         self.beads = self.group.beads(molecules)
+        self.everything = self.beads.size == case.particles and case.solutes is None
         self.durations, self.now = Durations(), dict[str, NDArray[Any]]()
         self.samples_here = 0
         self.others: list[tuple[int, int]] = []  # molecules and samples of pooled runs
