@@ -99,6 +99,8 @@ def draw(
             _draw(ax, curve, number, note, scales)
             if fit is not None:
                 _draw_fit(ax, curve, number, fit)
+            for what, some in curve.cautions:
+                _caution(ax, curve, what, some)
         _leave_out_wild(ax, curves, scales[1])
         for axis in (ax.xaxis, ax.yaxis):
             if axis.get_scale() == "log":
@@ -171,8 +173,6 @@ def _draw(ax: Any, curve: Curve, number: int, note: str, scales: tuple[bool, boo
         label = ", ".join(filter(None, [curve.label, "each run"]))
         ax.plot(*curve.seeds[:, :2].T, "o", label=label, **dots)
     _say(ax, curve, np.isnan(curve.value), "undetermined at")
-    for what, some in curve.cautions:
-        _caution(ax, curve, what, some)
     known = np.isfinite(curve.expected)
     if known.any():
         label = f"{curve.theory}, {curve.label}" if curve.label else curve.theory
