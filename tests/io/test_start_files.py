@@ -341,7 +341,9 @@ def test_lengths_of_arrays_are_scaled(tmp_path, kind):
     mpcd = make_case(size, density=0.5, start=Start(positions=places, velocities=speeds, scale=2.5))
     np.testing.assert_allclose(first_state(mpcd)[:2], scale * np.stack([r, v]), atol=1e-12)
     birds = FlockStart(positions=places, scale=2.5)
-    flock = Case(run=Run(steps=1, method="flock"), box=Box(size), flock=Flock(number=60, start=birds))
+    flock = Case(
+        run=Run(steps=1, method="flock"), box=Box(size), flock=Flock(number=60, start=birds)
+    )
     walkers = Brownian(density=0.5, positions=places, scale=2.5)
     brownian = Case(run=Run(steps=1, method="brownian"), box=Box(size), brownian=walkers)
     np.testing.assert_allclose(birds_at(flock, {}).positions, scale * r, atol=1e-12)
