@@ -19,8 +19,12 @@ from mesokit import Study
 from mesokit.cli import main
 from mesokit.errors import CaseError, RunError
 from mesokit.method.mpcd.expected import setting
+from mesokit.observe.shared.result import Comparison
 from mesokit.study import local
+from mesokit.study.axes import Axis
 from mesokit.study.drive import StudyReporter
+from mesokit.study.plot import plot
+from mesokit.study.table import Pooled
 
 FORCE = "fluid.force.acceleration"
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "studies"
@@ -471,3 +475,17 @@ def test_dask(case_file, tmp_path, study):
     assert [run.files.results for run in other.runs] == [
         run.files.results for run in study.runs if run.seed == 5
     ]
+
+
+def test_legends_say_what_theory_is_in_the_words_of_the_field():
+    note = "independent of slip; error bar is a lower bound: short"
+    numbers = [Comparison("viscosity", 0.5 * k, 0.1, 0.6 * k**2, "a^2/tau", note) for k in (1, 2)]
+    rows = [
+        Pooled({FORCE: 0.1 * c.expected}, "velocity-profile", "viscosity", c, (c,), 1, 0.1, None)
+        for c in numbers
+    ]
+    axes = [Axis.parse(f"{FORCE}=0.06,0.24")]
+    figure = plot(rows, axes, FORCE, "velocity-profile.viscosity")
+    labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert labels[0].startswith("theory, independent of slip")
+    assert "error bar is a lower bound at all points" in labels

@@ -195,7 +195,7 @@ def _poiseuille(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
             error,
             acc.expected_viscosity(),
             VISCOSITY,
-            noted(value, setting.caveat(acc.case), short) or "whatever the slip",
+            noted(value, setting.caveat(acc.case), short) or "independent of slip",
         )
     ]
     quarter = acc.edges[-1] ** 2 / 4

@@ -133,7 +133,7 @@ def _theory(numbers: Sequence[Comparison]) -> str:
         return "theory, approximate"
     parts = numbers[0].note.split("; ")
     name = "; ".join(part for part in parts if "lower bound" not in part)
-    return f"theory: {name}" if 0 < len(name) < SHORT else "theory"
+    return f"theory, {name}" if 0 < len(name) < SHORT else "theory"
 
 
 def _word(value: Any) -> str:

@@ -72,4 +72,4 @@ class Velocities:
         """What to say of it."""
         if self.driven:
             return "approximate: Maxwell about a mean flow"
-        return setting.temperature_note(self.case) or f"{classes} classes"
+        return setting.temperature_note(self.case) or f"Maxwell, {classes} classes"
