@@ -479,3 +479,33 @@ def test_results_of_another_shape(folder: Path, capsys) -> None:
         del file["results"][name]
         file["results"][name] = np.arange(3)
     assert "run.h5: damaged" in refusal(capsys, "info", "run")
+
+
+@pytest.mark.parametrize("text", [None, "{}", " {}\n"])
+@pytest.mark.parametrize("more", [[], ["--steps", "30"]])
+def test_a_lost_record_is_told_and_begun_anew(
+    text, more: list[str], folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    record = folder / "run" / "provenance.json"
+    record.unlink() if text is None else record.write_text(text)
+    how = "missing" if text is None else "empty"
+    said = f"warning: run/provenance.json: {how}: what made this run is not known"
+    main_ends(["info", "run"])
+    assert f"\n  {said}\n" in capsys.readouterr().out
+    main_ends(["resume", "run", "--quiet", *more])
+    assert capsys.readouterr().err == f"{said}; going on with a fresh record\n"
+    assert {"versions", "case", "seed"} <= set(json.loads(record.read_text()))
+    main_ends(["info", "run"])
+    assert "not known" not in capsys.readouterr().out
+
+
+def test_a_run_that_has_not_begun_lacks_no_record(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for file in (folder / "run").iterdir():
+        if file.is_file() and file.name != "case.toml":
+            file.unlink()
+    main_ends(["info", "run"])
+    main_ends(["resume", "run", "--quiet"])
+    said = capsys.readouterr()
+    assert "not known" not in said.out and said.err == ""

@@ -12,9 +12,13 @@ import numpy as np
 import pytest
 from laboratory import make_case, make_fluid
 
-from mesokit import Harmonic, Plates
+from mesokit import Box, Case, Harmonic, Plates, Run
 from mesokit.cli import main
 from mesokit.errors import CaseError
+from mesokit.method.brownian.method import first_state as walkers_at
+from mesokit.method.brownian.section import Brownian
+from mesokit.method.flock.section import Flock, FlockStart
+from mesokit.method.flock.start import first_state as birds_at
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.species import Species
 from mesokit.method.mpcd.start.first_state import first_state
@@ -320,8 +324,36 @@ def test_lengths_of_a_file_are_scaled(tmp_path):
     places, speeds = first_state(case)[:2]
     np.testing.assert_allclose(places, 4 * r, atol=1e-12)
     np.testing.assert_allclose(speeds, 4 * v, atol=1e-12)
-    with pytest.raises(CaseError, match=r"scale = 4: only with a file of another program"):
+    with pytest.raises(CaseError, match=r"scale = 4: only with file, positions or velocities"):
         Start(run="a", scale=4.0)
+
+
+@pytest.mark.parametrize("kind", ["npy", "npz", "whole numbers"])
+def test_lengths_of_arrays_are_scaled(tmp_path, kind):
+    """As those of a file of another program: places and velocities alike."""
+    size, scale = (12, 10), 2.5
+    r, v = np.random.default_rng(5).random((2, 60, 2)) * np.array(size) / scale
+    r, v = (r, v) if kind != "whole numbers" else (np.floor(r).astype(int), np.floor(v).astype(int))
+    paths = [tmp_path / f"{name}.{'npz' if kind == 'npz' else 'npy'}" for name in "rv"]
+    for path, array in zip(paths, (r, v), strict=True):
+        np.savez(path, a=array) if kind == "npz" else np.save(path, array)
+    places, speeds = map(str, paths)
+    mpcd = make_case(size, density=0.5, start=Start(positions=places, velocities=speeds, scale=2.5))
+    np.testing.assert_allclose(first_state(mpcd)[:2], scale * np.stack([r, v]), atol=1e-12)
+    birds = FlockStart(positions=places, scale=2.5)
+    flock = Case(
+        run=Run(steps=1, method="flock"), box=Box(size), flock=Flock(number=60, start=birds)
+    )
+    walkers = Brownian(density=0.5, positions=places, scale=2.5)
+    brownian = Case(run=Run(steps=1, method="brownian"), box=Box(size), brownian=walkers)
+    np.testing.assert_allclose(birds_at(flock, {}).positions, scale * r, atol=1e-12)
+    np.testing.assert_allclose(walkers_at(brownian, {}), scale * r, atol=1e-12)
+
+
+def test_scales_of_nothing_are_refused():
+    for made in (Start, FlockStart, Brownian):
+        with pytest.raises(CaseError, match=r"scale = 2: only with "):
+            made(scale=2.0)
 
 
 def test_two_states_are_refused():

@@ -13,6 +13,7 @@ from fake_fluid import FakeFluid
 from mesokit import (
     Box,
     Case,
+    Disk,
     FlowRate,
     Fluid,
     Plates,
@@ -24,10 +25,13 @@ from mesokit import (
 )
 from mesokit.io.tables import record
 from mesokit.observe.shared.build_up import result_of
+from mesokit.observe.shared.caveats import with_those_of
 from mesokit.report.caption import compared
 from mesokit.run.opened import RunFiles
 from mesokit.seam.method import summary_of
-from mesokit.seam.result import Result
+from mesokit.seam.observable import Accumulator
+from mesokit.seam.result import Comparison, Result
+from mesokit.study.axes import Axis
 from mesokit.study.merge import merge
 
 NOTE = "not steady: the flow needs "
@@ -107,22 +111,12 @@ def test_what_is_lacking_is_the_mean_of_an_exponential():
     assert BuildUp(200.0, 600, 50).lacks(1000) == pytest.approx(sum(steps) / 1000, rel=0.01)
 
 
-def with_a_speed_that(grows: float) -> Result:
-    """The rate of a flow whose speed grows by so much over the samples, beside noise."""
-    case = dataclasses.replace(flow(4000, 2000), observe=[FlowRate(every=10)])
-    accumulator, fluid = case.observe[0].accumulator(case), FakeFluid(case)
-    noise = np.random.default_rng(7).normal(0, 0.02, 400)
-    for n in range(400):
-        fluid.step = 2000 + 10 * (n + 1)
-        speed = 0.1 + grows * n / 400 + noise[n]
-        fluid.totals = lambda v=speed: (fluid.n, fluid.m.sum() * np.array([v, 0.0]), 0.0)
-        accumulator.observe(fluid)
-    return result_of(accumulator, case)
-
-
 def test_a_flow_that_still_changes_is_not_compared():
     """By the samples themselves, whatever the warm-up."""
-    (first, *_), steady = (with_a_speed_that(grows).comparisons for grows in (0.1, 0.0))
+    (first, *_), steady = (
+        result_of(one, one.case).comparisons
+        for one in (rate_with_a_speed_that(grows, 7) for grows in (0.1, 0.0))
+    )
     assert first.note.startswith("not steady: mean velocity along x 0.12")
     assert "in the first half, 0.17" in first.note and math.isnan(first.deviation)
     assert all(one.steady for one in steady) and math.isfinite(steady[0].deviation)
@@ -134,3 +128,72 @@ def test_json_of_info_is_json(early):
         capture_output=True, text=True, timeout=300,
     )  # fmt: skip
     assert json.loads(said.stdout)
+
+
+def rate_with_a_speed_that(grows: float, seed: int) -> Accumulator:
+    """The memory of a flow rate whose speed grows by so much over the samples, beside noise."""
+    case = dataclasses.replace(flow(4000, 2000), observe=[FlowRate(every=10)])
+    accumulator, fluid = case.observe[0].accumulator(case), FakeFluid(case)
+    noise = np.random.default_rng(seed).normal(0, 0.02, 400)
+    for n in range(400):
+        fluid.step = 2000 + 10 * (n + 1)
+        speed = 0.1 + grows * n / 400 + noise[n]
+        fluid.totals = lambda v=speed: (fluid.n, fluid.m.sum() * np.array([v, 0.0]), 0.0)
+        accumulator.observe(fluid)
+    return accumulator
+
+
+@pytest.mark.parametrize(("grows", "said"), [(0.08, True), (0.0, False)])
+def test_pooled_runs_that_still_change_are_not_compared(grows, said):
+    one, *others = (rate_with_a_speed_that(grows, seed) for seed in (3, 4, 5))
+    for other in others:
+        one.pool(other)
+    found = result_of(one, one.case).comparisons
+    assert [c.note.startswith("not steady: mean velocity") for c in found] == [said] * len(found)
+
+
+def test_a_study_takes_over_what_its_runs_say_of_themselves(tmp_path):
+    """An obstacle in the way, of whose flow no theory knows how long it takes to build up."""
+    case = dataclasses.replace(
+        flow(800, 0),
+        box=Box([32, 32]),
+        fluid=Fluid(force=Uniform([0.02, 0.0])),
+        walls=[Disk([16, 16], 4)],
+        observe=[FlowRate(every=5)],
+    )
+    study = Study(case, [Axis.parse("fluid.density=9,11")], 2, output=tmp_path / "study")
+    study.run(threads=1)
+    rows = study.table()
+    assert all(one.note.startswith("not steady") for row in rows for one in row.each)
+    assert all(row.number.note.startswith("not steady") for row in rows)
+    number = "flow-rate.mean-velocity-along-x"
+    legend = study.plot("fluid.density", number).axes[0].get_legend()
+    assert "not steady at all points" in [text.get_text() for text in legend.get_texts()]
+    page = study.report().read_text()
+    assert page.count("not steady: mean velocity along x") >= len(rows)
+    assert study.to_csv().read_text().count("not steady") == len(rows)
+    merged = study.merged(1).record()
+    assert not any(one["steady"] for one in merged["comparisons"])
+
+
+def numbers_with(*notes: str) -> list[Result]:
+    """One number of several runs, or of all of them."""
+    return [
+        Result("flow-rate", "flow-rate", {}, 0.1, 0.01, "v", {}, comparisons=(one,))
+        for one in (Comparison("rate", 0.1, 0.01, 0.101, "a/tau", note) for note in notes)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("pooled", "runs", "note"),
+    [
+        ("", ["", "not steady: 2 in the first half, 3 in the second; a law"], "not steady: 2 in"),
+        ("a law", ["approximate: ideal gas; p = 0.3", ""], "approximate: ideal gas; a law"),
+        ("a law", ["error bar is a lower bound: short"] * 2 + [""], "a law; error bar is a lower"),
+        ("a law", ["error bar is a lower bound: short", "", ""], "a law"),
+        ("not steady: all", ["not steady: 1", "error bar is a lower bound: 2"], "not steady: all"),
+    ],
+)  # fmt: skip
+def test_pooled_numbers_have_the_caveats_of_runs(pooled, runs, note):
+    (found,) = with_those_of(*numbers_with(pooled), numbers_with(*runs)).comparisons
+    assert found.note.startswith(note) and ("law" in found.note) == ("law" in pooled)

@@ -5,6 +5,15 @@ import dataclasses
 import numpy as np
 import pytest
 
+from mesokit import (
+    Box,
+    Case,
+    CellOccupancy,
+    Run,
+    Simulation,
+    TemperatureProfile,
+    VelocityDistribution,
+)
 from mesokit.observe.shared.short_run import NOTE, bounded
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
@@ -40,3 +49,24 @@ def test_a_note_is_kept_and_no_second_bound_is_added():
         slow.blocks.add(np.full(3, 0.01 * step))
     assert slow.result("approximate: chaos").note == f"approximate: chaos; {NOTE}"
     assert slow.result("error bar is a lower bound: so").note == "error bar is a lower bound: so"
+
+
+@pytest.mark.parametrize(("samples", "few"), [(40, True), (90, True), (600, False)])
+def test_chi_square_of_few_samples_says_so(samples, few):
+    mean = Mean(0.1, samples, seed=4)
+    plain, chi = (dataclasses.replace(mean.result(), what=what) for what in ("mean", "chi-square"))
+    result = Result("c", "c", {}, 1.0, 0.1, "c", {}, comparisons=(plain, chi))
+    plain, chi = bounded(result, mean).comparisons
+    assert plain.note == "" and (f"of {samples} samples" in str(chi)) is few
+    for other in range(3):  # many runs are many samples
+        mean.blocks.pool(Mean(0.1, 50, seed=other).blocks)
+    assert (f"of {samples + 150} samples" in str(bounded(result, mean).comparisons[1])) is False
+
+
+def test_chi_squares_of_observables_are_those():
+    observed = [VelocityDistribution(every=4), CellOccupancy(every=4), TemperatureProfile("y")]
+    simulation = Simulation(Case(run=Run(steps=120), box=Box([16, 16]), observe=observed))
+    simulation.run()
+    found = [c for one in simulation.results.values() for c in one.comparisons]
+    chi = [c for c in found if "chi-square" in c.what]
+    assert len(chi) >= 4 and all("samples, which may be correlated" in str(c) for c in chi)

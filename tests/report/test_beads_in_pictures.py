@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 from flows import MAPS, results_of
 from laboratory import make_case
+from matplotlib.colors import to_rgb
 
 from mesokit import WCA, Harmonic, Plates
 from mesokit.errors import RunError
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.report.flow import animate, picture, usual
-from mesokit.report.flow.beads import BeadFrames
+from mesokit.report.flow.beads import BeadFrames, look
 from mesokit.report.flow.fluid_bonds import FluidBonds
 from mesokit.report.flow.source import sources
 from mesokit.report.style import COLOURS
@@ -109,9 +110,9 @@ def test_they_are_drawn_over_every_panel(kind):
         for line in ax.lines:
             if line.get_color() in COLOURS:
                 places.setdefault(line.get_color(), []).extend(map(tuple, line.get_xydata()))
-        chain = sorted(places[COLOURS[2]])
+        chain = sorted(places[COLOURS[3]])
         np.testing.assert_allclose(chain, [(0.3, 0.2), (1.0, 0.8), (11.5, 9.5)])
-        assert len(places[COLOURS[1]]) == 2 and len(places[COLOURS[3]]) == 4
+        assert len(places[COLOURS[1]]) == 2 and len(places[COLOURS[4]]) == 4
     said = " ".join(text.get_text() for text in reversed(figure.texts))
     assert r"solutes at $t=0\,\tau$" in said
 
@@ -133,9 +134,16 @@ def test_kinds_have_a_legend_and_marks_of_their_own():
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.get_texts()] == ["kind 1", "kind 2", "kind 3"]
     marks = {line.get_color(): line.get_marker() for line in figure.axes[0].lines}
-    assert len({marks[colour] for colour in COLOURS[1:4]}) == 3
+    assert len({marks[colour] for colour in {look(kind, 0, False)[0] for kind in range(3)}}) == 3
     figure.canvas.draw()
     assert legend.get_window_extent().y1 < figure.axes[0].get_window_extent().y0
+
+
+def test_one_chain_and_the_next_differ_in_grey():
+    colours = [look(0, molecule, True)[0] for molecule in range(len(COLOURS))]
+    grey = np.array([to_rgb(colour) for colour in colours]) @ [0.299, 0.587, 0.114]
+    assert len(set(colours)) == len(COLOURS)
+    assert (abs(np.diff(grey)) > 0.13).all()
 
 
 def test_chains_of_one_kind_are_told_apart_and_those_behind_are_paler():
@@ -152,7 +160,7 @@ def test_chains_of_one_kind_are_told_apart_and_those_behind_are_paler():
         line for line in figure.axes[0].lines if len(line.get_xdata()) == 3
     )  # in the order in which they are drawn
     assert set(back.get_ydata()) == {2.0} and set(front.get_ydata()) == {6.0}
-    assert front.get_color() == COLOURS[2] and back.get_color() not in COLOURS
+    assert front.get_color() == COLOURS[3] and back.get_color() not in COLOURS
     assert figure.legends == []
 
 

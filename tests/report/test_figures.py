@@ -181,7 +181,7 @@ def test_captions_keep_cautions_and_say_them_once():
             Comparison("viscosity", 1.0, 0.1, 0.9, "a^2/tau", "error bar is a lower bound: short"),
             Comparison("time 1", 9.0, 0.1, 10.0, "tau", "approximate: Rouse" + 20 * "!"),
             Comparison("time 2", 8.0, 0.1, 10.0, "tau", "approximate: Rouse" + 20 * "!"),
-            Comparison("slope", 1.0, 0.1, 1.0, "", "whatever the slip"),
+            Comparison("slope", 1.0, 0.1, 1.0, "", "independent of slip"),
         ],
         6.4,
     ).splitlines()

@@ -19,8 +19,12 @@ from mesokit import Study
 from mesokit.cli import main
 from mesokit.errors import CaseError, RunError
 from mesokit.method.mpcd.expected import setting
+from mesokit.seam.result import Comparison
 from mesokit.study import local
+from mesokit.study.axes import Axis
 from mesokit.study.drive import StudyReporter
+from mesokit.study.plot import plot
+from mesokit.study.table import Pooled
 
 FORCE = "fluid.force.acceleration"
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "studies"
@@ -97,12 +101,18 @@ def test_table_pools_the_seeds(study, tmp_path):
     assert row.scatter == pytest.approx(values.std(ddof=1) / np.sqrt(3))
     assert row.seeds.dof == 2
     assert row.seeds.chi2 == pytest.approx((((values - values.mean()) / errors) ** 2).sum())
+    pandas = pytest.importorskip("pandas")
     frame = study.to_dataframe()
     with open(study.to_csv(tmp_path / "t.csv"), newline="") as file:
         lines = list(csv.DictReader(file))
     assert len(frame) == len(lines) == len(rows)
     assert float(lines[0][FORCE]) == 0.02 and lines[0]["result"] == "velocity-profile"
     assert [float(line["measured"]) for line in lines] == list(frame["measured"])
+    assert "" in {line["deviation"] for line in lines}  # no theory yet: the flow had not built up
+    assert "nan" not in {text for line in lines for text in line.values()}
+    again = pandas.read_csv(tmp_path / "t.csv")
+    numbers = ["measured", "error", "expected", "deviation", "percent", "scatter", "chi2", "p"]
+    pandas.testing.assert_frame_equal(again[numbers], frame[numbers])
 
 
 def test_pictures(study):
@@ -112,7 +122,8 @@ def test_pictures(study):
     figure = study.plot("acceleration", "flow-rate.mean", fit="line")
     labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
     assert labels[0] == "each run" and labels[1] == "theory of the steady flow, not reached"
-    assert labels[2].startswith("fit: $y = ") and labels[3].startswith("3 runs pooled")
+    assert labels[2].startswith("fit: $y = ") and labels[4].startswith("3 runs pooled")
+    assert labels[3] == "not steady at all points"
     assert figure.axes[0].get_xlabel() == r"acceleration $g$  [$a/\tau^2$]"
     [dots] = [line for line in figure.axes[0].lines if line.get_label() == "each run"]
     row = study.table()[-1]
@@ -464,3 +475,17 @@ def test_dask(case_file, tmp_path, study):
     assert [run.files.results for run in other.runs] == [
         run.files.results for run in study.runs if run.seed == 5
     ]
+
+
+def test_legends_say_what_theory_is_in_the_words_of_the_field():
+    note = "independent of slip; error bar is a lower bound: short"
+    numbers = [Comparison("viscosity", 0.5 * k, 0.1, 0.6 * k**2, "a^2/tau", note) for k in (1, 2)]
+    rows = [
+        Pooled({FORCE: 0.1 * c.expected}, "velocity-profile", "viscosity", c, (c,), 1, 0.1, None)
+        for c in numbers
+    ]
+    axes = [Axis.parse(f"{FORCE}=0.06,0.24")]
+    figure = plot(rows, axes, FORCE, "velocity-profile.viscosity")
+    labels = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert labels[0].startswith("theory, independent of slip")
+    assert "error bar is a lower bound at all points" in labels

@@ -197,6 +197,15 @@ class RunDirectory:
             raise RunError(f"{self.provenance_file}: damaged: {wrong}")
         return dict(record)
 
+    @property
+    def record_lost(self) -> str:
+        """That a run which has begun has no record, nothing if it has. Raises RunError."""
+        begun = self.checkpoint_file.exists() or self.data_file.exists()
+        if not begun or self.read_provenance():
+            return ""
+        how = "empty" if self.provenance_file.exists() else "missing"
+        return f"{self.provenance_file}: {how}: what made this run is not known"
+
     def write_provenance(self, provenance: Mapping[str, Any]) -> None:
         """Replace the provenance. Raises RunError."""
         write_text(self.provenance_file, json.dumps(provenance, indent=2) + "\n")

@@ -200,7 +200,7 @@ def _poiseuille(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
             error,
             acc.expected_viscosity(),
             VISCOSITY,
-            noted(value, setting.caveat(acc.case), short) or "whatever the slip",
+            noted(value, setting.caveat(acc.case), short) or "independent of slip",
         )
     ]
     quarter = acc.edges[-1] ** 2 / 4
@@ -216,7 +216,7 @@ def _poiseuille(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
             error,
             0.0,
             "% of the centre velocity",
-            noted(value, short) or "no slip",
+            noted(value, setting.slipping(acc.case), short) or "no slip",
         )
     )
     return basis @ parabola.value, found
@@ -234,16 +234,16 @@ def _couette(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array) -
     line = fit(velocity, basis, mass * acc.inside())
     height = acc.edges[-1]
     slope, error = line.scalar(line.value[1], np.array([0.0, 1.0]))
-    difference = upper - lower
+    difference, slips = upper - lower, setting.slipping(acc.case)
     return basis @ line.value, [
-        Comparison("shear rate", slope, error, difference / height, "1/tau"),
+        Comparison("shear rate", slope, error, difference / height, "1/tau", slips),
         Comparison(
             "slip at the walls",
             50 * (1 - slope * height / difference),
             50 * error * height / abs(difference),
             0.0,
             "% of the velocity difference",
-            "mean of both plates",
+            slips or "mean of both plates",
         ),
     ]
 

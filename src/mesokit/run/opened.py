@@ -336,6 +336,8 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         elif self.pooled:
             lines.append(f"  {self.pooled}")
         with contextlib.suppress(RunError):  # results can be read without the record
+            if lost := self.directory.record_lost:
+                lines.append(f"  warning: {lost}")
             lines += [f"  {line}" for line in work_words(self.provenance)]
             lines += [f"  warning: {words}" for words in self.provenance.get("warnings", ())]
         lines += ["  " + repr(result).replace("\n", "\n  ") for result in self.so_far().values()]

@@ -14,12 +14,15 @@ if TYPE_CHECKING:
 
 
 def earlier(directory: RunDirectory) -> dict[str, Any]:
-    """The record so far, {} if there is none; a damaged one is a warning, and begun anew."""
+    """The record so far, {} if there is none; one that is damaged or lost is a warning, and begun
+    anew."""
     try:
-        return directory.read_provenance()
+        wrong, record = directory.record_lost, directory.read_provenance()
     except RunError as error:
-        warnings.warn(f"{error}; going on with a fresh record", stacklevel=3)
-        return {}
+        wrong, record = str(error), {}
+    if wrong:
+        warnings.warn(f"{wrong}; going on with a fresh record", stacklevel=3)
+    return record
 
 
 def note_resumed(
@@ -34,7 +37,7 @@ def note_resumed(
 
 def note_longer(directory: RunDirectory, case: Case, step: int) -> None:
     """At a step it was given the length that the case has now. Raises RunError."""
-    record = earlier(directory)
+    record = earlier(directory) or provenance(case, threads=0)
     longer = [*record.get("lengthened", []), {"at": now(), "step": step, "steps": case.run.steps}]
     own = recorded_case(case) | {"ended": None, "lengthened": longer}
     directory.write_provenance(record | own)

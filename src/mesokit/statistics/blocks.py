@@ -67,11 +67,15 @@ class Blocks:
 
     def sums(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """Block sums (n, *shape) and samples (n,), the block being filled included."""
+        series = [self._own(), *self._others]
+        return np.concatenate([s for s, _ in series]), np.concatenate([n for _, n in series])
+
+    def _own(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """The same of this series alone."""
         n = self._complete + (self._partial > 0)
         samples = np.full(n, self.block_length)
         samples[self._complete :] = self._partial
-        series = [(self._sums[:n].copy(), samples), *self._others]
-        return np.concatenate([s for s, _ in series]), np.concatenate([n for _, n in series])
+        return self._sums[:n].copy(), samples
 
     @property
     def series(self) -> int:
@@ -91,7 +95,7 @@ class Blocks:
         """
         if other.shape != self.shape:
             raise ValueError(f"cannot pool samples of shapes {self.shape} and {other.shape}")
-        self._others.append(other.sums())
+        self._others += [other._own(), *other._others]
         self.count += other.count
 
     def blocks(self) -> NDArray[np.float64]:
@@ -99,9 +103,9 @@ class Blocks:
         return self._sums[: self._complete] / self.block_length
 
     def halves(self) -> tuple["Blocks", ...]:
-        """The first and the second half of the complete blocks, each a series of its own.
+        """The first and the second half of the blocks of each series that is pooled.
 
-        () where several series are pooled, and for fewer than 16 blocks.
+        () where a series has fewer than 16 blocks.
 
         >>> blocks = Blocks()
         >>> for sample in range(64):
@@ -109,14 +113,26 @@ class Blocks:
         >>> [float(half.mean()) for half in blocks.halves()]
         [15.5, 47.5]
         """
-        number = self._complete // 2
-        if self._others or number < 8:
+        own = self._sums[: self._complete], np.full(self._complete, self.block_length)
+        series = [own, *self._others]
+        if min(len(samples) for _, samples in series) < 16:
             return ()
-        found = Blocks(self.shape, self.capacity), Blocks(self.shape, self.capacity)
-        for start, half in zip((0, number), found, strict=True):
-            half._sums[:number] = self._sums[start : start + number]
-            half.block_length, half._complete = self.block_length, number
-            half.count = number * self.block_length
+        return self._of(series, 0), self._of(series, 1)
+
+    def _of(
+        self, series: list[tuple[NDArray[np.float64], NDArray[np.int64]]], half: int
+    ) -> "Blocks":
+        """One half of all series."""
+        found = Blocks(self.shape, self.capacity)
+        parts = []
+        for sums, samples in series:
+            number = len(samples) // 2
+            part = slice(half * number, (half + 1) * number)
+            parts.append((sums[part], samples[part]))
+        (sums, samples), *found._others = parts
+        found._sums[: len(samples)] = sums
+        found.block_length, found._complete = self.block_length, len(samples)
+        found.count = int(sum(samples.sum() for _, samples in parts))
         return found
 
     def mean(self) -> NDArray[np.float64]:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesokit.case.component import one_of, show
 from mesokit.errors import CaseError
@@ -46,7 +47,8 @@ class Curve(NamedTuple):
 
     `theory` is what the expectation is, in a few words. `between` gives it between the points as
     well, for an axis that is logarithmic or not, or None where it cannot. `seeds` are rows (m, 3)
-    of place, value and error: the runs that a point was pooled from.
+    of place, value and error: the runs that a point was pooled from. `cautions` are what must be
+    known to read points (n,), in words that go on with "at", and of which points.
     """
 
     label: str
@@ -57,6 +59,7 @@ class Curve(NamedTuple):
     theory: str = "theory"
     between: Callable[[bool], Theory | None] | None = None
     seeds: Array = np.empty((0, 3))
+    cautions: Sequence[tuple[str, NDArray[np.bool_]]] = ()
 
 
 def draw(
@@ -96,6 +99,8 @@ def draw(
             _draw(ax, curve, number, note, scales)
             if fit is not None:
                 _draw_fit(ax, curve, number, fit)
+            for what, some in curve.cautions:
+                _caution(ax, curve, what, some)
         _leave_out_wild(ax, curves, scales[1])
         for axis in (ax.xaxis, ax.yaxis):
             if axis.get_scale() == "log":
@@ -228,6 +233,17 @@ def _say(ax: Any, curve: Curve, some: Any, what: str) -> None:
     words += [f"{some.sum() - NAMED} more"] * bool(some.sum() > NAMED)
     of = f"{curve.label}, " * bool(curve.label)
     ax.plot([], [], " ", label=f"{of}{what} {', '.join(words)}")
+
+
+def _caution(ax: Any, curve: Curve, what: str, some: NDArray[np.bool_]) -> None:
+    """Say in the legend of which points something must be known."""
+    if not some.any():
+        return
+    words = [f"{x:g}" for x in curve.x[some][:NAMED]]
+    words += [f"{some.sum() - NAMED} more"] * bool(some.sum() > NAMED)
+    where = "all points" if some.all() and len(some) > 1 else ", ".join(words)
+    of = f"{curve.label}, " * bool(curve.label)
+    ax.plot([], [], " ", label=f"{of}{what} at {where}")
 
 
 class Fitted(NamedTuple):

@@ -18,6 +18,7 @@ from mesokit.io.atomic import delete_folder
 from mesokit.io.measured import measured
 from mesokit.io.run_directory import RunDirectory, now, provenance
 from mesokit.observe.shared.build_up import result_of
+from mesokit.observe.shared.caveats import with_those_of
 from mesokit.run.opened import RunFiles
 from mesokit.seam.pooled import pool
 
@@ -96,8 +97,11 @@ def pooled(runs: Sequence[RunFiles]) -> Together:
                 pool(name, accumulators[name], more[name])
             except RunError as error:
                 refused[name] = error
+    each = [run.results for run in runs]
     results = [
-        result_of(a, runs[0].case) for name, a in accumulators.items() if name not in refused
+        with_those_of(result_of(a, runs[0].case), [own[name] for own in each])
+        for name, a in accumulators.items()
+        if name not in refused
     ]
     return Together(results, refused, steps)
 

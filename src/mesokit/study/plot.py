@@ -10,6 +10,7 @@ import numpy as np
 
 from mesokit.case.component import nearest, one_of, show
 from mesokit.errors import CaseError
+from mesokit.observe.shared.caveats import LOWER_BOUND
 from mesokit.seam.result import Comparison
 from mesokit.study.axes import Axis
 from mesokit.study.dependence import Curve, Theory, draw
@@ -117,6 +118,10 @@ def _curve(label: str, keys: Sequence[str], rows: list[Pooled], between: Between
         _theory(numbers),
         between and functools.partial(between, rows, keys),
         np.array(seeds).reshape(-1, 3),
+        [
+            ("not steady", np.array([not n.steady for n in numbers])),
+            ("error bar is a lower bound", np.array([LOWER_BOUND in n.note for n in numbers])),
+        ],
     )
 
 
@@ -128,7 +133,7 @@ def _theory(numbers: Sequence[Comparison]) -> str:
         return "theory, approximate"
     parts = numbers[0].note.split("; ")
     name = "; ".join(part for part in parts if "lower bound" not in part)
-    return f"theory: {name}" if 0 < len(name) < SHORT else "theory"
+    return f"theory, {name}" if 0 < len(name) < SHORT else "theory"
 
 
 def _word(value: Any) -> str:

@@ -122,7 +122,7 @@ def dataframe(rows: Sequence[Pooled]) -> Any:
 
 
 def write(rows: Sequence[Pooled], path: str | Path) -> Path:
-    """As a CSV file. Raises RunError."""
+    """As a CSV file, where a number that is not determined has an empty field. Raises RunError."""
     names = list(dict.fromkeys(name for row in rows for name in row.row()))
     with (
         replacing(path) as temporary,
@@ -130,5 +130,13 @@ def write(rows: Sequence[Pooled], path: str | Path) -> Path:
     ):
         writer = csv.DictWriter(file, names)
         writer.writeheader()
-        writer.writerows(row.row() for row in rows)
+        writer.writerows(_fields(row.row()) for row in rows)
     return Path(path)
+
+
+def _fields(row: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: "" if _unknown(value) else value for name, value in row.items()}
+
+
+def _unknown(value: Any) -> bool:
+    return isinstance(value, float) and math.isnan(value)

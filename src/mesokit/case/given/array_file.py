@@ -33,12 +33,22 @@ def array_of_contents(contents: bytes) -> NDArray[Any]:
     return np.asarray(npy.read_array(stream, allow_pickle=False))
 
 
-def array_in_file(path: str, name: str, shape: tuple[int, ...]) -> NDArray[Any]:
-    """The array of a .npy file, as a map of it, or the only one (or that of a name) of a .npz file.
+def array_in_file(
+    path: str, name: str, shape: tuple[int, ...], scale: float | None = None
+) -> NDArray[Any]:
+    """The array of a .npy file, as a map of it, or the only one (or that of a name) of a .npz file;
+    with a scale, of its numbers times that.
 
     Raises OSError for a file that cannot be read, and ValueError, with the reason, for another
     shape than this and for what is no array of numbers.
     """
+    found = _in_file(path, name, shape)
+    if scale is None or found.dtype.kind not in "iuf":  # what is no number is refused by name
+        return found
+    return np.asarray(found, float) * scale
+
+
+def _in_file(path: str, name: str, shape: tuple[int, ...]) -> NDArray[Any]:
     if is_plain(path):
         with open(path, "rb") as file:
             _require(file, shape)

@@ -126,9 +126,12 @@ def first_state(case: Case, arrays: Mapping[str, Any]) -> Array | None:
         return None
     if arrays and file is not None:
         raise CaseError(f"{key}: not with an array of positions")
-    shape = case.particles, case.box.dimension
+    shape, scale = (case.particles, case.box.dimension), case.brownian.scale
     try:
-        given = arrays["positions"] if file is None else array_in_file(file, "positions", shape)
+        if file is None:
+            given = arrays["positions"]
+        else:
+            given = array_in_file(file, "positions", shape, scale)
         found = np.asarray(given, float)
     except OSError as error:
         raise CaseError(f"{key}: {EXPECTED}: {error.strerror}") from None

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from pydantic import model_validator
+
 from mesokit.case.box import Box
-from mesokit.case.component import FileName, component, param
+from mesokit.case.component import FileName, component, param, show
 
 
 @component
@@ -16,6 +18,15 @@ class Brownian:
     positions: FileName | None = param(
         None, doc="start from these: file .npy with an (n, d) array (drawn unless said)", unit="a"
     )
+    scale: float | None = param(
+        None, doc="cells per length of these positions (1 unless said)", gt=0, le=1e12
+    )
+
+    @model_validator(mode="after")
+    def _scaled_file(self) -> Brownian:
+        if self.scale is not None and self.positions is None:
+            raise ValueError(f"scale = {show(self.scale)}: only with positions")
+        return self
 
     def number(self, box: Box) -> int:
         """How many particles there are."""

@@ -33,13 +33,13 @@ class FlockStart:
     run: FileName | None = param(None, doc="folder of an earlier run: go on from its last state")
     file: FileName | None = param(None, doc="GSD file (its last frame) or LAMMPS data file")
     scale: float | None = param(
-        None, doc="lengths of the case per length of `file` (1 unless said)", gt=0, le=1e12
+        None, doc="lengths of the case per length of these files (1 unless said)", gt=0, le=1e12
     )
 
     @model_validator(mode="after")
     def _scaled_file(self) -> FlockStart:
-        if self.scale is not None and self.file is None:
-            raise ValueError(f"scale = {show(self.scale)}: only with a file of another program")
+        if self.scale is not None and not (self.file or self.positions):
+            raise ValueError(f"scale = {show(self.scale)}: only with file or positions")
         return self
 
 

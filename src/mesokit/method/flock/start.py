@@ -58,7 +58,7 @@ def first_state(case: Case, arrays: Mapping[str, Any]) -> FirstState:
                 keys = {name: f"{where}: {name}" for name in keys}
             else:
                 shape = case.particles, case.box.dimension
-                found[key] = array_in_file(getattr(start, key), key, shape)
+                found[key] = array_in_file(getattr(start, key), key, shape, start.scale)
                 keys[key] = where
         except MesokitError as error:
             raise CaseError(f"{where}: {error}") from None

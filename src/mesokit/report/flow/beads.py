@@ -24,6 +24,7 @@ EDGE, BOND = 0.2, 0.45  # widths of the edge and of bonds, of the diameter
 RIM = 0.8  # points, the widest edge: that of a large bead would hide the fluid at its surface
 ABOVE = 6  # the solids
 MARKERS = "osD^vP"  # of kinds: in grey they look alike otherwise
+ORDER = (1, 3, 4, 2, 5, 0)  # of colours: one and the next are far apart in grey
 LAYERS, PALE = 6, 0.65  # of depth in 3D; how much of the colour the rearmost lacks
 
 
@@ -121,7 +122,7 @@ def frames_of(
 def look(kind: int, molecule: int, only: bool) -> tuple[str, str]:
     """Colour and marker of a kind; of the molecules, where there is one kind only."""
     number = molecule if only else kind
-    return COLOURS[(number + 1) % len(COLOURS)], MARKERS[kind % len(MARKERS)]
+    return COLOURS[ORDER[number % len(ORDER)]], MARKERS[kind % len(MARKERS)]
 
 
 def key(figure: Any, beads: Beads) -> None:

@@ -19,6 +19,7 @@ LONGEST, SHORTEST = 13.0, 2.2  # points
 SLIM = 0.45  # width over length of a triangle
 DARK, LIGHT, CHROMA = 33.0, 66.0, 42.0  # of the colours, in CIELAB: readable on white and in grey
 STEPS = 256
+BACK = np.pi / 3  # of a turn, in which colours go back from light to dark
 
 
 def reach(flow: Flow, region: Region) -> float:
@@ -27,7 +28,7 @@ def reach(flow: Flow, region: Region) -> float:
 
 
 def scale(flow: Flow, reach: float) -> Scale:
-    """Directions: dark along the first axis, light against it."""
+    """Directions: ever lighter from those that point down to those against the first axis."""
     return Scale(-reach, reach, colours(), r"heading / $\pi$")
 
 
@@ -75,11 +76,12 @@ def length(ax: Any, number: int) -> float:
 
 @functools.cache
 def colours() -> Any:
-    """A cyclic map: hue goes round once, lightness there and back, so that grey tells it apart."""
+    """A cyclic map: hue goes round once; lightness rises most of the way and then falls, so that
+    grey tells directions apart, those to either side of an axis too."""
     from matplotlib.colors import ListedColormap
 
     angle = np.linspace(-np.pi, np.pi, STEPS)
-    lightness = 0.5 * (DARK + LIGHT) - 0.5 * (LIGHT - DARK) * np.cos(angle)
+    lightness = np.interp(angle, [-np.pi, BACK - np.pi, np.pi], [LIGHT, DARK, LIGHT])
     return ListedColormap(
         _from_lab(lightness, CHROMA * np.cos(angle + 5.3), CHROMA * np.sin(angle + 5.3)), "headings"
     )

@@ -37,7 +37,7 @@ class Velocities:
         self.axis = AXES.index(given) if given else still[0] if still else 0
         self.ids = spread_ids(observable.particles, case.particles)
         self.driven, self.isothermal = setting.driven(case), setting.isothermal(case)
-        thermal = self.isothermal or not self.driven
+        thermal = setting.at_kT(case)
         self.known = thermal and self.axis in still, thermal and len(still) == d
         closed, part = not (case.walls or self.driven), len(self.ids) / case.particles
         self.taken_by_mean = part * self._alike() if closed else 0.0
@@ -72,4 +72,4 @@ class Velocities:
         """What to say of it."""
         if self.driven:
             return "approximate: Maxwell about a mean flow"
-        return setting.temperature_note(self.case) or f"{classes} classes"
+        return setting.temperature_note(self.case) or f"Maxwell, {classes} classes"

@@ -146,7 +146,7 @@ class CellOccupancyAccumulator(BlockAccumulator):
                 float(error[2]),
                 math.nan if nothing else len(probability) - 1.0 - lost,
                 "",
-                note or f"{len(probability)} classes",
+                note or f"Poisson, {len(probability)} classes",
             ),
         ]
 

@@ -172,7 +172,7 @@ class ForcesAccumulator:
         uniform = case.fluid.force.uniform(self.dimension) is not None
         # under shear images hand on momentum, and what heats has no one kT
         known = uniform and not case.box.sheared
-        known = known and (setting.isothermal(case) or not setting.driven(case))
+        known = known and setting.at_kT(case)
         if not known or not count:
             return float("nan")
         mass = setting.mass_density(case) * free_volume(case)

@@ -152,7 +152,8 @@ class RadialProfileAccumulator(ShellAccumulator):
         """Whether theory is known to be off by more than an error bar."""
         if self.observable.of == "temperature":
             return setting.driven(self.case) or bool(setting.temperature_note(self.case))
-        return self.observable.of == "density" and setting.driven(self.case)
+        uneven = self.observable.of == "density" or bool(setting.slipping(self.case))
+        return uneven and setting.driven(self.case)
 
     def expected(self) -> Array | None:
         """In each ring; None without a theory."""
@@ -161,8 +162,7 @@ class RadialProfileAccumulator(ShellAccumulator):
             pressed = not still and not (self.known and self.flow.profile is not None)
             return None if pressed else np.full(self.bins, fluid.density)
         if of == "temperature":
-            held = still or setting.isothermal(self.case)
-            return np.full(self.bins, fluid.kT) if held else None
+            return np.full(self.bins, fluid.kT) if setting.at_kT(self.case) else None
         if still:
             return np.zeros(self.bins)
         if not self.known or self.flow.profile is None:
@@ -305,7 +305,8 @@ def _couette(acc: RadialProfileAccumulator, velocity: Estimate) -> Fitted:
     if fastest > 0:
         coefficients, gap = setting.transport(acc.case), acc.flow.radii[1] - acc.flow.radii[0]
         rate = np.pi**2 * coefficients.viscosity / gap**2 if coefficients else np.inf
-        note = acc.short_run(rate) or "fit of A r + B/r"
+        parts = setting.slipping(acc.case), acc.short_run(rate)
+        note = "; ".join(filter(None, parts)) or "fit of A r + B/r"
         both = zip(("inner", "outer"), acc.flow.radii, acc.flow.surfaces, strict=True)
         for name, radius, speed in both:
             gradient = 100 / fastest * np.array([radius, 1 / radius])
@@ -336,12 +337,12 @@ def _pipe(acc: RadialProfileAccumulator, velocity: Estimate) -> Fitted:
     known = coefficients.viscosity if coefficients else np.nan
     slowest = known if np.isnan(nu) else nu
     short = acc.short_run(5.78 * slowest / radius**2)  # the first zero of J0, squared
-    note = noted(nu, setting.caveat(acc.case), short) or "whatever the slip"
+    note = noted(nu, setting.caveat(acc.case), short) or "independent of slip"
     found = [Comparison("viscosity from curvature", nu, error, known, "a^2/tau", note)]
     share = 1 + radius**2 * c2 / c0
     gradient = np.array([-(radius**2) * c2 / c0**2, radius**2 / c0])
     value, error = parabola.scalar(100 * share, 100 * gradient, over=(c0, np.eye(2)[0]))
-    note = noted(value, short) or "no slip"
+    note = noted(value, setting.slipping(acc.case), short) or "no slip"
     found.append(
         Comparison("slip at the wall", value, error, 0.0, "% of the centre velocity", note)
     )

@@ -173,7 +173,7 @@ class StressAccumulator(TensorAccumulator):
         """Whether the pressure is that of an ideal gas of known temperature."""
         case = self.case
         ideal = case.fluid.collision.ideal or not case.fluid.species
-        return ideal and (setting.isothermal(case) or not setting.driven(case))
+        return ideal and setting.at_kT(case)
 
     def viscosities(self) -> tuple[float, float, float]:
         """Kinetic, collisional and total viscosity of the theory."""

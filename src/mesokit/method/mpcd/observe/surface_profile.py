@@ -161,8 +161,7 @@ class SurfaceProfileAccumulator(ShellAccumulator):
         if self.observable.of == "density":
             return np.full(self.bins, fluid.density)
         if self.observable.of == "temperature":
-            held = setting.isothermal(self.case) or not driven
-            return np.full(self.bins, fluid.kT) if held else None
+            return np.full(self.bins, fluid.kT) if setting.at_kT(self.case) else None
         return None if driven else np.zeros(self.bins)
 
     def next_to_surface(self, value: Estimate, expected: Array, note: str) -> list[Comparison]:

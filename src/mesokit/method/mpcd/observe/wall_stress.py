@@ -180,7 +180,7 @@ def balance(case: Case) -> Array:
 def _pressure(case: Case, weight: float, height: float) -> tuple[float, float]:
     """Ideal gas, heavier at the bottom under a force towards a plate; nan where it heats."""
     kT = case.fluid.kT
-    if not setting.isothermal(case) and setting.driven(case):
+    if not setting.at_kT(case):
         return np.nan, np.nan
     if weight == 0:
         pressure = _contact(case, height) * kT

@@ -32,9 +32,10 @@ def read_arrays(
 ) -> tuple[Any, Any]:
     """The arrays to start from: those given, or those that the case names; None where none.
 
-    Rows of a .npy file or of an earlier run are read where they are asked for. Of several ranks
-    (`here`) each looks at its share of what all have, and all hear what is wrong. Other files rank
-    0 reads alone (`OfFirst`), but for those of solutes, whose beads all ranks know.
+    Rows of a .npy file without a scale or of an earlier run are read where they are asked for. Of
+    several ranks (`here`) each looks at its share of what all have, and all hear what is wrong.
+    Other files rank 0 reads alone (`OfFirst`), but for those of solutes, whose beads all ranks
+    know.
 
     `owner` is "fluid" or "solutes". `states` gives for each key that names a whole state (`run`,
     `file`) what reads positions and velocities that suit the case. Raises CaseError if an array is
@@ -50,7 +51,7 @@ def read_arrays(
     def loaded(name: str, path: str) -> Any:
         key = f"{where}.{name} = {path!r}"
         load = partial(_load, case, owner, key, name, path)
-        if owner == "fluid" and here.on_root(lambda: _is_map(path)):
+        if owner == "fluid" and given.scale is None and here.on_root(lambda: _is_map(path)):
             return here.each(load)
         return taken(lambda: (load(),))[0]
 
@@ -109,7 +110,8 @@ def _is_map(path: str) -> bool:
 def _load(case: Case, owner: str, key: str, name: str, path: str) -> Any:
     """An array from a .npy file, or the only one (or the one of that name) from a .npz file."""
     try:
-        return array_in_file(path, name, _shape(case, owner))
+        scale = getattr(case, owner).start.scale
+        return array_in_file(path, name, _shape(case, owner), scale)
     except (OSError, ValueError) as error:
         reason = f"{EXPECTED}: {error.strerror}" if isinstance(error, OSError) else f"{error}"
         raise CaseError(f"{key}: {reason}") from None

@@ -23,11 +23,14 @@ class Start:
         None, doc="GSD file (its last frame) or LAMMPS data file, with the bonds of the molecules"
     )
     scale: float | None = param(
-        None, doc="cells per length of `file` (1 unless said)", gt=0, le=1e12
+        None,
+        doc="cells per length of these files, of places and velocities (1 unless said)",
+        gt=0,
+        le=1e12,
     )
 
     @model_validator(mode="after")
     def _scaled_file(self) -> Start:
-        if self.scale is not None and self.file is None:
-            raise ValueError(f"scale = {show(self.scale)}: only with a file of another program")
+        if self.scale is not None and not (self.file or self.positions or self.velocities):
+            raise ValueError(f"scale = {show(self.scale)}: only with file, positions or velocities")
         return self

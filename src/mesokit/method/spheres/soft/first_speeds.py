@@ -1,4 +1,4 @@
-"""How fast spheres meet that start with the velocities of arrays, files and earlier runs."""
+"""How fast spheres move that start with the velocities of arrays, files and earlier runs."""
 
 from __future__ import annotations
 
@@ -20,8 +20,13 @@ if TYPE_CHECKING:
     from mesokit.method.spheres.common.start.protocol import Array, Placed
 
 
+HOT = 2.0  # of the energy that the step is made for, from which it is shorter
+TAIL = 5.0  # thermal velocities of the fastest of many
+
+
 def with_speed(case: Case, arrays: Mapping[str, Any]) -> Case:
-    """The case with `spheres.speed`, where arrays or the start of the case decide on it.
+    """The case with `spheres.speed`, where arrays or the start of the case decide on it; with a
+    potential, with `spheres.timestep`.
 
     They do where they give velocities: the two fastest may meet head-on; and where spheres overlap
     by more than collisions at the usual speed would press them, which drives them apart. Nothing
@@ -29,7 +34,9 @@ def with_speed(case: Case, arrays: Mapping[str, Any]) -> Case:
     """
     section = case.spheres
     usual = scales.speed_of_collision(case)
-    if section.speed is not None or not isinstance(section.pair, ContactLaw):
+    if not isinstance(section.pair, ContactLaw):
+        return _with_step(case, arrays)
+    if section.speed is not None:
         return case
     if usual > 0 and not arrays and not section.start.files():
         return case
@@ -46,6 +53,29 @@ def with_speed(case: Case, arrays: Mapping[str, Any]) -> Case:
     if speed == 0:
         return case
     return dataclasses.replace(case, spheres=dataclasses.replace(section, speed=speed))
+
+
+def _with_step(case: Case, arrays: Mapping[str, Any]) -> Case:
+    """The case with a shorter step, where spheres start hotter than it says."""
+    section = case.spheres
+    if section.timestep is not None or not (arrays or section.start.files()):
+        return case
+    spheres = made(case)
+    v = given_state(case, spheres, arrays).velocities
+    if v is None:
+        return case
+    kT = _energy(case, v, spheres.masses)
+    if kT <= HOT * scales.expected_kT(case):
+        return case
+    step = scales.step_of_flight(case, kT)
+    return dataclasses.replace(case, spheres=dataclasses.replace(section, timestep=step))
+
+
+def _energy(case: Case, velocities: Array, masses: Array) -> float:
+    """kT of what moves about the mean velocity, at least that of which the fastest is the tail."""
+    v = velocities if case.walls else velocities - velocities.mean(axis=0)
+    twice = masses * (v**2).sum(axis=1)
+    return float(max(twice.mean() / case.box.dimension, twice.max() / TAIL**2))
 
 
 def _head_on(case: Case, velocities: Array) -> float:

@@ -75,11 +75,23 @@ def timestep_of(case: Case) -> float:
 
 def usual_timestep(case: Case) -> float:
     """Time of a step unless the case says one."""
-    section, law = case.spheres, case.spheres.pair
+    law = case.spheres.pair
     if isinstance(law, ContactLaw):
         time = shortest_contact(case)
         return time / IN_CONTACT if math.isfinite(time) else OF_FLIGHT
-    kT = max(section.kT, section.thermostat.held_kT if section.thermostat else 0.0, 1.0)
+    return step_of_flight(case, expected_kT(case))
+
+
+def expected_kT(case: Case) -> float:
+    """The energy from which the step follows with a potential: that of the case, of its bath, or
+    1."""
+    section = case.spheres
+    return max(section.kT, section.thermostat.held_kT if section.thermostat else 0.0, 1.0)
+
+
+def step_of_flight(case: Case, kT: float) -> float:
+    """A part of the time in which a sphere flies its diameter."""
+    law = case.spheres.pair
     return float(OF_FLIGHT * law.diameter * math.sqrt(lightest(case) / kT))
 
 

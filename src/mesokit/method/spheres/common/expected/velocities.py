@@ -102,5 +102,5 @@ class VelocitiesOfSpheres:
     def note(self, classes: int) -> str:
         """What to say of it."""
         if self.cumulant == 0:
-            return f"{classes} classes"
+            return f"Maxwell, {classes} classes"
         return f"approximate: first order in a_2 = {self.cumulant:.3g}, dilute uniform gas"

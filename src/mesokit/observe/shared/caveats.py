@@ -1,0 +1,46 @@
+"""What pooled numbers take over of the notes of the runs that they are pooled from."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Sequence
+
+from mesokit.seam.named import keyed
+from mesokit.seam.result import NOT_STEADY, Comparison, Result
+
+ROUGH, LOWER_BOUND = "approximate", "error bar is a lower bound"
+
+
+def with_those_of(result: Result, runs: Sequence[Result]) -> Result:
+    """A pooled result whose comparisons have the caveats of its runs, however near theory is.
+
+    A lower bound holds for all samples where most of the runs say so: one may by chance.
+    """
+    each = [keyed(run.comparisons) for run in runs]
+    comparisons = tuple(
+        _with(comparison, [found[key].note for found in each if key in found])
+        for key, comparison in keyed(result.comparisons).items()
+    )
+    return dataclasses.replace(result, comparisons=comparisons)
+
+
+def _with(pooled: Comparison, notes: Sequence[str]) -> Comparison:
+    """One of them, given the notes of the same number in each run.
+
+    >>> _with(Comparison("slip", 0.1, 0.2), ["not steady: a; b", "not steady: c"]).note
+    'not steady: a'
+    """
+    said = [_first(notes, NOT_STEADY) if pooled.steady else ""]
+    said += [_first(notes, ROUGH) if not pooled.approximate else "", *pooled.note.split("; ")]
+    most = sum(LOWER_BOUND in note for note in notes) > len(notes) / 2
+    if most and LOWER_BOUND not in pooled.note and pooled.error > 0:
+        said.append(_first(notes, LOWER_BOUND))
+    if said[0]:  # error bars of a flow that changes are another matter
+        said = [part for part in said if LOWER_BOUND not in part]
+    return dataclasses.replace(pooled, note="; ".join(filter(None, dict.fromkeys(said))))
+
+
+def _first(notes: Iterable[str], words: str) -> str:
+    """The first part of any of the notes that has these words, nothing if none has."""
+    parts = (part for note in notes for part in note.split("; "))
+    return next((part for part in parts if words in part), "")
