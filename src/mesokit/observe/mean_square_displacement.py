@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
+from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,7 @@ from mesokit.observe.shared.slope import Slope, late_slope
 from mesokit.seam.engine import Particles
 from mesokit.seam.estimate import Estimate
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -104,8 +103,10 @@ def _square_distance(old: Array, new: Array) -> Array:
     return np.einsum("ij,ij->i", difference, difference)
 
 
-class MeanSquareDisplacementAccumulator:
+class MeanSquareDisplacementAccumulator(BlockAccumulator):
     """Unwrapped positions at many origins."""
+
+    memory: ClassVar[tuple[str, ...]] = ("origins",)
 
     def __init__(self, observable: MeanSquareDisplacement, case: Case) -> None:
         self.observable, self.name = observable, observable.label
@@ -136,18 +137,6 @@ class MeanSquareDisplacementAccumulator:
         if self.centres:
             position = position.reshape(self.theory.length, -1, len(self.axes)).mean(axis=0)
         self.origins.add(position, _square_distance)
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(origins=self.origins)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.origins.restore(unpack(state, "origins"))
-
-    def pool(self, other: MeanSquareDisplacementAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        self.origins.pool(other.origins)
 
     def result(self) -> Result:
         """The curve and its slope where it is a straight line."""

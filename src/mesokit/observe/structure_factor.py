@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +24,7 @@ from mesokit.observe.shared.whose import (
     strangers,
 )
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array, Comparison, Result
 
 if TYPE_CHECKING:
@@ -81,12 +80,14 @@ class StructureFactor(Observable):
         return StructureFactorAccumulator(self, case)
 
 
-class StructureFactorAccumulator:
+class StructureFactorAccumulator(BlockAccumulator):
     """Means of each shell; of chains also of groups of them, of others of each wave.
 
     Two error bars are kept, and the larger counts: long waves decay slowly, so that blocks of a
     short run see little of what they do; chains scatter, and so do waves of one length.
     """
+
+    memory: ClassVar[tuple[str, ...]] = ("means", "sums")
 
     def __init__(self, observable: StructureFactor, case: Case) -> None:
         observable.check(case)
@@ -148,15 +149,6 @@ class StructureFactorAccumulator:
         for start in range(0, len(r), step):
             found += amplitudes(r[None, start : start + step], self.waves)[0]
         return found
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(means=self.means, sums=self.sums)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.means.restore(unpack(state, "means"))
-        self.sums = np.array(state["sums"], float)
 
     def pool(self, other: StructureFactorAccumulator) -> None:
         """Take in the samples of an independent run of the same case: only to read."""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
+from typing import TYPE_CHECKING, ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +12,7 @@ from mesokit.observe.shared.origins import Origins
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate
 from mesokit.seam.method import method_of
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import spread_ids
 
@@ -86,8 +85,10 @@ class VelocityAutocorrelation(Observable):
         return VelocityAutocorrelationAccumulator(self, case)
 
 
-class VelocityAutocorrelationAccumulator:
+class VelocityAutocorrelationAccumulator(BlockAccumulator):
     """Velocities at many origins."""
+
+    memory: ClassVar[tuple[str, ...]] = ("origins",)
 
     def __init__(self, observable: VelocityAutocorrelation, case: Case) -> None:
         self.observable, self.name, self.theory = (
@@ -104,18 +105,6 @@ class VelocityAutocorrelationAccumulator:
         """Take one sample."""
         velocity = fluid.velocities(self.ids)[:, self.axes]
         self.origins.add(velocity, lambda old, new: np.einsum("ij,ij->i", old, new))
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(origins=self.origins)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.origins.restore(unpack(state, "origins"))
-
-    def pool(self, other: VelocityAutocorrelationAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        self.origins.pool(other.origins)
 
     def result(self) -> Result:
         """The curve with molecular chaos and the hydrodynamic tail."""

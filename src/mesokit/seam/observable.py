@@ -109,18 +109,34 @@ def unpack(state: Mapping[str, NDArray[Any]], name: str) -> State:
 
 
 class BlockAccumulator(ABC):
-    """An accumulator that remembers block averages and nothing else."""
+    """An accumulator that remembers what `memory` names: blocks, unless a subclass says more.
 
+    Each is a part that has a state of its own (`Blocks`, `TimeSeries`, ...), a number or an array.
+    Parts that can pool those of another run do so; numbers and arrays stay those of this run.
+    """
+
+    memory: ClassVar[tuple[str, ...]] = ("blocks",)
     blocks: Blocks
 
     def state(self) -> State:
         """All it has to remember."""
-        return pack(blocks=self.blocks)
+        return pack(**{name: getattr(self, name) for name in self.memory})
 
     def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
+        for name in self.memory:
+            part: Any = getattr(self, name)
+            if hasattr(part, "restore"):
+                part.restore(unpack(state, name))
+            elif hasattr(part, "from_state"):
+                setattr(self, name, type(part).from_state(unpack(state, name)))
+            else:
+                kind = type(part) if isinstance(part, int | float) else np.array
+                setattr(self, name, kind(state[name]))
 
-    def pool(self, other: BlockAccumulator) -> None:
+    def pool(self, other: Any) -> None:
         """Take in the samples of an independent run of the same case: only to read."""
-        self.blocks.pool(other.blocks)
+        for name in self.memory:
+            part = getattr(self, name)
+            if hasattr(part, "pool"):
+                part.pool(getattr(other, name))

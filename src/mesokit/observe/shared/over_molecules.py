@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.observe.shared.origins import GROUPS
 from mesokit.seam.estimate import Array, of_mean
-from mesokit.seam.observable import State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, State, pack
 from mesokit.statistics import Blocks, student
 
 ROUNDING = 1e-9  # of the scatter of molecules: what they have together never changed
@@ -92,7 +92,7 @@ class OwnMeans:
         return "" if self.number > 1 else "error bar is a lower bound: of one molecule"
 
 
-class MeansOverMolecules:
+class MeansOverMolecules(BlockAccumulator):
     """Means of numbers that every molecule has at each sample.
 
     Two error bars are kept, and the larger counts: blocks of time see what all molecules do
@@ -113,6 +113,8 @@ class MeansOverMolecules:
     ([3.5], [0.93])
     """
 
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "own")
+
     def __init__(self, molecules: int, width: int, everything: bool = False) -> None:
         self.blocks, self.own = Blocks((width,)), OwnMeans(molecules, width)
         self.everything = everything
@@ -121,20 +123,6 @@ class MeansOverMolecules:
         """Take one sample, (molecules, width)."""
         self.blocks.add(each.mean(axis=0))
         self.own.add(each)
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks, own=self.own)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
-        self.own.restore(unpack(state, "own"))
-
-    def pool(self, other: MeansOverMolecules) -> None:
-        """Take in the samples of an independent run: only to read from then on."""
-        self.own.pool(other.own)
-        self.blocks.pool(other.blocks)
 
     def mean(self, combine: Array | None = None) -> Array:
         """Means (width,), or linear combinations (n, width) of them; nan before the first."""

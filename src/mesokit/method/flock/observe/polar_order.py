@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.component import component, tag
@@ -18,7 +16,7 @@ from mesokit.method.flock.observe.protocol import (
     mean_heading,
 )
 from mesokit.seam.estimate import of_mean
-from mesokit.seam.observable import State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks, TimeSeries
 
@@ -52,8 +50,10 @@ class Known(NamedTuple):
     why: str = ""
 
 
-class PolarOrderAccumulator:
+class PolarOrderAccumulator(BlockAccumulator):
     """Powers of the order, and a time series of it and of the mean heading."""
+
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "series")
 
     def __init__(self, observable: PolarOrder, case: Case) -> None:
         observable.check(case)
@@ -65,20 +65,6 @@ class PolarOrderAccumulator:
         order, mean = mean_heading(engine.headings())
         self.blocks.add([order, order**2, order**4])
         self.series.add(engine.time, [order, *mean])
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks, series=self.series)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
-        self.series = TimeSeries.from_state(unpack(state, "series"))
-
-    def pool(self, other: PolarOrderAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        self.blocks.pool(other.blocks)
-        self.series.pool(other.series)
 
     def result(self) -> Result:
         """The order in time, whose points are no means of their own: the error is nan."""

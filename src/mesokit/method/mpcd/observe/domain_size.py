@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.case.component import component, param, tag
 from mesokit.errors import CaseError
 from mesokit.observe.shared.whose import periodic_all_over
 from mesokit.seam.engine import RunningFluid, Some, Terms
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import TimeSeries
 
@@ -56,8 +54,10 @@ class DomainSize(Observable):
         return DomainSizeAccumulator(self, case)
 
 
-class DomainSizeAccumulator:
+class DomainSizeAccumulator(BlockAccumulator):
     """The series in time."""
+
+    memory: ClassVar[tuple[str, ...]] = ("series", "samples")
 
     def __init__(self, observable: DomainSize, case: Case) -> None:
         observable.check(case)
@@ -98,15 +98,6 @@ class DomainSizeAccumulator:
         if weight.sum() < CLEAR * np.sqrt((self.weights**2).sum()):
             return math.nan
         return float(2 * math.pi * weight.sum() / (weight @ self.lengths))
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(series=self.series, samples=self.samples)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.series = TimeSeries.from_state(unpack(state, "series"))
-        self.samples = np.array(state["samples"])
 
     def pool(self, other: DomainSizeAccumulator) -> None:
         """Take in an independent run of the same case, only to read: the series becomes a mean."""

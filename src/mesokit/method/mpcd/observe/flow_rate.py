@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.box import AXES, Axis
@@ -17,7 +15,7 @@ from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
 from mesokit.observe.velocity_profile import ENOUGH
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate, of_mean
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks, TimeSeries
 
@@ -61,8 +59,10 @@ class FlowRate(Observable):
         return FlowRateAccumulator(self, case)
 
 
-class FlowRateAccumulator:
+class FlowRateAccumulator(BlockAccumulator):
     """The superficial velocity: its average, and a time series that shows whether it is steady."""
+
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "series")
 
     def __init__(self, observable: FlowRate, case: Case) -> None:
         observable.check(case)
@@ -77,20 +77,6 @@ class FlowRateAccumulator:
         velocity = momentum[self.axis] / self.mass
         self.blocks.add(velocity)
         self.series.add(fluid.time, [velocity])
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks, series=self.series)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
-        self.series = TimeSeries.from_state(unpack(state, "series"))
-
-    def pool(self, other: FlowRateAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        self.blocks.pool(other.blocks)
-        self.series.pool(other.series)
 
     def result(self) -> Result:
         """The velocity in time, whose points are no means of their own: the error is nan."""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +18,7 @@ from mesokit.method.mpcd.observe.shared.walls import SinceLast, require_counted
 from mesokit.method.mpcd.observe.wall_stress import PLATES, balance
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate, noted, of_mean
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array, Comparison, Result, with_error
 from mesokit.statistics import Blocks, TimeSeries
 
@@ -82,8 +81,10 @@ class Forces(Observable):
         return ForcesAccumulator(self, case)
 
 
-class ForcesAccumulator:
+class ForcesAccumulator(BlockAccumulator):
     """Mean force and torque since the sample before, and the fluid's momentum."""
+
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "series", "walls")
 
     def __init__(self, observable: Forces, case: Case) -> None:
         observable.check(case)
@@ -107,21 +108,6 @@ class ForcesAccumulator:
             _, momentum, _ = fluid.totals()
             self.blocks.add(np.concatenate([taken, momentum]))
             self.series.add(fluid.time - 0.5 * steps * self.case.fluid.timestep, taken)
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks, series=self.series, walls=self.walls)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
-        self.series = TimeSeries.from_state(unpack(state, "series"))
-        self.walls.restore(unpack(state, "walls"))
-
-    def pool(self, other: ForcesAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        self.blocks.pool(other.blocks)
-        self.series.pool(other.series)
 
     def result(self) -> Result:
         """Every component on every solid; the time series is in `extra`."""

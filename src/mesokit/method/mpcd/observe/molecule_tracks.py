@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
@@ -14,7 +13,7 @@ from mesokit.method.mpcd.expected.ideal import flow_axis, ideal_sizes, undisturb
 from mesokit.method.mpcd.expected.molecules import KIND, group_of, molecule_of
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import TimeSeries
 
@@ -65,8 +64,10 @@ class MoleculeTracks(Observable):
         return MoleculeTracksAccumulator(self, case)
 
 
-class MoleculeTracksAccumulator:
+class MoleculeTracksAccumulator(BlockAccumulator):
     """A series of every molecule, and means over all."""
+
+    memory: ClassVar[tuple[str, ...]] = ("series", "means")
 
     def __init__(self, observable: MoleculeTracks, case: Case) -> None:
         observable.check(case)
@@ -112,23 +113,6 @@ class MoleculeTracksAccumulator:
         row = np.stack([*kept, *place.T, *velocity.T], axis=1)
         self.series.add(fluid.time, row.ravel())
         self.means.add(np.stack([gyration, square, aligned, *velocity.T], axis=1))
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(series=self.series, means=self.means)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.series = TimeSeries.from_state(unpack(state, "series"))
-        self.means.restore(unpack(state, "means"))
-
-    def pool(self, other: MoleculeTracksAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read.
-
-        The series become means over the runs.
-        """
-        self.series.pool(other.series)
-        self.means.pool(other.means)
 
     def result(self) -> Result:
         """The series of every molecule; a sample has no error bar: nan."""

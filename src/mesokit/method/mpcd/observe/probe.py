@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, show, tag
@@ -20,7 +19,7 @@ from mesokit.method.mpcd.observe.shared.swing import Series, amplitudes, in_slit
 from mesokit.method.mpcd.observe.shared.swing import comparisons as swings
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import of_mean
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import (
     Blocks,
@@ -114,8 +113,10 @@ class Probe(Observable):
         return ProbeAccumulator(self, case)
 
 
-class ProbeAccumulator:
+class ProbeAccumulator(BlockAccumulator):
     """The time series of the velocity, and its average."""
+
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "series", "last")
 
     def __init__(self, observable: Probe, case: Case) -> None:
         observable.check(case)
@@ -148,16 +149,6 @@ class ProbeAccumulator:
         inside = (np.abs(away) <= self.half).all(axis=1)
         m = some.masses[inside]
         return np.zeros(len(m), np.int64), [m, *(m * some.velocities[inside].T)]
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks, series=self.series, last=self.last)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
-        self.series = TimeSeries.from_state(unpack(state, "series"))
-        self.last = np.array(state["last"])
 
     def pool(self, other: ProbeAccumulator) -> None:
         """Take in the samples of an independent run of the same case: only to read."""

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.component import component, option, param, tag
@@ -19,7 +17,7 @@ from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH
 from mesokit.method.mpcd.observe.stress import UNIT
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import MultipleTau
 
@@ -59,8 +57,10 @@ class StressAutocorrelation(Observable):
         return StressAutocorrelationAccumulator(self, case)
 
 
-class StressAutocorrelationAccumulator:
+class StressAutocorrelationAccumulator(BlockAccumulator):
     """A correlator of the elements off the diagonal."""
+
+    memory: ClassVar[tuple[str, ...]] = ("correlator",)
 
     def __init__(self, observable: StressAutocorrelation, case: Case) -> None:
         observable.check(case)
@@ -74,14 +74,6 @@ class StressAutocorrelationAccumulator:
         """Take one sample. Rules that do not conserve angular momentum have no symmetric stress."""
         stress = np.sum(list(fluid.stress.values()), axis=0)
         self.correlator.add(stress[~np.eye(len(stress), dtype=bool)])
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(correlator=self.correlator)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.correlator = MultipleTau.from_state(unpack(state, "correlator"))
 
     def pool(self, other: StressAutocorrelationAccumulator) -> None:
         """Take in the samples of an independent run of the same case: only to read."""

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.box import AXES, Axis
@@ -20,7 +18,7 @@ from mesokit.geometry.solids.solids import Solids, solids_of
 from mesokit.method.mpcd.expected import recognise, setting
 from mesokit.seam.engine import RunningFluid, Some, Terms
 from mesokit.seam.estimate import Estimate, fit, of_mean, of_ratio
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -141,8 +139,10 @@ def _fluid_until(solids: Solids, start: Array, axis: int, sign: float) -> float:
     return float(away[stops[0] + 1] if len(stops) else away[-1])
 
 
-class WakeAccumulator:
+class WakeAccumulator(BlockAccumulator):
     """Momentum and mass in the bins of the strip, and the momentum of the whole fluid."""
+
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "whole")
 
     def __init__(self, observable: Wake, case: Case) -> None:
         observable.check(case)
@@ -181,20 +181,6 @@ class WakeAccumulator:
         place = np.minimum((behind[inside] / self.edges[-1] * bins).astype(int), bins - 1)
         m = some.masses[inside]
         return place, [m * (body.sign * some.velocities[inside, body.axis]), m]
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks, whole=self.whole)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
-        self.whole = Blocks.from_state(unpack(state, "whole"))
-
-    def pool(self, other: WakeAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        self.blocks.pool(other.blocks)
-        self.whole.pool(other.whole)
 
     def result(self) -> Result:
         """The velocity behind the body, positive along the flow; distances from its rear."""

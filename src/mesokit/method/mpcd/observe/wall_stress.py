@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.box import AXES
@@ -18,7 +16,7 @@ from mesokit.method.mpcd.expected.molecules import spring_of
 from mesokit.method.mpcd.observe.shared.walls import SinceLast, require_counted
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import of_mean
-from mesokit.seam.observable import BlockAccumulator, Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array, Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -65,6 +63,8 @@ class WallStress(Observable):
 class WallStressAccumulator(BlockAccumulator):
     """Mean force per area since the sample before."""
 
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "walls")
+
     def __init__(self, observable: WallStress, case: Case) -> None:
         observable.check(case)
         self.case, self.name = case, observable.label
@@ -81,15 +81,6 @@ class WallStressAccumulator(BlockAccumulator):
         if steps:
             momentum = taken[:, : self.case.box.dimension]
             self.blocks.add(momentum / (steps * self.case.fluid.timestep * self.area))
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks, walls=self.walls)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        super().restore(state)
-        self.walls.restore(unpack(state, "walls"))
 
     def result(self) -> Result:
         """Every component at both plates."""

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.component import component, tag
 from mesokit.method.spheres.common.expected.enskog import pair_rate, root_of_temperature
 from mesokit.seam.estimate import of_mean
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -54,8 +52,10 @@ class Few(NamedTuple):
     note: str = ""
 
 
-class CollisionRateAccumulator:
+class CollisionRateAccumulator(BlockAccumulator):
     """Block averages of what has happened between two samples."""
+
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "before")
 
     def __init__(self, observable: CollisionRate, case: Case) -> None:
         self.name, self.case, self.every = observable.label, case, observable.every
@@ -73,19 +73,6 @@ class CollisionRateAccumulator:
             between = 0.5 * (now[4:] + self.before[4:])
             self.blocks.add([2 * pairs, walls, 2 * elastic, *between])
         self.before = now
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks, before=self.before)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
-        self.before = np.array(state["before"])
-
-    def pool(self, other: CollisionRateAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        self.blocks.pool(other.blocks)
 
     def result(self) -> Result:
         """The three rates."""

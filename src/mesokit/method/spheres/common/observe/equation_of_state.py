@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit import theory
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.method.spheres.common.expected.enskog import fluid_note, speed_factor
 from mesokit.seam.estimate import Estimate, of_mean
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -52,8 +50,10 @@ class EquationOfState(Observable):
         return EquationOfStateAccumulator(self, case)
 
 
-class EquationOfStateAccumulator:
+class EquationOfStateAccumulator(BlockAccumulator):
     """Block averages of what collisions do between two samples."""
+
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "before")
 
     def __init__(self, observable: EquationOfState, case: Case) -> None:
         observable.check(case)
@@ -68,19 +68,6 @@ class EquationOfStateAccumulator:
             rates = (now[1:] - self.before[1:]) / (now[0] - self.before[0])
             self.blocks.add([*rates, 2 * spheres.totals()[2]])
         self.before = now
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks, before=self.before)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
-        self.before = np.array(state["before"])
-
-    def pool(self, other: EquationOfStateAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        self.blocks.pool(other.blocks)
 
     def result(self) -> Result:
         """Z by the virial and, of equal hard spheres, by the rate of collisions."""

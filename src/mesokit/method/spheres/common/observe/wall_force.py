@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesokit.case.component import component, tag
 from mesokit.errors import CaseError
 from mesokit.seam.estimate import Array, Estimate, of_mean
-from mesokit.seam.observable import Observable, State, pack, unpack
+from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks
 
@@ -55,9 +53,11 @@ class WallForce(Observable):
         return WallForceAccumulator(self, case)
 
 
-class WallForceAccumulator:
+class WallForceAccumulator(BlockAccumulator):
     """Block averages of what surfaces take between two samples, of the mass of all spheres, and of
     the momentum that they gain meanwhile."""
+
+    memory: ClassVar[tuple[str, ...]] = ("blocks", "before")
 
     def __init__(self, observable: WallForce, case: Case) -> None:
         observable.check(case)
@@ -74,19 +74,6 @@ class WallForceAccumulator:
             rates = (now - self.before)[1:] / (now[0] - self.before[0])
             self.blocks.add(np.insert(rates, self.taken, spheres.masses().sum()))
         self.before = now
-
-    def state(self) -> State:
-        """All it has to remember."""
-        return pack(blocks=self.blocks, before=self.before)
-
-    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from `state()`."""
-        self.blocks = Blocks.from_state(unpack(state, "blocks"))
-        self.before = np.array(state["before"])
-
-    def pool(self, other: WallForceAccumulator) -> None:
-        """Take in the samples of an independent run of the same case: only to read."""
-        self.blocks.pool(other.blocks)
 
     def result(self) -> Result:
         """Forces, and their sum along the axis of gravity."""
