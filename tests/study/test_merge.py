@@ -170,7 +170,7 @@ def test_what_is_merged_neither_goes_on_nor_is_merged_again(runs, merged, tmp_pa
 def test_an_accumulator_that_cannot(runs, tmp_path, monkeypatch):
     from mesokit.method.mpcd.observe.flow_rate import FlowRateAccumulator
 
-    monkeypatch.delattr(FlowRateAccumulator, "pool")
+    monkeypatch.setattr(FlowRateAccumulator, "pool", property(), raising=False)  # it has none
     with pytest.raises(RunError, match="observable 'flow-rate': its runs cannot be pooled"):
         merge([s.directory.path for s in runs[:2]], tmp_path / "all")
 
