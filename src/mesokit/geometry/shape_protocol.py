@@ -80,6 +80,10 @@ class Wall(ABC):
     def bodies(self, room: Room, label: str) -> list[Body]:
         """What it is made of: a body for each surface, named after it or `label`."""
 
+    def period(self, room: Room) -> tuple[float, ...]:
+        """Lengths after which it is the same again: those of the box unless it repeats itself."""
+        return tuple(map(float, room.size))
+
     def vectors(self) -> dict[str, Any]:
         """Its parameters that have one number for each axis, by key."""
         return {}

@@ -74,6 +74,10 @@ class Array(Shape):
             )
         ]
 
+    def period(self, room: Room) -> tuple[float, ...]:
+        """From one copy to the next."""
+        return tuple(length / n for length, n in zip(room.size, self.repeat, strict=True))
+
     def pivot(self, room: Room) -> tuple[float, ...]:
         """The place about which it turns and torques are taken."""
         return self.of.pivot(room)

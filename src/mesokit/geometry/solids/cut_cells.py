@@ -23,6 +23,7 @@ PIECES = 5  # along each axis, by which a cell is searched for a surface
 SHIFTED_FINE = 4  # parts of a cell along each axis by which its volume is summed, for each shift
 EVERYWHERE = 1e30
 ROUNDING = 1e-9  # of a share
+LARGE = 2**19  # cells: of more, one period of walls that repeat is searched
 TILE = 16  # cells along each axis
 KEPT, KEPT_TILES = 4, 128  # of whole grids and of tiles, of which each has two tables
 
@@ -92,25 +93,61 @@ def _of_tiles(solids: Solids, cells: tuple[int, ...], block: Block) -> tuple[Any
 
 
 def _found(solids: Solids, cells: tuple[int, ...], block: Block | None) -> tuple[Any, Any, Any]:
-    """As `cut_cells`, found by a search."""
+    """As `cut_cells`, found by a search, or by that of one period of a large box."""
     starts, numbers, corners = [0], [], []
     every = corners_of(cells, block)
-    strides = np.cumprod([1, *cells[:-1]])
-    half = 0.5 + 0.5 / OFFSETS[solids.dimension]
-    for origin in origins(solids.room.closed):
-        middle = every + 0.5 - np.array(origin)
-        near = np.flatnonzero(np.abs(solids.distance(middle)) <= half * math.sqrt(len(cells)))
-        found = np.zeros(len(near), np.int64)
-        survey.cut(solids.kernel, solids.like, middle[near], half, PIECES, found)
-        chosen = near[found > 0]
-        numbers.append(every[chosen] @ strides)
+    own = (every @ np.cumprod([1, *cells[:-1]])).astype(np.int64)
+    again = _alike(solids, every) if _repeats(solids, cells) else None
+    for number, origin in enumerate(origins(solids.room.closed)):
+        if again is None:
+            chosen = _search(solids, every, origin)
+        else:
+            chosen = np.flatnonzero(_of_period(solids)[0][number][again] >= 0)
+        numbers.append(own[chosen])
         corners.append(every[chosen])
         starts.append(starts[-1] + len(chosen))
     return (
         np.array(starts, np.int64),
-        np.concatenate(numbers).astype(np.int64),
+        np.concatenate(numbers),
         np.concatenate(corners),
     )
+
+
+def _search(solids: Solids, every: Any, origin: tuple[float, ...]) -> Any:
+    """Which of these cells (n, d) a surface may cut, by their lower corners."""
+    half = 0.5 + 0.5 / OFFSETS[solids.dimension]
+    middle = every + 0.5 - np.array(origin)
+    near = np.flatnonzero(np.abs(solids.distance(middle)) <= half * math.sqrt(solids.dimension))
+    found = np.zeros(len(near), np.int64)
+    survey.cut(solids.kernel, solids.like, middle[near], half, PIECES, found)
+    return near[found > 0]
+
+
+def _repeats(solids: Solids, cells: tuple[int, ...]) -> bool:
+    """Whether one period of the solids is searched for all. The places of copies are rounded, so
+    that this may change last digits."""
+    return math.prod(cells) >= LARGE and math.prod(solids.period) < math.prod(cells)
+
+
+def _alike(solids: Solids, corners: Any) -> Any:
+    """Number, in the first period, of the cell that looks as each of these does."""
+    period = solids.period
+    return (corners % period).astype(np.int64) @ np.cumprod([1, *period[:-1]])
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _of_period(solids: Solids) -> tuple[Any, Any]:
+    """For each offset the rows (offsets, cells) of the cells of the first period, -1 for cells that
+    nothing cuts; and for each row the height of its plane."""
+    every = corners_of(solids.period)
+    every_origin = list(origins(solids.room.closed))
+    rows, middles, total = np.full((len(every_origin), len(every)), -1), [], 0
+    for number, origin in enumerate(every_origin):
+        chosen = _search(solids, every, origin)
+        rows[number, chosen] = total + np.arange(len(chosen))
+        middles.append((every[chosen] + 0.5 - np.array(origin)) % solids.size)
+        total += len(chosen)
+    return rows, _surveyed(solids, np.concatenate(middles)).heights
 
 
 def shifts_within(d: int) -> Any:
@@ -128,18 +165,43 @@ def _planes(solids: Solids, cells: tuple[int, ...], block: Block | None) -> tupl
         middles[some] = corners[some] + 0.5 - np.array(origin)
     for k, (length, shut) in enumerate(zip(solids.size, solids.room.closed, strict=True)):
         middles[:, k] = middles[:, k] if shut else middles[:, k] % length
+    if _repeats(solids, cells):
+        rows, heights = _of_period(solids)
+        offset = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
+        found = _nearest(solids, middles, heights[rows[offset, _alike(solids, corners)]])
+    else:
+        found = _surveyed(solids, middles)
+    return found.normals, found.heights, middles, found.terms, cell_numbers(solids, found.feet)
+
+
+def _nearest(solids: Solids, middles: Any, heights: Any) -> survey.Planes:
+    """The planes of cells about these middles, whose heights are known."""
+    terms, clearance = np.zeros(len(middles), np.int64), np.zeros(len(middles))
+    normals = np.zeros(middles.shape)
+    near = _reaching(solids, _away(solids.dimension))
+    survey.depths(near, solids.like, _away(solids.dimension), middles, terms, clearance, normals)
+    return survey.Planes(normals, heights, terms, middles - clearance[:, None] * normals)
+
+
+def _away(d: int) -> float:
+    """How far the surface of a cell that is cut may be from its middle."""
+    return (0.5 + 0.5 / OFFSETS[d]) * math.sqrt(d) + MARGIN
+
+
+def _surveyed(solids: Solids, middles: Any) -> survey.Planes:
+    """The planes of cells about these middles."""
     shifts = shifts_within(solids.dimension)
     share = np.mean([solids.open_part(middles - x, 1.0, SHIFTED_FINE) for x in shifts], axis=0)
     normals, heights = np.zeros(middles.shape), np.zeros(len(middles))
     terms, feet = np.zeros(len(middles), np.int64), np.zeros(middles.shape)
-    away = (0.5 + 0.5 / OFFSETS[solids.dimension]) * math.sqrt(solids.dimension) + MARGIN
+    away = _away(solids.dimension)
     near, like = _reaching(solids, away), solids.like
     found = survey.Planes(normals, heights, terms, feet)
     survey.planes(near, like, away, shifts, middles, share, found)
     slippery = np.array([body.surface.rule == "slip" for body in solids.bodies])
     nobody = slippery[solids.body_of_term[terms]] | (share <= ROUNDING) | (share >= 1.0 - ROUNDING)
     heights[nobody | (terms < 0)] = EVERYWHERE
-    return normals, heights, middles, terms, cell_numbers(solids, feet)
+    return found
 
 
 @functools.lru_cache(maxsize=KEPT)

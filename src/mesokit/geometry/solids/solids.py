@@ -137,6 +137,16 @@ class Solids(SolidTables):
         rest = [i for i, wall in enumerate(self._walls) if not isinstance(wall, Plates)]
         return Solids(self._walls, self._box, only=rest)
 
+    @functools.cached_property
+    def period(self) -> tuple[int, ...]:
+        """Cells along each axis after which all walls are the same again: those of the box at
+        most."""
+        whole = tuple(map(int, self.size))
+        each = [wall.period(self.room) for wall in self._walls]
+        if any(self.room.closed) or any(n % 1 for period in each for n in period):
+            return whole
+        return tuple(math.lcm(*map(int, along)) for along in zip(*each, strict=True)) or whole
+
     @property
     def names(self) -> list[str]:
         """Of the bodies."""
