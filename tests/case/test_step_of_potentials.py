@@ -27,7 +27,7 @@ def speeds(kT: float, number: int = 60) -> np.ndarray:
 
 
 def step(of: Case, **arrays) -> float:
-    return timestep_of(method_of(of).prepared(of, arrays))
+    return timestep_of(method_of(of).initial.prepared(of, arrays))
 
 
 @pytest.mark.parametrize("pair", [LennardJones(), WCA()])

@@ -28,7 +28,7 @@ from mesokit.report.flow.source import sources
 from mesokit.report.flow.vorticity import vorticity
 
 SIZE = (12, 10)
-OF_FLUIDS = [kind for kind in KINDS if kind not in ("disks", "flock")]
+OF_FLUIDS = [kind for kind in KINDS if kind not in ("disks", "flock", "sites")]
 
 
 @pytest.fixture
