@@ -6,7 +6,10 @@ import sys
 
 import numpy as np
 import pytest
-from kinds import (
+
+from mesokit import Harmonic, MaxwellBoltzmann, Molecule, StartUp
+from mesokit.method.mpcd.engine.cpu.engine import CPU
+from tests.helpers.kinds_of_fluid import (
     AMONG_MOLECULES,
     DISSOLVED,
     EMBEDDED,
@@ -15,10 +18,7 @@ from kinds import (
     SEVERAL_KINDS,
     everything,
 )
-from laboratory import assert_same, make_case, make_fluid
-
-from mesokit import Harmonic, MaxwellBoltzmann, Molecule, StartUp
-from mesokit.method.mpcd.engine.cpu.engine import CPU
+from tests.helpers.small_fluids import assert_same, make_case, make_fluid
 
 STEPS = 110  # more than one re-sorting
 FEWER = 40  # of many sub-steps

@@ -3,7 +3,6 @@
 import gsd.hoomd
 import numpy as np
 import pytest
-from laboratory import make_case
 
 from mesokit import Harmonic
 from mesokit.errors import CaseError
@@ -12,6 +11,7 @@ from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.method.mpcd.start.first_state import first_state
 from mesokit.method.mpcd.start.fluid import start
 from mesokit.method.mpcd.start.section import Start
+from tests.helpers.small_fluids import make_case
 
 SIZE = (8, 8, 8)
 CHAINS = {"polymers": (Polymer(3, length=4),), "mass": 5.0, "bond": Harmonic(K=1.0)}

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from hard_spheres import gas, same, smallest_gap
 
 from mesokit import (
     Andersen,
@@ -20,6 +19,7 @@ from mesokit import (
     theory,
 )
 from mesokit.method.spheres.hard.engine import system
+from tests.helpers.hard_spheres import gas, same, smallest_gap
 
 KINDS = [SphereKind(1.0), SphereKind(0.6, spread=0.1, density=1.0)]
 

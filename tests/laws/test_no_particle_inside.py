@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from laboratory import make_fluid
-from shapes import EVERY, SIZE, example, walls_of, with_surface
 
 from mesokit import MaxwellBoltzmann, Surface, Uniform
+from tests.helpers.shapes import EVERY, SIZE, example, walls_of, with_surface
+from tests.helpers.small_fluids import make_fluid
 
 pytestmark = pytest.mark.long
 

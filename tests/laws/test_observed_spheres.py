@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from hard_spheres import gas
 
 from mesokit import (
     Box,
@@ -23,6 +22,7 @@ from mesokit import (
     VelocityCumulant,
     theory,
 )
+from tests.helpers.hard_spheres import gas
 
 
 def observed(simulation):

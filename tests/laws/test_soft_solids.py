@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from soft_spheres import at_rest, same, soft
 
 from mesokit import (
     CosineChannel,
@@ -18,6 +17,7 @@ from mesokit import (
     Surface,
     Union,
 )
+from tests.helpers.soft_spheres import at_rest, same, soft
 
 ROUGH = SpringDashpot(0.4, contact_time=0.02, friction=0.5)
 ONE = {"number": 1, "start": RandomStart(), "pair": ROUGH}

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from soft_spheres import at_rest, collision, same, soft, total
 
 from mesokit import (
     HertzLaw,
@@ -19,6 +18,7 @@ from mesokit import (
     theory,
 )
 from mesokit.potential.wca import WCA
+from tests.helpers.soft_spheres import at_rest, collision, same, soft, total
 
 PHASES = np.arange(10) / 10  # of the first touch within a step
 

@@ -4,7 +4,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-from laboratory import make_fluid, mean
 
 from mesokit import (
     AT,
@@ -28,6 +27,7 @@ from mesokit import (
 from mesokit.errors import RunError
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.method.mpcd.species import Species
+from tests.helpers.small_fluids import make_fluid, mean
 
 pytestmark = pytest.mark.long
 

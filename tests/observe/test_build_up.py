@@ -8,7 +8,6 @@ import sys
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid
 
 from mesokit import (
     Box,
@@ -29,6 +28,7 @@ from mesokit.run.opened import RunFiles
 from mesokit.seam.method import summary_of
 from mesokit.seam.result import Result
 from mesokit.study.merge import merge
+from tests.helpers.fake_fluid import FakeFluid
 
 NOTE = "not steady: the flow needs "
 

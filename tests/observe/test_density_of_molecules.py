@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from laboratory import make_case, make_fluid
 
 from mesokit import SRD, DensityProfile, Disk, Harmonic, MaxwellBoltzmann, Plates, Spring, Uniform
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.molecule import Molecule
+from tests.helpers.small_fluids import make_case, make_fluid
 
 BOND = Harmonic(K=1.0)
 MOLECULES = {

@@ -3,11 +3,11 @@
 import math
 
 import pytest
-from laboratory import make_fluid
 
 from mesokit import Harmonic, TransverseModes
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.observe.shared.fitted import fitted_number
+from tests.helpers.small_fluids import make_fluid
 
 
 @pytest.mark.parametrize(("value", "error"), [(3.1, 1.6), (-0.4, 0.2), (0.02, 5.0)])

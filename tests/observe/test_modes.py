@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid, FakeWaves
 
 from mesokit import LongitudinalModes, TransverseModes
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.observe.shared.modes import transverse_units
+from tests.helpers.fake_fluid import FakeFluid, FakeWaves
 
 
 def sampled(case, observable, samples, viscosity=0.8, speed=1.3, attenuation=0.9, seed=1):

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid
 
 from mesokit import FENE, BondLength, Harmonic, MaxwellBoltzmann, Stress
 from mesokit.method.mpcd.molecule import Molecule
+from tests.helpers.fake_fluid import FakeFluid
 
 RATE = 0.1
 

@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-from compared import comparisons
-from spheres_observed import FakeSpheres, hard, hard_case_for
 
 from mesokit import (
     ClusterSize,
@@ -25,6 +23,8 @@ from mesokit.errors import CaseError
 from mesokit.method.spheres.common.observe import OBSERVABLES as OF_SPHERES_ALONE
 from mesokit.method.spheres.common.observe.cluster_size import cluster_sizes
 from mesokit.observe import OBSERVABLES as OF_SEVERAL
+from tests.helpers.comparisons import comparisons
+from tests.helpers.fake_spheres import FakeSpheres, hard, hard_case_for
 
 OF_SPHERES = [kind for kind in (*OF_SEVERAL, *OF_SPHERES_ALONE) if "event-driven" in kind.methods]
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid
 
 from mesokit import MeanSquareDisplacement, Plates, Uniform, VelocityAutocorrelation, theory
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.displacement import Displacement
 from mesokit.observe.shared.origins import Origins
+from tests.helpers.fake_fluid import FakeFluid
 
 
 def watched(case, observable, kept, samples, seed=1):

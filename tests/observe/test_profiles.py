@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from compared import comparisons
-from fake_fluid import FakeFluid
 
 from mesokit import (
     AT,
@@ -28,6 +26,8 @@ from mesokit.io.tables import record
 from mesokit.method.mpcd.expected import setting
 from mesokit.report.caption import compared
 from mesokit.report.table import cells
+from tests.helpers.comparisons import comparisons
+from tests.helpers.fake_fluid import FakeFluid
 
 
 def watched(case, observable, flow=None, samples=300, seed=1):

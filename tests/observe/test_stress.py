@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from compared import comparisons
-from fake_fluid import FakeFluid
 
 from mesokit import (
     WCA,
@@ -27,6 +25,8 @@ from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.observe.wall_stress import balance
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.observe.conservation import ROWS
+from tests.helpers.comparisons import comparisons
+from tests.helpers.fake_fluid import FakeFluid
 
 
 def by_name(result):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid
 
 from mesokit import (
     Array,
@@ -24,6 +23,7 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import recognise
 from mesokit.method.mpcd.expected.setting import transport
 from mesokit.method.mpcd.observe.wake import Standing
+from tests.helpers.fake_fluid import FakeFluid
 
 PUSHED = {"force": Uniform((0.01, 0)), "thermostat": MaxwellBoltzmann()}
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from at_once import AtOnce
 
 from mesokit import Disk, Harmonic, Plates, Sphere, Uniform
 from mesokit.errors import CaseError
 from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.species import Species
+from tests.helpers.whole_fluid import AtOnce
 
 TWO = (Species(1.0, 3.0), Species(4.0, 2.0))
 
