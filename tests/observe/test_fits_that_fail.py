@@ -7,6 +7,7 @@ import pytest
 from mesokit import Harmonic, TransverseModes
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.observe.shared.fitted import fitted_number
+from tests.helpers.comparisons import comparisons
 from tests.helpers.small_fluids import make_fluid
 
 
@@ -31,8 +32,7 @@ def test_a_few_samples_of_slow_molecules_determine_no_stress_time():
     for _ in range(60):
         accumulator.observe(fluid)
         fluid.advance(2)
-    times = [c for c in accumulator.result().comparisons if c.what.startswith("stress time")]
-    assert times
+    times = comparisons(accumulator.result(), "stress time")
     for found in times:
         assert math.isnan(found.measured) or found.error < found.measured / 2
     assert any("the fit finds" in found.note for found in times)

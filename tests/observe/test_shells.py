@@ -25,7 +25,7 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.observe.radial_profile import ring_average
 from mesokit.run.simulation import Simulation
-from tests.helpers.comparisons import comparisons
+from tests.helpers.comparisons import by_name, comparisons
 from tests.helpers.fake_fluid import FakeFluid
 
 
@@ -36,10 +36,6 @@ def watched(case, observable, field=None, samples=300, seed=1):
         fluid.jump(10)
         accumulator.observe(fluid)
     return accumulator.result()
-
-
-def by_name(result):
-    return {c.what: c for c in result.comparisons}
 
 
 def turning(rate, middle, axis=2):

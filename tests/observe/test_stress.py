@@ -25,12 +25,8 @@ from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.observe.wall_stress import balance
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.observe.conservation import ROWS
-from tests.helpers.comparisons import comparisons
+from tests.helpers.comparisons import by_name, comparisons
 from tests.helpers.fake_fluid import FakeFluid
-
-
-def by_name(result):
-    return {c.what: c for c in result.comparisons}
 
 
 def test_conservation_of_what_is_conserved(make_case):
