@@ -16,7 +16,7 @@ from mesokit.observe import OBSERVABLES as OF_SEVERAL
 from mesokit.observe import Result
 from mesokit.report import plot, print_comparisons, save, save_all
 from mesokit.report.caption import MOST, compared, mathematics
-from tests.helpers.comparisons import comparison
+from tests.helpers.comparisons import by_name
 from tests.helpers.fake_fluid import FakeFluid, case_for, taken
 
 OBSERVABLES = [kind for kind in (*OF_SEVERAL, *OF_MPCD) if not kind.methods]  # those of fluids
@@ -172,7 +172,7 @@ def test_plates_have_panels_of_their_own_and_no_torques(make_case):
     assert panels[1].get_title("left").endswith("about (8, 4)")
     assert "post" in in_time.get_ylabel()
     (right,) = in_time.child_axes  # the coefficient of the same force
-    drag = comparison(result, "drag coefficient of post").measured
+    drag = by_name(result)["drag coefficient of post"].measured
     assert right._functions[0](result.value[2, 0]) == pytest.approx(drag)
 
 
