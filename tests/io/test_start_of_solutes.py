@@ -107,17 +107,3 @@ def test_from_an_earlier_run(tmp_path):
         Simulation(
             case_from(polymers=(Polymer(2, length=6),), start={"run": str(tmp_path / "run")})
         )
-
-
-def test_resumed_with_the_same_bits(tmp_path):
-    from mesokit import Simulation
-
-    whole = Simulation(case_from(), threads=1)
-    whole.engine.advance(12)
-    part = Simulation(case_from(), output=tmp_path / "run", threads=1)
-    part.engine.advance(5)
-    part.checkpoint()
-    again = Simulation.resume(tmp_path / "run", threads=2)
-    again.engine.advance(7)
-    np.testing.assert_array_equal(again.engine.solutes.places, whole.engine.solutes.places)
-    np.testing.assert_array_equal(again.engine.velocities(), whole.engine.velocities())

@@ -109,16 +109,6 @@ def test_nobody_is_inside(potential):
 class TestSkin:
     """However far lists reach, the same bits: they are made anew before they miss anybody."""
 
-    @pytest.mark.parametrize("shear", [{}, SHEAR], ids=["at rest", "sheared"])
-    def test_same_bits(self, shear):
-        found = []
-        for skin in (0.05, 0.4, 1.5):
-            solutes = dataclasses.replace(STIFF, skin=skin)
-            fluid = make_fluid((9, 8, 7), solutes=solutes, density=4, **shear)
-            fluid.advance(60)
-            found.append(fluid.solutes.places.copy())
-        assert (found[0] == found[1]).all() and (found[0] == found[2]).all()
-
     def test_of_beads_with_more_neighbours_than_room(self):
         """Soft beads that attract one another gather in one place."""
         deep = Solutes((Polymer(100),), pair=LennardJones(epsilon=4.0, sigma=0.3, cutoff=4.0))
