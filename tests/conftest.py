@@ -1,9 +1,8 @@
-"""What the tests of several folders share: laboratory, fake fluid and examples of shapes."""
+"""What holds for all tests, and fixtures that several folders ask for."""
 
+import math
 import os
 import shutil
-import sys
-from pathlib import Path
 
 import pytest
 from filelock import FileLock
@@ -22,14 +21,35 @@ if worker and hasattr(os, "sched_setaffinity"):  # not on every system
 settings.register_profile("same every time", derandomize=True)
 settings.load_profile("same every time")
 
-HERE = Path(__file__).parent
-# laboratory.py, kinds.py, hard_spheres.py, refusal.py, fake_fluid.py, compared.py,
-# fake_spheres.py, flows.py, shapes.py, examples.py, ptx.py,
-# module_with_kernels.py, rank_runs.py
-sys.path[:0] = [
-    str(HERE / name)
-    for name in ("laws", "case", "observe", "report", "geometry", "gpu", "kernels", "ranks")
-]
+pytest.register_assert_rewrite("tests.helpers")
+collect_ignore = ["helpers"]  # no doctests there
+
+
+BLANK = "--blank-expectations"
+
+
+def pytest_addoption(parser):
+    """A switch that makes each test of theory fail: one that passes asserts nothing."""
+    parser.addoption(BLANK, action="store_true", help="results of tests expect nothing")
+
+
+def pytest_configure(config):
+    """Results without any expectation, where the switch says so."""
+    if not config.getoption(BLANK):
+        return
+    from mesokit.seam.result import Comparison, Result
+
+    def without(kind, name, nothing):
+        made = kind.__init__
+
+        def blank(self, *given, **named):
+            made(self, *given, **named)
+            object.__setattr__(self, name, nothing)
+
+        kind.__init__ = blank
+
+    without(Comparison, "expected", math.nan)
+    without(Result, "expected", None)
 
 
 @pytest.fixture(autouse=True, scope="session")
@@ -62,19 +82,18 @@ def once(tmp_path_factory):
 @pytest.fixture
 def flying(monkeypatch):
     """The method `flying-spheres`, whose name is answered."""
-    import fake_spheres
-
     from mesokit.case import methods
     from mesokit.case.case import case_class
+    from tests.helpers import flying_spheres
 
-    monkeypatch.setitem(methods.METHODS, fake_spheres.NAME, "fake_spheres")
-    yield fake_spheres.NAME
+    monkeypatch.setitem(methods.METHODS, flying_spheres.NAME, flying_spheres.__name__)
+    yield flying_spheres.NAME
     case_class.cache_clear()
 
 
 @pytest.fixture
 def make_case():
     """A case from a box, observables and what else differs from the defaults."""
-    from laboratory import make_case
+    from tests.helpers.small_fluids import make_case
 
     return make_case

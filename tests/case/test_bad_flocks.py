@@ -4,10 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from refusal import changed, has_words, refused
 
 from mesokit import Box, Case, CaseError, Run, Simulation
 from mesokit.method.flock import Flock
+from tests.helpers.refusals import changed, has_words, refused
 
 GOOD = """
 [run]

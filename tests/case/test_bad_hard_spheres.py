@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from refusal import changed, has_words, refused
 
 from mesokit import Box, Case, CaseError, HardSpheres, Run, Simulation, SoftSpheres
 from mesokit.cli import main
+from tests.helpers.refusals import changed, has_words, refused
 
 GOOD = """
 [run]

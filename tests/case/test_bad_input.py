@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from refusal import changed, has_words, refused
 
 from mesokit.cli import main
+from tests.helpers.refusals import changed, has_words, refused
 
 GOOD = """
 title = "slit"

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from refusal import changed, has_words
 
 from mesokit import Case
 from mesokit.errors import CaseError
+from tests.helpers.refusals import changed, has_words
 
 BOX = "[box]\nsize = [20, 20]\n"
 HARD = '[run]\nsteps = 10\nmethod = "event-driven"\n' + BOX + "[spheres]\nnumber = 30\n"

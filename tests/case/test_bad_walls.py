@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 import trimesh
 from PIL import Image
-from refusal import has_words, refused
 
 from mesokit import Array, Box, Case, CaseError, Disk, Fluid, Run
 from mesokit.cli import main
 from mesokit.geometry.solids import survey
+from tests.helpers.refusals import has_words, refused
 
 PLANE = "[run]\nsteps = 1\n[box]\nsize = [12, 10]\n"
 SPACE = "[run]\nsteps = 1\n[box]\nsize = [12, 10, 8]\n"

@@ -6,7 +6,6 @@ import itertools
 
 import numpy as np
 import pytest
-from shapes import EVERY, example, solids_of, walls_of
 
 from mesokit.geometry.solids.clearance import (
     OFFSETS,
@@ -18,6 +17,7 @@ from mesokit.geometry.solids.clearance import (
 )
 from mesokit.geometry.solids.cut_cells import EVERYWHERE, cut_cells, cut_planes
 from mesokit.geometry.solids.cut_cube import share_and_depth
+from tests.helpers.shapes import EVERY, example, solids_of, walls_of
 
 
 def cells_of(solids):

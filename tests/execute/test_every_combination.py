@@ -53,7 +53,7 @@ PLAIN[2] += [(SRD, CANONICAL, Uniform, boundary, 1) for boundary in ("slit", "to
 
 def build(dimension, rule, thermostat, field, boundary, masses):
     """The case of a combination. Raises CaseError where there is no physics for it."""
-    from laboratory import example, make_case
+    from tests.helpers.small_fluids import example, make_case
 
     species = (Species(mass=1, density=3), Species(mass=2, density=2)) if masses == 2 else ()
     return make_case(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from laboratory import make_case, make_fluid
 
 from mesokit import Species
 from mesokit.errors import RunError
@@ -14,6 +13,7 @@ from mesokit.method.mpcd.engine.domains.blocks.region import Region, Space, keys
 from mesokit.method.mpcd.engine.domains.blocks.tree import divided
 from mesokit.method.mpcd.engine.pieces import pieces
 from mesokit.scalar.fixed_point import added_halves, halves, joined
+from tests.helpers.small_fluids import make_case, make_fluid
 
 HUGE = 2**20, 2**20
 

@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from kinds import MOLECULES, SHEARED
-from laboratory import assert_same, fingerprint, make_case, make_fluid
 
 from mesokit import Harmonic
 from mesokit.loops.layout import LANES, STRIPS, places_of_beads
 from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.start.fluid import start
+from tests.helpers.kinds_of_fluid import MOLECULES, SHEARED
+from tests.helpers.small_fluids import assert_same, fingerprint, make_case, make_fluid
 
 STEPS = 110  # more than one re-sorting
 

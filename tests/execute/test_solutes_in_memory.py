@@ -1,11 +1,11 @@
 """Beads of solutes leave the fluid's loops alone."""
 
 import numpy as np
-from laboratory import make_fluid
 
 from mesokit import ATPlusA, Box, Case, Harmonic, Run
 from mesokit.method.mpcd.derived import BYTES, derive
 from mesokit.method.mpcd.solutes import Polymer, Solutes
+from tests.helpers.small_fluids import make_fluid
 
 
 def test_beads_far_from_the_fluid_change_nothing():

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from laboratory import make_fluid
+
+from tests.helpers.small_fluids import make_fluid
 
 SIZE = (5, 7)
 

@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from laboratory import make_fluid
 from scipy import stats
 
 from mesokit import FENE, WCA, Bending, Harmonic, Polymer, Solutes, Species
@@ -15,6 +14,7 @@ from mesokit.method.mpcd.start.growth import grown
 from mesokit.potential.protocol import central
 from mesokit.potential.thermal import lengths
 from mesokit.scalar.random import INITIAL_POSITION, INITIAL_VELOCITY
+from tests.helpers.small_fluids import make_fluid
 
 SIZE = np.array([8.0, 20.0, 12.0])
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from laboratory import make_case
 from numba import njit
 
 from mesokit import AT, Plates
@@ -12,6 +11,7 @@ from mesokit.method.mpcd.engine.cpu.groups import Now
 from mesokit.method.mpcd.engine.virtual.stages import top_up_walls
 from mesokit.scalar.fixed_point import ROUNDER_BITS
 from mesokit.scalar.random import Counter
+from tests.helpers.small_fluids import make_case
 
 LENGTH, DENSITY = 400, 128.0
 

@@ -1,7 +1,8 @@
 """Solids of every shape, built once."""
 
 import pytest
-from shapes import EVERY, example, solids_of, walls_of
+
+from tests.helpers.shapes import EVERY, example, solids_of, walls_of
 
 
 @pytest.fixture(scope="session", params=EVERY, ids=lambda case: "-".join(map(str, case)))

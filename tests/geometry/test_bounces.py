@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
-from shapes import ROUND, bounced, meets, on_surface, solids_of, with_surface
-from test_flights import KINDS, flight
 
 from mesokit import Cylinder, Disk, Plates, Rectangle, Surface
 from mesokit.geometry.solids.bodies import COLUMNS, SURFACES
 from mesokit.geometry.solids.tables import RULES
+from tests.geometry.test_flights import KINDS, flight
+from tests.helpers.shapes import ROUND, bounced, meets, on_surface, solids_of, with_surface
 
 flights = given(kind=st.sampled_from(KINDS), seed=st.integers(0, 2**32 - 1))
 thorough = settings(deadline=None, derandomize=True, max_examples=50)

@@ -9,19 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapes import (
-    EVERY,
-    FIRST,
-    PLACES,
-    ROUND,
-    SECOND,
-    SIZE,
-    anywhere,
-    example,
-    on_surface,
-    solids_of,
-    walls_of,
-)
 
 from mesokit import (
     Array,
@@ -35,6 +22,19 @@ from mesokit import (
     Rectangle,
     Sphere,
     Union,
+)
+from tests.helpers.shapes import (
+    EVERY,
+    FIRST,
+    PLACES,
+    ROUND,
+    SECOND,
+    SIZE,
+    anywhere,
+    example,
+    on_surface,
+    solids_of,
+    walls_of,
 )
 
 NEAR = 0.999  # distances are exact within 1

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import trimesh
 from PIL import Image
-from shapes import solids_of
 
 from mesokit import CaseError, Mesh, Picture, Plates, Sampled, Solids
+from tests.helpers.shapes import solids_of
 
 CENTRE = np.array([6.1, 4.9])
 

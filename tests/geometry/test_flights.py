@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapes import SIZE, anywhere, meets, on_surface
+
+from tests.helpers.shapes import SIZE, anywhere, meets, on_surface
 
 STEPS = 1500  # of the march
 TOUCH = 1e-9  # cells: so near is a hit
@@ -154,9 +155,8 @@ def test_short_chords_are_seen(every):
 
 def test_straight_into_a_ball():
     """Times are those of a quadratic equation."""
-    from shapes import solids_of
-
     from mesokit import Disk
+    from tests.helpers.shapes import solids_of
 
     solids = solids_of((Disk((6, 5), 2),), 2)
     for offset in (0.0, 1.0, 1.9, 1.999999, 2 - 1e-12):
@@ -170,9 +170,8 @@ def test_straight_into_a_ball():
 @pytest.mark.parametrize("boxes", [1, 7.3, 40])
 def test_long_flights_go_round_the_box(boxes):
     """In a channel between posts, for many boxes, and then into a post."""
-    from shapes import solids_of
-
     from mesokit import Disk
+    from tests.helpers.shapes import solids_of
 
     solids = solids_of((Disk((6, 5), 2),), 2)
     time = 12.0 * boxes

@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from shapes import EVERY, SIZE, example
 
 from mesokit import Array, Box, Disk, Solids
 from mesokit.geometry.solids import survey
 from mesokit.geometry.solids.bodies import REACH
 from mesokit.geometry.solids.survey import Blocks
+from tests.helpers.shapes import EVERY, SIZE, example
 
 MANY = Array(of=Disk(centre=[3, 4], radius=1.7), repeat=[9, 8])
 

@@ -2,4 +2,4 @@
 
 from importlib.util import find_spec
 
-collect_ignore = [] if find_spec("numba_cuda") else ["ptx.py", "test_gpu.py"]
+collect_ignore = [] if find_spec("numba_cuda") else ["test_gpu.py"]

@@ -12,14 +12,13 @@ from pathlib import Path
 from types import ModuleType
 
 import numpy as np
-import ptx
 import pytest
 
-import examples
 import mesokit
 from mesokit.kernels.store import folder
 from mesokit.scalar.intrinsics import mul_add
 from mesokit.scalar.jit import scalar, seldom
+from tests.helpers import gpu_compiler, gpu_examples
 
 pytestmark = pytest.mark.long
 
@@ -32,11 +31,11 @@ def library_functions(name: str) -> list[str]:
     """Functions of that library in what is compiled under a name; kept beside the kernels."""
     key = hashlib.sha256(name.encode() + version("numba-cuda").encode())
     sources = sorted(Path(mesokit.__file__).parent.rglob("*.py"))
-    for path in (Path(examples.__file__), Path(ptx.__file__), *sources):
+    for path in (Path(gpu_examples.__file__), Path(gpu_compiler.__file__), *sources):
         key.update(path.read_bytes())
     kept = folder() / "ptx" / key.hexdigest()
     if not kept.exists():
-        ir = ptx.compile_for_gpu(examples.CALLS[name]).ir
+        ir = gpu_compiler.compile_for_gpu(gpu_examples.CALLS[name]).ir
         found = [f for f in LIBRARY if f"@__nv_{f}(" in ir or f'@"__nv_{f}"(' in ir]
         kept.parent.mkdir(parents=True, exist_ok=True)
         kept.write_text(" ".join(found))
@@ -63,17 +62,17 @@ def generic_functions() -> set[Callable]:
     return {function for function in found if function.__module__ not in LOOPS}
 
 
-@pytest.mark.parametrize("name", examples.CALLS)
+@pytest.mark.parametrize("name", gpu_examples.CALLS)
 def test_it_compiles_for_a_gpu_without_its_own_library(name: str) -> None:
     assert library_functions(name) == READ_ONLY.get(name.split()[0], [])
 
 
 def test_every_implementation_is_among_what_is_compiled() -> None:
-    assert generic_functions() == set(examples.ASKED)
-    shown = {type(part) for d in examples.DIMENSIONS for part in examples.parts(d)}
+    assert generic_functions() == set(gpu_examples.ASKED)
+    shown = {type(part) for d in gpu_examples.DIMENSIONS for part in gpu_examples.parts(d)}
     assert [
         f"{function.__name__} of {kind.__name__}"
-        for function in examples.ASKED
+        for function in gpu_examples.ASKED
         for kind in function.implementations  # type: ignore[attr-defined]
         if kind.__module__.startswith("mesokit.") and kind not in shown
     ] == []
@@ -85,7 +84,7 @@ def test_what_a_gpu_does_not_know_is_found() -> None:
         return np.floor(x)
 
     with pytest.raises(KeyError, match="floor"):
-        ptx.compile_for_gpu([(rounded_down, (1.5,))])
+        gpu_compiler.compile_for_gpu([(rounded_down, (1.5,))])
 
 
 def test_products_and_sums_are_rounded_one_by_one_unless_they_are_one_instruction() -> None:
@@ -98,7 +97,7 @@ def test_products_and_sums_are_rounded_one_by_one_unless_they_are_one_instructio
         return mul_add(a, b, c)
 
     for function, expected in ((apart, ["mul", "add"]), (at_once, ["fma"])):
-        _, text = ptx.compile_for_gpu([(function, (1.0, 2.0, 3.0))], optimised=True)
+        _, text = gpu_compiler.compile_for_gpu([(function, (1.0, 2.0, 3.0))], optimised=True)
         found = re.findall(r"(mul|add|fma)[.\w]*\.f64", text)
         assert found == expected
 
@@ -113,5 +112,5 @@ def test_what_is_seldom_needed_is_called_and_all_else_inlined(how: Callable, cal
     def both(x, y):  # type: ignore[no-untyped-def]
         return half(x) - half(y)
 
-    _, text = ptx.compile_for_gpu([(both, (1.0, 2.0))], optimised=True)
+    _, text = gpu_compiler.compile_for_gpu([(both, (1.0, 2.0))], optimised=True)
     assert len(re.findall(r"\bcall\b", text)) == calls

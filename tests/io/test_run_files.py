@@ -9,7 +9,6 @@ import warnings
 import h5py
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid
 
 import mesokit
 from mesokit import Conservation, Plates, Stress, TransverseModes, VelocityField, VelocityProfile
@@ -18,6 +17,7 @@ from mesokit.errors import RunError
 from mesokit.io import h5md
 from mesokit.io.run_directory import RunDirectory, provenance
 from mesokit.io.trajectory import TrajectoryWriter
+from tests.helpers.fake_fluid import FakeFluid
 
 OBSERVABLES = (
     Conservation(every=5), VelocityProfile(), VelocityField(), Stress(every=10), TransverseModes(),

@@ -8,7 +8,6 @@ import gsd.hoomd
 import h5py
 import numpy as np
 import pytest
-from fake_spheres import Flying
 
 import mesokit
 from mesokit import Box, Case, CaseError, Run, Simulation
@@ -16,6 +15,7 @@ from mesokit.case.trajectory import Trajectory, stored_bytes
 from mesokit.io.snapshot_file import read_snapshot
 from mesokit.method.spheres.common.kinds import SphereKind
 from mesokit.method.spheres.common.section import Spheres
+from tests.helpers.flying_spheres import Flying
 
 ALL = ("position", "velocity", "spin", "image", "id")
 KINDS = (SphereKind(0.8, density=2.0, spread=0.2, name="small"), SphereKind(1.2, share=0.5))

@@ -10,7 +10,6 @@ from pathlib import Path
 import gsd.hoomd
 import numpy as np
 import pytest
-from laboratory import make_case, make_fluid
 
 from mesokit import Box, Case, Harmonic, Plates, Run
 from mesokit.cli import main
@@ -23,6 +22,7 @@ from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.species import Species
 from mesokit.method.mpcd.start.first_state import first_state
 from mesokit.method.mpcd.start.section import Start
+from tests.helpers.small_fluids import make_case, make_fluid
 
 BOND = Harmonic(K=3.0)
 MOLECULES = {

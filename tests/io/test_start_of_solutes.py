@@ -3,7 +3,6 @@
 import gsd.hoomd
 import numpy as np
 import pytest
-from laboratory import make_case
 
 from mesokit import Harmonic
 from mesokit.errors import CaseError
@@ -12,6 +11,7 @@ from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.method.mpcd.start.first_state import first_state
 from mesokit.method.mpcd.start.fluid import start
 from mesokit.method.mpcd.start.section import Start
+from tests.helpers.small_fluids import make_case
 
 SIZE = (8, 8, 8)
 CHAINS = {"polymers": (Polymer(3, length=4),), "mass": 5.0, "bond": Harmonic(K=1.0)}
@@ -107,17 +107,3 @@ def test_from_an_earlier_run(tmp_path):
         Simulation(
             case_from(polymers=(Polymer(2, length=6),), start={"run": str(tmp_path / "run")})
         )
-
-
-def test_resumed_with_the_same_bits(tmp_path):
-    from mesokit import Simulation
-
-    whole = Simulation(case_from(), threads=1)
-    whole.engine.advance(12)
-    part = Simulation(case_from(), output=tmp_path / "run", threads=1)
-    part.engine.advance(5)
-    part.checkpoint()
-    again = Simulation.resume(tmp_path / "run", threads=2)
-    again.engine.advance(7)
-    np.testing.assert_array_equal(again.engine.solutes.places, whole.engine.solutes.places)
-    np.testing.assert_array_equal(again.engine.velocities(), whole.engine.velocities())

@@ -6,7 +6,8 @@ import shutil
 from pathlib import Path
 
 import pytest
-from module_with_kernels import Place
+
+from tests.helpers.module_with_kernels import Place
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,8 @@ import os
 import sqlite3
 
 import pytest
-from module_with_kernels import NOTHING_MADE, Place, damage
+
+from tests.helpers.module_with_kernels import NOTHING_MADE, Place, damage
 
 
 @pytest.mark.parametrize("how", ["empty", "cut", "foreign", "garbage", "flipped"])

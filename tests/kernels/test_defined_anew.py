@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 
 import pytest
-from module_with_kernels import Place
+
+from tests.helpers.module_with_kernels import Place
 
 AGAIN = """
 import json, importlib, os, pathlib, shutil

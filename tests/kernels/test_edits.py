@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from module_with_kernels import NOTHING_MADE, Place
+
+from tests.helpers.module_with_kernels import NOTHING_MADE, Place
 
 
 def test_a_second_process_makes_nothing(place: Place) -> None:

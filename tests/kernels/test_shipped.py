@@ -8,7 +8,8 @@ import zlib
 from pathlib import Path
 
 import pytest
-from module_with_kernels import NOTHING_MADE, PROGRAM, Place, damage
+
+from tests.helpers.module_with_kernels import NOTHING_MADE, PROGRAM, Place, damage
 
 BRINGS = """
 from pathlib import Path

@@ -13,9 +13,9 @@ import time
 from pathlib import Path
 
 import pytest
-from module_with_kernels import NOTHING_MADE, PROGRAM, Place
 
 from mesokit.kernels.store import Code, Entry, Store, folder, on_network
+from tests.helpers.module_with_kernels import NOTHING_MADE, PROGRAM, Place
 
 
 def test_the_store_is_not_exported_to_itself(place: Place) -> None:

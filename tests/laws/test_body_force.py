@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from laboratory import Measured, example, make_fluid
 from numba import njit
 
 from mesokit import AT, Sinusoidal, theory
 from mesokit.method.mpcd.field import RULES
 from mesokit.method.mpcd.field.protocol import acceleration, field_at
+from tests.helpers.small_fluids import Measured, example, make_fluid
 
 
 @pytest.mark.parametrize("force", RULES, ids=lambda rule: rule.__name__)

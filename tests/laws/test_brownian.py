@@ -78,16 +78,6 @@ def test_the_start_is_uniform():
         assert stats.kstest(places[:, k] / length, "uniform").pvalue > UNLIKELY
 
 
-@pytest.mark.parametrize("threads", [2, 3])
-def test_the_same_bits_for_any_threads_and_calls(threads):
-    one, other = make().engine, make(threads=threads).engine
-    one.advance(STEPS)
-    for _ in range(STEPS // 5):
-        other.advance(5)
-    np.testing.assert_array_equal(one.positions(), other.positions())
-    np.testing.assert_array_equal(one.images(), other.images())
-
-
 def test_another_seed_gives_another_walk():
     one, other = make(seed=1).engine, make(seed=2).engine
     assert not np.isin(one.positions(), other.positions()).any()
@@ -101,27 +91,6 @@ def test_given_positions_are_those_of_the_particles():
     engine.advance(1)
     moved = engine.positions(unwrapped=True) - places
     assert moved.std() == pytest.approx(np.sqrt(2 * D * TIMESTEP), rel=0.05)
-
-
-def test_a_stopped_run_goes_on_to_the_same_bits(tmp_path):
-    parts = {
-        "observe": [MeanSquareDisplacement(every=5, max_lag=20)],
-        "trajectory": mesokit.Trajectory(every=10, fields=["position", "image", "id"]),
-    }
-    whole = make(output=tmp_path / "whole", **parts)
-    whole.run()
-    stopped = make(output=tmp_path / "part", threads=2, **parts)
-    stopped.run(30)
-    stopped.checkpoint()
-    Simulation.resume(tmp_path / "part", threads=3).run()
-    one, other = (mesokit.open(tmp_path / name) for name in ("whole", "part"))
-    assert one.results == other.results
-    assert len(one.trajectory) == STEPS // 10 + 1
-    for field in ("position", "image"):
-        np.testing.assert_array_equal(one.trajectory.read(field), other.trajectory.read(field))
-    last = one.trajectory[-1]
-    np.testing.assert_allclose(last["position"], whole.engine.positions(), atol=1e-5)
-    np.testing.assert_array_equal(last["image"], whole.engine.images())
 
 
 def test_other_programs_read_the_trajectory(tmp_path):

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from laboratory import cells, conserved_sums, make_fluid
 
 from mesokit.method.mpcd.collision import RULES
 from mesokit.method.mpcd.species import Species
+from tests.helpers.small_fluids import cells, conserved_sums, make_fluid
 
 EVERYTHING = ("mass", "momentum", "energy", "angular momentum")
 ROUNDING = 1e-9  # fixed-point sums of some ten terms, each rounded to 2^-36 or finer

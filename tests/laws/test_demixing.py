@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 import pytest
-from laboratory import Measured, make_fluid, mean
 from numba import njit
 from scipy.special import ive
 
 from mesokit import CaseError, Demix, DomainSize, Species, theory
 from mesokit.method.mpcd.collision.directed import quaternion, turned_by, von_mises
 from mesokit.method.mpcd.engine.cell_gradient import Field, gradient_at
+from tests.helpers.small_fluids import Measured, make_fluid, mean
 
 DENSITY = 10
 TWO = (Species(mass=1, density=5), Species(mass=1, density=5))

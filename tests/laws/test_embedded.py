@@ -4,13 +4,13 @@ import dataclasses
 
 import numpy as np
 import pytest
-from kinds import EMBEDDED as SEVERAL
-from laboratory import make_fluid, mean
 
 from mesokit import WCA
 from mesokit.errors import RunError
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.potential.thermal import energies, excluded_volume
+from tests.helpers.kinds_of_fluid import EMBEDDED as SEVERAL
+from tests.helpers.small_fluids import make_fluid, mean
 
 pytestmark = pytest.mark.long
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from laboratory import COLLIDING, Measured, cells, make_fluid, mean
 from scipy import stats
 
 from mesokit import theory
 from mesokit.method.mpcd.species import Species
+from tests.helpers.small_fluids import COLLIDING, Measured, cells, make_fluid, mean
 
 UNLIKELY = 1e-3  # a p-value below this would happen by chance once in a thousand seeds
 

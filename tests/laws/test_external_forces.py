@@ -4,8 +4,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-from compared import comparisons
-from laboratory import make_fluid, mean
 from numba import njit
 
 from mesokit import (
@@ -27,6 +25,8 @@ from mesokit import (
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.derived import derive
 from mesokit.method.mpcd.engine.beads.external import external_of, turned
+from tests.helpers.comparisons import comparisons
+from tests.helpers.small_fluids import make_fluid, mean
 
 
 def in_random_solvent(*kinds, size=(12, 12), K=1.0, **parts):

@@ -6,7 +6,6 @@ import sys
 
 import numpy as np
 import pytest
-from hard_spheres import gas
 
 from mesokit import (
     Cylinder,
@@ -20,6 +19,7 @@ from mesokit import (
     Surface,
     SurfaceContact,
 )
+from tests.helpers.hard_spheres import gas
 
 
 def ball(e, contact_time=0.0, timestep=0.5, floor=None):

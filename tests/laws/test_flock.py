@@ -7,14 +7,10 @@ import pytest
 from scipy import stats
 from scipy.spatial import cKDTree
 
-import mesokit
 from mesokit import (
-    Box,
     Case,
-    Disk,
     MeanSquareDisplacement,
     Plates,
-    Run,
     Simulation,
     Surface,
     theory,
@@ -27,20 +23,11 @@ from mesokit.method.flock import (
     PolarOrder,
     VectorialNoise,
 )
-from mesokit.method.flock.engine import flocks
 from mesokit.method.flock.engine.flocks import Flocks
 from mesokit.method.flock.engine.memory import CHUNK
+from tests.helpers.flocks import ANY_WALLS, SLIP, case
 
 UNLIKELY = 1e-4
-SLIP = Surface(rule="slip")
-ANY_WALLS = [Plates("y", lower=SLIP, upper=SLIP), Disk(centre=(10, 9), radius=3.3)]
-
-
-def case(size, steps=100, seed=1, walls=(), observe=(), trajectory=None, **birds):
-    return Case(
-        run=Run(steps=steps, seed=seed, method="flock"), box=Box(size), flock=Flock(**birds),
-        walls=walls, observe=observe, trajectory=trajectory,
-    )  # fmt: skip
 
 
 def begun(*size, threads=1, **given):
@@ -375,35 +362,6 @@ def test_no_bird_is_ever_in_a_wall_and_none_sees_across_the_box_there():
 
 # --- the same bits ------------------------------------------------------------------------------
 
-KINDS = {
-    "2D": ((11, 9.5), {"noise": AngularNoise(2.0)}),
-    "3D": ((5, 6.2, 4), {"noise": AngularNoise(1.0)}),
-    "original": ((11, 9.5), {"noise": AngularNoise(2.0), "order": "original"}),
-    "vectorial": ((11, 9.5), {"noise": VectorialNoise(0.5)}),
-    "cohesion": ((11, 9.5), {"noise": VectorialNoise(0.3), "cohesion": Cohesion()}),
-    "walls": ((20, 20), {"noise": AngularNoise(1.0), "walls": ANY_WALLS}),
-}
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_the_same_bits_for_any_threads_cells_and_slices(kind, monkeypatch):
-    monkeypatch.setattr(flocks, "FEWEST", 50)
-    size, given = KINDS[kind]
-    made = case(size, density=6, **given)
-    start = Simulation(made).engine.state()
-    found = []
-    for threads, side, slices in ((1, None, [60]), (2, 1.7, [7] * 8 + [4]), (3, 2.9, [1] * 60)):
-        engine = Flocks(made, threads, side)
-        assert engine.threads == threads
-        engine.restore(start)
-        for steps in slices:
-            engine.advance(steps)
-        found.append(engine.state())
-    for other in found[1:]:
-        for name, array in found[0].items():
-            np.testing.assert_array_equal(array, other[name])
-
-
 NEARLY = 1.9 - 1e-6, 1.9 + 1e-6
 
 
@@ -425,24 +383,9 @@ def test_a_crowd_in_one_cell_has_the_same_bits():
     np.testing.assert_array_equal(one.headings(), other.headings())
 
 
-def test_a_stopped_run_goes_on_to_the_same_bits(tmp_path):
-    parts = {
-        "observe": [PolarOrder(every=5), MeanSquareDisplacement(every=5, max_lag=20)],
-        "trajectory": mesokit.Trajectory(every=10, fields=["position", "velocity", "image", "id"]),
-    }
-    given = case((12, 12), steps=60, density=5, **parts)
-    whole = Simulation(given, output=tmp_path / "whole", threads=1)
+def test_a_run_begins_where_another_ended(tmp_path):
+    whole = Simulation(case((12, 12), steps=60, density=5), output=tmp_path / "whole", threads=1)
     whole.run()
-    stopped = Simulation(given, output=tmp_path / "part", threads=2)
-    stopped.run(30)
-    stopped.checkpoint()
-    Simulation.resume(tmp_path / "part", threads=3).run()
-    one, other = (mesokit.open(tmp_path / name) for name in ("whole", "part"))
-    assert one.results == other.results
-    for field in ("position", "velocity", "image"):
-        np.testing.assert_array_equal(one.trajectory.read(field), other.trajectory.read(field))
-    last = one.trajectory[-1]
-    np.testing.assert_allclose(last["velocity"], whole.engine.velocities(), atol=1e-6)
     again = case((12, 12), density=5)
     later = Case(
         run=again.run, box=again.box,

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from laboratory import make_fluid, mean
 from numba import njit
 
 from mesokit import (
@@ -22,6 +21,7 @@ from mesokit import (
 )  # fmt: skip
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.field.varying import factor
+from tests.helpers.small_fluids import make_fluid, mean
 
 PUSH = Uniform((0.02, 0.0, 0.0))
 COSINE = OscillatingForce(PUSH, frequency=1.7, phase=-90)

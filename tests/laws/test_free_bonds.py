@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from laboratory import make_fluid, mean
 
 from mesokit import FENE, WCA, Harmonic, Polymer, Solutes
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.solute.free import FreeMolecule
 from mesokit.method.mpcd.start.first_state import first_state
 from mesokit.method.mpcd.start.growth import grown
+from tests.helpers.small_fluids import make_fluid, mean
 
 PATCH = ((0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (3, 4))  # a loop, a chord, a tail
 K = 1.5

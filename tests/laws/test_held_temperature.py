@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from laboratory import Measured, make_fluid
 
 from mesokit import AT, SRD, MaxwellBoltzmann, NoThermostat, Rescale, SRDPlusA, theory
 from mesokit.statistics import blocking_error
+from tests.helpers.small_fluids import Measured, make_fluid
 
 pytestmark = pytest.mark.long
 

@@ -4,8 +4,9 @@ import dataclasses
 
 import numpy as np
 import pytest
-from kinds import SEVERAL_KINDS as MIXTURE
-from laboratory import make_fluid, mean
+
+from tests.helpers.kinds_of_fluid import SEVERAL_KINDS as MIXTURE
+from tests.helpers.small_fluids import make_fluid, mean
 
 pytestmark = pytest.mark.long
 

@@ -4,7 +4,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-from laboratory import make_case, make_fluid, mean
 
 from mesokit import (
     FENE,
@@ -24,6 +23,7 @@ from mesokit.errors import CaseError, RunError
 from mesokit.method.mpcd.expected.molecules import bond_at_rest
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.start.first_state import first_state
+from tests.helpers.small_fluids import make_case, make_fluid, mean
 
 pytestmark = pytest.mark.long
 

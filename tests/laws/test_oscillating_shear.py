@@ -14,6 +14,7 @@ from mesokit import (
     StressAutocorrelation,
     VelocityProfile,
 )
+from tests.helpers.comparisons import by_name
 
 pytestmark = pytest.mark.long
 
@@ -34,7 +35,7 @@ def test_a_simple_fluid_loses_by_its_viscosity_and_stores_nothing():
     frequency = 0.2
     simulation = sheared(frequency, 20_000)
     simulation.run()
-    found = {c.what: c for c in simulation["dynamic-moduli"].comparisons}
+    found = by_name(simulation["dynamic-moduli"])
     stored, lost = found["storage modulus"], found["loss modulus"]
     assert lost.error < 0.02 * lost.expected
     assert abs(lost.measured - lost.expected) < 4 * lost.error + 0.06 * lost.expected

@@ -2,9 +2,6 @@
 
 import numpy as np
 import pytest
-from compared import comparisons
-from hard_spheres import gas, same
-from soft_spheres import soft
 
 from mesokit import (
     WCA,
@@ -34,6 +31,9 @@ from mesokit import (
 )
 from mesokit.method.spheres.hard import window
 from mesokit.method.spheres.hard.engine.groups import LAST
+from tests.helpers.comparisons import comparisons
+from tests.helpers.hard_spheres import gas, same
+from tests.helpers.soft_spheres import soft
 
 
 def observed(simulation, steps=None):

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from soft_spheres import at_rest, soft
 
 from mesokit import Case, CaseError, Plates, SphereKind, SpringDashpot, Surface, SurfaceContact
 from mesokit.case.box import Box
 from mesokit.case.run import Run
 from mesokit.method.spheres.soft.section import SoftSpheres
+from tests.helpers.soft_spheres import at_rest, soft
 
 ROUGH = Surface(contact=SurfaceContact(friction=0.6))
 

@@ -4,7 +4,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-from laboratory import make_case, make_fluid
 from numba import njit
 from scipy import special
 
@@ -13,6 +12,7 @@ from mesokit import AT, Box, CaseError, DensityProfile, Plates, SampledForce, Si
 from mesokit.method.mpcd.field.protocol import acceleration
 from mesokit.method.mpcd.field.sampled import interval
 from mesokit.method.mpcd.field.sinusoidal import Sinusoidal
+from tests.helpers.small_fluids import make_case, make_fluid
 
 pull = njit(lambda field, r: acceleration(field, r))
 

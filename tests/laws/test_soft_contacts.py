@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from soft_spheres import at_rest, soft, total
 
 from mesokit import (
     Disk,
@@ -17,6 +16,7 @@ from mesokit import (
     Surface,
     SurfaceContact,
 )
+from tests.helpers.soft_spheres import at_rest, soft, total
 
 G = 10.0
 

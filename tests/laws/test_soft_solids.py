@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from soft_spheres import at_rest, same, soft
 
 from mesokit import (
     CosineChannel,
@@ -18,8 +17,8 @@ from mesokit import (
     Surface,
     Union,
 )
+from tests.helpers.soft_spheres import ROUGH, at_rest, pile, soft
 
-ROUGH = SpringDashpot(0.4, contact_time=0.02, friction=0.5)
 ONE = {"number": 1, "start": RandomStart(), "pair": ROUGH}
 
 
@@ -116,28 +115,6 @@ def true_distance(solids, place):
         low, high = np.where(inside, low, middle), np.where(inside, middle, high)
     best = min(best, float(high.min()))
     return best
-
-
-def pile(threads=1, skin=None, seed=1):
-    return soft(
-        [16, 14], walls=[Plates("y"), Rectangle(centre=[8, 2], size=[9, 3], angle=20)],
-        number=60, kT=0.5, gravity=[0.0, -2.0], start=RandomStart(), pair=ROUGH,
-        threads=threads, skin=skin, seed=seed,
-    )  # fmt: skip
-
-
-def test_the_same_bits_for_any_threads_lists_slices_and_resumes():
-    one = pile()
-    one.advance(6000)
-    assert (one.state()["solid_terms"] >= 0).sum() > 3
-    other = pile(2, 0.3)
-    for steps in (1, 2500, 499):
-        other.advance(steps)
-    third = pile(1, 0.05)
-    third.restore({name: array.copy() for name, array in other.state().items()})
-    for engine in (other, third):
-        engine.advance(3000)
-        assert same(one, engine)
 
 
 def test_nothing_comes_into_a_solid():

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from soft_spheres import at_rest, collision, same, soft, total
 
 from mesokit import (
     HertzLaw,
@@ -14,11 +13,11 @@ from mesokit import (
     LennardJones,
     Plates,
     RescaleAll,
-    SphereKind,
     SpringDashpot,
     theory,
 )
 from mesokit.potential.wca import WCA
+from tests.helpers.soft_spheres import at_rest, collision, lennard_jones, soft, total
 
 PHASES = np.arange(10) / 10  # of the first touch within a step
 
@@ -57,13 +56,6 @@ def test_slow_viscoelastic_spheres_lose_what_schwager_and_poschel_say():
     expected = 1 - law.restitution_of(0.5, 0.01)
     _, restitution, _, _ = collision(law, 0.01, 1000)
     assert abs((1 - restitution) / expected - 1) < 0.02
-
-
-def lennard_jones(timestep=0.004, seed=1, threads=1, skin=None, **given):
-    return soft(
-        [8.0, 8.0, 8.0], number=400, kT=1.0, pair=LennardJones(), timestep=timestep, seed=seed,
-        threads=threads, skin=skin, **given,
-    )  # fmt: skip
 
 
 def test_a_fluid_keeps_momentum_to_rounding_and_energy_to_the_square_of_the_step():
@@ -148,44 +140,6 @@ def test_a_bath_holds_the_temperature():
         found.append(engine.totals()[2] / 600)
     blocks = np.mean(np.reshape(found, (20, 10)), axis=1)
     assert abs(blocks.mean() - 1.5) < 4 * blocks.std(ddof=1) / math.sqrt(20)
-
-
-def grains(threads=1, skin=None, dimension=3, **law):
-    axis = "xyz"[dimension - 1]
-    return soft(
-        [8.0, 8.0, 20.0] if dimension == 3 else [16.0, 20.0], walls=[Plates(axis)], number=220,
-        kinds=[SphereKind(0.9, spread=0.1)], kT=0.5, gravity=[0.0] * (dimension - 1) + [-5.0],
-        skin=skin, threads=threads,
-        pair=SpringDashpot(0.5, contact_time=0.05, friction=0.5, **law),
-    )  # fmt: skip
-
-
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_grains_have_the_same_bits_for_any_threads_lists_slices_and_resumes(dimension):
-    one = grains(dimension=dimension, rolling=0.1)
-    one.advance(4000)
-    assert len(one.state()["pairs"]) > 50
-    other = grains(2, 0.3, dimension, rolling=0.1)
-    for steps in (1, 1500, 1499):
-        other.advance(steps)
-    third = grains(1, 0.03, dimension, rolling=0.1)
-    third.restore({name: array.copy() for name, array in other.state().items()})
-    third.advance(1000)
-    other.advance(1000)
-    assert same(one, other)
-    assert same(one, third)
-
-
-def test_a_fluid_has_the_same_bits_for_any_threads_lists_and_slices():
-    one = lennard_jones()
-    one.advance(150)
-    other = lennard_jones(threads=2, skin=0.7)
-    other.advance(70)
-    third = lennard_jones(skin=0.1)
-    third.restore({name: array.copy() for name, array in other.state().items()})
-    for engine in (other, third):
-        engine.advance(80)
-        assert same(one, engine)
 
 
 def test_elastic_grains_keep_energy_momentum():

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from laboratory import make_fluid
 
 from mesokit import (
     AT,
@@ -21,6 +20,7 @@ from mesokit import (
     Surface,
     Uniform,
 )
+from tests.helpers.small_fluids import make_fluid
 
 RULES = [SRD(), AT(), SRDPlusA(), ATPlusA()]
 SURFACES = [

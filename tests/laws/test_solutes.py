@@ -4,7 +4,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-from laboratory import make_fluid, mean
 
 from mesokit import (
     AT,
@@ -28,6 +27,7 @@ from mesokit import (
 from mesokit.errors import RunError
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.method.mpcd.species import Species
+from tests.helpers.small_fluids import make_fluid, mean
 
 pytestmark = pytest.mark.long
 
@@ -107,16 +107,6 @@ def test_nobody_is_inside(potential):
 
 class TestSkin:
     """However far lists reach, the same bits: they are made anew before they miss anybody."""
-
-    @pytest.mark.parametrize("shear", [{}, SHEAR], ids=["at rest", "sheared"])
-    def test_same_bits(self, shear):
-        found = []
-        for skin in (0.05, 0.4, 1.5):
-            solutes = dataclasses.replace(STIFF, skin=skin)
-            fluid = make_fluid((9, 8, 7), solutes=solutes, density=4, **shear)
-            fluid.advance(60)
-            found.append(fluid.solutes.places.copy())
-        assert (found[0] == found[1]).all() and (found[0] == found[2]).all()
 
     def test_of_beads_with_more_neighbours_than_room(self):
         """Soft beads that attract one another gather in one place."""

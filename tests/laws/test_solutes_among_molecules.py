@@ -4,12 +4,12 @@ import dataclasses
 
 import numpy as np
 import pytest
-from kinds import AMONG_MOLECULES, DIMERS
-from kinds import OF_MANY_MASSES as DISSOLVED
-from laboratory import make_case, make_fluid, mean
 
 from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.start.fluid import start
+from tests.helpers.kinds_of_fluid import AMONG_MOLECULES, DIMERS
+from tests.helpers.kinds_of_fluid import OF_MANY_MASSES as DISSOLVED
+from tests.helpers.small_fluids import make_case, make_fluid, mean
 
 pytestmark = pytest.mark.long
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from laboratory import make_case
 
 from mesokit import SRD, LongitudinalModes, MaxwellBoltzmann, NoThermostat
 from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.start.fluid import start
+from tests.helpers.small_fluids import make_case
 
 pytestmark = pytest.mark.long
 

@@ -5,7 +5,6 @@ import math
 
 import numpy as np
 import pytest
-from soft_spheres import at_rest, total
 
 from mesokit import (
     Box,
@@ -27,6 +26,7 @@ from mesokit.io.lammps_data import read
 from mesokit.method.spheres.common.start.from_file import FileStart
 from mesokit.method.spheres.soft import scales
 from mesokit.seam.method import method_of, summary_of
+from tests.helpers.soft_spheres import at_rest, total
 
 GAP = 0.013
 

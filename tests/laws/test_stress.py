@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from compared import comparisons
-from laboratory import KNOWN
 
 from mesokit import Box, Case, Fluid, MaxwellBoltzmann, NoThermostat, Run, Simulation, Stress
+from tests.helpers.comparisons import comparisons
+from tests.helpers.small_fluids import KNOWN
 
 pytestmark = pytest.mark.long
 

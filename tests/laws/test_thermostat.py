@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from laboratory import Measured, conserved_sums, make_fluid, relative_energy
 from scipy import stats
 
 from mesokit import MaxwellBoltzmann, NoThermostat, Plates, Uniform, theory
 from mesokit.method.mpcd.species import Species
 from mesokit.method.mpcd.thermostat import RULES
+from tests.helpers.small_fluids import Measured, conserved_sums, make_fluid, relative_energy
 
 SIZE = (14, 12, 16)
 REST = Uniform(acceleration=(0.0, 0.0))

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from laboratory import KNOWN, Measured, make_fluid, mean, shear_viscosity
 from scipy.optimize import curve_fit
 
 from mesokit import AT, SRD, theory
 from mesokit.method.mpcd.start.fluid import start
+from tests.helpers.small_fluids import KNOWN, Measured, make_fluid, mean, shear_viscosity
 
 # Molecular chaos leaves out correlated collisions (1 to 2 %) and the loop of fluctuations (1 to
 # 2 % at ten particles per cell); a wave 16 cells long sees 1 % less of the transfer within cells.

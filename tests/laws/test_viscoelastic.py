@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from compared import comparisons
 
 from mesokit import (
     FENE,
@@ -24,6 +23,7 @@ from mesokit import (
     Stress,
     TransverseModes,
 )
+from tests.helpers.comparisons import comparisons
 
 pytestmark = pytest.mark.long
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from laboratory import Measured, make_case, make_fluid, mean
 from scipy import stats
 
 from mesokit import SRD, MaxwellBoltzmann, Plates, Surface, Uniform, WallStress, theory
@@ -10,6 +9,7 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.start.fluid import start
 from mesokit.statistics import weighted_line
+from tests.helpers.small_fluids import Measured, make_case, make_fluid, mean
 
 LENGTH, HEIGHT = 48, 16
 BINS = 2 * HEIGHT

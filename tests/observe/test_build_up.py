@@ -8,7 +8,6 @@ import sys
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid
 
 from mesokit import (
     Box,
@@ -33,6 +32,7 @@ from mesokit.seam.observable import Accumulator
 from mesokit.seam.result import Comparison, Result
 from mesokit.study.axes import Axis
 from mesokit.study.merge import merge
+from tests.helpers.fake_fluid import FakeFluid
 
 NOTE = "not steady: the flow needs "
 

@@ -17,6 +17,7 @@ from mesokit import (
     SpringDashpot,
 )
 from mesokit.errors import CaseError, RunError
+from tests.helpers.comparisons import by_name
 
 
 def observed(size, steps, walls=(), warmup=0, **spheres):
@@ -30,7 +31,7 @@ def observed(size, steps, walls=(), warmup=0, **spheres):
     simulation = Simulation(case, threads=1)
     simulation.run()
     found = simulation["contact-stress"]
-    return {c.what: c for c in found.comparisons}, found
+    return by_name(found), found
 
 
 def test_spheres_that_still_fall_are_not_compared_with_their_weight():

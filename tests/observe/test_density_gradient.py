@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid
-from laboratory import make_fluid
 
 from mesokit import Array, DensityGradient, Disk, MaxwellBoltzmann, Plates, Rectangle, Uniform
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.derived import derive
 from mesokit.method.mpcd.expected.compression import compression
+from tests.helpers.fake_fluid import FakeFluid
+from tests.helpers.small_fluids import make_fluid
 
 POSTS = Array(of=Disk(centre=(5.0, 5.0), radius=2.0), repeat=(3, 2))
 PUSH = {"force": Uniform((0.02, 0.0)), "thermostat": MaxwellBoltzmann()}

@@ -6,7 +6,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-from laboratory import make_case, make_fluid
 
 from mesokit import (
     FENE,
@@ -31,6 +30,7 @@ from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.method.mpcd.start.fluid import start
 from mesokit.observe.shared.origins import GROUPS
+from tests.helpers.small_fluids import make_case, make_fluid
 
 SOFT = Harmonic(K=1 / 6)  # three cells long: beads seldom meet their neighbours in a cell
 THIN = {"timestep": 1.0, "collision": SRD(angle=90)}  # they fly a cell between two collisions

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from at_once import AtOnce
-from compared import comparisons
 
 from mesokit import CellOccupancy, Disk, MaxwellBoltzmann, Plates, Uniform, VelocityDistribution
+from tests.helpers.comparisons import comparisons
+from tests.helpers.whole_fluid import AtOnce
 
 SAMPLES = 2500
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from at_once import AtOnce
 
 from mesokit import CaseError, DomainSize, Plates, Species
 from mesokit.report import plot
+from tests.helpers.whole_fluid import AtOnce
 
 SIZE, SMALL = (48, 32), (12, 8, 16)
 TWO = (Species(mass=1, density=5), Species(mass=1, density=5))

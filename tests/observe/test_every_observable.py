@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid, case_for, taken
 
 from mesokit import AT
 from mesokit.method.mpcd.observe import OBSERVABLES as OF_MPCD
@@ -12,6 +11,7 @@ from mesokit.method.mpcd.species import Species
 from mesokit.method.spheres.common.observe import OBSERVABLES as OF_SPHERES
 from mesokit.observe import OBSERVABLES as OF_SEVERAL
 from mesokit.seam.result import with_error
+from tests.helpers.fake_fluid import FakeFluid, case_for, taken
 
 # those of spheres have their own tests: no fluid can answer them
 OBSERVABLES = (*OF_SEVERAL, *OF_MPCD, *OF_SPHERES)

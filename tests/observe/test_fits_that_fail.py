@@ -3,11 +3,12 @@
 import math
 
 import pytest
-from laboratory import make_fluid
 
 from mesokit import Harmonic, TransverseModes
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.observe.shared.fitted import fitted_number
+from tests.helpers.comparisons import comparisons
+from tests.helpers.small_fluids import make_fluid
 
 
 @pytest.mark.parametrize(("value", "error"), [(3.1, 1.6), (-0.4, 0.2), (0.02, 5.0)])
@@ -31,8 +32,7 @@ def test_a_few_samples_of_slow_molecules_determine_no_stress_time():
     for _ in range(60):
         accumulator.observe(fluid)
         fluid.advance(2)
-    times = [c for c in accumulator.result().comparisons if c.what.startswith("stress time")]
-    assert times
+    times = comparisons(accumulator.result(), "stress time")
     for found in times:
         assert math.isnan(found.measured) or found.error < found.measured / 2
     assert any("the fit finds" in found.note for found in times)

@@ -1,11 +1,11 @@
 """What a run says of its flow: how fast it was, and how far the density differed."""
 
 import numpy as np
-from fake_fluid import FakeFluid
-from laboratory import make_case
 
 from mesokit import DensityField, Plates, Uniform, VelocityField
 from mesokit.method.mpcd.expected.setting import transport
+from tests.helpers.fake_fluid import FakeFluid
+from tests.helpers.small_fluids import make_case
 
 SIZE = (16, 10)
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid
 
 from mesokit import DensityField, FlowFrames, VelocityField
 from mesokit.errors import CaseError
 from mesokit.io import h5md
 from mesokit.method.mpcd.species import Species
 from mesokit.observe.flow_frames import average
+from tests.helpers.fake_fluid import FakeFluid
 
 
 def watched(case, observables, samples, every=10, **options):

@@ -6,7 +6,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid
 
 from mesokit import (
     SRD,
@@ -31,12 +30,10 @@ from mesokit.method.mpcd.expected import recognise, setting
 from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.run.simulation import Simulation
+from tests.helpers.comparisons import by_name
+from tests.helpers.fake_fluid import FakeFluid
 
 PUSHED = {"force": Uniform((0.01, 0)), "thermostat": MaxwellBoltzmann()}
-
-
-def by_name(result):
-    return {c.what: c for c in result.comparisons}
 
 
 def fed(case, observable, mean, samples=400, noise=1.0, seed=1, **fluid):

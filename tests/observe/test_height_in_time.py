@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from compared import comparisons
 
 from mesokit import (
     Box,
@@ -20,6 +19,7 @@ from mesokit import (
     SurfaceContact,
     theory,
 )
+from tests.helpers.comparisons import comparisons
 
 CONTACT_TIMES = (0.0, 0.3, 0.01)
 

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from spheres_observed import hard
 
 from mesokit import Box, Case, MeanSquareDisplacement, Run, Simulation
 from mesokit.method.brownian import Brownian
 from mesokit.observe.shared.slope import late_slope
 from mesokit.seam.estimate import Estimate
+from tests.helpers.fake_spheres import hard
 
 LAGS = np.unique(np.round(np.geomspace(1, 4000, 90)))
 

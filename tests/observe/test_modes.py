@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid, FakeWaves
 
 from mesokit import LongitudinalModes, TransverseModes
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.observe.shared.modes import transverse_units
+from tests.helpers.comparisons import comparisons
+from tests.helpers.fake_fluid import FakeFluid, FakeWaves
 
 
 def sampled(case, observable, samples, viscosity=0.8, speed=1.3, attenuation=0.9, seed=1):
@@ -25,7 +26,7 @@ def sampled(case, observable, samples, viscosity=0.8, speed=1.3, attenuation=0.9
 def test_transverse_modes_give_the_viscosity(make_case):
     case = make_case((12, 12, 12))
     result = sampled(case, TransverseModes(every=5), 12000).result()
-    viscosities = [c for c in result.comparisons if c.what.startswith("viscosity")]
+    viscosities = comparisons(result, "viscosity")
     assert len(viscosities) == 2  # the third wave decays within a few samples
     for found in viscosities:
         assert abs(found.measured - 0.8) < 4 * found.error, str(found)
@@ -54,8 +55,8 @@ def test_error_of_the_viscosity_is_that_of_repeated_runs(make_case):
 def test_longitudinal_modes_give_sound(make_case):
     case = make_case((20, 20, 20))
     result = sampled(case, LongitudinalModes(every=5), 12000).result()
-    speeds = [c for c in result.comparisons if c.what.startswith("sound speed")]
-    dampings = [c for c in result.comparisons if c.what.startswith("sound att")]
+    speeds = comparisons(result, "sound speed")
+    dampings = comparisons(result, "sound att")
     assert len(speeds) == len(dampings) == 3
     for found in speeds:
         assert abs(found.measured - 1.3) < 4 * found.error and found.error < 0.02, str(found)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from molecules_moved import case_with, followed
 
 from mesokit import BondLength, MoleculeHistogram, MoleculeSize, MoleculeTracks
 from mesokit.method.mpcd.expected.molecules import modes_at_rest
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
+from tests.helpers.fake_molecules import case_with, followed
 
 TURN = np.radians(60)
 

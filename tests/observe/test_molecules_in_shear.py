@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid
 
 from mesokit import FENE, BondLength, Harmonic, MaxwellBoltzmann, Stress
 from mesokit.method.mpcd.molecule import Molecule
+from tests.helpers.comparisons import by_name
+from tests.helpers.fake_fluid import FakeFluid
 
 RATE = 0.1
 
@@ -25,7 +26,7 @@ def in_shear(make_case, size, observable, **molecule):
     for _ in range(4):
         accumulator.observe(fluid)
     result = accumulator.result()
-    return result, {c.what: c for c in result.comparisons}
+    return result, by_name(result)
 
 
 @pytest.mark.parametrize(("size", "length"), [((4, 4), 2), ((6, 4, 4), 3), ((4, 4, 4), 5)])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from molecules_moved import case_with, followed
 from scipy.stats import chi2
 
 from mesokit import (
@@ -26,6 +25,7 @@ from mesokit import (
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected.ideal import drift_of
 from mesokit.observe.shared.over_molecules import MeansOverMolecules
+from tests.helpers.fake_molecules import case_with, followed
 
 ROD = np.array([[-1.5, 0.0], [-0.5, 0.0], [0.5, 0.0], [1.5, 0.0]])
 PUSH = {"force": Uniform((0.1, 0.0))}

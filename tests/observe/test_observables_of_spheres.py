@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-from compared import comparisons
-from spheres_observed import FakeSpheres, hard, hard_case_for
 
 from mesokit import (
     ClusterSize,
@@ -25,6 +23,8 @@ from mesokit.errors import CaseError
 from mesokit.method.spheres.common.observe import OBSERVABLES as OF_SPHERES_ALONE
 from mesokit.method.spheres.common.observe.cluster_size import cluster_sizes
 from mesokit.observe import OBSERVABLES as OF_SEVERAL
+from tests.helpers.comparisons import comparison, comparisons
+from tests.helpers.fake_spheres import FakeSpheres, hard, hard_case_for
 
 OF_SPHERES = [kind for kind in (*OF_SEVERAL, *OF_SPHERES_ALONE) if "event-driven" in kind.methods]
 
@@ -69,7 +69,7 @@ def test_no_theory_of_hard_spheres_for_those_that_attract_or_repel(depth, width)
         accumulator = kind(every=10).accumulator(case)
         sampled(accumulator, FakeSpheres(case), 40)
         result = accumulator.result()
-        assert np.isnan([c.expected for c in result.comparisons]).all()
+        assert np.isnan([c.expected for c in comparisons(result)]).all()
         if kind is EquationOfState:
             assert result.x["measured by"].tolist() == ["virial"]
     case = hard([EquationOfState(every=10)])
@@ -239,9 +239,7 @@ class TestRadialDistribution:
         case = hard([RadialDistribution(every=5)], [side] * dimension, number=500, timestep=0.1)
         simulation = Simulation(case, threads=1)
         simulation.run(800)
-        (found,) = (
-            c for c in simulation["radial-distribution"].comparisons if c.what == "g at contact"
-        )
+        found = comparison(simulation["radial-distribution"], "g at contact")
         assert abs(found.deviation) < 3.5 and found.error < 0.02 * found.expected
 
 
@@ -257,9 +255,7 @@ def test_velocities_are_forgotten_as_displacements_say():
     level, share, integral = simulation["velocity-autocorrelation"].comparisons
     assert level.expected == pytest.approx(1 - 1 / 500) and abs(level.deviation) < 3.5
     assert share.measured == pytest.approx(share.expected, rel=2e-3)
-    (straight,) = (
-        c for c in simulation["mean-square-displacement"].comparisons if "diffusion" in c.what
-    )
+    straight = comparison(simulation["mean-square-displacement"], "diffusion")
     spread = np.hypot(integral.error, straight.error)
     assert spread < 0.03 * straight.measured
     assert integral.measured == pytest.approx(straight.measured, abs=3.5 * spread)

@@ -4,10 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from compared import comparisons
-from fake_fluid import FakeFluid
-from laboratory import make_case
-from molecules_moved import Moved
 
 from mesokit import (
     WCA,
@@ -24,6 +20,10 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.observe.shared.pair_counts import count_pairs, count_within
 from mesokit.observe.shared.wave_vectors import wave_shells
+from tests.helpers.comparisons import comparisons
+from tests.helpers.fake_fluid import FakeFluid
+from tests.helpers.fake_molecules import Moved
+from tests.helpers.small_fluids import make_case
 
 SIZES = [(9, 8), (6, 5, 7)]
 BOND = Harmonic(K=1.5)

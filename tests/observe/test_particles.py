@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid
 
 from mesokit import MeanSquareDisplacement, Plates, Uniform, VelocityAutocorrelation, theory
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.expected.displacement import Displacement
 from mesokit.observe.shared.origins import Origins
+from tests.helpers.comparisons import by_name, comparison
+from tests.helpers.fake_fluid import FakeFluid
 
 
 def watched(case, observable, kept, samples, seed=1):
@@ -62,7 +63,7 @@ def test_autocorrelation(make_case):
     case = make_case((8, 8), timestep=1.0, kT=2.0, mass=0.5)
     result = watched(case, VelocityAutocorrelation(max_lag=20), kept_by(case), 300)
     assert np.abs(result.deviation).max() < 4.5
-    found = {c.what: c for c in result.comparisons}
+    found = by_name(result)
     assert found["value at lag 0"].expected == 4.0
     names = ["value at lag 0", "share left after 1 tau", "diffusion coefficient up to 20 tau"]
     assert all(abs(found[name].deviation) < 4 for name in names)
@@ -71,11 +72,8 @@ def test_autocorrelation(make_case):
 def test_displacement_and_autocorrelation_expect_the_same_diffusion(make_case):
     """With what a particle stirs up: short flights, in 3D."""
     case = make_case((8, 8, 8), timestep=0.1, density=5)
-    [found] = [
-        c
-        for c in watched(case, VelocityAutocorrelation(max_lag=20), 0.5, 60).comparisons
-        if c.what.startswith("diffusion")
-    ]
+    result = watched(case, VelocityAutocorrelation(max_lag=20), 0.5, 60)
+    found = comparison(result, "diffusion")
     expected, note = Displacement(case, MeanSquareDisplacement()).coefficient()
     assert (found.expected, found.note) == (expected, note) and found.approximate
     assert expected > 1.1 * setting.transport(case).diffusion

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from compared import comparisons
-from fake_fluid import FakeFluid
 
 from mesokit import (
     AT,
@@ -28,6 +26,8 @@ from mesokit.io.tables import record
 from mesokit.method.mpcd.expected import setting
 from mesokit.report.caption import compared
 from mesokit.report.table import cells
+from tests.helpers.comparisons import by_name, comparisons
+from tests.helpers.fake_fluid import FakeFluid
 
 
 def watched(case, observable, flow=None, samples=300, seed=1):
@@ -36,10 +36,6 @@ def watched(case, observable, flow=None, samples=300, seed=1):
         fluid.jump(10)
         accumulator.observe(fluid)
     return accumulator.result()
-
-
-def by_name(result):
-    return {c.what: c for c in result.comparisons}
 
 
 def poiseuille_case(make_case, **kwargs):

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from compared import comparisons
-from fake_fluid import FakeFluid
 
 from mesokit import (
     SRD,
@@ -27,6 +25,8 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.observe.radial_profile import ring_average
 from mesokit.run.simulation import Simulation
+from tests.helpers.comparisons import by_name, comparisons
+from tests.helpers.fake_fluid import FakeFluid
 
 
 def watched(case, observable, field=None, samples=300, seed=1):
@@ -36,10 +36,6 @@ def watched(case, observable, field=None, samples=300, seed=1):
         fluid.jump(10)
         accumulator.observe(fluid)
     return accumulator.result()
-
-
-def by_name(result):
-    return {c.what: c for c in result.comparisons}
 
 
 def turning(rate, middle, axis=2):

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from at_once import AtOnce
-from laboratory import make_case
 
 from mesokit import SRD, BondLength, Harmonic, MaxwellBoltzmann, MoleculeSize, Stress
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH, kept
+from tests.helpers.small_fluids import make_case
+from tests.helpers.whole_fluid import AtOnce
 
 MOLECULES, RUNS, INTERVAL = 512, 80, 0.1
 DIMERS = {

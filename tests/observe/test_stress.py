@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from compared import comparisons
-from fake_fluid import FakeFluid
 
 from mesokit import (
     WCA,
@@ -27,10 +25,8 @@ from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.observe.wall_stress import balance
 from mesokit.method.mpcd.solutes import Polymer, Solutes
 from mesokit.observe.conservation import ROWS
-
-
-def by_name(result):
-    return {c.what: c for c in result.comparisons}
+from tests.helpers.comparisons import by_name, comparisons
+from tests.helpers.fake_fluid import FakeFluid
 
 
 def test_conservation_of_what_is_conserved(make_case):

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid
 
 from mesokit import FENE, WCA, Harmonic, MaxwellBoltzmann, StressAutocorrelation
 from mesokit.method.mpcd.expected.rheometer import modes_of_stress
 from mesokit.method.mpcd.molecule import Molecule
+from tests.helpers.fake_fluid import FakeFluid
 
 
 def dimers_at_rest(make_case, seed, steps, K=6.0, **observable):

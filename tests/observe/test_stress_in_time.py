@@ -6,7 +6,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid
 
 from mesokit import (
     CaseError,
@@ -20,6 +19,7 @@ from mesokit import (
 )
 from mesokit.case.box import Box
 from mesokit.method.mpcd.expected.molecules import springs_in, without_bonds
+from tests.helpers.fake_fluid import FakeFluid
 
 OBSERVE = StressInTime(window=10)
 SPRING = Molecule(length=2, bond=Harmonic(K=0.5))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid
 
 from mesokit import (
     Array,
@@ -24,6 +23,8 @@ from mesokit.errors import CaseError
 from mesokit.method.mpcd.expected import recognise
 from mesokit.method.mpcd.expected.setting import transport
 from mesokit.method.mpcd.observe.wake import Standing
+from tests.helpers.comparisons import by_name
+from tests.helpers.fake_fluid import FakeFluid
 
 PUSHED = {"force": Uniform((0.01, 0)), "thermostat": MaxwellBoltzmann()}
 
@@ -35,10 +36,6 @@ def watched(case, observable, field, samples=300, seed=1):
         fluid.jump(10)
         accumulator.observe(fluid)
     return accumulator.result()
-
-
-def by_name(result):
-    return {c.what: c for c in result.comparisons}
 
 
 def behind(rear, length, slope=0.2, sign=1):

@@ -3,9 +3,9 @@
 import dataclasses
 
 import numpy as np
-from spheres_observed import hard
 
 from mesokit import Plates, Run, Simulation, WallForce
+from tests.helpers.fake_spheres import hard
 
 SEEDS = 16
 

@@ -4,11 +4,11 @@ import dataclasses
 
 import numpy as np
 import pytest
-from laboratory import make_case, make_fluid
 
 import mesokit
 from mesokit import CaseError, LennardJones, Polymer, Simulation, Solutes, Table
 from mesokit.potential.protocol import central
+from tests.helpers.small_fluids import make_case, make_fluid
 
 LJ = LennardJones(epsilon=1.5, sigma=1.2, cutoff=2.5)
 R = np.linspace(0.9, 3.0, 400)

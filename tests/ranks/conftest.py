@@ -3,7 +3,8 @@
 import sys
 
 import pytest
-from rank_runs import CASE, MESOKIT, MPIEXEC, NOTES, Ranks
+
+from tests.helpers.rank_runs import CASE, MESOKIT, MPIEXEC, NOTES, Ranks
 
 # run under mpiexec: they begin MPI
 collect_ignore = [

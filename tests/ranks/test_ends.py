@@ -11,11 +11,11 @@ import time
 from pathlib import Path
 
 import pytest
-from rank_runs import MESOKIT, MPIEXEC, SOURCE, Ranks, same_files
 
 import mesokit as mk
 from mesokit.io import checkpoint
 from mesokit.processes import end
+from tests.helpers.rank_runs import MESOKIT, MPIEXEC, SOURCE, Ranks, same_files
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="no signals can be sent to a process")
 SOON = 30.0  # seconds; on a quiet machine it is one

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from rank_runs import on_ranks
+
+from tests.helpers.rank_runs import on_ranks
 
 CASES = "bulk", "solid", "dimers"
 

@@ -6,9 +6,9 @@ import sys
 
 import numpy as np
 import pytest
-from rank_runs import CASE, MESOKIT, MPIEXEC, Ranks, on_ranks
 
 from mesokit.processes.cores import usable_cores
+from tests.helpers.rank_runs import CASE, MESOKIT, MPIEXEC, Ranks, on_ranks
 
 FLOCK = """
 [run]

@@ -3,7 +3,8 @@
 import json
 
 import pytest
-from rank_runs import on_ranks
+
+from tests.helpers.rank_runs import on_ranks
 
 RUNS = {"channel": (3, 1), "sheared dimers": (4, 1), "long flights": (2, 2)}  # ranks, threads
 OBSERVED = "past a post", "past a sphere", "two species", "molecules"

@@ -5,9 +5,9 @@ import shutil
 import sys
 
 import pytest
-from rank_runs import MESOKIT, MPIEXEC, Ranks, same_files
 
 import mesokit as mk
+from tests.helpers.rank_runs import MESOKIT, MPIEXEC, Ranks, same_files
 
 SCRIPT = """
 from mesokit import Simulation, every

@@ -3,9 +3,10 @@
 import json
 
 import pytest
-import starts
-from rank_runs import on_ranks
-from starts import SOURCES
+
+from tests.helpers.rank_runs import on_ranks
+from tests.ranks import starts
+from tests.ranks.starts import SOURCES
 
 PARTICLES, RANKS = 600, 3
 SLICED = {"bulk npy", "bulk half"}  # what each rank reads its share of

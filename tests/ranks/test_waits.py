@@ -5,10 +5,10 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from rank_runs import on_ranks
 
 from mesokit.method.mpcd.engine.domains.messages.mpi import crowded
 from mesokit.processes.cores import usable_cores, which_cores
+from tests.helpers.rank_runs import on_ranks
 
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="sleeps are not counted here")

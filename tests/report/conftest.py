@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-from fake_fluid import FakeFluid
 
 from mesokit import (
     Box,
@@ -19,6 +18,7 @@ from mesokit import (
 )
 from mesokit.io import h5md
 from mesokit.io.run_directory import RunDirectory, provenance
+from tests.helpers.fake_fluid import FakeFluid
 
 FLUID = Fluid(density=5, force=Uniform([0.01, 0.0]), thermostat=MaxwellBoltzmann())
 OBSERVE = (Conservation(every=5), VelocityProfile(), VelocityField())

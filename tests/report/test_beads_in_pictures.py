@@ -4,8 +4,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from flows import MAPS, results_of
-from laboratory import make_case
 from matplotlib.colors import to_rgb
 
 from mesokit import WCA, Harmonic, Plates
@@ -17,6 +15,8 @@ from mesokit.report.flow.beads import BeadFrames, look
 from mesokit.report.flow.fluid_bonds import FluidBonds
 from mesokit.report.flow.source import sources
 from mesokit.report.style import COLOURS
+from tests.helpers.known_flows import MAPS, results_of
+from tests.helpers.small_fluids import make_case
 
 RING = Polymer(topology="ring", length=4)
 SOLUTES = Solutes((Polymer(2), Polymer(length=3), RING), bond=Harmonic(K=2.0), pair=WCA(sigma=0.8))

@@ -7,7 +7,6 @@ import itertools
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid, case_for, taken
 from rich.console import Console
 
 from mesokit import Comparison, DynamicModuli, Forces, Stress, VelocityAutocorrelation, Wake
@@ -17,6 +16,8 @@ from mesokit.observe import OBSERVABLES as OF_SEVERAL
 from mesokit.observe import Result
 from mesokit.report import plot, print_comparisons, save, save_all
 from mesokit.report.caption import MOST, compared, mathematics
+from tests.helpers.comparisons import by_name
+from tests.helpers.fake_fluid import FakeFluid, case_for, taken
 
 OBSERVABLES = [kind for kind in (*OF_SEVERAL, *OF_MPCD) if not kind.methods]  # those of fluids
 
@@ -171,7 +172,7 @@ def test_plates_have_panels_of_their_own_and_no_torques(make_case):
     assert panels[1].get_title("left").endswith("about (8, 4)")
     assert "post" in in_time.get_ylabel()
     (right,) = in_time.child_axes  # the coefficient of the same force
-    drag = next(c.measured for c in result.comparisons if c.what == "drag coefficient of post")
+    drag = by_name(result)["drag coefficient of post"].measured
     assert right._functions[0](result.value[2, 0]) == pytest.approx(drag)
 
 
@@ -279,9 +280,8 @@ class TestMaps:
     """The pictures that a run draws of its maps."""
 
     def results(self, make_case):
-        from flows import FRAMES, MAPS, results_of
-
         from mesokit import Disk, Plates
+        from tests.helpers.known_flows import FRAMES, MAPS, results_of
 
         walls = [Plates(axis="y"), Disk(centre=[6, 5], radius=2)]
         case = make_case((24, 10), [FRAMES, *MAPS], walls, density=20)
@@ -470,9 +470,8 @@ def test_what_is_not_known_of_molecules_has_no_panel():
 
 
 def test_frames_and_the_map_of_their_mean_are_drawn_once(make_case):
-    from flows import FRAMES, MAPS, results_of
-
     from mesokit.report.figures import drawn_once
+    from tests.helpers.known_flows import FRAMES, MAPS, results_of
 
     case = make_case((6, 6), observe=[FRAMES, *MAPS])
     results = results_of(case, 6)

@@ -6,7 +6,6 @@ import io
 
 import numpy as np
 import pytest
-from flows import FRAMES, MAPS, results_of
 from imageio_ffmpeg import count_frames_and_secs, read_frames
 from PIL import Image, ImageChops
 
@@ -17,6 +16,7 @@ from mesokit.report.finish.saving import FOOT
 from mesokit.report.flow import animate, encode
 from mesokit.report.flow.film import DPI
 from mesokit.report.progress import FilmReporter
+from tests.helpers.known_flows import FRAMES, MAPS, results_of
 
 
 @pytest.fixture

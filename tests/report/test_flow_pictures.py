@@ -7,8 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fake_fluid import FakeFluid
-from flows import FRAMES, MAPS, SPIN, Disk, results_of
 
 from mesokit import FlowFrames, Plates
 from mesokit.case.trajectory import Trajectory
@@ -26,6 +24,8 @@ from mesokit.report.flow.region import Region, region_of
 from mesokit.report.flow.setting import Setting
 from mesokit.report.flow.source import sources
 from mesokit.report.flow.vorticity import vorticity
+from tests.helpers.fake_fluid import FakeFluid
+from tests.helpers.known_flows import FRAMES, MAPS, SPIN, Disk, results_of
 
 SIZE = (12, 10)
 OF_FLUIDS = [kind for kind in KINDS if kind not in ("disks", "flock", "sites")]
@@ -243,7 +243,7 @@ class TestTrajectories:
         """A case, and its trajectory, of as many particles as wanted."""
 
         def make(fields=("position", "velocity"), subset=None, size=SIZE):
-            from flows import Rotating
+            from tests.helpers.known_flows import Rotating
 
             trajectory = Trajectory(every=10, fields=fields, subset=subset)
             case = make_case(size, trajectory=trajectory, density=20)

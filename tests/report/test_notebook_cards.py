@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from html_page import Page
 
 import mesokit
 from mesokit import Simulation, derive
+from tests.helpers.html_page import Page
 
 
 @pytest.fixture(scope="module")

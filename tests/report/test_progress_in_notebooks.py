@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from notebook_display import in_a_notebook
 
 from mesokit import Box, Run, Simulation
 from mesokit.report.document import progress
 from mesokit.report.document.progress import NotebookReporter, reporter_for
 from mesokit.report.progress import Reporter
+from tests.helpers.fake_notebook import in_a_notebook
 
 
 @pytest.fixture

@@ -7,13 +7,13 @@ import re
 import types
 
 import pytest
-from html_page import Page
 
 import mesokit
 from mesokit import RunError
 from mesokit.cli import main
 from mesokit.report.document.pictures import drawn
 from mesokit.report.document.run import page
+from tests.helpers.html_page import Page
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,6 @@ from types import SimpleNamespace
 import matplotlib as mpl
 import numpy as np
 import pytest
-from fake_spheres import METHOD
 from PIL import Image
 
 import mesokit
@@ -23,6 +22,7 @@ from mesokit.report.flow.moving_plates import plates_at
 from mesokit.report.flow.shaded import PALE, SHADE, Balls, shaded
 from mesokit.report.flow.solids import Section
 from mesokit.seam.method import Enclosure
+from tests.helpers.flying_spheres import METHOD
 
 TWO = (SphereKind(0.8, share=2.0, name="small"), SphereKind(1.2, spread=0.3, name="large"))
 
@@ -120,10 +120,10 @@ class TestScale:
         assert found == {(3, 2.5, 1), (0.2, 2, 0.5), (6.2, 2, 0.5)} | corner
 
     def test_nothing_comes_in_through_a_wall(self, case_of, monkeypatch, flying):
-        import fake_spheres
+        from tests.helpers import flying_spheres
 
         closed = dataclasses.replace(METHOD, enclosure=Enclosure(lambda case: {1}))
-        monkeypatch.setattr(fake_spheres, "METHOD", closed)
+        monkeypatch.setattr(flying_spheres, "METHOD", closed)
         places, _, _ = drawn_disks(picture(case_of((6, 5)), {}, frames_of([[5.9, 4.8]])))
         assert sorted(places[:, 0].round(9)) == [-0.1, 5.9] and set(places[:, 1]) == {4.8}
 

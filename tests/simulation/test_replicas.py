@@ -1,6 +1,5 @@
 """Replicas: independent copies of a case in one run, to the bits of runs of their own."""
 
-import numpy as np
 import pytest
 
 import mesokit
@@ -40,19 +39,6 @@ def test_results_are_those_of_runs_of_their_own(make, tmp_path):
         together = Simulation(make(replicas=3), threads=threads)
         together.run()
         assert together.results == merged.results
-
-
-def test_they_go_on_to_the_same_bits(tmp_path):
-    whole = Simulation(gas(replicas=3), threads=2)
-    whole.run()
-    stopped = Simulation(gas(replicas=3), output=tmp_path / "run", threads=1)
-    stopped.run(17)
-    stopped.checkpoint()
-    resumed = Simulation.resume(tmp_path / "run", threads=2)
-    resumed.run()
-    assert resumed.results == whole.results == mesokit.open(tmp_path / "run").results
-    for one, two in zip(resumed.replicas.all, whole.replicas.all, strict=True):
-        np.testing.assert_array_equal(one.engine.positions(), two.engine.positions())
 
 
 def test_an_error_bar_sees_them_all():

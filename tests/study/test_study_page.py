@@ -9,8 +9,6 @@ import shlex
 from types import SimpleNamespace
 
 import pytest
-from html_page import Page
-from notebook_display import in_a_notebook
 
 import mesokit
 from mesokit import Study
@@ -23,6 +21,8 @@ from mesokit.report.table import cells
 from mesokit.study import document
 from mesokit.study.local import Here
 from mesokit.study.work import carry
+from tests.helpers.fake_notebook import in_a_notebook
+from tests.helpers.html_page import Page
 
 FORCE = "fluid.force.acceleration"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import types
 
-from html_page import Page
+from tests.helpers.html_page import Page
 
 
 class Display:

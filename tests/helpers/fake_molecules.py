@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from at_once import AtOnce
-from laboratory import make_case
 
 from mesokit import Harmonic, Polymer, Solutes
+from tests.helpers.small_fluids import make_case
+from tests.helpers.whole_fluid import AtOnce
 
 
 def case_with(observable, number=1, length=2, size=(20, 20), **parts):

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from fake_fluid import FakeFluid
 
 from mesokit import DensityField, FlowFrames, VelocityField
+from tests.helpers.fake_fluid import FakeFluid
 
 SPIN = 0.25
 

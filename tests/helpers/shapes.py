@@ -11,7 +11,19 @@ import trimesh
 from numba import njit
 from PIL import Image
 
-from mesokit import Box, Case, CaseError, Disk, Plates, Run, Solids, Sphere
+from mesokit import (
+    Box,
+    Case,
+    CaseError,
+    Disk,
+    MaxwellBoltzmann,
+    Plates,
+    Run,
+    Solids,
+    Sphere,
+    Surface,
+    Uniform,
+)
 from mesokit.case.component import tag_of
 from mesokit.geometry.protocol import homed
 from mesokit.geometry.shape import SHAPES
@@ -20,6 +32,7 @@ from mesokit.geometry.solids.flight import first_meeting
 from mesokit.method.mpcd.engine.cpu.bounce import bounce
 from mesokit.method.mpcd.streaming import fall
 from mesokit.scalar.random import Counter
+from tests.helpers.small_fluids import make_fluid
 
 SIZE = {2: (12, 10), 3: (12, 10, 9)}
 ROUND = {2: Disk, 3: Sphere}
@@ -120,6 +133,22 @@ def with_surface(wall: Any, surface: Any) -> Any:
     """The same shape with another surface."""
     names = ("lower", "upper") if wall.shape == "plates" else ("surface",)
     return dataclasses.replace(wall, **dict.fromkeys(names, surface))
+
+
+def walls_in(case, folder):
+    """Walls of the example of a shape."""
+    name, d, side = case
+    return walls_of(example(name, d, side, folder), d)
+
+
+def fluid_between(walls, d, rule, timestep, threads=1, seed=1):
+    """A driven fluid between the walls, which has them measured."""
+    walls = tuple(with_surface(wall, Surface(rule)) for wall in walls)
+    push = (0.05, *(0.0,) * (d - 1))
+    return make_fluid(
+        SIZE[d], density=4.3, walls=walls, timestep=timestep, thermostat=MaxwellBoltzmann(),
+        force=Uniform(push), measures=("walls",), threads=threads, seed=seed,
+    )  # fmt: skip
 
 
 # --- places and flights -------------------------------------------------------------------------

@@ -10,8 +10,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-HERE = Path(__file__).parent
-SOURCE = HERE.parents[1] / "src"
+ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "src"
+PROGRAMS = ROOT / "tests" / "ranks"
 MPIEXEC = shutil.which("mpiexec", path=str(Path(sys.executable).parent)) or shutil.which("mpiexec")
 PATIENCE = 300.0  # seconds: kernels may have to be compiled, on a busy machine
 CASE = """
@@ -77,8 +78,8 @@ with open(f"pid-{rank}", "w") as file:
 
 
 def on_ranks(n, program, *words, folder=None):
-    """What a program beside this says on so many ranks; a failure of one ends all of them."""
-    command = [MPIEXEC, "-n", n, sys.executable, "-m", "mpi4py", HERE / program, *words]
+    """What a program of `PROGRAMS` says on so many ranks; a failure of one ends all of them."""
+    command = [MPIEXEC, "-n", n, sys.executable, "-m", "mpi4py", PROGRAMS / program, *words]
     ranks = Ranks(command, folder)
     assert ranks.end() == 0, ranks.out + ranks.err
     return ranks.out

@@ -1,7 +1,5 @@
 """Fluids of every kind of step, small: for what holds for each of them, such as the same bits."""
 
-from laboratory import file_of_a_wave, fingerprint
-
 from mesokit import (
     AT,
     FENE,
@@ -24,6 +22,7 @@ from mesokit import (
     Uniform,
 )
 from mesokit.method.mpcd.solute.polymer import Between
+from tests.helpers.small_fluids import file_of_a_wave, fingerprint
 
 PUSHED_SLIT = {
     "thermostat": MaxwellBoltzmann(), "force": Uniform(acceleration=(0.05, -0.02)),

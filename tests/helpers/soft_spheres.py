@@ -2,7 +2,18 @@
 
 import numpy as np
 
-from mesokit import Box, Case, Run, Simulation, SoftSpheres
+from mesokit import (
+    Box,
+    Case,
+    LennardJones,
+    Plates,
+    RandomStart,
+    Rectangle,
+    Run,
+    Simulation,
+    SoftSpheres,
+    SpringDashpot,
+)
 
 
 def soft(size, walls=(), given=None, threads=1, seed=1, observe=(), **spheres):
@@ -56,3 +67,21 @@ def collision(law, speed, steps_per_contact, start=0.0, timestep=None):
         touching += int(x[1] - x[0] < 1)
     v = engine.velocities()[:, 0]
     return engine, (v[1] - v[0]) / speed, touching * dt, deepest
+
+
+ROUGH = SpringDashpot(0.4, contact_time=0.02, friction=0.5)
+
+
+def lennard_jones(timestep=0.004, seed=1, threads=1, skin=None, **given):
+    return soft(
+        [8.0, 8.0, 8.0], number=400, kT=1.0, pair=LennardJones(), timestep=timestep, seed=seed,
+        threads=threads, skin=skin, **given,
+    )  # fmt: skip
+
+
+def pile(threads=1, skin=None, seed=1):
+    return soft(
+        [16, 14], walls=[Plates("y"), Rectangle(centre=[8, 2], size=[9, 3], angle=20)],
+        number=60, kT=0.5, gravity=[0.0, -2.0], start=RandomStart(), pair=ROUGH,
+        threads=threads, skin=skin, seed=seed,
+    )  # fmt: skip

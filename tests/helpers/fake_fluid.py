@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from at_once import AtOnce
 
 from mesokit import Disk, Harmonic, Plates, Sphere, Uniform
 from mesokit.errors import CaseError
@@ -13,6 +12,7 @@ from mesokit.geometry.solids.solids import solids_of
 from mesokit.method.mpcd.molecule import Molecule
 from mesokit.method.mpcd.species import Species
 from mesokit.statistics import Tally
+from tests.helpers.whole_fluid import AtOnce
 
 FINE = 2.0**40  # whole numbers in a unit of momentum
 TWO = (Species(1.0, 3.0), Species(4.0, 2.0))

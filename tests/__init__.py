@@ -1,0 +1,1 @@
+"""The tests, a package: they import what they share from `tests.helpers`."""
