@@ -50,5 +50,16 @@ def test_files_and_commands_that_are_named_exist() -> None:
 
 def test_every_document_is_on_the_site() -> None:
     pages = text("mkdocs.yml")
-    for page in (ROOT / "docs").glob("*.md"):
-        assert page.name == "guide.md" or f": {page.name}" in pages or f"- {page.name}" in pages
+    for folder in (".", "guide", "inside"):
+        for path in (ROOT / "docs" / folder).glob("*.md"):
+            page = path.relative_to(ROOT / "docs").as_posix()
+            assert f": {page}\n" in pages or f"- {page}\n" in pages, page
+
+
+def test_the_guide_lists_its_pages_in_the_order_of_the_site() -> None:
+    listed = re.findall(r"^- \[(.*)\]\((.*)\)$", text("docs/guide/index.md"), re.MULTILINE)
+    on_site = re.findall(r"- \"?([^\n\"]*)\"?: guide/(.*)$", text("mkdocs.yml"), re.MULTILINE)
+    assert listed == on_site
+    assert {page for _, page in listed} == {
+        path.name for path in (ROOT / "docs" / "guide").glob("*.md") if path.stem != "index"
+    }
