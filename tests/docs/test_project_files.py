@@ -48,6 +48,20 @@ def test_files_and_commands_that_are_named_exist() -> None:
             assert f"\n{target}:" in text("Makefile"), f"{page}: make {target}"
 
 
+def test_files_that_pages_for_developers_name_exist() -> None:
+    """Below the package, below the repository, or somewhere in the package by the name alone."""
+    there = [path.relative_to(ROOT).as_posix() for path in ROOT.glob("src/**/*.py")]
+    there += [path.relative_to(ROOT).as_posix() for path in ROOT.glob("tests/**/*.py")]
+    inside = sorted(f"docs/inside/{path.name}" for path in (ROOT / "docs" / "inside").glob("*.md"))
+    for page in ["docs/architecture.md", *inside]:
+        for name in re.findall(r"`([\w/]+\.py)`", text(page)):
+            assert any(f"/{file}".endswith(f"/{name}") for file in there), f"{page}: {name}"
+
+
+def test_architecture_is_a_short_page() -> None:
+    assert len(text("docs/architecture.md").splitlines()) <= 150
+
+
 def test_every_document_is_on_the_site() -> None:
     pages = text("mkdocs.yml")
     for folder in (".", "guide", "inside"):
