@@ -11,7 +11,6 @@ import re
 from pathlib import Path
 from typing import Any
 
-import guide
 from mkdocs.structure.files import File, Files
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -24,7 +23,6 @@ PAGES = {  # file of the repository: page of the site
 }
 STATIC = ("CITATION.cff",)
 LINK = re.compile(r"""(\]\(|src=")([^)"#:\s]*)(#[^)"\s]*)?(\)|")""")
-GUIDE = "docs/guide.md"
 
 FENCE = re.compile(r"^(```\w+) [\w-]+$", re.MULTILINE)  # blocks that tests know by a name
 
@@ -50,22 +48,13 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Files) -> str
     """Links of the repository as links of the site."""
     here = page.file.src_uri
     source = next((s for s, p in PAGES.items() if p == here), f"docs/{here}")
-    if here.startswith("guide/") and here != guide.INDEX:
-        source = GUIDE
-    chapters = guide.anchors()
 
     def changed(link: re.Match[str]) -> str:
         target = posixpath.normpath(posixpath.join(posixpath.dirname(source), link[2]))
+        if not link[2] or not (ROOT / target).exists():
+            return link[0]
         anchor = link[3] or ""
-        if not link[2] and source != GUIDE:
-            return link[0]
-        if target == GUIDE or not link[2]:
-            page, anchor = chapters.get(anchor[1:], (guide.INDEX, anchor))
-        elif (ROOT / target).exists():
-            page = _page(target)
-        else:
-            return link[0]
-        place = os.path.relpath(page, posixpath.dirname(here)).replace(os.sep, "/")
+        place = os.path.relpath(_page(target), posixpath.dirname(here)).replace(os.sep, "/")
         return f"{link[1]}{place}{anchor}{link[4]}"
 
     return FENCE.sub(r"\1", LINK.sub(changed, markdown))

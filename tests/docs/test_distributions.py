@@ -68,8 +68,9 @@ def test_a_wheel_works_by_itself(built: Path, tmp_path: Path) -> None:
 def test_a_source_distribution_has_all_and_makes_the_same_wheel(built: Path) -> None:
     (folder,) = (built / "source").iterdir()
     there = files(folder)
-    for name in ("CHANGELOG.md", "docs/guide.md", "examples/sphere.toml", "benchmarks/__main__.py",
-                 "tests/conftest.py", "LICENSE", "pyproject.toml", "mkdocs.yml"):  # fmt: skip
+    for name in ("CHANGELOG.md", "docs/guide/index.md", "examples/sphere.toml",
+                 "benchmarks/__main__.py", "tests/conftest.py", "LICENSE", "pyproject.toml",
+                 "mkdocs.yml"):  # fmt: skip
         assert name in there, name
     left = (".pyc", ".npz", ".h5", ".log", ".nbi", ".tmp")
     assert not [name for name in there if name.endswith(left) or "__pycache__" in name]

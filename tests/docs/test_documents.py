@@ -18,9 +18,11 @@ from mesokit.seam.method import method_of
 from mesokit.study.local import Here
 
 ROOT = Path(__file__).resolve().parents[2]
+GUIDE = re.findall(r"^- .*\]\((.*)\)", (ROOT / "docs/guide/index.md").read_text(), re.MULTILINE)
 PAGES = [
     "README.md",
-    "docs/guide.md",
+    "docs/guide/index.md",
+    *(f"docs/guide/{page}" for page in GUIDE),
     "docs/studies.md",
     "docs/own.md",
     "docs/methods/brownian.md",
@@ -78,8 +80,10 @@ def test_commands_and_scripts_run_in_order(
     if not (workplace / "poiseuille").exists():  # which all pages go on from
         run("mesokit run poiseuille.toml", workplace)
     for command in commands(page):
-        if command.startswith("mesokit run") and (workplace / "poiseuille").exists():
-            command = f"{command} --overwrite" if "--output" not in command else command
+        if command.startswith("mesokit run"):
+            folder = re.search(r"--output (\S+)", command)
+            if (workplace / (folder[1] if folder else "poiseuille")).exists():
+                command = f"{command} --overwrite"
         if command.startswith("mesokit") and not (
             command == "mesokit new poiseuille" and (workplace / "poiseuille.toml").exists()
         ):
@@ -135,7 +139,8 @@ def test_make_targets_exist() -> None:
 
 
 def test_links_lead_somewhere() -> None:
-    for page in [*PAGES, *(f"docs/{p.name}" for p in (ROOT / "docs").glob("*.md"))]:
+    files = [p for name in (".", "inside") for p in (ROOT / "docs" / name).glob("*.md")]
+    for page in {*PAGES, *(p.relative_to(ROOT).as_posix() for p in files)}:
         for link in re.findall(r"\]\(([^)#]+)\)", (ROOT / page).read_text()):
             if "://" not in link:
                 assert ((ROOT / page).parent / link).exists(), f"{page}: {link}"

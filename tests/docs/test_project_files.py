@@ -48,7 +48,32 @@ def test_files_and_commands_that_are_named_exist() -> None:
             assert f"\n{target}:" in text("Makefile"), f"{page}: make {target}"
 
 
+def test_files_that_pages_for_developers_name_exist() -> None:
+    """Below the package, below the repository, or somewhere in the package by the name alone."""
+    there = [path.relative_to(ROOT).as_posix() for path in ROOT.glob("src/**/*.py")]
+    there += [path.relative_to(ROOT).as_posix() for path in ROOT.glob("tests/**/*.py")]
+    inside = sorted(f"docs/inside/{path.name}" for path in (ROOT / "docs" / "inside").glob("*.md"))
+    for page in ["docs/architecture.md", *inside]:
+        for name in re.findall(r"`([\w/]+\.py)`", text(page)):
+            assert any(f"/{file}".endswith(f"/{name}") for file in there), f"{page}: {name}"
+
+
+def test_architecture_is_a_short_page() -> None:
+    assert len(text("docs/architecture.md").splitlines()) <= 150
+
+
 def test_every_document_is_on_the_site() -> None:
     pages = text("mkdocs.yml")
-    for page in (ROOT / "docs").glob("*.md"):
-        assert page.name == "guide.md" or f": {page.name}" in pages or f"- {page.name}" in pages
+    for folder in (".", "guide", "inside"):
+        for path in (ROOT / "docs" / folder).glob("*.md"):
+            page = path.relative_to(ROOT / "docs").as_posix()
+            assert f": {page}\n" in pages or f"- {page}\n" in pages, page
+
+
+def test_the_guide_lists_its_pages_in_the_order_of_the_site() -> None:
+    listed = re.findall(r"^- \[(.*)\]\((.*)\)$", text("docs/guide/index.md"), re.MULTILINE)
+    on_site = re.findall(r"- \"?([^\n\"]*)\"?: guide/(.*)$", text("mkdocs.yml"), re.MULTILINE)
+    assert listed == on_site
+    assert {page for _, page in listed} == {
+        path.name for path in (ROOT / "docs" / "guide").glob("*.md") if path.stem != "index"
+    }

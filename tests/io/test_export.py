@@ -381,8 +381,9 @@ class TestSolutesAmongMolecules:
 
 def recipe(word):
     """The block of the guide that has the word."""
-    guide = (Path(__file__).parents[2] / "docs" / "guide.md").read_text("utf-8")
-    blocks = re.findall(r"^```text\n(.*?)^```", guide, re.DOTALL | re.MULTILINE)
+    guide = Path(__file__).parents[2] / "docs" / "guide"
+    page = (guide / "keep-trajectories.md").read_text("utf-8")
+    blocks = re.findall(r"^```text\n(.*?)^```", page, re.DOTALL | re.MULTILINE)
     (found,) = [block for block in blocks if word in block]
     return found
 
