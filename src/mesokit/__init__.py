@@ -6,21 +6,14 @@ The public names, a line for each in `__init__.pyi`, are imported when they are 
 
 from __future__ import annotations
 
-import ast
 import importlib
-from pathlib import Path
 from typing import Any
+
+from mesokit.stub import homes
 
 __version__ = "0.2.0"
 
-_TABLE = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
-_HOME = {
-    alias.asname: (line.module, alias.name)
-    for line in _TABLE.body
-    if isinstance(line, ast.ImportFrom)
-    for alias in line.names
-}
-
+_HOME = homes(__file__)
 __all__ = sorted(_HOME.keys() - {"open"})  # `import *` must not take Python's `open` away
 
 

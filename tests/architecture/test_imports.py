@@ -37,12 +37,14 @@ SPHERES = (
     "processes.cores", "scalar", "seam", "statistics", "theory",
 )  # fmt: skip
 ROWS = {
-    "__init__.py": (),
+    "__init__.py": ("stub",),
     "__main__.py": ("cli",),
     "errors.py": (),
+    "stub.py": (),
     "scalar/": ("scalar",),
     "kernels/": ("kernels",),
     "theory/": ("theory",),
+    "theory/__init__.py": ("stub",),
     "statistics/": ("statistics",),
     "case/methods.py": (),
     "case/": ("case", "errors", "scalar", "theory"),
@@ -98,7 +100,7 @@ for _place, _row in ROWS.items():  # what is written as scalar functions is comp
         ROWS[_place] = (*_row, "kernels")
 # what loads modules by names that are data: public names, methods, parts, figures, options
 BY_NAME = {
-    "__init__.py", "case/methods.py", "case/registry.py", "case/outside.py",
+    "__init__.py", "theory/__init__.py", "case/methods.py", "case/registry.py", "case/outside.py",
     "case/describe/shown.py", "seam/result.py", "io/optional.py", "study/work.py",
     "geometry/shape/mesh.py", "cli/commands.py", "kernels/made_of.py",
 }  # fmt: skip

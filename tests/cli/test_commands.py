@@ -373,10 +373,14 @@ class TestProgress:
     def test_the_time_left_comes_from_the_recent_past(self, monkeypatch) -> None:
         from mesokit.report import progress
 
-        rate = progress.Rate()
-        for second in range(101):
-            rate.add(second, second if second < 50 else 50 + 10 * (second - 50))
-        assert rate.steps_per_second == pytest.approx(10)
+        now = [0.0]
+        monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
+        reporter = progress.Reporter(stream=io.StringIO())
+        reporter.start(1000, particles=5)
+        for second in range(1, 101):
+            now[0] += 1
+            reporter.update(second if second < 50 else 50 + 10 * (second - 50))
+        assert reporter.rate() == pytest.approx(10)
 
     def test_no_time_left_is_said_of_what_is_being_compiled(self, monkeypatch) -> None:
         """The first sample of an observable takes long, and says nothing about the others."""

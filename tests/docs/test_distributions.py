@@ -49,6 +49,7 @@ def test_a_wheel_works_by_itself(built: Path, tmp_path: Path) -> None:
     """Its code is that of the clone, to the digest; its templates and examples are there."""
     there = files(built / "wheel")
     assert {"mesokit/py.typed", "mesokit/__init__.pyi", "mesokit/examples/junction.png"} <= there
+    assert "mesokit/theory/__init__.pyi" in there
     assert not [name for name in there if "__pycache__" in name or name.startswith("tests")]
     code = (
         "import mesokit; from mesokit.io.sources import sources\n"

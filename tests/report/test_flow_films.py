@@ -92,9 +92,10 @@ def test_it_says_how_it_goes(run, tmp_path):
     lines = stream.getvalue().splitlines()
     assert lines[0] == "drawing: 4 frames"
     assert lines[-1].startswith("drawing: frame 4 of 4 after")
-    reporter = FilmReporter()
+    reporter = FilmReporter(stream=stream)
     reporter.start(10, 0, "drawing")
-    reporter.rate.add(reporter.began + 2.0, 4)
+    reporter.now += 2.0
+    reporter.bar.advance(reporter.task.id, 4)
     assert reporter.words(4) == "2 frames/s, 3.0 s left"
 
 

@@ -5,39 +5,19 @@ from __future__ import annotations
 import contextlib
 import sys
 import time
-from collections import deque
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from mesokit.case.amounts import duration_text
 
 if TYPE_CHECKING:
-    from rich.progress import Progress, TaskID
+    from rich.progress import Progress, Task
 
-WINDOW = 10.0  # seconds of the recent past that the rate and the ETA come from
+WINDOW = 10.0  # seconds of the recent past that the rate and the time left come from
 REDRAW = 0.2  # seconds between two states of the bar
 FIRST = 1.0  # seconds to measure before the first word about speed
 WARM = 0.5  # of them, the last that count: kernels are loaded in the others
 STALL = 4.0  # times as long for a step as before: something was compiled, or written
 NOTED = 1.0  # seconds without a word from the run, from which on that is looked at
-
-
-class Rate:
-    """Steps per second over the recent past."""
-
-    def __init__(self) -> None:
-        self.marks: deque[tuple[float, int]] = deque()
-
-    def add(self, now: float, step: int, window: float = WINDOW) -> None:
-        """Note that `step` was reached at the time `now` (seconds); forget what is older."""
-        self.marks.append((now, step))
-        while len(self.marks) > 2 and self.marks[1][0] <= now - window:
-            self.marks.popleft()
-
-    @property
-    def steps_per_second(self) -> float | None:
-        """None until two moments are known."""
-        (start, first), (end, last) = self.marks[0], self.marks[-1]
-        return (last - first) / (end - start) if end > start else None
 
 
 class Reporter:
@@ -63,15 +43,13 @@ class Reporter:
         self.stream = sys.stderr if stream is None else stream
         self.quiet, self.seconds = quiet, seconds
         self.total = self.particles = self.first = self.last = 0
-        self.phase = self.line = ""  # what is done, and the last that was said of how far it is
+        self.phase = self.line = ""  # what is done, and the last line that was said of it
         self.fresh = False  # nothing measured yet, or only the compiler
         self.started = self.began = 0.0  # time of the start, and of the first measured step
-        self.next = 0.0  # time of the next line
-        self.rate = Rate()
+        self.now = self.next = 0.0  # time of the last update, and of the next word
         self.pace: float | None = None  # seconds for a step, between the last two updates
-        self.told = 0.0  # time of the last update
-        self.bar: Progress | Any = None
-        self.task: TaskID | Any = None
+        self.bar: Progress | None = None  # it measures, and is drawn on a terminal only
+        self.task: Task | None = None
 
     def start(
         self, total_steps: int, particles: int, phase: str = "running", step: int = 0
@@ -79,88 +57,70 @@ class Reporter:
         """A phase of the run begins at `step` of `total_steps`."""
         self.total, self.particles, self.phase = total_steps, particles, phase
         self.first = self.last = step
-        self.started = time.monotonic()
-        self._measure_anew(step)
-        if self.quiet:
-            return
-        if self.has_bar():
-            self._open_bar()
-        else:
-            self._say(f"{phase}: {self.amount(total_steps - step)}")
-
-    def has_bar(self) -> bool:
-        """Whether a bar can be redrawn where this tells it."""
-        return self.stream.isatty()
+        self.started = self.now = time.monotonic()
+        if not self.quiet:
+            self._open()
+            self._measure_anew()
+            self._show("", f"{phase}: {self.amount(total_steps - step)}")
 
     def lengthen(self, total_steps: int) -> None:
         """There is more to do than was thought."""
         self.total = total_steps
-        if self.bar is not None and self.task is not None:
-            self.bar.update(self.task, total=total_steps)
+        if self.task is not None:
+            self.task.total = total_steps  # asked to do so, the bar would forget the rate
 
     def compiling(self, words: str) -> None:
         """Kernels are compiled or loaded: say so, and leave it out of the rates."""
-        if self.quiet:
-            return
-        self.fresh = True
-        if self.bar is not None and self.task is not None:
-            self.bar.update(self.task, words=words)
-        else:
-            self._say(words)
+        if not self.quiet:
+            self.fresh = True
+            self._show(words, words)
 
     def update(self, step: int) -> None:
         """`step` steps are done. Cheap: call it as often as you like."""
         steps, self.last = step - self.last, step
-        if self.quiet:
+        if self.quiet or self.bar is None or self.task is None:
             return
-        if self.fresh:
-            self._measure_anew(step)
+        before, self.now = self.now, time.monotonic()
+        took, pace = self.now - before, self.pace
+        self.pace = took / max(steps, 1)
+        # observables are compiled in their first sample: that says nothing about the rest
+        stalled = took > NOTED and pace is not None and self.pace > STALL * pace
+        if self.fresh or stalled:
+            self._measure_anew()
             return
-        now = time.monotonic()
-        if self._stalled(now, steps):
-            self._measure_anew(step)
+        warm = self.now < self.began + FIRST
+        if self.now < self.next and not warm:
             return
-        if now < self.next:
-            if now < self.began + FIRST:
-                self.rate.add(now, step, WARM)
-            return
-        self.rate.add(now, step)
-        if self.bar is not None and self.task is not None:
-            self.next = now + REDRAW
-            self.bar.update(self.task, completed=step, words=self.words(step))
-        else:
-            self.next = now + self.seconds
+        self.bar.speed_estimate_period = WARM if warm else max(WINDOW, 2 * self.seconds, 2 * took)
+        self.bar.advance(self.task.id, step - self.task.completed)
+        if not warm:
+            self.next = self.now + (REDRAW if self.has_bar() else self.seconds)
             done = (step - self.first) / max(self.total - self.first, 1)
-            line = f"{self.phase}: {100 * done:3.0f} %, {self.words(step)}"
-            if line != self.line:  # there is news
-                self._say(line)
-            self.line = line
+            words = self.words(step)
+            self._show(words, f"{self.phase}: {100 * done:3.0f} %, {words}")
 
     def tell(self, line: str) -> None:
         """Say a line that stays, above the bar if there is one."""
         if self.quiet:
             return
-        if self.bar is not None:
+        if self.bar is not None and self.has_bar():
             self.bar.console.print(line, markup=False, highlight=False, soft_wrap=True)
         else:
             self._say(line)
 
     def finish(self) -> None:
         """The phase is over, or the run was stopped."""
-        if self.quiet or not self.phase:
-            return
-        took = duration_text(time.monotonic() - self.started)
         if self.bar is not None and self.task is not None:
-            self.bar.update(self.task, completed=self.last, words=took)
+            took = duration_text(time.monotonic() - self.started)
+            self.task.completed = self.last
+            said = f"{self.count()} after {took}"
+            self._show(said, f"{self.phase}: {said}")
             self.bar.stop()
-            self.bar = self.task = None
-        else:
-            self._say(f"{self.phase}: {self.noun} {self.last} of {self.total} after {took}")
-        self.phase = ""
+        self.bar, self.phase = None, ""
 
     def words(self, step: int) -> str:
         """Rates and the time left."""
-        rate = self.rate.steps_per_second
+        rate = self.rate()
         if not rate:
             return f"{self.noun} {step}"
         return f"{self.speed(rate)}, {duration_text((self.total - step) / rate)} left"
@@ -169,29 +129,41 @@ class Reporter:
         """How much there is to do."""
         return f"{steps} steps of {self.particles} particles"
 
+    def count(self) -> str:
+        """How much is done."""
+        return f"{self.noun} {self.last} of {self.total}"
+
     def speed(self, rate: float) -> str:
         """So many steps per second, in the units that users compare."""
         return f"{rate:.4g} steps/s, {rate * self.particles / 1e6:.3g} M particle-steps/s"
 
-    def _stalled(self, now: float, steps: int) -> bool:
-        """Whether the last steps took so long for another reason: observables are compiled in their
-        first sample. What they took says nothing about the rest of the run.
-        """
-        took, before = now - self.told, self.pace
-        self.told, self.pace = now, took / max(steps, 1)
-        return took > NOTED and before is not None and self.pace > STALL * before
+    def rate(self) -> float | None:
+        """Steps per second over the recent past, None until two moments are known."""
+        return None if self.task is None else self.task.speed
 
-    def _measure_anew(self, step: int) -> None:
-        self.fresh, self.rate = False, Rate()
-        self.began = self.told = time.monotonic()
-        self.rate.add(self.began, step)
-        self.next = self.began + FIRST
+    def has_bar(self) -> bool:
+        """Whether a bar is redrawn in the stream."""
+        return self.stream.isatty()
+
+    def _measure_anew(self) -> None:
+        assert self.bar is not None and self.task is not None
+        self.fresh, self.began, self.next = False, self.now, self.now + FIRST
+        self.bar.reset(self.task.id, completed=self.last)
+        self.bar.advance(self.task.id, 0)  # the first moment
+
+    def _show(self, words: str, line: str) -> None:
+        """The words beside the bar, or elsewhere the line, if there is news in it."""
+        if self.bar is not None and self.task is not None and self.has_bar():
+            self.bar.update(self.task.id, words=words)
+        elif line != self.line:
+            self._say(line)
+        self.line = line
 
     def _say(self, text: str) -> None:
         with contextlib.suppress(OSError):  # a run does not end because nobody can be told of it
             print(text, file=self.stream, flush=True)
 
-    def _open_bar(self) -> None:
+    def _open(self) -> None:
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TextColumn
 
@@ -201,8 +173,11 @@ class Reporter:
             TextColumn("{task.percentage:3.0f} % {task.fields[words]}"),
             console=Console(file=self.stream, highlight=False),
             refresh_per_second=4,
+            get_time=lambda: self.now,
+            disable=not self.has_bar(),
         )
-        self.task = self.bar.add_task(self.phase, total=self.total, completed=self.first, words="")
+        self.bar.add_task(self.phase, total=self.total, completed=self.first, words="")
+        [self.task] = self.bar.tasks
         self.bar.start()
 
 

@@ -55,29 +55,19 @@ class StudyReporter(Reporter):
         """How much there is to do."""
         return f"{self.runs - self.ended} of {self.runs} runs to do"
 
+    def count(self) -> str:
+        """How much is done."""
+        return f"{self.ended} of {self.runs} runs"
+
     def words(self, step: int) -> str:
         """Runs that have ended, the rate and the time left."""
-        rate, ended = self.rate.steps_per_second, f"{self.ended} of {self.runs} runs have ended"
+        rate, ended = self.rate(), f"{self.count()} have ended"
         if step >= self.total:
             return f"{ended}, the last results and figures are being written"
         if not rate:
             return ended
         left = duration_text((self.total - step) / rate)
         return f"{ended}, {rate / 1e6:.3g} M particle-steps/s, {left} left"
-
-    def finish(self) -> None:
-        """The study is over, or was stopped."""
-        if self.quiet or not self.phase:
-            return
-        took = duration_text(time.monotonic() - self.started)
-        text = f"{self.phase}: {self.ended} of {self.runs} runs after {took}"
-        if self.bar is not None and self.task is not None:
-            self.bar.update(self.task, completed=self.last, words=text)
-            self.bar.stop()
-            self.bar = self.task = None
-        else:
-            self._say(text)
-        self.phase = ""
 
 
 class NotebookStudyReporter(NotebookReporter, StudyReporter):

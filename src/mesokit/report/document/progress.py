@@ -37,53 +37,30 @@ def in_notebook() -> bool:
 class NotebookReporter(Reporter):
     """Tell how a run goes by a bar below the cell of a notebook."""
 
+    shown: Any = None
+
     def has_bar(self) -> bool:
-        """Wherever the stream leads."""
-        return True
+        """The stream has none."""
+        return False
 
-    def _open_bar(self) -> None:
-        self.bar = NotebookBar()
-        self.task = self.bar.add_task(self.phase, total=self.total, completed=self.first, words="")
-
-
-class NotebookBar:
-    """What a reporter asks of a bar, shown by the notebook that displays it."""
-
-    def __init__(self) -> None:
-        self.state: dict[str, Any] = {}
-        self.shown: Any = None
-
-    def add_task(self, description: str, **state: Any) -> int:
-        """The one task of this bar: `total`, `completed` and `words`."""
+    def _open(self) -> None:
         from IPython.display import display
 
-        self.state = {"description": description} | state
+        super()._open()
         self.shown = display(self, display_id=True)
-        return 0
 
-    def update(self, task: int, **state: Any) -> None:
-        """Change some of it."""
-        self.state |= state
+    def _show(self, words: str, line: str) -> None:
+        assert self.task is not None
+        self.task.fields["words"] = words
         self.shown.update(self)
 
-    def stop(self) -> None:
-        """It stays as it is."""
-
-    @property
-    def console(self) -> NotebookBar:
-        """What prints lines that stay."""
-        return self
-
-    def print(self, line: str, **look: Any) -> None:
-        """A line below the cell."""
-        print(line)
+    def _say(self, text: str) -> None:
+        print(text)
 
     def _repr_html_(self) -> str:
         """What a notebook asks for."""
-        return render("progress.html", percent=self._percent(), **self.state)
+        return render("progress.html", task=self.task)
 
     def __repr__(self) -> str:
-        return f"{self.state['description']}: {self._percent()} % {self.state['words']}"
-
-    def _percent(self) -> int:
-        return round(100 * self.state["completed"] / max(self.state["total"], 1))
+        assert self.task is not None
+        return f"{self.phase}: {self.task.percentage:.0f} % {self.task.fields['words']}"

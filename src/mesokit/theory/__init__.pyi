@@ -1,0 +1,184 @@
+"""The laws and where they are: the one table, read by type checkers and at run time."""
+
+from mesokit.theory.barometric import barometric_cdf as barometric_cdf
+from mesokit.theory.barometric import barometric_mean as barometric_mean
+from mesokit.theory.bead_diffusion import bead_diffusion as bead_diffusion
+from mesokit.theory.bond_correlation import BondCorrelation as BondCorrelation
+from mesokit.theory.bond_correlation import bond_correlation as bond_correlation
+from mesokit.theory.chain_diffusion import kirkwood_diffusion as kirkwood_diffusion
+from mesokit.theory.chain_diffusion import kirkwood_in_cells as kirkwood_in_cells
+from mesokit.theory.chain_diffusion import rouse_diffusion as rouse_diffusion
+from mesokit.theory.chain_diffusion import zimm_diffusion as zimm_diffusion
+from mesokit.theory.chain_displacement import msd_rouse_beads as msd_rouse_beads
+from mesokit.theory.chain_distribution import cosine_cdf as cosine_cdf
+from mesokit.theory.chain_distribution import end_to_end_cdf as end_to_end_cdf
+from mesokit.theory.chain_distribution import gyration_cdf as gyration_cdf
+from mesokit.theory.chain_in_slit import beads_in_slit as beads_in_slit
+from mesokit.theory.chain_in_slit import centre_in_slit as centre_in_slit
+from mesokit.theory.chain_scaling import ChainExponents as ChainExponents
+from mesokit.theory.chain_scaling import chain_exponents as chain_exponents
+from mesokit.theory.chain_size import mean_square_end_to_end as mean_square_end_to_end
+from mesokit.theory.chain_size import mean_square_gyration as mean_square_gyration
+from mesokit.theory.channel_cylinder import Reference as Reference
+from mesokit.theory.channel_cylinder import channel_cylinder as channel_cylinder
+from mesokit.theory.channel_cylinder import square_wake_length as square_wake_length
+from mesokit.theory.collapse_in_a_line import collapse_restitution as collapse_restitution
+from mesokit.theory.couette import couette_velocity as couette_velocity
+from mesokit.theory.cubic_array import cubic_array_drag as cubic_array_drag
+from mesokit.theory.cubic_array import cubic_array_drag_dilute as cubic_array_drag_dilute
+from mesokit.theory.cubic_array import cubic_array_permeability as cubic_array_permeability
+from mesokit.theory.demixing import demixing_coupling as demixing_coupling
+from mesokit.theory.demixing import demixing_diffusion as demixing_diffusion
+from mesokit.theory.diffusion_in_box import diffusion_in_box as diffusion_in_box
+from mesokit.theory.dumbbell_shear import dumbbell_viscosity as dumbbell_viscosity
+from mesokit.theory.dumbbell_shear import fene_p_thinning as fene_p_thinning
+from mesokit.theory.dumbbell_shear import pair_friction as pair_friction
+from mesokit.theory.elastic_share import elastic_share as elastic_share
+from mesokit.theory.enskog_diffusion import enskog_diffusion as enskog_diffusion
+from mesokit.theory.enskog_rate import contact_value as contact_value
+from mesokit.theory.enskog_rate import enskog_rate as enskog_rate
+from mesokit.theory.finite_size import viscosity_renormalised as viscosity_renormalised
+from mesokit.theory.fourth_cumulant import fourth_cumulant as fourth_cumulant
+from mesokit.theory.free_time import collision_speeds as collision_speeds
+from mesokit.theory.free_time import free_time_cdf as free_time_cdf
+from mesokit.theory.free_time import free_time_spread as free_time_spread
+from mesokit.theory.gamma import cell_energy_cdf as cell_energy_cdf
+from mesokit.theory.gamma import cell_energy_pdf as cell_energy_pdf
+from mesokit.theory.gamma import cell_energy_variance as cell_energy_variance
+from mesokit.theory.gaussian_structure_factor import (
+    gaussian_structure_factor as gaussian_structure_factor,
+)
+from mesokit.theory.haff import haff_temperature as haff_temperature
+from mesokit.theory.haff import haff_time as haff_time
+from mesokit.theory.hagen_poiseuille import hagen_poiseuille_flow_rate as hagen_poiseuille_flow_rate
+from mesokit.theory.hagen_poiseuille import hagen_poiseuille_velocity as hagen_poiseuille_velocity
+from mesokit.theory.hard_sphere_pressure import compressibility as compressibility
+from mesokit.theory.hard_sphere_pressure import compressibility_of_few as compressibility_of_few
+from mesokit.theory.hard_sphere_pressure import mean_speed_factor as mean_speed_factor
+from mesokit.theory.harmonic_spring import Spring as Spring
+from mesokit.theory.harmonic_spring import mean_square_bond as mean_square_bond
+from mesokit.theory.harmonic_spring import spring as spring
+from mesokit.theory.harmonic_spring import spring_of_bond as spring_of_bond
+from mesokit.theory.harmonic_trap import TrappedShape as TrappedShape
+from mesokit.theory.harmonic_trap import normal_in_box as normal_in_box
+from mesokit.theory.harmonic_trap import trapped_shape as trapped_shape
+from mesokit.theory.heading_memory import angular_memory as angular_memory
+from mesokit.theory.heading_memory import vectorial_memory as vectorial_memory
+from mesokit.theory.heat_at_walls import HeatAtWalls as HeatAtWalls
+from mesokit.theory.heat_at_walls import heat_at_walls as heat_at_walls
+from mesokit.theory.heat_at_walls import slit_temperature_rise as slit_temperature_rise
+from mesokit.theory.held_temperature import shear_warming as shear_warming
+from mesokit.theory.held_temperature import temperature_offset as temperature_offset
+from mesokit.theory.hertz_contact import hertz_contact as hertz_contact
+from mesokit.theory.hookean_shear import ShearStress as ShearStress
+from mesokit.theory.hookean_shear import SizeInShear as SizeInShear
+from mesokit.theory.hookean_shear import dumbbell_thinning as dumbbell_thinning
+from mesokit.theory.hookean_shear import maxwell_shear as maxwell_shear
+from mesokit.theory.hookean_shear import shear_heating as shear_heating
+from mesokit.theory.hookean_shear import size_in_shear as size_in_shear
+from mesokit.theory.kicked_temperature import kicked_temperature as kicked_temperature
+from mesokit.theory.kolmogorov import kolmogorov_onset_time as kolmogorov_onset_time
+from mesokit.theory.kolmogorov import kolmogorov_velocity as kolmogorov_velocity
+from mesokit.theory.kolmogorov import kolmogorov_viscosity as kolmogorov_viscosity
+from mesokit.theory.kremer_grest import BondLength as BondLength
+from mesokit.theory.kremer_grest import kremer_grest_bond as kremer_grest_bond
+from mesokit.theory.lees_edwards import lees_edwards_relaxation_time as lees_edwards_relaxation_time
+from mesokit.theory.lees_edwards import lees_edwards_velocity as lees_edwards_velocity
+from mesokit.theory.lennard_jones_tail import LennardJonesTail as LennardJonesTail
+from mesokit.theory.lennard_jones_tail import lennard_jones_tail as lennard_jones_tail
+from mesokit.theory.maxwell import maxwell_component_cdf as maxwell_component_cdf
+from mesokit.theory.maxwell import maxwell_component_pdf as maxwell_component_pdf
+from mesokit.theory.maxwell import maxwell_speed_cdf as maxwell_speed_cdf
+from mesokit.theory.maxwell import maxwell_speed_pdf as maxwell_speed_pdf
+from mesokit.theory.mean_square_displacement import (
+    decorrelation_from_diffusion as decorrelation_from_diffusion,
+)
+from mesokit.theory.mean_square_displacement import msd_molecular_chaos as msd_molecular_chaos
+from mesokit.theory.mixture_pressure import mixture_compressibility as mixture_compressibility
+from mesokit.theory.normal_modes import NormalModes as NormalModes
+from mesokit.theory.normal_modes import linear_modes as linear_modes
+from mesokit.theory.normal_modes import network_modes as network_modes
+from mesokit.theory.normal_modes import ring_modes as ring_modes
+from mesokit.theory.normal_modes import star_modes as star_modes
+from mesokit.theory.origin import Origin as Origin
+from mesokit.theory.origin import origins as origins
+from mesokit.theory.oscillating_slit import oscillating_slit_response as oscillating_slit_response
+from mesokit.theory.oscillating_slit import oscillating_slit_velocity as oscillating_slit_velocity
+from mesokit.theory.passage_times import first_passage_cdf as first_passage_cdf
+from mesokit.theory.passage_times import mean_exit_time as mean_exit_time
+from mesokit.theory.persistent_walk import msd_persistent_walk as msd_persistent_walk
+from mesokit.theory.persistent_walk import persistent_diffusion as persistent_diffusion
+from mesokit.theory.ping_pong import bounce_height as bounce_height
+from mesokit.theory.ping_pong import bounce_path as bounce_path
+from mesokit.theory.ping_pong import bounce_time as bounce_time
+from mesokit.theory.ping_pong import dissipative_bounces as dissipative_bounces
+from mesokit.theory.ping_pong import lossy_bounces as lossy_bounces
+from mesokit.theory.poiseuille import PoiseuilleFit as PoiseuilleFit
+from mesokit.theory.poiseuille import poiseuille_fit as poiseuille_fit
+from mesokit.theory.poiseuille import poiseuille_velocity as poiseuille_velocity
+from mesokit.theory.polar_order import CrowdOrder as CrowdOrder
+from mesokit.theory.polar_order import disordered_binder as disordered_binder
+from mesokit.theory.polar_order import disordered_order as disordered_order
+from mesokit.theory.polar_order import mean_square_order as mean_square_order
+from mesokit.theory.polar_order import vectorial_order as vectorial_order
+from mesokit.theory.pulled_shape import pulled_shape as pulled_shape
+from mesokit.theory.relaxation_modulus import apparent_viscosity as apparent_viscosity
+from mesokit.theory.relaxation_modulus import complex_viscosity as complex_viscosity
+from mesokit.theory.relaxation_modulus import loss_modulus as loss_modulus
+from mesokit.theory.relaxation_modulus import relaxation_modulus as relaxation_modulus
+from mesokit.theory.relaxation_modulus import storage_modulus as storage_modulus
+from mesokit.theory.rouse_times import RouseTimes as RouseTimes
+from mesokit.theory.rouse_times import rouse_times as rouse_times
+from mesokit.theory.rouse_times import rouse_times_from_slowest as rouse_times_from_slowest
+from mesokit.theory.second_virial import second_virial as second_virial
+from mesokit.theory.self_diffusion import self_diffusion as self_diffusion
+from mesokit.theory.slip_sphere import enskog_friction as enskog_friction
+from mesokit.theory.slip_sphere import slip_sphere_diffusion as slip_sphere_diffusion
+from mesokit.theory.slope import EndOfSliding as EndOfSliding
+from mesokit.theory.slope import Rolling as Rolling
+from mesokit.theory.slope import down_slope as down_slope
+from mesokit.theory.slope import end_of_sliding as end_of_sliding
+from mesokit.theory.sonine import sonine_component_cdf as sonine_component_cdf
+from mesokit.theory.sonine import sonine_speed_cdf as sonine_speed_cdf
+from mesokit.theory.spring_dashpot import spring_dashpot as spring_dashpot
+from mesokit.theory.square_array import square_array_drag as square_array_drag
+from mesokit.theory.square_array import square_array_drag_dilute as square_array_drag_dilute
+from mesokit.theory.square_array import square_array_permeability as square_array_permeability
+from mesokit.theory.stress_in_time import StressInTime as StressInTime
+from mesokit.theory.stress_in_time import stress_in_time as stress_in_time
+from mesokit.theory.taylor_couette import taylor_couette_coefficients as taylor_couette_coefficients
+from mesokit.theory.taylor_couette import taylor_couette_torque as taylor_couette_torque
+from mesokit.theory.taylor_couette import taylor_couette_velocity as taylor_couette_velocity
+from mesokit.theory.transport import Transport as Transport
+from mesokit.theory.transport import transport as transport
+from mesokit.theory.transverse_chain import TransversePoles as TransversePoles
+from mesokit.theory.transverse_chain import (
+    transverse_correlation_chain as transverse_correlation_chain,
+)
+from mesokit.theory.transverse_chain import transverse_poles as transverse_poles
+from mesokit.theory.transverse_dimer import dimer_oscillation_range as dimer_oscillation_range
+from mesokit.theory.transverse_dimer import (
+    transverse_correlation_dimer as transverse_correlation_dimer,
+)
+from mesokit.theory.transverse_finite_k import GaussianMolecule as GaussianMolecule
+from mesokit.theory.transverse_finite_k import gaussian_stress_kernel as gaussian_stress_kernel
+from mesokit.theory.transverse_finite_k import (
+    transverse_correlation_finite_k as transverse_correlation_finite_k,
+)
+from mesokit.theory.transverse_modes import ViscosityFit as ViscosityFit
+from mesokit.theory.transverse_modes import transverse_correlation as transverse_correlation
+from mesokit.theory.transverse_modes import transverse_viscosity_fit as transverse_viscosity_fit
+from mesokit.theory.trimer import trimer_bond_length as trimer_bond_length
+from mesokit.theory.trimer import trimer_spring_constant as trimer_spring_constant
+from mesokit.theory.velocity_autocorrelation import vacf_modes as vacf_modes
+from mesokit.theory.velocity_autocorrelation import vacf_molecular_chaos as vacf_molecular_chaos
+from mesokit.theory.velocity_autocorrelation import vacf_tail as vacf_tail
+from mesokit.theory.verlet_swing import verlet_swing as verlet_swing
+from mesokit.theory.virtual_gas_slip import virtual_gas_slip as virtual_gas_slip
+from mesokit.theory.water import water_density as water_density
+from mesokit.theory.water import water_diffusion as water_diffusion
+from mesokit.theory.water import water_sound_speed as water_sound_speed
+from mesokit.theory.water import water_viscosity as water_viscosity
+from mesokit.theory.zimm_shear import ChainInShear as ChainInShear
+from mesokit.theory.zimm_shear import zimm_shear as zimm_shear
+from mesokit.theory.zimm_times import zimm_times as zimm_times
