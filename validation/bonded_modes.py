@@ -16,6 +16,7 @@ from mesokit.method.mpcd.observe.shared.modes import transverse_units
 from mesokit.method.mpcd.start.fluid import start
 
 WAVES = {"1": (1, 0, 0), "sqrt 2": (1, 1, 0), "2": (2, 0, 0)}
+SIGNS = {"1": "1", "sqrt 2": r"$\sqrt{2}$", "2": "2"}
 SEEDS = (1, 2, 3, 4)
 AMPLITUDE = 0.4  # of the wave: thermal noise of one mode is about 0.003
 EVERY = 4  # steps between two samples
@@ -163,7 +164,7 @@ def make() -> int:
                 rows.append(
                     Comparison(
                         f"{kind.name}, |k_n| = {label}: largest deviation, {name}", off[worst],
-                        error[-1], 0.0, "",
+                        error[-1], math.nan, "",
                         f"at {t[worst]:.1f} of {t[late]:.0f} tau; rms {rms:.4f}",
                     )
                 )  # fmt: skip
@@ -172,24 +173,33 @@ def make() -> int:
                     f"{error[-1]:.4f}, {name} (below {limit})",
                     off[worst] < limit,
                 )
+            measured, waves = laws["finite k, measured background"], laws["long waves"]
+            last = colour == GREY
             some = slice(0, None, 3)
+            look = {"fmt": mark, "mfc": "white", "color": colour}
             axes[0, column].errorbar(
-                t[some], value[some], error[some], fmt=mark, ms=3, mfc="white", color=colour,
-                label=f"$|k_n|$ = {label}",
-            )  # fmt: skip
-            axes[0, column].plot(t, laws["finite k, measured background"], "-", color=colour, lw=1)
-            axes[0, column].plot(t, laws["long waves"], ":", color=colour, lw=1)
-            axes[1, column].plot(
-                t, value - laws["finite k, measured background"], "-", color=colour, lw=0.8
+                t[some], value[some], error[some], ms=3, label=f"$|k_n|$ = {SIGNS[label]}", **look
             )
-            axes[1, column].plot(t, value - laws["long waves"], ":", color=colour, lw=0.8)
+            few = slice(2 * "os^".index(mark), None, 8)
+            axes[1, column].errorbar(
+                t[few], (value - measured)[few], error[few], ms=3, elinewidth=0.8, **look
+            )
+            for law, dash, name in ((measured, "-", "finite $k$"), (waves, ":", "long waves")):
+                label = f"theory, {name}" if last else ""
+                axes[0, column].plot(t, law, dash, color=colour, lw=1, label=label)
+                axes[1, column].plot(t, value - law, dash, color=colour, lw=0.8)
         axes[0, column].set(title=kind.name, ylabel="$C(t)$")
         axes[0, column].legend()
         axes[1, column].axhline(0, color="k", lw=0.5)
-        axes[1, column].set(xlabel="time", ylabel="deviation", ylim=(-0.06, 0.06))
+        axes[1, column].set(
+            xlabel="time", ylabel="measured\n- theory", ylim=(-0.065, 0.065), xlim=(-2, 62)
+        )
     page.table(rows)
     page.figure(
-        fig, "Lines: theory for finite k with the measured background; dotted: for long waves."
+        fig,
+        "Waves of wave number |k_n|, in 2 pi/L. Full lines: theory for finite k with the measured "
+        "background; dotted: for long waves. Below what is measured less each of them; error bars, "
+        "at some points, are one standard error of the mean of four runs.",
     )
     return page.write()
 

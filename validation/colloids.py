@@ -7,7 +7,7 @@ import math
 from typing import Any
 
 import numpy as np
-from common import BLUE, GREY, RED, Page, found, long, main, mean_and_error, plt
+from common import BLUE, GREY, Page, found, long, main, mean_and_error, plt
 
 import mesokit
 from mesokit import SRD, WCA, Box, Case, Comparison, Fluid, Run, Simulation, every, theory
@@ -71,14 +71,23 @@ def density(page: Page) -> None:
     fig, ax = plt.subplots(figsize=(6, 4))
     r = np.linspace(2.6, 8.0, 600)
     ax.plot(
-        r, DENSITY * np.exp(-energies((DISK.kernel(),), r)), color=GREY, lw=1, label="exp(-U/kT)"
+        r,
+        DENSITY * np.exp(-energies((DISK.kernel(),), r)),
+        color=GREY,
+        lw=1,
+        label=r"theory: $n\,e^{-U/kT}$",
     )
     middle_of = 0.5 * (SHELLS[1:] + SHELLS[:-1])
     ax.errorbar(middle_of, value / area, error / area, fmt="o", color=BLUE, mfc="white", ms=4,
                 label="measured, in shells")  # fmt: skip
-    ax.set(xlabel="$r$ ($a$)", ylabel=r"density ($a^{-2}$)")
-    ax.legend(labelcolor=GREY)
-    page.figure(fig, "Density of the fluid about a disk that pushes it away.", "_density")
+    ax.set(xlabel="$r$  [$a$]", ylabel="density  [$a^{-2}$]")
+    ax.legend()
+    page.figure(
+        fig,
+        "Density of the fluid about a disk that pushes it away. Error bars, one standard error, "
+        "are mostly below the points.",
+        "_density",
+    )
 
 
 def mean_force(gap: float) -> float:
@@ -198,9 +207,14 @@ def early_friction(page: Page, hits: float) -> tuple[float, float]:
     fig, ax = plt.subplots(figsize=(6, 4))
     ax.errorbar(0.1 * lags, friction[0], friction[1], fmt="o", color=BLUE, mfc="white", ms=4,
                 label="measured")  # fmt: skip
-    ax.axhline(hits, color=RED, lw=1, label="Enskog")
-    ax.set(xscale="log", xlabel=r"$t$ ($\tau$)", ylabel=r"$\zeta$ ($m/\tau$)", ylim=(0, None))
-    ax.legend(labelcolor=GREY)
+    ax.axhline(hits, color="k", lw=1, label="theory: Enskog, of hits alone")
+    ax.set(
+        xscale="log",
+        xlabel=r"$t$  [$\tau$]",
+        ylabel=r"friction $\zeta$  [$m/\tau$]",
+        ylim=(0, None),
+    )
+    ax.legend()
     page.figure(fig, "Friction of a sphere from the change of its velocity in a time.", "_friction")
     soon = int(np.flatnonzero(lags == 9)[0])
     return float(friction[0, soon]), float(friction[1, soon])

@@ -82,7 +82,7 @@ def make() -> int:
         (ATPlusA(), 2, 32, 5_000), (ATPlusA(), 3, 12, 5_000),
     ]  # fmt: skip
     fig, ax = plt.subplots(figsize=(7, 4))
-    colours = iter((BLUE, RED, GREEN, PURPLE))
+    looks = iter(zip((BLUE, RED, GREEN, PURPLE), "os^D", ("-", "--", "-.", ":"), strict=True))
     rows = []
     for rule, d, size, steps in cases:
         n, drifts = drift(rule, d, size, steps)
@@ -99,8 +99,9 @@ def make() -> int:
         if rule.rule == "srd":
             time = np.arange(1, len(drifts) + 1) * steps / len(drifts)
             for k, what in enumerate(("energy", "momentum")):
-                ax.plot(time, np.maximum(drifts[:, k], 1e-17), "o-", ms=3, color=next(colours),
-                        label=f"{what}, {d}D")  # fmt: skip
+                colour, mark, dash = next(looks)
+                ax.plot(time, np.maximum(drifts[:, k], 1e-17), mark, ls=dash, ms=3, color=colour,
+                        mfc="white", lw=1, label=f"{what}, {d}D")  # fmt: skip
     page.grid(["rule", "particles", "steps", "energy drift", "momentum drift"], rows)
     page.heading("Within a cell")
     page.text(
@@ -120,10 +121,13 @@ def make() -> int:
             worst = max(c for c, m in zip(changes, meant, strict=True) if m)
             page.check(f"{name}, in each cell: {worst:.0e} (below 1e-9)", worst < 1e-9)
     page.grid(["rule", "energy", "momentum", "angular momentum"], inner)
-    ax.axhline(LIMIT, color="k", ls=":", lw=1)
+    ax.axhline(LIMIT, color="k", lw=1, label="limit")
     ax.set(xlabel="steps", ylabel="relative drift", yscale="log")
     ax.legend(loc="upper left", bbox_to_anchor=(0.0, 0.93), ncols=2)
-    page.figure(fig, "Drift of SRD fluids; the dotted line is the limit.")
+    page.figure(
+        fig,
+        "Drift of SRD fluids over time: of the energy over itself, of the momentum over sum m |v|.",
+    )
     return page.write()
 
 

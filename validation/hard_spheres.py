@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from common import BLUE, RED, Page, long, main, mean_and_error, plt
+from common import BLUE, Page, long, main, mean_and_error, plt
 from scipy.spatial import cKDTree
 
 from mesokit import (
@@ -122,17 +122,21 @@ def pressures(densities: Sequence[float], measured: Sequence[tuple[float, float]
         2, 1, figsize=(5, 5), sharex=True, gridspec_kw={"height_ratios": (3, 2)}
     )
     line = np.linspace(0.05, 0.65, 60)
-    ax.plot(line, [theory.compressibility(x, 2) for x in line], color=RED, label="virial series")
+    ax.plot(
+        line, [theory.compressibility(x, 2) for x in line], color="k", label="theory: virial series"
+    )
     values, errors = np.array(measured).T
     look = {"fmt": "o", "color": BLUE, "mfc": "white"}
     ax.errorbar(densities, values, errors, label="measured", **look)
     ax.set_ylabel(r"$P/(n k_B T)$")
     ax.legend()
     known = np.array([theory.compressibility(x, 2) for x in densities])
-    rest.axhline(0, color=RED)
+    rest.axhline(0, color="k")
     rest.errorbar(densities, 100 * (values / known - 1), 100 * errors / known, capsize=3, **look)
     rest.axvspan(0.53, line[-1], color="0.9", zorder=0)
-    rest.set(xlabel="packing fraction", ylabel="over theory\n- 1  [%]", xlim=(line[0], line[-1]))
+    rest.set(
+        xlabel="packing fraction", ylabel="measured over\ntheory - 1  [%]", xlim=(line[0], line[-1])
+    )
     return fig
 
 
@@ -265,8 +269,8 @@ def collapse(page: Page) -> None:
     page.text(
         "1024 disks, e = 0.2, packing fraction 0.25, means of eight starts. Without a contact time "
         "some collide without end; with one of 10^-4 mean free times of the start the gas goes on "
-        "for 2000. Beside it another program: eight starts without a contact time, which end after "
-        "5.3 +- 1.2 free times, and one run with it."
+        "for 2000. Beside it an independent event-driven program: eight starts without a contact "
+        "time, which end after 5.3 +- 1.2 free times, and one run with it."
     )
     rate = theory.enskog_rate(1 / math.pi, 1.0, 1.0, 0.25, 2)
     size, ended, seen = [math.sqrt(1024 * math.pi)] * 2, [], []
@@ -281,7 +285,7 @@ def collapse(page: Page) -> None:
         gas.advance(max(2, long(100)))
         seen.append((2 * gas.collisions[0] / 1024, gas.totals()[2] / 1023))
     values, errors = mean_and_error(seen)
-    note = "approximate: one run of another program"
+    note = "approximate: one run of that program"
     page.table(
         [
             Comparison(
@@ -289,7 +293,7 @@ def collapse(page: Page) -> None:
                 *mean_and_error(ended),
                 5.3,
                 "",
-                "approximate: eight starts of another program, 5.3(12)",
+                "approximate: eight starts of an independent event-driven program, 5.3(12)",
             ),
             Comparison("collisions of each", values[0], errors[0], 1488, "", note),
             Comparison("temperature", values[1], errors[1], 1.6e-4, "", note),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from common import ANGLE, BLUE, GREEN, GREY, RED, Page, found, main, mean_and_error, plt, simulate
+from common import ANGLE, BLUE, GREY, RED, Page, found, main, mean_and_error, plt, simulate
 
 import mesokit
 from mesokit import SRD, Box, Comparison, Fluid, MaxwellBoltzmann, Run, theory
@@ -70,7 +70,7 @@ def make() -> int:
         slope_within, uncertainty = mean_and_error(series @ slope_of)
         rows.append(
             Comparison(f"shear rate within cells, {name}", RATE + slope_within, uncertainty, RATE,
-                       "1/tau")
+                       "1/tau", "" if strength else "approximate: cells that move as one have 0")
         )  # fmt: skip
     page.text(
         "Without the grid shift the fluid of a cell moves as one: the shear rate within cells "
@@ -96,15 +96,16 @@ def make() -> int:
                          lw=0.8, color=colour, label=name)  # fmt: skip
         mean, error = shapes[name]
         axes[1].errorbar(places, mean, error, fmt=marker, color=colour, label=name)
-    axes[0].plot(y[show], shifted.expected[show], "-", color=GREEN, label="linear")
+    axes[0].plot(y[show], shifted.expected[show], "k-", lw=1, label="theory: linear", zorder=0)
     axes[0].set(xlabel="y", ylabel="velocity", xlim=(12, 18))
     axes[0].legend(loc="upper left")
-    axes[1].axhline(0, color=GREEN)
-    axes[1].set(xlabel="place within the cell", ylabel="velocity - linear")
+    axes[1].axhline(0, color="k", lw=1, label="theory: linear", zorder=0)
+    axes[1].set(xlabel="place within the cell", ylabel="velocity - linear", xlim=(0, 1))
     axes[1].legend()
     page.figure(
         fig, "Left: the middle of the profile, with cell boundaries. Right: deviation from the "
-        "straight line against the place within a cell, mean over all cells.",
+        "straight line against the place within a cell, mean over all cells. Error bars: one "
+        "standard error, mostly below the points.",
     )  # fmt: skip
     return page.write()
 

@@ -160,12 +160,14 @@ def histogram(page: Page) -> None:
         expected = NUMBER / (k + 1)
         noise = np.sqrt(expected * (1 - 1 / (k + 1)))
         edges = np.linspace(0, 360, k + 2)
-        ax.axhspan(expected - noise, expected + noise, color=GREY, alpha=0.2, lw=0)
-        ax.axhline(expected, color="black", lw=1)
-        ax.stairs(count, edges, color=colour, lw=1.3)
-        ax.set(title=name, xlabel="angle [degrees]", xlim=(0, 360), xticks=range(0, 361, 90))
-        ax.set_ylim(expected - 5 * noise, expected + 5 * noise)
-    axes[0].set_ylabel(f"angles of {NUMBER:,}".replace(",", " "))
+        ax.axhspan(expected - noise, expected + noise, color=GREY, alpha=0.2, lw=0,
+                   label="one standard deviation")  # fmt: skip
+        ax.axhline(expected, color="black", lw=1, label="expected")
+        ax.stairs(count, edges, color=colour, lw=1.3, baseline=None, label="drawn")
+        ax.set(title=name, xlabel="angle  [degrees]", xlim=(0, 360), xticks=range(0, 361, 90))
+        ax.set_ylim(expected - 5 * noise, expected + 6.5 * noise)
+    axes[0].set_ylabel("angles in a bucket")
+    axes[0].legend(loc="upper left", ncols=1)
     page.heading("Histograms")
     page.figure(
         fig,

@@ -9,14 +9,16 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from common import ANGLE, BLUE, GREEN, RED, Page, found, main, plt, renamed, simulate
+from common import ANGLE, BLUE, RED, Page, found, main, plt, renamed, simulate
 
 import mesokit
 from mesokit import SRD, Box, Comparison, Fluid, MaxwellBoltzmann, Plates, Run, Uniform, theory
+from mesokit.report.style import sparse_logarithm
 
 DENSITY, TIMESTEP = 10, 0.1
 RULE = SRD(angle=ANGLE)
 THEORY = theory.transport("srd", 3, DENSITY, TIMESTEP, angle=ANGLE)
+UNIT = "a^2/tau"
 
 
 def wave_run(seed: int, length: int, start: float, times: int, every: int) -> np.ndarray:
@@ -59,7 +61,12 @@ def shear_wave(runs: int = 40, length: int = 20, start: float = 0.4) -> tuple:
     nu = fit(curves.mean(axis=0))
     without = np.array([fit(np.delete(curves, i, axis=0).mean(axis=0)) for i in range(runs)])
     error = math.sqrt((runs - 1) * without.var())
-    return Comparison("decay of a shear wave", nu, error, THEORY.viscosity), t, curves / start, k
+    return (
+        Comparison("decay of a shear wave", nu, error, THEORY.viscosity, UNIT),
+        t,
+        curves / start,
+        k,
+    )
 
 
 def sheared(steps: int = 5000) -> tuple[list[Comparison], mesokit.Result]:
@@ -129,7 +136,7 @@ def make() -> int:
     mean = float(weights @ values / weights.sum())
     chi2 = float(weights @ (values - mean) ** 2)
     error = float(weights.sum() ** -0.5)
-    page.table([Comparison("weighted mean of the routes", mean, error, THEORY.viscosity)])
+    page.table([Comparison("weighted mean of the routes", mean, error, THEORY.viscosity, UNIT)])
     page.check(
         f"the three agree with each other: chi-square {chi2:.2f} for 2 degrees of freedom",
         chi2 < 9.2,
@@ -144,17 +151,18 @@ def make() -> int:
     fig, axes = plt.subplots(1, 2, figsize=(9, 3.8))
     mean_curve = curves.mean(axis=0)
     spread = curves.std(axis=0, ddof=1) / math.sqrt(len(curves))
-    axes[0].errorbar(t, mean_curve, spread, fmt="o", color=BLUE, label="shear wave")
-    axes[0].plot(t, np.exp(-THEORY.viscosity * k**2 * t), "-", color=RED, label="theory")
+    axes[0].errorbar(t, mean_curve, spread, fmt="o", color=BLUE, mfc="white", label="shear wave")
+    axes[0].plot(t, np.exp(-THEORY.viscosity * k**2 * t), "k-", lw=1, label="theory")
     axes[0].set(xlabel="time", ylabel="amplitude / start", yscale="log")
+    sparse_logarithm(axes[0].yaxis, *axes[0].get_ylim())
     axes[0].legend()
     y = profile.x["y"]
     axes[1].errorbar(y, profile.value, profile.error, fmt="o", ms=2, color=BLUE, label="channel")
-    axes[1].plot(y, profile.expected, "-", color=RED, label="theory, no slip")
-    axes[1].plot(y, profile.fit, "--", color=GREEN, label="fit")
+    axes[1].plot(y, profile.expected, "k-", lw=1, label="theory, no slip")
+    axes[1].plot(y, profile.fit, "--", color=RED, label="fit")
     axes[1].set(xlabel="y", ylabel="velocity")
     axes[1].legend()
-    page.figure(fig, "Decay of the shear wave, and the channel flow, with theory.")
+    page.figure(fig, "Decay of the shear wave (errors below the points), and the channel flow.")
     return page.write()
 
 
