@@ -87,7 +87,7 @@ def fingerprint(fluid: CPU) -> list:
     number, momentum, energy = fluid.totals()
     bins = fluid.moments((0, 1), (7, 5))
     waves = np.ones((1, fluid.dimension))
-    taken = fluid.memory.fluid.taken.impulse.sum(axis=0)
+    taken = fluid.wall_impulse
     particles = fluid.positions(), fluid.velocities(), fluid.images()
     whole = fluid.positions(unwrapped=True), number, momentum, energy
     return [*particles, *whole, *bins, *fluid.modes(waves), taken]

@@ -124,7 +124,7 @@ def of_shape(number):
         )
 
     def seen(fluid):
-        taken = fluid.memory.fluid.taken.impulse.sum(axis=0), fluid.memory.wall_rates
+        taken = fluid.wall_impulse, fluid.memory.wall_rates
         return fluid.positions(), fluid.velocities(), fluid.images(), *taken
 
     return Row(make, steps, seen, ways=((2, steps), (3, 7)), stops=(), long=True)
