@@ -6,10 +6,11 @@ import math
 from typing import Any
 
 import numpy as np
-from common import BLUE, GREEN, RED, Page, long, main, mean_and_error, plt
+from common import BLUE, GREEN, Page, long, main, mean_and_error, plt
 
 import mesokit
 from mesokit import Box, Comparison, Demix, Fluid, Run, Species, theory
+from mesokit.report.style import sparse_logarithm
 
 DENSITY, STEP = 10, 0.1
 TWO = (Species(mass=1, density=DENSITY / 2), Species(mass=1, density=DENSITY / 2))
@@ -92,12 +93,12 @@ def threshold(page: Page, axis) -> None:
     )
     page.table([fall, zero])
     axis.errorbar(couplings, value, error, fmt="o", c=BLUE, label="measured")
-    axis.plot(couplings, expected, "--", c=RED, label="molecular chaos")
-    axis.plot(couplings, start + slope * couplings, "-", lw=0.8, c=BLUE)
+    axis.plot(couplings, expected, "k--", lw=1, label="theory: molecular chaos")
+    axis.plot(couplings, start + slope * couplings, "-", lw=0.8, c=BLUE, label="fitted line")
     axis.axhline(0, lw=0.6, c="k")
     axis.set_xticks([0, 0.004, 0.008, 0.012])
     axis.legend()
-    axis.set(xlabel="coupling ($a$)", ylabel=r"diffusion of colour ($a^2/\tau$)")
+    axis.set(xlabel="coupling  [$a$]", ylabel=r"diffusion of colour  [$a^2/\tau$]")
     away = (fall.measured - known) / fall.error
     page.check(f"D falls by density times coupling: {away:+.1f} s.e. (at most 3)", abs(away) < 3)
     page.check("colour spreads at 0.004 a", value[2] > 3 * error[2])
@@ -242,15 +243,19 @@ def tension(page: Page, axes) -> None:
     second, third, q, square, spread = film()
     page.table([first, second, third])
     line = np.linspace(0, 1.1 / r.min(), 2)
-    axes[0].errorbar(1 / r, jump, error, fmt="o", c=BLUE)
-    axes[0].plot(line, laplace * line, "--", c=RED)
-    axes[0].set(xlabel="$1/R$ ($a^{-1}$)", ylabel="pressure inside - outside ($kT/a^2$)")
-    axes[1].errorbar(q, square, spread, fmt="s", c=GREEN)
+    axes[0].errorbar(1 / r, jump, error, fmt="o", c=BLUE, label="measured")
+    axes[0].plot(line, laplace * line, "k--", lw=1, label="Laplace's law, fitted tension")
+    axes[0].set(xlabel="$1/R$  [$a^{-1}$]", ylabel="pressure inside - outside  [$kT/a^2$]")
+    axes[0].legend()
+    axes[1].errorbar(q, square, spread, fmt="s", c=GREEN, label="measured")
     fine = np.geomspace(q[0] * 0.9, q[-1] * 1.1, 50)
-    axes[1].loglog(fine, 1 / (second.measured * FILM[1] * fine**2), "--", c=RED)
+    axes[1].loglog(fine, 1 / (second.measured * FILM[1] * fine**2), "k--", lw=1,
+                   label="tension of the stress")  # fmt: skip
+    axes[1].legend(loc="lower left")
+    sparse_logarithm(axes[1].yaxis, *axes[1].get_ylim())
     axes[1].set_xticks([0.15, 0.3, 0.6], ["0.15", "0.3", "0.6"])
     axes[1].set_xticks([], minor=True)
-    axes[1].set(xlabel="$q$ ($a^{-1}$)", ylabel=r"$\langle|h_q|^2\rangle$ ($a^2$)")
+    axes[1].set(xlabel="$q$  [$a^{-1}$]", ylabel=r"$\langle|h_q|^2\rangle$  [$a^2$]")
     chi = float((weight * (r * jump - laplace) ** 2).sum())
     page.check(f"pressure grows as 1/R: chi-square {chi:.1f} of 2 (at most 9)", chi < 9)
     for other in (second, third):

@@ -182,10 +182,10 @@ def in_a_channel(page: Page, axis: Any) -> None:
         )
     for place, kind in enumerate(NAMES):
         value, sigma = shares[kind]
-        axis.errorbar(place, value / first, sigma / first, fmt="o", color=BLUE)
+        axis.errorbar(place, value / first, sigma / first, fmt="o", color=BLUE, mfc="white")
     axis.axhline(1, color=GREY, lw=1)
     axis.set(xticks=range(len(NAMES)), xticklabels=list(NAMES), ylim=(0.9, 1.1), title="one circle",
-             ylabel="drag per velocity / that of the disk")  # fmt: skip
+             xlim=(-0.5, 3.5), ylabel="drag per velocity / that of the disk")  # fmt: skip
 
 
 def in_arrays(page: Page, axis: Any) -> None:
@@ -210,12 +210,13 @@ def in_arrays(page: Page, axis: Any) -> None:
             "(within 5 %)",
             abs(k.percent) < 5,
         )
-        axis.errorbar(concentration, k.measured / POST**2, k.error / POST**2, fmt="o", color=RED)
+        axis.errorbar(concentration, k.measured / POST**2, k.error / POST**2, fmt="o", color=RED,
+                      mfc="white", label="measured" if pitch == PITCHES[0] else "")  # fmt: skip
     c = np.linspace(0.08, 0.32, 40)
     lines = [
         theory.square_array_permeability(x, math.sqrt(math.pi / x) * POST) / POST**2 for x in c
     ]
-    axis.semilogy(c, lines, "-", color=GREY, label="Sangani and Acrivos")
+    axis.semilogy(c, lines, "-", color=GREY, label="theory: Sangani and Acrivos")
     axis.set(xlabel="volume fraction", ylabel="$k/R^2$", title="square arrays")
     axis.legend()
     page.table(rows)
@@ -250,11 +251,17 @@ def in_three_dimensions(page: Page, axis: Any) -> None:
             "the correction of Hasimoto, Sangani and Acrivos (within 5 %)",
             abs(k.percent) < 5,
         )
-        axis.errorbar(radius / length, drag, k.error, fmt="o", color=GREEN)
+        axis.errorbar(radius / length, drag, k.error, fmt="o", color=GREEN, mfc="white",
+                      label="measured" if radius == 4 else "")  # fmt: skip
     ratio = np.linspace(0, 0.25, 50)[1:]
     fractions = 4 * math.pi * ratio**3 / 3
-    axis.plot(ratio, [theory.cubic_array_drag(x) for x in fractions], color=GREY, label="theory")
-    axis.set(xlabel="R/L", ylabel="K", title="sphere")
+    axis.plot(
+        ratio,
+        [theory.cubic_array_drag(x) for x in fractions],
+        color=GREY,
+        label="theory: Sangani and Acrivos",
+    )
+    axis.set(xlabel="$R/L$", ylabel="drag / $6\\pi\\eta R U$", title="sphere in a cube")
     axis.legend()
     page.table(rows)
 
@@ -268,7 +275,8 @@ def make() -> int:
     in_three_dimensions(page, axes[2])
     page.figure(
         fig, "Left: drag on one circle given in four ways. Middle: permeability of square arrays. "
-        "Right: drag on a sphere in a periodic box over that of Stokes.",
+        "Right: drag on a sphere in a periodic box over that of Stokes. Error bars: one standard "
+        "error, in the middle below the points.",
     )  # fmt: skip
     return page.write()
 

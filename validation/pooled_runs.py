@@ -46,8 +46,8 @@ def make() -> int:
         f"A channel of 12 x 9 cells with {SEEDS} seeds. `mesokit merge` pools the blocks of time "
         "of all runs, and its error bars follow from these blocks; the scatter of the runs about "
         "their mean, over the root of their number, is what they should be. The table of a study "
-        "takes the error bars of the single runs instead, each a little too small, as a run "
-        "is not many times longer than its flow remembers: chi-square of the seeds says so."
+        "pools the runs likewise. Chi-square of the seeds, by the error bars of the single runs, "
+        "says whether these are right too: it is then about the degrees of freedom."
     )
     folder = RUNS / ("short" if SHORT else "") / "pooled_runs"
     shutil.rmtree(folder, ignore_errors=True)
@@ -59,7 +59,8 @@ def make() -> int:
         pooled = merged[row.observable][row.key]
         ratios.append(pooled.error / row.scatter)
         rows.append([
-            pooled.what, f"{pooled.measured:.5g}", f"{pooled.expected:.5g}",
+            f"{pooled.what} [{pooled.unit}]" if pooled.unit else pooled.what,
+            f"{pooled.measured:.5g}", f"{pooled.expected:.5g}",
             f"{pooled.error:.2g}", f"{row.scatter:.2g}", f"{ratios[-1]:.2f}",
             f"{row.number.error / row.scatter:.2f}",
             f"{row.seeds.chi2:.0f} of {row.seeds.dof}",
@@ -84,9 +85,10 @@ def make() -> int:
     ax.plot(y, scatter, "o", mfc="white", color=BLUE, label="scatter of the runs / $\\sqrt{n}$")
     ax.plot(y, profile.error, "-", color="black", label="error bar of the pooled profile")
     band = np.array([1 - 1 / np.sqrt(2 * SEEDS - 2), 1 + 1 / np.sqrt(2 * SEEDS - 2)])
-    ax.fill_between(y, *(band[:, None] * profile.error), color=GREY, alpha=0.2, lw=0)
+    ax.fill_between(y, *(band[:, None] * profile.error), color=GREY, alpha=0.2, lw=0,
+                    label="two thirds of the points are expected here")  # fmt: skip
     ax.set_xlabel("y")
-    ax.set_ylabel("standard error of the velocity")
+    ax.set_ylabel("standard error of the velocity  [$a/\\tau$]")
     ax.set_ylim(0, None)
     ax.legend()
     page.figure(

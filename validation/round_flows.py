@@ -115,15 +115,15 @@ def couette(page: Page, axes: Any) -> None:
         r, expected = profiles[0].x["r"], profiles[0].expected
         value = np.mean([p.value for p in profiles], axis=0)
         error = np.sqrt(np.sum([p.error**2 for p in profiles], axis=0)) / len(profiles)
-        axis[0].errorbar(r, value, error, fmt="o", ms=3, color=BLUE)
-        axis[0].plot(r, expected, "-", color=GREY, lw=1, label="A r + B/r, no slip")
+        axis[0].errorbar(r, value, error, fmt="o", ms=3, color=BLUE, label="measured")
+        axis[0].plot(r, expected, "-", color=GREY, lw=1, label="theory: $A r + B/r$, no slip")
         axis[0].set(ylabel="azimuthal velocity", title=f"{turns} cylinder turns")
         axis[0].legend()
         axis[1].errorbar(
             r, 100 * (value - expected) / SPEED, 100 * error / SPEED, fmt="o", ms=3, color=BLUE
         )
         axis[1].axhline(0, color=GREY, lw=1)
-        axis[1].set(xlabel="r", ylabel="deviation, % of the speed", ylim=(-3, 3))
+        axis[1].set(xlabel="r", ylabel="measured - theory\n[% of the speed]", ylim=(-3, 3))
     page.table(rows)
 
 
@@ -161,19 +161,20 @@ def hagen_poiseuille(page: Page, axis: Any) -> None:
         "(below 1 %)", abs(slip.measured) < 1,
     )  # fmt: skip
     r = profile.x["r"]
-    axis[0].errorbar(r, profile.value, profile.error, fmt="o", ms=3, color=RED)
-    axis[0].plot(r, profile.expected, "-", color=GREY, lw=1, label="viscosity of theory")
+    axis[0].errorbar(r, profile.value, profile.error, fmt="o", ms=3, color=RED, label="measured")
+    axis[0].plot(r, profile.expected, "-", color=GREY, lw=1, label="theory, with its viscosity")
     axis[0].plot(r, profile.fit, "--", color=RED, lw=1, label="fitted parabola")
     axis[0].set(ylabel="velocity along the pipe", title="round pipe")
     axis[0].legend()
-    for line, style in ((profile.expected, "o"), (profile.fit, "x")):
+    for line, style, aside in ((profile.expected, "o", -0.08), (profile.fit, "x", 0.08)):
         axis[1].errorbar(
-            r, 100 * (profile.value - line) / CENTRE, 100 * profile.error / CENTRE, fmt=style, ms=3,
-            color=RED, label="from theory" if style == "o" else "from the fit",
+            r + aside, 100 * (profile.value - line) / CENTRE, 100 * profile.error / CENTRE,
+            fmt=style, ms=3, color=RED if style == "o" else GREY,
+            label="less theory" if style == "o" else "less the fit",
         )  # fmt: skip
     axis[1].axhline(0, color=GREY, lw=1)
-    axis[1].set(xlabel="r", ylabel="deviation, % of the centre", ylim=(-3, 3))
-    axis[1].legend()
+    axis[1].set(xlabel="r", ylabel="measured - line\n[% of the centre]", ylim=(-3, 3))
+    axis[1].legend(ncols=2)
 
 
 def make() -> int:

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 import numpy as np
-from common import BLUE, GREEN, GREY, RED, RUNS, Page, found, long, main, plt
+from common import BLUE, GREEN, RED, RUNS, Page, found, long, main, plt
 from PIL import Image
 
 import mesokit
@@ -115,6 +115,29 @@ def case(d: int, walls: list[Any], steps: int) -> Case:
     )
 
 
+def drawn(shells: dict[str, tuple[list[Any], list[Any]]]) -> Any:
+    """Density and temperature in each shell, and the mean over shapes for each surface."""
+    fig, axes = plt.subplots(1, 2, figsize=(9.5, 3.8))
+    looks = dict(zip(shells, (("o", BLUE), ("s", GREEN), ("^", RED)), strict=True))
+    for axis, which, level in zip(axes, (0, 1), (10, 1), strict=True):
+        for number, (surface, (mark, colour)) in enumerate(looks.items()):
+            distance, value, error = np.array(shells[surface][which]).swapaxes(0, 1)
+            aside = 0.03 * (number - 1)
+            axis.plot(distance.T + aside, value.T, ".", ms=1.5, color="0.75", zorder=0)
+            weight = 1 / error**2
+            mean = (weight * value).sum(axis=0) / weight.sum(axis=0)
+            axis.errorbar(
+                distance[0] + aside, mean, weight.sum(axis=0) ** -0.5, fmt=mark, ms=3, mfc="white",
+                color=colour, label=surface, zorder=3,
+            )  # fmt: skip
+        axis.axhline(level, color="k", lw=0.8, label="expected")
+        axis.set(xlabel="distance from the surface", xlim=(0, 2))
+    axes[0].set(ylabel="density  [$a^{-2}$ or $a^{-3}$]")
+    axes[1].set(ylabel="temperature")
+    axes[0].legend(ncols=2, loc="upper left")
+    return fig
+
+
 def make() -> int:
     """Write the page."""
     page = Page("solids_at_rest", "Density and temperature next to solids")
@@ -127,8 +150,8 @@ def make() -> int:
         "Forces: the largest component of force or torque on any solid at rest, in standard errors."
     )
     rows, tests, off = [], [], []
-    fig, axes = plt.subplots(1, 2, figsize=(9.5, 3.8))
-    colours = {"no-slip": BLUE, "turning": GREY, "slip": GREEN, "diffuse": RED}
+    # of density and temperature about each shape
+    shells = {surface: ([], []) for surface in SURFACES if surface != "turning"}
     for d in (2, 3):
         for surface, rule in SURFACES.items():
             for name, walls in shapes(d, {} if surface == "turning" else rule).items():
@@ -170,14 +193,9 @@ def make() -> int:
                     else:
                         cells.append("")
                 rows.append(cells)
-                spread = 0.012 * (len(rows) % 9 - 4)
-                for axis, result in ((axes[0], density), (axes[1], temperature)):
-                    if surface == "turning" and axis is axes[1]:
-                        continue
-                    axis.errorbar(
-                        result.x["distance"] + spread, result.value, result.error, fmt=".", ms=2,
-                        color=colours[surface], lw=0.4, capsize=0, alpha=0.5,
-                    )  # fmt: skip
+                if surface != "turning":
+                    for shown, result in zip(shells[surface], (density, temperature), strict=True):
+                        shown.append([result.x["distance"], result.value, result.error])
     page.grid(
         ["solid", "surface", "density at the surface (10)", "temperature at the surface (1)",
          "density: chi-square per degree (p)", "temperature: chi-square per degree (p)",
@@ -207,13 +225,11 @@ def make() -> int:
             "s.e. (within 3 of its errors)",
             abs(mean) < 3 * error,
         )
-    axes[0].axhline(10, color="k", lw=0.8)
-    axes[1].axhline(1, color="k", lw=0.8)
-    axes[0].set(xlabel="distance from the surface", ylabel="density")
-    axes[1].set(xlabel="distance from the surface", ylabel="temperature")
-    handles = [plt.Line2D([], [], color=c, marker=".", ls="", label=s) for s, c in colours.items()]
-    axes[0].legend(handles=handles, ncols=2)
-    page.figure(fig, "All shapes, one colour for each surface.")
+    page.figure(
+        drawn(shells),
+        "Dots: every shell of every shape at rest, in 2D and 3D. Over them the means of all shapes "
+        "with the same surface, weighted by their errors, with one standard error.",
+    )
     return page.write()
 
 

@@ -89,19 +89,23 @@ def canonical(page: Page, axes: Any) -> None:
                 worst = min(worst, test.pvalue)
                 if density == 5:
                     x = np.linspace(0, np.quantile(e, 0.999), 300)
-                    axis.hist(e, 60, range=(0, x[-1]), density=True, histtype="step", color=BLUE)
-                    axis.plot(x, theory.cell_energy_pdf(x, one, d), color=RED, lw=1)
-                    top = theory.cell_energy_pdf(x, one, d)
-                    axis.annotate(
-                        f"N = {one}", (x[max(top.argmax(), 9)], top[max(top.argmax(), 9)])
-                    )
+                    drawn = {"density": True, "histtype": "step", "color": BLUE}
+                    name = "cells" if one == density else ""
+                    axis.hist(e, 60, range=(0, x[-1]), label=name, **drawn)
+                    pdf = theory.cell_energy_pdf(x, one, d)
+                    name = "theory: gamma distribution" if one == density else ""
+                    axis.plot(x, pdf, "k-", lw=0.8, label=name)
+                    top = max(pdf.argmax(), 32 if d == 2 else 9)
+                    aside = {"xytext": (4, 3), "textcoords": "offset points"}
+                    axis.annotate(f"$N$ = {one}", (x[top], pdf[top]), **aside)
             temperature = energy.sum() / shape.sum()
             error = math.sqrt(shape.sum()) / shape.sum()
             temperatures.append(
                 Comparison(f"temperature, {d}D, density {density}", temperature, error, 1, "kT")
             )
-        axis.set(xlabel=f"kinetic energy of a cell, {d}D", ylabel="probability density",
-                 ylim=(0, 0.5))  # fmt: skip
+        axis.set(xlabel="kinetic energy of a cell  [$kT$]", title=f"{d}D", ylim=(0, 0.55),
+                 ylabel="probability density  [$1/kT$]")  # fmt: skip
+        axis.legend()
     page.grid(["", "density", "N", "cells", "largest distance", "p", "variance / theory"], rows)
     page.check(
         f"Kolmogorov-Smirnov: smallest p of {len(rows)} tests {worst:.3f} (above 0.001)",
@@ -157,9 +161,9 @@ def couette(page: Page, axis: Any, runs: int = 8, height: int = 16, speed: float
         rows.append(Comparison(f"damping rate g, {d}D", *mean_and_error(rates), 0.0, "1/tau"))
         mean, error = mean_and_error(profiles)
         axis.errorbar(result.x["y"], mean, error, fmt="o" if d == 2 else "s",
-                      color=BLUE if d == 2 else RED, ms=3, label=f"{d}D")  # fmt: skip
+                      color=BLUE if d == 2 else RED, ms=3, mfc="white", label=f"{d}D")  # fmt: skip
     axis.plot(result.x["y"], result.expected, "k-", lw=1, label="theory")
-    axis.set(xlabel="y", ylabel="velocity")
+    axis.set(xlabel="y", ylabel="velocity", title="Couette flow")
     axis.legend()
     page.table(rows)
     for c in rows:
@@ -176,7 +180,7 @@ def make() -> int:
     canonical(page, axes[:2])
     couette(page, axes[2])
     page.figure(fig, "Energies of cells of N particles (density 5) with the gamma distribution, "
-                "and Couette flow with the straight line.")  # fmt: skip
+                "and Couette flow with the straight line; errors below the points.")  # fmt: skip
     return page.write()
 
 
