@@ -37,8 +37,8 @@ from mesokit import (
 from mesokit.method.mpcd.engine import pieces
 from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.engine.domains.engine import Ranks
+from mesokit.method.mpcd.observe import domain_size
 from mesokit.method.mpcd.start.fluid import start
-from mesokit.observe import domain_size
 from mesokit.processes.several import wait
 
 domain_size.CLEAR = -math.inf  # noise is to have a size as well
