@@ -46,14 +46,14 @@ def test_stopped_among_solids_and_resumed(rule, tmp_path):
     whole = simulate(1)
     whole.run()
     stopped = simulate(2, checkpoint_every=17)
-    go = stopped._go
+    go = stopped._loop._go
 
     def go_and_stop(legs):
         go(legs)
         if stopped.step >= 31:
-            stopped._stopped_by = signal.SIGTERM
+            stopped._stop.by = signal.SIGTERM
 
-    stopped._go = go_and_stop
+    stopped._loop._go = go_and_stop
     with pytest.raises(KeyboardInterrupt):
         stopped.run()
     resumed = Simulation.resume(tmp_path / "run", threads=3)
