@@ -45,6 +45,11 @@ class Loop:
         self.callbacks, self.stop, self.call = callbacks, stop, call
         self.folder: Folder | None = None
 
+    def tell(self, last: int, progress: Reporter) -> None:
+        """Tell that the run is going on to a step."""
+        particles = sum(group.number for group in self.schedule.case.groups)
+        progress.start(last, particles, "running", self.replicas.step)
+
     def compile(self, progress: Reporter) -> None:
         """Load or compile the kernels; say so if it takes long. A signal ends it at once.
 

@@ -207,8 +207,8 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         """
         from mesokit.report import save_all
 
-        where, results = folder or self.path, self.results.values()
-        return save_all(results, where, self.case, ending=ending, width=width, run=self._name)
+        own = self.results.values(), folder or self.path, self.case
+        return save_all(*own, ending=ending, width=width, run=self._name)
 
     def flow(self, kind: str | None = None, **choices: Any) -> Any:
         """A picture of the flow; `mesokit.report.flow.picture` says what may be chosen.

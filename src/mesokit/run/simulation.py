@@ -116,6 +116,7 @@ class Simulation(Shown):
         self._write_in(directory).begin(self.threads)
 
     def _write_in(self, directory: RunDirectory) -> Folder:
+        """The folder, which the loop writes to as well from now on."""
         self._folder = self._loop.folder = Folder(directory, self.case, self.ranks, self.log)
         return self._folder
 
@@ -223,6 +224,8 @@ class Simulation(Shown):
             result = self[goal.observable]
             if self.step == self.last_step or result.comparisons:
                 goal.found(result)  # or there is no such number, and never will be
+        # Steps asked for are counted from here, those of a case from the end of its warm-up. They
+        # are the way to go, and may end before the case does; of a goal they are the most there is.
         limit = None if steps is None else self.step + require_steps(steps) - warmup
         last = self.last_step
         if limit is not None and goal is None:
@@ -231,7 +234,7 @@ class Simulation(Shown):
                 self.lengthen(limit)
         self.log.tell = progress.tell
         if self.step < last or not looked:
-            self._tell_start(progress, last)
+            self._loop.tell(last, progress)
         try:
             with blaming(self.case), self._stop.listening():
                 if self.step < last:
@@ -249,6 +252,7 @@ class Simulation(Shown):
             raise
         finally:
             progress.finish()
+        # A signal that came after the last step has stopped nothing.
         if self._stop.by is not None and self.step < max(last, self.last_step):
             raise self._stop.error(self.step)
 
@@ -269,15 +273,12 @@ class Simulation(Shown):
             if progress.phase:
                 progress.lengthen(self.last_step)
             else:
-                self._tell_start(progress, self.last_step)
+                self._loop.tell(self.last_step, progress)
             self._loop.compile(progress)
             self._loop.run(self.last_step, progress)
 
-    def _tell_start(self, progress: Reporter, last: int) -> None:
-        particles = sum(group.number for group in self.case.groups)
-        progress.start(last, particles, "running", self.step)
-
     def _end(self) -> None:
+        """Refuse numbers that are none; write results where there is a folder."""
         self.replicas.check()
         if self._folder is not None:
             self.checkpoint()
