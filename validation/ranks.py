@@ -28,7 +28,7 @@ from mesokit import Case, CaseError, MesokitError, Simulation, report
 from mesokit.processes import world
 from mesokit.processes.alone import Alone
 from mesokit.processes.several import Several, wait
-from mesokit.run.on_ranks import require_ranks
+from mesokit.run.given import require_ranks
 
 ROOT = Path(__file__).parents[1]
 PLACES = "examples/*.toml", "examples/*/*.toml", "src/mesokit/method/mpcd/templates/*.toml"

@@ -68,7 +68,7 @@ def test_killed_while_made_longer(half, tmp_path, ends_alike, monkeypatch, crash
     before = {
         "frames": ("mesokit.io.trajectory.TrajectoryWriter.flush", None),
         "data file": ("mesokit.io.run_directory.RunDirectory.write_case", None),
-        "case": ("mesokit.run.record.recorded_case", None),
+        "case": ("mesokit.run.folder.recorded_case", None),
     }[moment][0]
 
     def crash(*given):

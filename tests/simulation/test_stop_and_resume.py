@@ -65,13 +65,13 @@ def test_lost_frames_are_missed(case, tmp_path, crash_at):
     assert "its last checkpoint is at step" in repr(mesokit.open(tmp_path / "run"))
     with pytest.raises(RunError, match=r"has not ended.* of 437.*mesokit resume"):
         _ = mesokit.open(tmp_path / "run").trajectory
-    segments = simulation.writer.segments()
+    segments = simulation._folder.writer.segments()
     lost = segments[1]
     lost.unlink()
     step = int(lost.stem.split("-")[1])
     with pytest.raises(RunError, match=rf"trajectory: .* frames are missing, .* step {step};"):
         Simulation.resume(tmp_path / "run")
-    assert simulation.writer.segments() == [s for s in segments if s != lost]
+    assert simulation._folder.writer.segments() == [s for s in segments if s != lost]
 
 
 def test_a_finished_run_can_be_resumed(case, ends_alike, tmp_path, monkeypatch):
@@ -105,7 +105,7 @@ def test_a_signal_writes_a_checkpoint(case, ends_alike, tmp_path, number, reques
 
     class Press(Reporter):
         def update(self, step):
-            if step > 150 and simulation._stopped_by is None:
+            if step > 150 and simulation._stop.by is None:
                 signal.raise_signal(number)
 
     with pytest.raises(KeyboardInterrupt, match=number.name) as stop:
@@ -167,7 +167,7 @@ def test_a_signal_stops_a_run_without_a_folder(case):
 
     class Press(Reporter):
         def update(self, step):
-            if step > 150 and simulation._stopped_by is None:
+            if step > 150 and simulation._stop.by is None:
                 signal.raise_signal(signal.SIGINT)
 
     with pytest.raises(KeyboardInterrupt, match="SIGINT"):

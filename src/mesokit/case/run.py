@@ -38,6 +38,11 @@ class Run:
         le=1,
     )
 
+    @property
+    def seeds(self) -> range:
+        """Those of the replicas."""
+        return range(self.seed, self.seed + self.replicas)
+
     @field_validator("method")
     @classmethod
     def _one_that_there_is(cls, name: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,39 +25,48 @@ def keep(
     directory: RunDirectory,
     case: Case,
     meta: Mapping[str, Any],
-    arrays: Mapping[str, Any],
+    replicas: Sequence[Any],
     here: bool = True,
 ) -> None:
-    """Write a checkpoint of these arrays; of several ranks all do, and one is `here`.
+    """Write a checkpoint of these replicas; of several ranks all do, and one is `here`.
 
     Raises RunError.
     """
+    arrays: dict[str, Any] = {}
+    for k, one in enumerate(replicas):
+        arrays |= {f"{_prefix(k)}engine/{key}": v for key, v in one.engine.state().items()}
+        for name, accumulator in one.accumulators.items():
+            start = f"{_prefix(k)}observe/{name}/"
+            arrays |= {f"{start}{key}": v for key, v in accumulator.state().items()}
     motion = _motion(directory, case)
-    checkpoint.write(directory.checkpoint_file, dict(arrays), dict(meta), motion, here)
+    checkpoint.write(directory.checkpoint_file, arrays, dict(meta), motion, here)
+
+
+def _prefix(k: int) -> str:
+    """What the names of arrays of replica k begin with: nothing of the first, as of a run alone."""
+    return f"replica-{k}/" if k else ""
 
 
 def take_up(
-    directory: RunDirectory, case: Case, parts: Iterable[tuple[str, Any]], comm: Any = None
+    directory: RunDirectory, case: Case, replicas: Sequence[Any], comm: Any = None
 ) -> dict[str, Any]:
-    """Let engines and accumulators go on from the checkpoint; what else was kept with it.
+    """Let engines and accumulators of replicas go on from the checkpoint; what else was kept.
 
-    `parts` are replicas, each with what the names of its arrays begin with. Of several ranks, those
-    of `comm`, the first one reads.
+    Of several ranks, those of `comm`, the first one reads.
 
     Raises CheckpointError if it is damaged or of another case.
     """
     path = directory.checkpoint_file
-    parts = list(parts)
     if comm is None:
         arrays, meta = _read(directory, case)
     else:
-        engines = tuple(f"{prefix}engine/" for prefix, _ in parts)
+        engines = tuple(f"{_prefix(k)}engine/" for k in range(len(replicas)))
         arrays, meta = _read_by_one(directory, case, engines, comm)
     with fitting(path):
         if type(meta.get("looked")) is not bool:
             raise ValueError("it does not say whether its step was looked at")
-        for prefix, replica in parts:
-            own = checkpoint.part(arrays, prefix)
+        for k, replica in enumerate(replicas):
+            own = checkpoint.part(arrays, _prefix(k))
             replica.engine.restore(checkpoint.part(own, "engine/"))
             restore(replica.accumulators, own)
             if replica.engine.step != meta["step"]:
@@ -108,7 +117,7 @@ def measured(directory: RunDirectory, case: Case) -> tuple[dict[str, Any], int]:
     with fitting(directory.checkpoint_file):
         for k in range(case.run.replicas):
             made = {observable.label: observable.accumulator(case) for observable in case.observe}
-            restore(made, checkpoint.part(arrays, f"replica-{k}/") if k else arrays)
+            restore(made, checkpoint.part(arrays, _prefix(k)))
             for name, accumulator in made.items():
                 if k:
                     pool(name, pooled[name], accumulator)

@@ -1,9 +1,34 @@
-"""How several ranks have shared the work of a run, in words."""
+"""How several ranks have shared the work of a run, in numbers and in words."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from statistics import median
 from typing import Any
+
+WAITING = "wait"  # the stage of a step in which a rank does nothing
+
+
+def shared_work(ranks: Any, engine: Any) -> dict[str, Any]:
+    """How long each stage took, least, median and most over ranks, and how even the work was.
+
+    `imbalance` is the most work of a rank, which is all but waiting, over the mean. Nothing where
+    there is one rank.
+    """
+    if ranks.size == 1:
+        return {}
+    every = ranks.gathered(engine.seconds)
+    work = [sum(s for stage, s in one.items() if stage != WAITING) for one in every]
+    mean = sum(work) / len(work)
+    return {
+        "stages": {stage: _spread([one[stage] for one in every]) for stage in every[0]},
+        "imbalance": max(work) / mean if mean else 1.0,
+        "balance": engine.balance(),
+    }
+
+
+def _spread(seconds: Sequence[float]) -> dict[str, float]:
+    return {"least": min(seconds), "median": median(seconds), "most": max(seconds)}
 
 
 def work_words(provenance: Mapping[str, Any]) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""What a simulation is given: a case or its parts, arrays to start from, threads."""
+"""What a simulation is given: a case or its parts, arrays to start from, threads, ranks."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from mesokit.case.case import Case, method_named
 from mesokit.case.component import nearest, show
 from mesokit.errors import CaseError
 from mesokit.processes.cores import usable_cores, which_cores
+from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
     from mesokit.processes.world import World
@@ -55,6 +56,18 @@ def threads_of(given: Any, here: World) -> int:
     if whole and 1 <= int(given) <= MOST_THREADS:
         return int(given)
     raise CaseError(f"threads = {show(given)}: expected a whole number from 1 to {MOST_THREADS}")
+
+
+def require_ranks(case: Case, ranks: int) -> None:
+    """Raise CaseError for a case that so many ranks cannot run."""
+    if ranks == 1:
+        return
+    if case.run.replicas > 1:
+        raise CaseError(f"run.replicas = {case.run.replicas}: not on {ranks} ranks; expected 1")
+    check = method_of(case).check_ranks
+    if check is None:
+        raise CaseError(f"run.method = {show(case.run.method)}: not on {ranks} ranks; expected one")
+    check(case, ranks)
 
 
 def told(case: Case, callbacks: Callbacks, arrays: Mapping[str, Any]) -> dict[str, str]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import NDArray
 
 from mesokit.case import toml
-from mesokit.case.component import require_known, show
+from mesokit.case.component import show
 from mesokit.case.describe.shown import Shown
 from mesokit.errors import CaseError, RunError
 from mesokit.io import checkpoint, h5md, log_file, tables
@@ -22,6 +22,7 @@ from mesokit.io.run_directory import RunDirectory
 from mesokit.io.shared_work import work_words
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.observe.shared.build_up import result_of
+from mesokit.run import pictures
 from mesokit.seam.method import method_of
 from mesokit.seam.named import keyed
 
@@ -206,9 +207,8 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         """
         from mesokit.report import save_all
 
-        name = self.path.resolve().name
-        where, results = folder or self.path, self.results.values()
-        return save_all(results, where, self.case, ending=ending, width=width, run=name)
+        own = self.results.values(), folder or self.path, self.case
+        return save_all(*own, ending=ending, width=width, run=self._name)
 
     def flow(self, kind: str | None = None, **choices: Any) -> Any:
         """A picture of the flow; `mesokit.report.flow.picture` says what may be chosen.
@@ -216,25 +216,20 @@ class RunFiles(Shown, Mapping[str, "Result"]):
         `files.flow("speed", region=((0, 20), (0, 10)), window=(50, 90))` is a Matplotlib figure;
         `width` is that of the figure, in inches.
         """
-        from mesokit.report.finish.origin import origin_of
-        from mesokit.report.flow import CHOICES, page_width, picture
-
-        with page_width(choices.pop("width", None)):
-            require_known(choices, CHOICES)
-            figure = picture(self.case, self.results, self.trajectory, kind, **choices)
-        figure.origin = origin_of(self.case, self.path.resolve().name)
-        return figure
+        return pictures.flow(self.case, self.results, self.trajectory, self._name, kind, choices)
 
     def animate(self, path: str | Path, kind: str | None = None, **choices: Any) -> Film:
         """Write a film of the flow, MP4 or GIF by its ending; see `mesokit.report.flow.animate`.
 
         `files.animate("film.mp4", "vorticity", window=(50, 90), fps=10)` writes the file.
         """
-        from mesokit.report.flow import CHOICES, animate
+        own = self.results, self.trajectory, self._name
+        return pictures.film(self.case, *own, kind, choices, path)
 
-        require_known(choices, [*CHOICES, "fps", "progress"])
-        name = self.path.resolve().name
-        return animate(self.case, self.results, self.trajectory, path, kind, run=name, **choices)
+    @property
+    def _name(self) -> str:
+        """What pictures call the run: its folder."""
+        return self.path.resolve().name
 
     def universe(self) -> Any:
         """The trajectory as an MDAnalysis `Universe`, with kinds, masses, molecules and bonds.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import dataclasses
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -52,13 +52,6 @@ class Replica:
                 self.accumulators[name].observe(self.engine)
                 self.seconds[name] += perf_counter() - began
 
-    def state(self) -> dict[str, Any]:
-        """Arrays for a checkpoint."""
-        arrays = {f"engine/{key}": value for key, value in self.engine.state().items()}
-        for name, accumulator in self.accumulators.items():
-            arrays |= {f"observe/{name}/{key}": v for key, v in accumulator.state().items()}
-        return arrays
-
 
 class Replicas:
     """All copies of a case: the same steps at the same time, each on one thread or some.
@@ -72,11 +65,17 @@ class Replicas:
         each = max(1, threads // number)
         self.all = [Replica(one, each) for one in copies(case)]
         self.workers = ThreadPoolExecutor(min(number, threads)) if number > 1 else None
+        self.looked = False  # whether the state that the run begins with has been sampled
 
     @property
     def first(self) -> Replica:
         """The one whose frames and log are written."""
         return self.all[0]
+
+    @property
+    def step(self) -> int:
+        """The step at which all of them are."""
+        return self.first.engine.step
 
     def each(self, work: Callable[[Replica], Any]) -> None:
         """Do something with each of them. Raises the first of their errors, with its seed."""
@@ -98,6 +97,7 @@ class Replicas:
     def go(self, legs: Iterable[Leg]) -> None:
         """Steps and samples of all: they wait for one another at the end alone."""
         self.each(lambda one: one.go(legs))
+        self.looked = self.step >= self.first.case.run.warmup
 
     def check(self) -> None:
         """Raise RunError for numbers that are none, and for copies that are the same run twice."""
@@ -116,28 +116,11 @@ class Replicas:
                 pool(name, pooled, other.accumulators[name])
         return result_of(pooled, self.first.case)
 
-    def state(self) -> dict[str, Any]:
-        """Arrays for a checkpoint: of the first as of a run alone, of others with a number."""
-        return {
-            f"{prefix(k)}{name}": array
-            for k, one in enumerate(self.all)
-            for name, array in one.state().items()
-        }
-
-    def parts(self) -> Iterator[tuple[str, Replica]]:
-        """Each with what the names of its arrays begin with."""
-        return ((prefix(k), one) for k, one in enumerate(self.all))
-
-
-def prefix(k: int) -> str:
-    """What the names of the arrays of replica k begin with."""
-    return f"replica-{k}/" if k else ""
-
 
 def copies(case: Case) -> list[Case]:
     """The case once for each replica, with one seed after another."""
     if case.run.replicas == 1:
         return [case]
-    seeds = range(case.run.seed, case.run.seed + case.run.replicas)
     run = dataclasses.replace(case.run, replicas=1)
-    return [dataclasses.replace(case, run=dataclasses.replace(run, seed=seed)) for seed in seeds]
+    runs = [dataclasses.replace(run, seed=seed) for seed in case.run.seeds]
+    return [dataclasses.replace(case, run=run) for run in runs]

@@ -3,37 +3,41 @@
 from __future__ import annotations
 
 import contextlib
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mesokit.case import toml
 from mesokit.case.case import Case
+from mesokit.case.component import show
+from mesokit.case.describe.shown import Shown
 from mesokit.case.outside import blaming
 from mesokit.errors import RunError
-from mesokit.io.measured import take_up
 from mesokit.io.one_writer import alone
-from mesokit.io.run_directory import RunDirectory, provenance
+from mesokit.io.run_directory import RunDirectory
+from mesokit.io.shared_work import shared_work
 from mesokit.processes.world import world
 from mesokit.report.document.progress import reporter_for
 from mesokit.report.progress import Reporter
-from mesokit.run import record
+from mesokit.run import pictures
 from mesokit.run.callbacks import Callback, Callbacks
-from mesokit.run.course.course import Course
-from mesokit.run.course.kept import existing
-from mesokit.run.given import case_and_arrays, threads_of, told
+from mesokit.run.folder import Folder, existing, note_failed
+from mesokit.run.given import case_and_arrays, require_ranks, threads_of, told
 from mesokit.run.log import RunLog
-from mesokit.run.longer import longer
-from mesokit.run.on_ranks import require_ranks
+from mesokit.run.loop import Loop
 from mesokit.run.replicas import Replicas
 from mesokit.run.schedule import Schedule
-from mesokit.run.until import Goal
+from mesokit.run.stop import Stop
+from mesokit.run.until import Goal, limit_of, longer, next_length, require_steps
 from mesokit.seam.method import method_of
 
 if TYPE_CHECKING:
+    from mesokit.report.flow import Film
     from mesokit.seam.result import Result
 
 
-class Simulation(Course):
+class Simulation(Shown):
     """A case in memory, ready to run.
 
     Parameters
@@ -86,19 +90,35 @@ class Simulation(Course):
             self.case = method_of(self.case).initial.prepared(self.case, arrays)
             self._build()
             self.replicas.start(arrays)
-        self.directory: RunDirectory | None = None
         if output is not None:
             self.write_to(output)
             if arrays:
                 self.checkpoint()
 
+    def _build(self) -> None:
+        """What a simulation has beside its case: copies of it that move, what calls somebody while
+        they do, what stops it, its loop, and its folder as soon as there is one."""
+        require_ranks(self.case, self.ranks.size)
+        self.replicas = Replicas(self.case, self.threads)
+        self.engine = self.replicas.first.engine
+        self.accumulators = self.replicas.first.accumulators
+        self.log = RunLog(self.case)
+        self.callbacks.given[:0] = self.log.callbacks()  # first: others may write a checkpoint
+        self._stop = Stop(self.ranks, self.callbacks)
+        kept = self.replicas, self.callbacks, self._stop
+        self._loop = Loop(self.ranks, Schedule(self.case), *kept, lambda: self.callbacks.call(self))
+        self._folder: Folder | None = None
+
     def write_to(self, output: str | Path) -> None:
         """Write to this new folder from now on. Raises RunError if it holds something already."""
         directory = self.ranks.on_root(lambda: RunDirectory.create(output, self.case))
         self.case = Case.from_toml(directory.case_file)  # what `resume` will read
-        self._attach(directory)
-        origin = provenance(self.case, self.threads, self.ranks.size)
-        self.ranks.on_root(lambda: directory.write_provenance(origin))
+        self._write_in(directory).begin(self.threads)
+
+    def _write_in(self, directory: RunDirectory) -> Folder:
+        """The folder, which the loop writes to as well from now on."""
+        self._folder = self._loop.folder = Folder(directory, self.case, self.ranks, self.log)
+        return self._folder
 
     @classmethod
     def resume(
@@ -122,53 +142,25 @@ class Simulation(Course):
         here.require_same(lambda: {"output": str(output)})
         with here.quietly(), contextlib.ExitStack() as held:
             directory = here.on_root(lambda: existing(output, held))
-            return cls._resumed(directory, threads, steps, callbacks)
+            self = cls.__new__(cls)
+            self.ranks, self.case = here, Case.from_toml(directory.case_file)
+            self.threads = threads_of(threads, here)
+            self.callbacks = Callbacks(callbacks)
+            given = {"steps": str(steps)}
+            here.require_same(lambda: told(self.case, self.callbacks, {}) | given)
+            self._build()
+            folder = self._write_in(directory)
+            folder.take_up(self.replicas)
+            if steps is not None:
+                self.lengthen(steps)
+            self.callbacks.resume(self.step)
+            folder.go_on(self.replicas, self.threads)
+            return self
 
-    @classmethod
-    def _resumed(
-        cls,
-        directory: RunDirectory,
-        threads: int | None,
-        steps: int | None,
-        callbacks: Sequence[Callback],
-    ) -> Simulation:
-        self = cls.__new__(cls)
-        self.ranks = world()
-        self.case = Case.from_toml(directory.case_file)
-        self.threads = threads_of(threads, self.ranks)
-        self.callbacks = Callbacks(callbacks)
-        given = {"steps": str(steps)}
-        self.ranks.require_same(lambda: told(self.case, self.callbacks, {}) | given)
-        self._build()
-        self._attach(directory)
-        if self.ranks.on_root(directory.checkpoint_file.exists):
-            meta = take_up(directory, self.case, self.replicas.parts(), self.ranks.comm)
-            self._looked = bool(meta["looked"])
-        else:
-            self.replicas.start({})
-        self.ranks.on_root(self._resume_frames)
-        if steps is not None:
-            self.lengthen(steps)
-        if self.step < self.last_step:  # the case may have been made longer by hand
-            self.ranks.on_root(self._take_back)
-        self.callbacks.resume(self.step)
-        self.ranks.on_root(lambda: self.log.resume(self.step))
-        begun = self._looked or self.step > 0
-        own = self.threads, self.ranks.size, begun
-        self.ranks.on_root(lambda: record.note_resumed(directory, self.case, *own))
-        return self
-
-    def _build(self) -> None:
-        require_ranks(self.case, self.ranks.size)
-        self.replicas = Replicas(self.case, self.threads)
-        self.engine = self.replicas.first.engine
-        self.accumulators = self.replicas.first.accumulators
-        self.log = RunLog(self.case)
-        self.callbacks.given[:0] = self.log.callbacks()  # first: others may write a checkpoint
-        self.writer = None
-        self.schedule = Schedule(self.case)
-        self._looked = self._compiling = False
-        self._asked_by = self._stopped_by = None
+    @property
+    def directory(self) -> RunDirectory | None:
+        """The folder that is written to, None if there is none."""
+        return None if self._folder is None else self._folder.directory
 
     @property
     def step(self) -> int:
@@ -221,7 +213,77 @@ class Simulation(Course):
         with self.ranks.quietly(), contextlib.ExitStack() as held:
             self.ranks.on_root(lambda: held.enter_context(alone(self.directory)))
             silent = Reporter(quiet=True)
-            self._carry_on(steps, until, reporter_for(progress) if self.ranks.root else silent)
+            self._run(steps, until, reporter_for(progress) if self.ranks.root else silent)
+
+    def _run(self, steps: int | None, until: str | None, progress: Reporter) -> None:
+        """Run to the end: there are then results, an error on record, or a checkpoint and a
+        KeyboardInterrupt."""
+        looked, warmup = self.replicas.looked, self.case.run.warmup
+        goal = None if until is None else Goal.parse(until, self.case)
+        if goal is not None and looked:
+            result = self[goal.observable]
+            if self.step == self.last_step or result.comparisons:
+                goal.found(result)  # or there is no such number, and never will be
+        # Steps asked for are counted from here, those of a case from the end of its warm-up. They
+        # are the way to go, and may end before the case does; of a goal they are the most there is.
+        limit = None if steps is None else self.step + require_steps(steps) - warmup
+        last = self.last_step
+        if limit is not None and goal is None:
+            last = limit + warmup
+            if last > self.last_step:
+                self.lengthen(limit)
+        self.log.tell = progress.tell
+        if self.step < last or not looked:
+            self._loop.tell(last, progress)
+        try:
+            with blaming(self.case), self._stop.listening():
+                if self.step < last:
+                    self._loop.compile(progress)
+                if self.step < last or not looked:
+                    self._loop.run(last, progress)
+                if goal is not None:
+                    self._reach(goal, limit_of(self.case, limit), progress)
+                if self.step == self.last_step:
+                    self._end()
+        except Exception as error:
+            reason, directory = str(error) or repr(error), self.directory
+            if directory is not None:
+                self.ranks.failed(lambda who: note_failed(directory, f"{who}{reason}"))
+            raise
+        finally:
+            progress.finish()
+        # A signal that came after the last step has stopped nothing.
+        if self._stop.by is not None and self.step < max(last, self.last_step):
+            raise self._stop.error(self.step)
+
+    def _reach(self, goal: Goal, limit: int, progress: Reporter) -> None:
+        """Go on until the goal is reached, or so many steps after the warm-up are done."""
+        every = next(o.every for o in self.case.observe if o.label == goal.observable)
+        while self.step == self.last_step:
+            self._stop.agree()
+            if self._stop.due:
+                return
+            excess, done = goal.excess(self[goal.observable]), self.case.run.steps
+            said = f"{goal.said(self[goal.observable])} after {done} steps"
+            if excess <= 1:
+                return progress.tell(said)
+            if done >= limit:
+                return warnings.warn(f"{said}: more is needed", stacklevel=4)
+            self.lengthen(next_length(excess, done, every, limit))
+            if progress.phase:
+                progress.lengthen(self.last_step)
+            else:
+                self._loop.tell(self.last_step, progress)
+            self._loop.compile(progress)
+            self._loop.run(self.last_step, progress)
+
+    def _end(self) -> None:
+        """Refuse numbers that are none; write results where there is a folder."""
+        self.replicas.check()
+        if self._folder is not None:
+            self.checkpoint()
+            work = shared_work(self.ranks, self.engine)
+            self._folder.end(self.results, {"timings": self.timings, "shared_work": work})
 
     def reached(self, until: str) -> bool:
         """Whether a number is known as well now as `run(until=...)` asks. Raises CaseError."""
@@ -236,14 +298,14 @@ class Simulation(Course):
         if steps == self.case.run.steps:
             return
         self.case = longer(self.case, steps, self.step)
-        self.schedule = Schedule(self.case)
-        if self.directory is not None:
-            self.ranks.on_root(self._write_longer)
+        self._loop.schedule = Schedule(self.case)
+        if self._folder is not None:
+            self._folder.lengthen(self.case, self.step)
 
     @property
     def last_step(self) -> int:
         """The step at which the run ends, the warm-up included."""
-        return self.schedule.last_step
+        return self._loop.schedule.last_step
 
     @property
     def timings(self) -> dict[str, float]:
@@ -255,6 +317,42 @@ class Simulation(Course):
 
     def checkpoint(self) -> None:
         """Write a checkpoint now. Raises RunError if there is no folder or it cannot be written."""
-        if self.directory is None:
+        if self._folder is None:
             raise RunError("no checkpoint without an output folder")
-        self.ranks.by_root(self._keep)
+        self._folder.checkpoint(self.replicas)
+
+    # --- to look at -----------------------------------------------------------------------------
+
+    def __repr__(self) -> str:
+        where = f", {self.directory.path}" if self.directory is not None else ""
+        title = f" {show(self.case.title)}" if self.case.title else ""
+        return f"<Simulation{title}: step {self.step} of {self.last_step}{where}>"
+
+    def _card(self) -> dict[str, Any]:
+        rows = [(key, text, "") for key, text in toml.given(self.case, method_of(self.case).keys)]
+        return {
+            "title": self.case.title or "simulation",
+            "words": f"step {self.step} of {self.last_step}",
+            "rows": rows,
+            "results": self.results.values() if self.step > self.case.run.warmup else (),
+        }
+
+    def flow(self, kind: str | None = None, **choices: Any) -> Any:
+        """A picture of the flow so far; `mesokit.report.flow.picture` says what may be chosen.
+
+        `simulation.flow("particles")` works before the first step, too: it shows the solids, the
+        molecules and where the particles are.
+        """
+        from mesokit.report.flow import State
+
+        now = State(self.case, self.engine)
+        return pictures.flow(self.case, self.results, now, self._name, kind, choices)
+
+    @property
+    def _name(self) -> str:
+        """What pictures call it: the folder, if there is one."""
+        return "" if self.directory is None else self.directory.path.resolve().name
+
+    def animate(self, path: str | Path, kind: str | None = None, **choices: Any) -> Film:
+        """Write a film of the flow so far (MP4 or GIF by its ending)."""
+        return pictures.film(self.case, self.results, None, self._name, kind, choices, path)

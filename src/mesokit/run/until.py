@@ -1,8 +1,10 @@
-"""Runs that go on until a number is known well enough."""
+"""How long a run goes on: for more steps than its case said, or until a number is known well."""
 
 from __future__ import annotations
 
+import dataclasses
 import math
+import numbers
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from mesokit.case.component import nearest, one_of, show
@@ -90,3 +92,22 @@ def next_length(excess: float, done: int, every: int, limit: int) -> int:
 def limit_of(case: Case, most: Any) -> int:
     """The largest number of steps after the warm-up: as given, or a multiple of the case's."""
     return int(most) if most is not None else MOST * max(case.run.steps, 1)
+
+
+def longer(case: Case, steps: int, done: int) -> Case:
+    """The case with so many steps after its warm-up.
+
+    Raises CaseError if the run has done more, the warm-up included in `done`.
+    """
+    passed = max(done - case.run.warmup, 0)
+    if require_steps(steps) < passed:
+        raise CaseError(f"run.steps = {steps}: the run has done {passed} already")
+    return dataclasses.replace(case, run=dataclasses.replace(case.run, steps=int(steps)))
+
+
+def require_steps(steps: Any) -> int:
+    """The number of steps. Raises CaseError for anything but a whole number from 0."""
+    whole = isinstance(steps, numbers.Integral) and not isinstance(steps, bool)
+    if not whole or steps < 0:
+        raise CaseError(f"steps = {show(steps)}: expected a whole number of at least 0")
+    return int(steps)

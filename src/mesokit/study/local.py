@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from mesokit.io.run_directory import RunDirectory
-from mesokit.run.record import note_failed
+from mesokit.run.folder import note_failed
 from mesokit.study.work import carry
 
 LOST = "its process ended"  # killed from outside, or for want of memory

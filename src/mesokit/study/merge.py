@@ -151,8 +151,7 @@ def _require_alike(files: Sequence[RunFiles]) -> None:
                 f"{each.path}: another case than {first.path}: {key} = {show(there.get(key))}, "
                 f"not {show(here.get(key))}"
             )
-        run = each.case.run
-        for seed in range(run.seed, run.seed + run.replicas):
+        for seed in each.case.run.seeds:
             if seed in seeds:
                 raise RunError(
                     f"{each.path}: run.seed = {seed}, as in {seeds[seed]}: the same run would "

@@ -20,8 +20,8 @@ from mesokit.case.component import show
 from mesokit.errors import CaseError, CheckpointError, RunError
 from mesokit.io import checkpoint
 from mesokit.io.run_directory import RunDirectory
-from mesokit.run.longer import longer
 from mesokit.run.opened import RunFiles
+from mesokit.run.until import longer
 from mesokit.seam.method import method_of
 from mesokit.seam.named import keyed
 from mesokit.seam.result import Comparison, Result

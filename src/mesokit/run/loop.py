@@ -1,0 +1,157 @@
+"""The loop of a run: from one meeting to the next, and what is done there."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Sequence
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+from mesokit.case.kind import note_run
+from mesokit.processes.order import Coming, Order
+from mesokit.processes.signals import Stopped
+from mesokit.report.progress import Reporter
+from mesokit.run.compiling import swallowed, telling
+from mesokit.run.schedule import Leg, Schedule
+
+if TYPE_CHECKING:
+    from mesokit.case.run import Run
+    from mesokit.processes.world import World
+    from mesokit.run.callbacks import Callbacks
+    from mesokit.run.folder import Folder
+    from mesokit.run.replicas import Replicas
+    from mesokit.run.stop import Stop
+
+CALL_SECONDS = 0.2  # of compiled code at a time, so that Ctrl-C and the progress bar are prompt
+
+
+class Loop:
+    """Steps, samples, frames, callbacks and checkpoints, each when it is due.
+
+    `schedule` and `folder` (None where nothing is written) may be replaced while it goes on, by a
+    callback; `call` calls the callbacks that are due.
+    """
+
+    def __init__(
+        self,
+        ranks: World,
+        schedule: Schedule,
+        replicas: Replicas,
+        callbacks: Callbacks,
+        stop: Stop,
+        call: Callable[[], str | None],
+    ) -> None:
+        self.ranks, self.schedule, self.replicas = ranks, schedule, replicas
+        self.callbacks, self.stop, self.call = callbacks, stop, call
+        self.folder: Folder | None = None
+
+    def tell(self, last: int, progress: Reporter) -> None:
+        """Tell that the run is going on to a step."""
+        particles = sum(group.number for group in self.schedule.case.groups)
+        progress.start(last, particles, "running", self.replicas.step)
+
+    def compile(self, progress: Reporter) -> None:
+        """Load or compile the kernels; say so if it takes long. A signal ends it at once.
+
+        Rank 0 does so first, and the others find what it has kept.
+        """
+        engine = self.replicas.first.engine
+        with (
+            self.stop.at_once(engine.step),
+            telling(progress.compiling),
+            swallowed(Stopped),
+        ):
+            self.ranks.on_root(lambda: engine.advance(0))
+            engine.advance(0)
+        note_run(self.schedule.case)
+
+    # Between two meetings all replicas and ranks do their steps and wait for nobody. A meeting is
+    # where they have something to do together: a frame, a callback, a checkpoint; or where it is
+    # time to hear signals and to move the progress bar. Rank 0 decides where the next one is, by
+    # its clock and by the signals that it knows of. It does so before the steps to this one, and
+    # not after them, so that the other ranks have been told by the time they arrive here. A signal
+    # may then come one meeting late, but no step waits for a message.
+    def run(self, last: int, progress: Reporter) -> None:
+        """Go on to a step, unless something stops the run before; keep what is not its end."""
+        if self.replicas.step == self.schedule.warmup and not self.replicas.looked:
+            self._go([self.schedule.leg(0, self.schedule.warmup)])
+        self.callbacks.stopped = None
+        self._call_back()
+        pace = Pace(self.schedule.case.run)
+        coming = self._ahead(pace, self.replicas.step, last)
+        while (step := self.replicas.step) < last and not self.stop.due:
+            order, began = coming(), perf_counter()
+            if order.stop:
+                self.stop.by = signal.Signals(order.stop)
+                break
+            coming = self._ahead(pace, order.target, last)
+            self._go(self.schedule.legs(step, order.target))
+            pace.went(self.replicas.step - step, perf_counter() - began)
+            self._call_back()
+            self._keep_if_due(order, pace)
+            progress.update(self.replicas.step)
+        else:
+            coming()  # nobody asks for it, but the other ranks wait for what is told
+        if self.folder is not None and self.replicas.step < self.schedule.last_step:
+            self.folder.checkpoint(self.replicas)
+
+    def _ahead(self, pace: Pace, step: int, last: int) -> Coming:
+        """What is to be done from a step on."""
+
+        def decide(stop: int) -> Order:
+            stops = self.schedule.next_meeting(step), *self.callbacks.next_stops(step)
+            return Order(min(step + pace.chunk, last, *stops), pace.save(), stop)
+
+        return self.ranks.ahead(decide, self.stop.number)
+
+    def _go(self, legs: Sequence[Leg]) -> None:
+        """Do steps and take samples, and the frame that is due then."""
+        self.replicas.go(legs)
+        if self.folder is not None and self.schedule.frame_due(self.replicas.step):
+            self.folder.record(self.replicas.first.engine)
+
+    def _call_back(self) -> None:
+        """Let callbacks look, if one is due; one that stops the run on any rank stops all."""
+        if self.callbacks.due(self.replicas.step):
+            reasons = self.ranks.answers(self.call)
+            self.callbacks.stopped = next((one for one in reasons if one is not None), None)
+
+    def _keep_if_due(self, order: Order, pace: Pace) -> None:
+        """Write the checkpoint that is due by the clock or by steps; a stop writes its own."""
+        if self.folder is None or self.stop.due:
+            return
+        if order.save or self.schedule.checkpoint_due(self.replicas.step):
+            self.folder.checkpoint(self.replicas)
+            pace.kept()
+
+
+class Pace:
+    """The steps of the next call of compiled code, and the time since the last checkpoint."""
+
+    def __init__(self, run: Run) -> None:
+        self.chunk, self.seconds = 1, 60.0 * run.checkpoint_minutes
+        self.kept()
+
+    def went(self, steps: int, seconds: float) -> None:
+        """So many steps took so many seconds."""
+        self.chunk = next_chunk(steps, seconds)
+
+    def kept(self) -> None:
+        """A checkpoint is written now, or will be after the next steps."""
+        self.last = perf_counter()
+
+    def save(self) -> bool:
+        """Whether it is time for a checkpoint; who asks will write one."""
+        due = perf_counter() - self.last > self.seconds
+        if due:
+            self.kept()
+        return due
+
+
+def next_chunk(steps: int, seconds: float) -> int:
+    """So many steps that the next call takes CALL_SECONDS, growing at most fourfold at a time.
+
+    >>> next_chunk(10, 0.1), next_chunk(10, 0.001), next_chunk(10, 9.0)
+    (20, 40, 1)
+    """
+    return max(1, min(4 * steps, int(steps * CALL_SECONDS / max(seconds, 1e-9))))

@@ -1,0 +1,50 @@
+"""Pictures and films of a run, whether it is in memory or read from its files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mesokit.case.component import require_known
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+    from mesokit.report.flow import Film
+    from mesokit.seam.result import Result
+
+
+def flow(
+    case: Case,
+    results: Mapping[str, Result],
+    frames: Any,
+    run: str,
+    kind: str | None,
+    choices: dict[str, Any],
+) -> Any:
+    """A picture of a run of this name; `mesokit.report.flow.picture` says what the rest is, and
+    `width` among the choices is that of the figure."""
+    from mesokit.report.finish.origin import origin_of
+    from mesokit.report.flow import CHOICES, page_width, picture
+
+    with page_width(choices.pop("width", None)):
+        require_known(choices, CHOICES)
+        figure = picture(case, results, frames, kind, **choices)
+    figure.origin = origin_of(case, run)
+    return figure
+
+
+def film(
+    case: Case,
+    results: Mapping[str, Result],
+    frames: Any,
+    run: str,
+    kind: str | None,
+    choices: dict[str, Any],
+    path: str | Path,
+) -> Film:
+    """Write a film of it; `mesokit.report.flow.animate` says what the rest is."""
+    from mesokit.report.flow import CHOICES, animate
+
+    require_known(choices, [*CHOICES, "fps", "progress"])
+    return animate(case, results, frames, path, kind, run=run, **choices)
