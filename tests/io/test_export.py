@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import mesokit
-from mesokit import WCA, Harmonic, MaxwellBoltzmann, Plates, Uniform
+from mesokit import WCA, Harmonic, MaxwellBoltzmann, Plates, Uniform, every
 from mesokit.case.box import Box
 from mesokit.case.case import Case
 from mesokit.case.run import Run
@@ -39,17 +39,20 @@ def no_figures(monkeypatch):
     monkeypatch.setattr("mesokit.report.save_all", lambda *given, **more: [])
 
 
-class Watched(Simulation):
+def watched(case, folder):
     """A run that remembers what it was like at each frame."""
+    seen = {}
 
-    def _go(self, legs):
-        super()._go(legs)
-        trajectory = self.case.trajectory
-        if trajectory and self.step % trajectory.every == 0:
-            self.__dict__.setdefault("seen", {})[self.step] = (
-                self.engine.positions(), self.engine.velocities(), self.engine.images(),
-                self.engine.bond_vectors(),
-            )  # fmt: skip
+    def look(simulation):
+        fluid = simulation.engine
+        seen[simulation.step] = (
+            fluid.positions(), fluid.velocities(), fluid.images(), fluid.bond_vectors(),
+        )  # fmt: skip
+
+    callbacks = [every(case.trajectory.every, look)] if case.trajectory else []
+    simulation = Simulation(case, output=folder, threads=1, callbacks=callbacks)
+    simulation.seen = seen
+    return simulation
 
 
 def run_of(folder, size=(6, 6, 6), steps=40, walls=(), fields=ALL, subset=None, **parts):
@@ -63,7 +66,7 @@ def run_of(folder, size=(6, 6, 6), steps=40, walls=(), fields=ALL, subset=None, 
         walls=walls,
         trajectory=Trajectory(every=10, fields=fields, subset=subset),
     )
-    simulation = Watched(case, output=folder, threads=1)
+    simulation = watched(case, folder)
     simulation.run()
     return simulation
 

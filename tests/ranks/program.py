@@ -48,8 +48,7 @@ def engine_of(case, comm):
 def kept(engine, folder, case, root):
     """A checkpoint of an engine."""
     replica = SimpleNamespace(engine=engine, accumulators={})
-    arrays = {f"engine/{name}": v for name, v in engine.state().items()}
-    measured.keep(folder, case, {"step": engine.step, "looked": False}, arrays, root)
+    measured.keep(folder, case, {"step": engine.step, "looked": False}, [replica], root)
     return replica
 
 
@@ -78,7 +77,7 @@ def go_on(case, folder, comm):
     engine = engine_of(case, comm)
     replica = SimpleNamespace(engine=engine, accumulators={})
     directory = RunDirectory(folder)
-    meta = measured.take_up(directory, case, [("", replica)], comm)
+    meta = measured.take_up(directory, case, [replica], comm)
     assert meta["step"] == engine.step == 6
     engine.advance(5)
     kept(engine, directory, case, comm is None or comm.rank == 0)
@@ -92,7 +91,7 @@ def weigh(folder, comm):
     start(engine)
     directory = RunDirectory(folder)
     replica = kept(engine, directory, LARGE, root)
-    measured.take_up(directory, LARGE, [("", replica)], comm)
+    measured.take_up(directory, LARGE, [replica], comm)
     most = comm.allreduce(tracemalloc.get_traced_memory()[1], MPI.MAX)
     tracemalloc.stop()
     if root:
