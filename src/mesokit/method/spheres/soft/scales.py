@@ -17,6 +17,7 @@ IN_CONTACT, WARNED, REFUSED = 50, 20, 10  # steps in a contact: usual, and fewes
 OF_FLIGHT = 0.005  # of the time in which a sphere of a fluid flies its diameter
 FASTEST = 3.0  # thermal velocities of two that collide, hardly more
 EXTREME = 100.0  # decades of speeds on both sides of 1
+ROUNDING = 1e-9  # of a step: a contact of just ten steps is followed
 
 
 def lightest(case: Case) -> float:
@@ -100,7 +101,8 @@ def fastest_followed(case: Case) -> float:
     law, mass, step = case.spheres.pair, 0.5 * lightest(case), timestep_of(case)
     if not isinstance(law, ContactLaw):
         return math.inf
-    return _least_speed(lambda speed: law.contact_time_of(mass, speed) < REFUSED * step)
+    least = REFUSED * step * (1 - ROUNDING)
+    return _least_speed(lambda speed: law.contact_time_of(mass, speed) < least)
 
 
 def speed_of_overlap(case: Case, overlap: float) -> float:
