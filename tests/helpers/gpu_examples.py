@@ -139,7 +139,7 @@ ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     fields.field_at: lambda p, d: (1.0,),
     varying.factor: lambda p, d: (1.0,),
     potentials.central: lambda p, d: (1.0,),
-    potentials.torn: lambda p, d: (1.0,),
+    potentials.breaks: lambda p, d: (1.0,),
     potentials.angular: lambda p, d: (1.0,),
     solids.across: lambda p, d: (),
     solids.exposed: lambda p, d: (),

@@ -119,14 +119,14 @@ from mesokit.scalar.system import TICK
 from mesokit.loops.threads import Threads, meet
 
 @numba.njit(nogil=True)
-def work(team, most, sums):
-    lap(team, START)
+def work(worker, most, sums):
+    lap(worker, START)
     for turn in range(100):
-        if team.thread == turn % team.threads:  # the others wait for it
+        if worker.thread == turn % worker.threads:  # the others wait for it
             for k in range(most):
                 sums[0] += sums[0] % 7 + 1
-        meet(team)
-    lap(team, CELLS)
+        barrier(worker)
+    lap(worker, CELLS)
 
 threads, sums = Threads(2), np.zeros(1, np.int64)
 threads.run(work, 0, sums)

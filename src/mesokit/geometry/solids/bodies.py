@@ -118,19 +118,19 @@ def between_plates(solid, r):
 
 
 @seldom
-def sure_to_miss(solid, r, way):
+def sure_to_miss(solid, r, displacement):
     """Whether the way from r surely leads into no solid, plates not counted.
 
     Both ends are above the plane of the cube that holds r, or the way is shorter than is clear.
     """
-    cube, path = np.int64(cube_of(solid, r)), dot(way, way)
+    cube, path = np.int64(cube_of(solid, r)), dot(displacement, displacement)
     plane, d = whole(solid.plane_of, cube), len(r)
     if plane < 0:
         return path < short(solid.clear, cube)
     place = solid.planes + 8 * (d + 1) * plane
     n = vector(place, 0, r)
     start = dot(n, in_box(solid, r)) - real(place, d)
-    return min(start, start + dot(n, way)) > 0.0 and path < solid.reach * solid.reach
+    return min(start, start + dot(n, displacement)) > 0.0 and path < solid.reach * solid.reach
 
 
 @scalar

@@ -74,15 +74,15 @@ def beyond(solid, clear, r, ahead):
 
 
 @leaps.register(Bodies)
-def _(solid, way):
-    return dot(way, way) >= solid.stride * solid.stride
+def _(solid, displacement):
+    return dot(displacement, displacement) >= solid.stride * solid.stride
 
 
 @free.register(Bodies)
 def _(solid, r, v, a, time):
-    way = added_scaled(scaled(time, v), 0.5 * time * time, a)
-    past = between_plates(solid, r) & between_plates(solid, added(r, way))
-    return past and sure_to_miss(solid, r, way)
+    displacement = added_scaled(scaled(time, v), 0.5 * time * time, a)
+    past = between_plates(solid, r) & between_plates(solid, added(r, displacement))
+    return past and sure_to_miss(solid, r, displacement)
 
 
 @facing.register(Bodies)

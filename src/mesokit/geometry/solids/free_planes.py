@@ -24,13 +24,13 @@ from mesokit.scalar.vector import added_scaled, dot, outer, row, scaled
 
 
 @kernel
-def planes_above(solid, like, away, columns, points, planes):
+def planes_above(solid, pattern, away, columns, points, planes):
     """Normal and height n r of a plane above which no solid is within `away` of each point."""
-    d = len(like)
+    d = len(pattern)
     for i in range(len(points)):
-        r = row(points, i, like)
+        r = row(points, i, pattern)
         c, part, term = nearest(solid.tables, r)
-        n = with_item(scaled(0.0, like), 0, 1.0)
+        n = with_item(scaled(0.0, pattern), 0, 1.0)
         top = away
         if term != NOBODY:
             n = part_normal(solid.tables, part, r)

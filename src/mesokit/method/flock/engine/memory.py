@@ -47,7 +47,7 @@ class Physics(NamedTuple):
 
     axes: Axes
     reach: np.float32
-    way: float
+    step_length: float
     follows: bool
     noise: Any
     cohesion: tuple[Any, ...]

@@ -151,10 +151,10 @@ def shear(case: Case) -> Iterator[str]:
             yield f"{key}: not with wall[#{i + 1}].shape = {shape}; only with one slit"
         elif wall.axis in ("x", "y"):
             yield f"{key}: not with walls across {wall.axis}; move a plate to shear a slit"
-    push = rule.uniform(case.box.dimension)
-    if push is None:
+    acceleration = rule.uniform(case.box.dimension)
+    if acceleration is None:
         yield f"{key}: not with fluid.force.rule = {show(name_of(rule))}"
-    elif push[1] != 0:
+    elif acceleration[1] != 0:
         yield f"{key}: not with fluid.force.acceleration along y, the gradient of the shear"
 
 

@@ -73,10 +73,10 @@ class AT3(NamedTuple):
 
 
 @scalar
-def thermal_velocity(counter, who, kT, m, like):
-    """A velocity from the Maxwell distribution, with as many components as `like`."""
+def thermal_velocity(counter, who, kT, m, pattern):
+    """A velocity from the Maxwell distribution, with as many components as `pattern`."""
     a, b, c, d = words(counter, PARTICLE_VELOCITY, who[0], who[1])
-    x = normals(like, a, b, c, d)
+    x = normals(pattern, a, b, c, d)
     width = math.sqrt(kT / m)
     return scaled(width, x)
 

@@ -121,7 +121,7 @@ def drift_of(case: Case, group: Group, kind: int | str = 1) -> Drift | None:
 
 def flow_axis(case: Case) -> int:
     """Number of the axis along which a force drives the fluid, x unless there is one."""
-    axis = setting.push_axis(case)
+    axis = setting.flow_axis(case)
     return 0 if axis is None else axis
 
 

@@ -73,7 +73,7 @@ class Forces(Observable):
             raise CaseError("area: only in 3D; leave it out")
         if self.flow is not None:
             case.box.index(self.flow, "flow")
-        elif setting.push_axis(case) is None:
+        elif setting.flow_axis(case) is None:
             raise CaseError("flow: missing; no force along one axis says which is that of the drag")
 
     def accumulator(self, case: Case) -> ForcesAccumulator:
@@ -310,7 +310,7 @@ class ForcesAccumulator(BlockAccumulator):
     def along(self) -> int:
         """Number of the axis of the drag."""
         given = self.observable.flow
-        flow = setting.push_axis(self.case) if given is None else AXES.index(given)
+        flow = setting.flow_axis(self.case) if given is None else AXES.index(given)
         assert flow is not None  # as `check` has seen
         return flow
 

@@ -40,12 +40,12 @@ def out_of_beads(numbers: Numbers, who: NDArray[np.int64], places: Floats, beads
     left, kT = np.arange(len(places)), numbers.case.fluid.kT
     for _ in range(TRIES):
         energy = _energy(numbers, places[left], beads, solutes.solvent_pair)
-        pushed = random.units(1)[:, 0] >= np.exp(-np.clip(energy / kT, 0.0, None))
+        repelled = random.units(1)[:, 0] >= np.exp(-np.clip(energy / kT, 0.0, None))
         if numbers.solids is not None and numbers.slit is None:
-            pushed |= numbers.solids.distance(places[left]) < MARGIN
-        if not pushed.any():
+            repelled |= numbers.solids.distance(places[left]) < MARGIN
+        if not repelled.any():
             return places
-        left, random = left[pushed], random.of(pushed)
+        left, random = left[repelled], random.of(repelled)
         places[left] = random.units(numbers.dimension) * numbers.box
     raise RunError("solutes.solvent_pair: the beads leave no room to the fluid; expected fewer")
 

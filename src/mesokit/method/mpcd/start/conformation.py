@@ -107,8 +107,8 @@ def turned(molecule: Molecule, before: Floats, bond: Floats, kT: float, random: 
     across = _directions(d, random)
     across -= (across * along).sum(axis=1)[:, None] * along
     across /= np.linalg.norm(across, axis=1)[:, None]
-    way = np.cos(angle)[:, None] * along + np.sin(angle)[:, None] * across
-    return np.linalg.norm(bond, axis=1)[:, None] * way
+    direction = np.cos(angle)[:, None] * along + np.sin(angle)[:, None] * across
+    return np.linalg.norm(bond, axis=1)[:, None] * direction
 
 
 @functools.lru_cache(64, typed=True)  # potentials of other kinds may have the same numbers

@@ -244,10 +244,10 @@ class Placed:
         near = [i for cell in self._around(place) for i in self.inside.get(cell, ())]
         if not near:
             return True
-        way = self.places[near] - place
-        way -= np.rint(way * self.inverse) * self.box
+        separation = self.places[near] - place
+        separation -= np.rint(separation * self.inverse) * self.box
         limits = self.squares[self.kinds[self.number], self.kinds[near]]
-        return bool(((way**2).sum(axis=1) > limits).all())
+        return bool(((separation**2).sum(axis=1) > limits).all())
 
     def _cell(self, place: Floats) -> tuple[int, ...]:
         return tuple((np.floor(place / self.box * self.cells).astype(int) % self.cells).tolist())

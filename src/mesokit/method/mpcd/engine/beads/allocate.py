@@ -54,7 +54,7 @@ def beads_of(given: Solutes, memory: Any) -> Beads:
         tensor=np.zeros((3, -(-beads // GROUP), 2 * d * d), np.int64),
         embedded=(),
         external=external_of(given, d),
-        roster=() if memory.domain is None else memory.domain.roster(given, len(terms)),
+        halo=() if memory.domain is None else memory.domain.halo(given, len(terms)),
     )
 
 

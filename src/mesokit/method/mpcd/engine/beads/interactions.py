@@ -8,11 +8,11 @@ the virial none, as it goes to memory.
 from typing import Any, NamedTuple
 
 from mesokit.geometry.protocol import facing
-from mesokit.method.mpcd.engine.beads.torn import note_torn
+from mesokit.method.mpcd.engine.beads.breaks import note_broken
 from mesokit.method.mpcd.engine.cpu.bounce import take
 from mesokit.method.mpcd.engine.cpu.stress import add_product
 from mesokit.potential.angle import bend
-from mesokit.potential.protocol import central, torn
+from mesokit.potential.protocol import breaks, central
 from mesokit.scalar.jit import generic
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
@@ -21,7 +21,7 @@ class Force(NamedTuple):
     """The force on a bead.
 
     It is kept for a `time`, in which walls take the opposite momentum: `impulse`, in units of
-    1 / scale. Torn bonds go to `faults` with the step and their beads, the first of which is 1.
+    1 / scale. Broken bonds go to `faults` with the step and their beads, the first of which is 1.
     """
 
     time: float
@@ -64,10 +64,10 @@ def of_wall(asked, total, potential, near_wall, r):
 @of_two.register(Force)
 def _(asked, total, potential, separation, i, j):
     square = dot(separation, separation)
-    _, push = central(potential, square)
-    if torn(potential, square):
-        note_torn(asked.faults, asked.step, min(i, j) + 1, max(i, j) + 1)
-    return added_scaled(total, push if j != i else 0.0, separation)
+    _, force_over_r = central(potential, square)
+    if breaks(potential, square):
+        note_broken(asked.faults, asked.step, min(i, j) + 1, max(i, j) + 1)
+    return added_scaled(total, force_over_r if j != i else 0.0, separation)
 
 
 @of_three.register(Force)
@@ -84,8 +84,8 @@ def _(asked, total, potential, near_wall, r):
     distance, out, surface, lever = facing(solid, reach, r)
     if distance >= reach:
         return total
-    _, push = central(potential, distance * distance)
-    force = scaled(push * distance, out)
+    _, force_over_r = central(potential, distance * distance)
+    force = scaled(force_over_r * distance, out)
     take(asked.impulse, surface, lever, scaled(-asked.time, force), asked.scale)
     return added(total, force)
 
@@ -113,8 +113,8 @@ def _(asked, total, potential, near_wall, r):
 @of_two.register(Virial)
 def _(asked, total, potential, separation, i, j):
     if j > i:
-        _, push = central(potential, dot(separation, separation))
-        add_product(asked.tensor, asked.scale, asked.time * push, separation, separation)
+        _, force_over_r = central(potential, dot(separation, separation))
+        add_product(asked.tensor, asked.scale, asked.time * force_over_r, separation, separation)
     return total
 
 

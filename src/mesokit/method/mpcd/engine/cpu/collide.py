@@ -137,11 +137,11 @@ def cell_at(which, i):
 
 
 @scalar
-def settle_batch(team, counter, physics, fluid, which, count):
+def settle_batch(worker, counter, physics, fluid, which, count):
     """What the cells of a batch need to collide: rows of coefficients from rows of sums."""
     cells, scratch = fluid.cells, fluid.scratch
-    rows, totals = scratch.coefficients[team.thread], scratch.terms[team.thread]
-    doubtful, none = scratch.marks[team.thread], nothing_found(physics.terms)
+    rows, totals = scratch.coefficients[worker.thread], scratch.terms[worker.thread]
+    doubtful, none = scratch.marks[worker.thread], nothing_found(physics.terms)
     in_doubt = np.int64(0)
     for i in range(LANES):
         found, cell = load_scratch(totals, i, none), cell_at(which, i)
@@ -168,24 +168,24 @@ def _nobody(fluid):
 
 
 @inner
-def collide(team, now, physics, fluid):
+def collide(worker, now, physics, fluid):
     """Coefficients of every cell from its sums, which are cleared for the next step."""
-    _collide(team, now.counter, of_cells(physics), fluid)
+    _collide(worker, now.counter, of_cells(physics), fluid)
 
 
 @stage
-def _collide(team, counter, physics, fluid):
+def _collide(worker, counter, physics, fluid):
     cells, scratch = fluid.cells, fluid.scratch
-    rows, totals = scratch.coefficients[team.thread], scratch.terms[team.thread]
+    rows, totals = scratch.coefficients[worker.thread], scratch.terms[worker.thread]
     batches = (cells.number + LANES - 1) // LANES
     if nobody(fluid):  # a random solvent is only where beads are
         batches = 0
-    first, last = share(batches, team.thread, team.threads)
+    first, last = share(batches, worker.thread, worker.threads)
     for b in range(first, last):
         if not any_own(cells.shared, b):
             continue
         start = b * LANES
         count = min(LANES, cells.number - start)
         total_block(cells.sums, start, count, totals, physics.terms)
-        settle_batch(team, counter, physics, fluid, InRow(start), count)
+        settle_batch(worker, counter, physics, fluid, InRow(start), count)
         put_block(cells.coefficients, start, count, rows, physics.coefficients)

@@ -46,7 +46,7 @@ class Particles(NamedTuple):
 
 
 class Cells(NamedTuple):
-    """The collision cells; one more than there are takes what must not act. Slots of guests follow
+    """The collision cells; one more than there are takes what must not act. Slots of ghosts follow
     where ranks share cells."""
 
     number: int

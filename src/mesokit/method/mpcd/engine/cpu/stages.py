@@ -30,10 +30,10 @@ from mesokit.scalar.vector import added_scaled, chosen
 
 
 @scalar
-def gather_strip(cell, coefficients, gathered, like):
+def gather_strip(cell, coefficients, gathered, pattern):
     """Bring the coefficients of each particle's cell into rows."""
     for i in range(0, LANES, QUAD):
-        gather(coefficients, cell, i, gathered, like)
+        gather(coefficients, cell, i, gathered, pattern)
 
 
 @scalar

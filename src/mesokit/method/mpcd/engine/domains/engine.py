@@ -147,7 +147,7 @@ class Ranks(CPU):
         if memory.solutes:
             beads, before = new.solutes, memory.solutes
             beads.r[:], beads.v[:] = before.r, before.v
-            beads.roster.who[:], beads.roster.count[:] = before.roster.who, before.roster.count
+            beads.halo.who[:], beads.halo.count[:] = before.halo.who, before.halo.count
 
     def _steps(self, steps: int, what: int) -> None:
         left = steps

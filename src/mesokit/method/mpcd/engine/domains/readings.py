@@ -127,7 +127,7 @@ class SharedSolutes(SoluteReadings):
     def own_places(self) -> Floats:
         """Places of this rank's own beads, in the box."""
         beads = self.state_of
-        own = beads.roster.who[OWN, : beads.roster.count[OWN]]
+        own = beads.halo.who[OWN, : beads.halo.count[OWN]]
         return self.folded_of(beads.r.reshape(self.shape), beads.v.reshape(self.shape))[0][own]
 
     def fetch(self) -> None:
@@ -136,7 +136,7 @@ class SharedSolutes(SoluteReadings):
             return
         beads, d = self.state_of, self.shape[1]
         r, v = beads.r.reshape(self.shape), beads.v.reshape(self.shape)
-        own = beads.roster.who[OWN, : beads.roster.count[OWN]]
+        own = beads.halo.who[OWN, : beads.halo.count[OWN]]
         sent = np.concatenate([own[:, None].astype(float), r[own], v[own]], axis=1)
         counts = np.array(self.comm.allgather(len(own))) * (1 + 2 * d)
         whole = np.empty((counts.sum() // (1 + 2 * d), 1 + 2 * d))
@@ -148,7 +148,7 @@ class SharedSolutes(SoluteReadings):
     def potential_energy(self) -> float:
         self.fetch()
         self.forget_lists()  # those of this rank know of beads around its block alone
-        energy = energy_in(self.memory, self.state_of._replace(roster=()), self.places)
+        energy = energy_in(self.memory, self.state_of._replace(halo=()), self.places)
         self.forget_lists()
         return energy
 
@@ -169,6 +169,6 @@ class SharedSolutes(SoluteReadings):
     def share_out(self) -> None:
         """Each rank takes the beads in its block."""
         owner = self.memory.domain.owners(self.folded()[0])
-        own, roster = np.flatnonzero(owner == self.comm.rank), self.state_of.roster
-        roster.who[OWN, : len(own)], roster.count[OWN] = own, len(own)
-        roster.seen[:] = -9
+        own, halo = np.flatnonzero(owner == self.comm.rank), self.state_of.halo
+        halo.who[OWN, : len(own)], halo.count[OWN] = own, len(own)
+        halo.seen[:] = -9

@@ -12,23 +12,25 @@ move_alone = flight.move_beads
 
 
 @by_type
-def stream(team, now, physics, fluid, beads):
+def stream(worker, now, physics, fluid, beads):
     """The fluid's part (see `cpu.sweep.stream`)."""
     if is_embedded(beads):
-        return lambda team, now, physics, fluid, beads: stream_around(
-            team, now, physics, fluid, beads
+        return lambda worker, now, physics, fluid, beads: stream_around(
+            worker, now, physics, fluid, beads
         )
-    return lambda team, now, physics, fluid, beads: stream_all(team, now, physics, fluid)
+    return lambda worker, now, physics, fluid, beads: stream_all(worker, now, physics, fluid)
 
 
 @by_type
-def move_beads(team, now, physics, fluid, beads):
+def move_beads(worker, now, physics, fluid, beads):
     """The solutes' part (see `beads.flight.move_beads`), with the fluid near them."""
     if not is_embedded(beads):
-        return lambda team, now, physics, fluid, beads: move_alone(team, now, physics, fluid, beads)
+        return lambda worker, now, physics, fluid, beads: move_alone(
+            worker, now, physics, fluid, beads
+        )
 
-    def together(team, now, physics, fluid, beads):
-        move_in_fluid(team, now, physics, fluid, beads)
-        put_back(team, now, physics, fluid, beads)
+    def together(worker, now, physics, fluid, beads):
+        move_in_fluid(worker, now, physics, fluid, beads)
+        put_back(worker, now, physics, fluid, beads)
 
     return together

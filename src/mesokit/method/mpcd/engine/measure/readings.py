@@ -229,14 +229,14 @@ class Readings:
         if self.beads == 1:
             return r
         first = np.repeat(np.arange(0, len(r), self.beads), self.beads)
-        return r[first] + self.way(r, image, first, np.arange(len(r)))
+        return r[first] + self.separation(r, image, first, np.arange(len(r)))
 
     def _between(self, pairs: NDArray[np.int64]) -> Floats:
         """Vectors (n, d) between beads of one molecule."""
         r, _, image = self._gather(None, False)
-        return self.way(r, image, *pairs.T)
+        return self.separation(r, image, *pairs.T)
 
-    def way(self, r: Floats, image: NDArray, first: NDArray, second: NDArray) -> Floats:
+    def separation(self, r: Floats, image: NDArray, first: NDArray, second: NDArray) -> Floats:
         """From one bead to another, whatever images they lie in."""
         return between(r, image, first, second, self.numbers.box, self.memory.box)
 
@@ -347,7 +347,7 @@ def between(
 ) -> Floats:
     """From some particles to others, whatever images of a box of this size they lie in."""
     boxes = image[second] - image[first]
-    way: Floats = r[second] - r[first] + boxes * size
+    separation: Floats = r[second] - r[first] + boxes * size
     if isinstance(box, SLIDING):
-        way[:, 0] += boxes[:, 1] * box.offset
-    return way
+        separation[:, 0] += boxes[:, 1] * box.offset
+    return separation

@@ -33,14 +33,14 @@ from mesokit.scalar.vector import dot, row, scaled
 
 
 @kernel
-def totals(team, masses, particles, scales, out, fastest):
+def totals(worker, masses, particles, scales, out, fastest):
     """Momentum and sum of m v^2 of each strip, as whole numbers: out (strips, d + 1).
 
     `scales` (d + 1) of them are one unit; `fastest` (strips,) is the largest component of |v|.
     """
     data, rows = particles.data, particles.rows
     filling, d, zero = particles.filling, len(scales) - 1, scales[1:]
-    first, last = share(strips_in(filling), team.thread, team.threads)
+    first, last = share(strips_in(filling), worker.thread, worker.threads)
     for b in range(first, last):
         strip, momentum, energy = data[strip_at(b, rows)], integers(zero), np.int64(0)
         top = np.int64(0)  # bits of numbers without a sign have their order, with nan above all
@@ -69,16 +69,16 @@ class Bins(NamedTuple):
 
 
 @kernel
-def bin_sums(team, zero, masses, box, particles, bins, sums):
+def bin_sums(worker, zero, masses, box, particles, bins, sums):
     """Number, momentum, mass and m v^2 in bins, as fixed-point sums.
 
     `sums` is (threads, bins * (d + 3)), to be zero.
     """
     data, rows = particles.data, particles.rows
     filling, scales, d = particles.filling, bins.scales, len(zero)
-    place, quanta, out = bins.place[team.thread], bins.terms[team.thread], sums[team.thread]
+    place, quanta, out = bins.place[worker.thread], bins.terms[worker.thread], sums[worker.thread]
     terms = integers(scales)
-    first, last = share(bins.last - bins.first, team.thread, team.threads)
+    first, last = share(bins.last - bins.first, worker.thread, worker.threads)
     for b in range(bins.first + first, bins.first + last):
         strip = data[strip_at(b, rows)]
         for i in range(LANES):
@@ -107,7 +107,7 @@ class Waves(NamedTuple):
 
 
 @kernel
-def modes(team, zero, masses, box, particles, waves, out):
+def modes(worker, zero, masses, box, particles, waves, out):
     """Fourier sums of mass and momentum as fixed-point sums: out (threads, waves, 2 (1 + d)).
 
     Each row holds mass times cosine and minus sine, then the same of each component of the
@@ -116,7 +116,7 @@ def modes(team, zero, masses, box, particles, waves, out):
     """
     data, rows = particles.data, particles.rows
     filling, d = particles.filling, len(zero)
-    first, last = share(strips_in(filling), team.thread, team.threads)
+    first, last = share(strips_in(filling), worker.thread, worker.threads)
     for b in range(first, last):
         strip = data[strip_at(b, rows)]
         lanes = lanes_in(filling, b)
@@ -134,7 +134,7 @@ def modes(team, zero, masses, box, particles, waves, out):
                 c, s = m * c, -m * s
                 values = (c, s) + scaled(c, v) + scaled(s, v)
                 sums = added_fixed(values, waves.scale, sums)
-            add_fixed(out[team.thread, w], LANES, sums)
+            add_fixed(out[worker.thread, w], LANES, sums)
 
 
 class Looked(NamedTuple):
@@ -147,9 +147,9 @@ class Looked(NamedTuple):
 
 
 @kernel
-def gather_by_id(team, zero, box, particles, unwrapped, looked):
+def gather_by_id(worker, zero, box, particles, unwrapped, looked):
     """Positions, velocities and images of those that have a slot, by their numbers."""
-    first, last = share(strips_in(particles.filling), team.thread, team.threads)
+    first, last = share(strips_in(particles.filling), worker.thread, worker.threads)
     for b in range(first, last):
         for i in range(lanes_in(particles.filling, b)):
             slot = looked.slots[particles.ident[b * LANES + i]]
@@ -158,9 +158,9 @@ def gather_by_id(team, zero, box, particles, unwrapped, looked):
 
 
 @kernel
-def gather_at(team, zero, box, particles, unwrapped, looked):
+def gather_at(worker, zero, box, particles, unwrapped, looked):
     """The same of those that `slots` lists, by their places in memory."""
-    first, last = share(len(looked.slots), team.thread, team.threads)
+    first, last = share(len(looked.slots), worker.thread, worker.threads)
     for slot in range(first, last):
         i = looked.slots[slot]
         look_at(i // LANES, i % LANES, zero, box, particles, unwrapped, looked, slot)

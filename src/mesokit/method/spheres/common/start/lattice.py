@@ -83,8 +83,8 @@ class LatticeStart(SphereStart):
         """The shortest distance of two sites of the lattice on which so many find room."""
         within = np.array(CELLS[self.lattice, len(size)][0])
         cells = np.array(list(itertools.product((-1, 0, 1), repeat=len(size))))
-        ways = (within[:, None, None] - within[None, :, None] + cells).reshape(-1, len(size))
-        found = np.linalg.norm(ways * (size / unit_cells(self.lattice, size, n)), axis=1)
+        separations = (within[:, None, None] - within[None, :, None] + cells).reshape(-1, len(size))
+        found = np.linalg.norm(separations * (size / unit_cells(self.lattice, size, n)), axis=1)
         return float(found[found > 0].min())
 
     def sites(self, n: int, size: Array, shut: NDArray[np.bool_]) -> Array:

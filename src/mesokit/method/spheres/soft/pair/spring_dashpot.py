@@ -138,9 +138,9 @@ def _(law, overlap, closing, reduced, ratio):
         rate = rate_of_now(overlap, closing, spring, stiffness, damping, reduced)
     # the dashpot's force begins and ends at once: of a step in which spheres touch or part it acts
     # for as long as they overlap
-    way = closing.half * abs(rate)
-    if abs(overlap) < way:
-        rate *= 0.5 + 0.5 * overlap / way
+    change = closing.half * abs(rate)
+    if abs(overlap) < change:
+        rate *= 0.5 + 0.5 * overlap / change
     elif overlap <= 0.0:
         rate = 0.0
     force = spring + damping * rate

@@ -5,7 +5,7 @@ from mesokit.geometry.solids.none import Nothing
 from mesokit.method.spheres.soft.engine.acting import ahead, beside, tell_beside
 from mesokit.method.spheres.soft.engine.contact.force import at_wall, body, surface
 from mesokit.method.spheres.soft.engine.contact.remembered import kept
-from mesokit.method.spheres.soft.engine.contact.walls import push, tell_wall
+from mesokit.method.spheres.soft.engine.contact.walls import add_force, tell_wall
 from mesokit.method.spheres.soft.engine.geometry import reach, row
 from mesokit.method.spheres.soft.engine.groups import Solid
 from mesokit.method.spheres.soft.engine.solid import (
@@ -62,7 +62,7 @@ def _(solid, law, i, step, world, room):
     for place in places:
         if place.term != NOBODY:
             there, c = surface_at(solid, bodies, i, place), contact_of(solid, i, place.term)
-            bound, counts = push(law, i, there, solid.springs, c, step, bodies)
+            bound, counts = add_force(law, i, there, solid.springs, c, step, bodies)
             take(room.taken, len(world.walls.rows) + body_of(solid, place.term), counts)
             largest = max(largest, bound)
     return largest
