@@ -8,7 +8,7 @@ the virial none, as it goes to memory.
 from typing import Any, NamedTuple
 
 from mesokit.geometry.protocol import facing
-from mesokit.method.mpcd.engine.beads.breaks import note_broken
+from mesokit.method.mpcd.engine.beads.broken_bonds import note_broken
 from mesokit.method.mpcd.engine.cpu.bounce import take
 from mesokit.method.mpcd.engine.cpu.stress import add_product
 from mesokit.potential.angle import bend

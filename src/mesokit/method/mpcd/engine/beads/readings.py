@@ -11,7 +11,7 @@ from mesokit.case.box import fold
 from mesokit.errors import RunError
 from mesokit.kernels.kernel import kernel
 from mesokit.loops.threads import Worker
-from mesokit.method.mpcd.engine.beads.breaks import first_broken, refuse_broken
+from mesokit.method.mpcd.engine.beads.broken_bonds import first_broken, refuse_broken
 from mesokit.method.mpcd.engine.beads.external import external_energy
 from mesokit.method.mpcd.engine.beads.interactions import Energy
 from mesokit.method.mpcd.engine.beads.neighbours import MADE, refresh

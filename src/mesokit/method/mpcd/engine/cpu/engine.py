@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mesokit.errors import RunError
 from mesokit.loops.clock import BEADS, CELLS, FINISH, FIRST, SORT, SWEEP
 from mesokit.loops.threads import Threads
-from mesokit.method.mpcd.engine.beads.breaks import refuse_broken
+from mesokit.method.mpcd.engine.beads.broken_bonds import refuse_broken
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, MEASURE_WALLS, Course
 from mesokit.method.mpcd.engine.cpu.memory import Memory
 from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers

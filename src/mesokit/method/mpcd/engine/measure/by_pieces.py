@@ -122,7 +122,9 @@ class ByPieces:
     def _between(self, seen: Seen, links: Integers) -> Floats:
         """Vectors along links (n, 2) of the beads of each molecule."""
         first = np.arange(0, len(seen.positions), self.beads)[:, None, None]
-        return self.readings.way(seen.positions, seen.images, *(first + links).reshape(-1, 2).T)
+        return self.readings.separation(
+            seen.positions, seen.images, *(first + links).reshape(-1, 2).T
+        )
 
     def _energy_of(self, molecule: Molecule) -> float:
         """Potential energy of the molecules of the fluid."""
