@@ -22,7 +22,9 @@ def scatter_add(sums, cell, i, rows, pattern, tallied):
     records.scatter_add(sums, cell, i, rows, pattern, tallied)
 
 
-take = njit(lambda sums, start, i, rows, pattern: records.take(sums, start, i, rows, pattern))
+take = njit(
+    lambda sums, start, i, rows, pattern: records.gather_sums(sums, start, i, rows, pattern)
+)
 put = njit(lambda data, start, count, rows, pattern: put_block(data, start, count, rows, pattern))
 add = njit(lambda cell, rows, sums, count, pattern: add_strip(cell, rows, sums, count, pattern, ()))
 

@@ -177,7 +177,7 @@ class ConservationAccumulator:
         case, flow = self.case, setting.flow(self.case, axis)
         mass = setting.superficial_mass(case)
         if flow.kind == "accelerating" and not case.walls:
-            acceleration = float(setting.acceleration(case)[axis])
+            acceleration = float(setting.uniform_acceleration(case)[axis])
             return self.first[1 + axis] + mass * acceleration * since
         if flow.profile is None or setting.obstructed(case):
             return np.nan

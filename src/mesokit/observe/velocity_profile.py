@@ -188,7 +188,7 @@ def _poiseuille(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
     basis = acc.powers(2)
     parabola = fit(velocity, basis, mass * acc.inside())
     c0, _, c2 = parabola.value
-    acceleration = setting.acceleration(acc.case)[acc.component]
+    acceleration = setting.uniform_acceleration(acc.case)[acc.component]
     value, error = parabola.scalar(
         -acceleration / (2 * c2),
         np.array([0, 0, acceleration / (2 * c2**2)]),

@@ -66,7 +66,7 @@ def fluid_volume(case: Case) -> float:
     return volume - solutes.beads * solutes.excluded_volume(case.box.dimension, case.fluid.kT)
 
 
-def bonds(case: Case) -> NDArray[np.int64]:
+def bonded_pairs(case: Case) -> NDArray[np.int64]:
     """Numbers of particles (bonds, 2) that are linked: in molecules of the fluid and in solutes."""
     found, molecule = [np.zeros((0, 2), np.int64)], case.fluid.molecule
     if molecule is not None:

@@ -214,7 +214,7 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
             f"velocities; above {STRONG:g} its steps are coarse: a shorter timestep, or less force"
         )
     random = case.solutes is not None and case.solutes.solvent == "random"
-    for axis, acceleration in zip(AXES, setting.acceleration(case).tolist(), strict=False):
+    for axis, acceleration in zip(AXES, setting.uniform_acceleration(case).tolist(), strict=False):
         if acceleration and not case.walls and not random:
             yield (
                 f"fluid.force.acceleration: nothing holds the fluid along {axis}: without "

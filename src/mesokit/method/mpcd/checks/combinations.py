@@ -59,7 +59,7 @@ def size(case: Case) -> Iterator[str]:
         )
 
 
-def mean_free_path(case: Case) -> Iterator[str]:
+def check_mean_free_path(case: Case) -> Iterator[str]:
     """A fluid whose particles meet."""
     fluid = case.fluid
     path = fluid.timestep * math.sqrt(fluid.kT / fluid.mass)
@@ -206,7 +206,7 @@ def molecule(case: Case) -> Iterator[str]:
             )
 
 
-def start(case: Case) -> Iterator[str]:
+def check_start(case: Case) -> Iterator[str]:
     """Arrays, an earlier run or a file."""
     for owner in ("fluid", "solutes"):
         if getattr(case, owner) is None:
@@ -247,7 +247,7 @@ RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
     room,
     moving_surfaces,
     size,
-    mean_free_path,
+    check_mean_free_path,
     collision,
     free_flight,
     open_box,
@@ -255,7 +255,7 @@ RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
     shear,
     molecule,
     solutes,
-    start,
+    check_start,
     units,
     kernels,
 )

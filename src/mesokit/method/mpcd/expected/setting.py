@@ -219,7 +219,7 @@ def slipping(case: Case) -> str:
     return "approximate: particles of so thin a fluid fly from wall to wall" if thin else ""
 
 
-def acceleration(case: Case) -> Array:
+def uniform_acceleration(case: Case) -> Array:
     """The uniform acceleration (d,), zero without one."""
     dimension = case.box.dimension
     return np.array(case.fluid.force.uniform(dimension) or (0.0,) * dimension, float)
@@ -231,9 +231,9 @@ def gathered(case: Case) -> bool:
     return demixes or (force.gathers and force.uniform(case.box.dimension) is None)
 
 
-def flow_axis(case: Case) -> int | None:
+def driven_axis(case: Case) -> int | None:
     """Number of the only axis along which a uniform force drives the fluid, None for another."""
-    axes = np.flatnonzero(acceleration(case))
+    axes = np.flatnonzero(uniform_acceleration(case))
     return int(axes[0]) if len(axes) == 1 else None
 
 
@@ -341,7 +341,7 @@ def flow(case: Case, component: int) -> Flow:
         coefficients = transport(case)
         viscosity = coefficients.viscosity if coefficients else None
         return Flow(*force.steady_flow(component, box.size, viscosity))
-    if acceleration(case)[component]:
+    if uniform_acceleration(case)[component]:
         return Flow("accelerating", 1, None)
     return Flow("rest", 1, np.zeros_like)
 
@@ -374,7 +374,10 @@ def _slit(case: Case, wall: Plates, component: int) -> Flow:
         return Flow("sheared slit", across, None)
     if component == across:
         return Flow("rest", across, np.zeros_like)
-    height, acceleration_along = float(case.box.size[across]), float(acceleration(case)[component])
+    height, acceleration_along = (
+        float(case.box.size[across]),
+        float(uniform_acceleration(case)[component]),
+    )
     lower, upper = (surface_velocity(s, component) for s in (wall.lower, wall.upper))
     sticky = [s.rule == "no-slip" for s in (wall.lower, wall.upper)]
     force = case.fluid.force

@@ -48,7 +48,7 @@ class FlowRate(Observable):
         """Number of the axis in this case."""
         if self.axis is not None:
             return AXES.index(self.axis)
-        driven = setting.flow_axis(case)
+        driven = setting.driven_axis(case)
         if driven is not None:
             return driven
         flowing = setting.flowing_axes(case)
@@ -109,7 +109,7 @@ class FlowRateAccumulator(BlockAccumulator):
         A force drives the flow to the momentum that it gives in that time: exact in slow flow, for
         the response to a force is the integral of the momentum's correlation (Kubo 1957).
         """
-        case, acceleration = self.case, float(setting.acceleration(self.case)[self.axis])
+        case, acceleration = self.case, float(setting.uniform_acceleration(self.case)[self.axis])
         time = (
             float(self.blocks.mean()) * self.mass / (self.moving_mass() * acceleration)
             if acceleration
@@ -161,8 +161,11 @@ class FlowRateAccumulator(BlockAccumulator):
                 note,
             ),
         ]
-        acceleration, coefficients = setting.acceleration(self.case), setting.transport(self.case)
-        if setting.flow_axis(self.case) == self.axis and coefficients is not None:
+        acceleration, coefficients = (
+            setting.uniform_acceleration(self.case),
+            setting.transport(self.case),
+        )
+        if setting.driven_axis(self.case) == self.axis and coefficients is not None:
             scale = coefficients.viscosity / float(acceleration[self.axis])
             found.append(
                 Comparison(
@@ -179,7 +182,7 @@ class FlowRateAccumulator(BlockAccumulator):
     def expected(self) -> tuple[float, str]:
         """The superficial velocity and what says so; nan where nothing is known."""
         case, coefficients = self.case, setting.transport(self.case)
-        acceleration = float(setting.acceleration(case)[self.axis])
+        acceleration = float(setting.uniform_acceleration(case)[self.axis])
         if not setting.obstructed(case):
             flow = setting.flow(case, self.axis)
             edges = np.linspace(0.0, case.box.size[flow.across], 65)
@@ -187,7 +190,7 @@ class FlowRateAccumulator(BlockAccumulator):
             return (np.nan, "") if bins is None else (float(bins.mean()), flow.kind)
         if not setting.driven(case):
             return 0.0, "rest"
-        if coefficients is None or not acceleration or setting.flow_axis(case) != self.axis:
+        if coefficients is None or not acceleration or setting.driven_axis(case) != self.axis:
             return np.nan, ""
         viscosity, pipe, lattice = (
             coefficients.viscosity,

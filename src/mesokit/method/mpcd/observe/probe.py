@@ -105,7 +105,7 @@ class Probe(Observable):
         """Number of the axis whose spectrum is taken."""
         if self.component is not None:
             return AXES.index(self.component)
-        flowing = setting.flow_axis(case)
+        flowing = setting.driven_axis(case)
         return 1 if flowing in (None, 0) else 0
 
     def accumulator(self, case: Case) -> ProbeAccumulator:

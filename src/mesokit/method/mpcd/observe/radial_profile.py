@@ -232,8 +232,8 @@ class RoundFlow:
 
     def __init__(self, case: Case) -> None:
         pipe, gap, drum = recognise.pipe(case), recognise.gap(case), recognise.drum(case)
-        post = recognise.post(case)
-        acceleration, coefficients = setting.acceleration(case), setting.transport(case)
+        post = recognise.lone_post(case)
+        acceleration, coefficients = setting.uniform_acceleration(case), setting.transport(case)
         self.kind, self.component, self.round = "rest", "azimuthal", True
         self.profile: Callable[[Array], Array] | None = None
         self.surfaces: tuple[float, ...] = ()
@@ -241,7 +241,7 @@ class RoundFlow:
         if pipe is not None and forced:
             self.axis, self.centre, self.radii = pipe.axis, pipe.centre, (0.0, pipe.radius)
             self.kind, self.component = "hagen-poiseuille", "axial"
-            if coefficients and setting.flow_axis(case) == pipe.axis:
+            if coefficients and setting.driven_axis(case) == pipe.axis:
                 nu, g = coefficients.viscosity, float(acceleration[pipe.axis])
                 self.profile = lambda r: theory.hagen_poiseuille_velocity(r, pipe.radius, g, nu)
         elif gap is not None:
@@ -332,7 +332,7 @@ def _pipe(acc: RadialProfileAccumulator, velocity: Estimate) -> Fitted:
     parabola = fit(velocity, basis, acc.crowd * acc.inside())
     c0, c2 = parabola.value
     acceleration, coefficients = (
-        setting.acceleration(acc.case)[acc.axis],
+        setting.uniform_acceleration(acc.case)[acc.axis],
         setting.transport(acc.case),
     )
     curved = np.array([0, acceleration / (4 * c2**2)])

@@ -126,7 +126,7 @@ class WallStressAccumulator(BlockAccumulator):
                             UNIT[self.case.box.dimension],
                         )
                     )
-            if axis != self.axis and setting.acceleration(self.case)[axis]:
+            if axis != self.axis and setting.uniform_acceleration(self.case)[axis]:
                 both = force.residuals[:, :, axis].sum(axis=1)
                 total = type(force)(force.value[:, axis].sum(), both, force.weights)
                 found.append(
@@ -146,7 +146,7 @@ def balance(case: Case) -> Array:
     """Force per area on both plates of a slit, (2, d): the force on the fluid, shared by the sticky
     plates, Couette drag, pressure."""
     wall: Any = case.walls[0]
-    acceleration, d = setting.acceleration(case), case.box.dimension
+    acceleration, d = setting.uniform_acceleration(case), case.box.dimension
     across = AXES.index(wall.axis)
     height, rho = float(case.box.size[across]), setting.mass_density(case)
     sticky = np.array([1.0 * (s.rule == "no-slip") for s in (wall.lower, wall.upper)])

@@ -66,7 +66,7 @@ def _one_draw(molecule: Molecule, kT: float, box: Floats, random: Draws) -> Floa
     places[:, 0] = random.units(d) * box
     ring = molecule.topology == "ring"
     links = molecule.bonds[:-1] if ring else molecule.bonds
-    bonds = np.stack([bonds_of(molecule, kT, d, random) for _ in molecule.bonds])
+    bonds = np.stack([first_bonds(molecule, kT, d, random) for _ in molecule.bonds])
     if ring:
         bonds -= bonds.mean(axis=0)  # the last one leads back; Gaussian bonds stay Gaussian
     came: dict[int, int] = {}  # bond by which each bead was reached
@@ -78,7 +78,7 @@ def _one_draw(molecule: Molecule, kT: float, box: Floats, random: Draws) -> Floa
     return places
 
 
-def bonds_of(molecule: Molecule, kT: float, d: int, random: Draws) -> Floats:
+def first_bonds(molecule: Molecule, kT: float, d: int, random: Draws) -> Floats:
     """A bond vector (n, d) for each, as the conformation has them, thermal but for angles."""
     if molecule.conformation == "octant":
         square = mean_square(molecule.bond_potentials, d, kT, molecule.bond.longest)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from mesokit.errors import RunError
 from mesokit.method.mpcd.solute.free import FreeMolecule, phantom
-from mesokit.method.mpcd.start.conformation import bonds_of, nearest_of, turned
+from mesokit.method.mpcd.start.conformation import first_bonds, nearest_of, turned
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.scalar.random import INITIAL_SOLUTES
 
@@ -85,7 +85,7 @@ def _nearest(pair: Pair | None, kT: float) -> float:
 
 def _pool(molecule: Molecule, kT: float, d: int, random: Draws) -> Floats:
     """Bonds: in any direction or, of stiff molecules, that follow a bond along x."""
-    bonds = bonds_of(molecule, kT, d, random)
+    bonds = first_bonds(molecule, kT, d, random)
     if molecule.bending is None:
         return bonds
     return turned(molecule, np.tile(np.eye(d)[0], (POOL, 1)), bonds, kT, random)

@@ -50,7 +50,7 @@ def given_of(case: Case, made: Made) -> Given:
         else central_of(case, law),
         touching,
         law.width(rubs(case)) if touching else 0,
-        0.0 if touching else nearest(law),
+        0.0 if touching else least_distance(law),
         _motion(case),
         rows,
         own,
@@ -97,7 +97,7 @@ def usual_force(law: Any) -> float:
     return abs(force_over_r) * law.diameter or 1.0
 
 
-def nearest(law: Any) -> float:
+def least_distance(law: Any) -> float:
     """The distance below which a force has no room in one term of a vector loop."""
     kernel, most = law.kernel(), usual_force(law) * ROOM / FINEST
     distances = np.linspace(1.0, 0.0, 1001)[:-1] * law.diameter

@@ -12,7 +12,7 @@ from mesokit.kernels.part import stage
 from mesokit.loops.layout import record_length, share
 from mesokit.loops.threads import Worker
 from mesokit.method.mpcd.collision.protocol import collide, contribute
-from mesokit.method.mpcd.engine.beads.moving import Moving
+from mesokit.method.mpcd.engine.beads.moving import MovingBeads
 from mesokit.method.mpcd.engine.beads.state import (
     GROUP,
     OWN,
@@ -67,7 +67,7 @@ def _move(worker, now, physics, fluid, beads):
         if worker.thread >= together:
             return
         some = Worker(worker.thread, together, worker.gate, worker.clock)
-        moving = Moving(some, beads, first, last, fluid.taken.impulse[worker.thread], measured)
+        moving = MovingBeads(some, beads, first, last, fluid.taken.impulse[worker.thread], measured)
         verlet(moving, now, physics, beads.potentials.substeps)
         if measured:
             for n in range(first, last):

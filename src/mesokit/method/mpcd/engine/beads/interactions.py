@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from mesokit.geometry.protocol import facing
 from mesokit.method.mpcd.engine.beads.broken_bonds import note_broken
-from mesokit.method.mpcd.engine.cpu.bounce import take
+from mesokit.method.mpcd.engine.cpu.bounce import add_recoil
 from mesokit.method.mpcd.engine.cpu.stress import add_product
 from mesokit.potential.angle import bend
 from mesokit.potential.protocol import breaks, central
@@ -17,7 +17,7 @@ from mesokit.scalar.jit import generic
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
 
-class Force(NamedTuple):
+class BeadForce(NamedTuple):
     """The force on a bead.
 
     It is kept for a `time`, in which walls take the opposite momentum: `impulse`, in units of
@@ -61,7 +61,7 @@ def of_wall(asked, total, potential, near_wall, r):
     """Of a bead at r and the nearest surface."""
 
 
-@of_two.register(Force)
+@of_two.register(BeadForce)
 def _(asked, total, potential, separation, i, j):
     square = dot(separation, separation)
     _, force_over_r = central(potential, square)
@@ -70,7 +70,7 @@ def _(asked, total, potential, separation, i, j):
     return added_scaled(total, force_over_r if j != i else 0.0, separation)
 
 
-@of_three.register(Force)
+@of_three.register(BeadForce)
 def _(asked, total, potential, before, after, role):
     _, first, last = bend(potential, before, after)
     middle = scaled(-1.0, added(first, last))
@@ -78,7 +78,7 @@ def _(asked, total, potential, before, after, role):
     return added(total, own)
 
 
-@of_wall.register(Force)
+@of_wall.register(BeadForce)
 def _(asked, total, potential, near_wall, r):
     solid, reach = near_wall
     distance, out, surface, lever = facing(solid, reach, r)
@@ -86,7 +86,7 @@ def _(asked, total, potential, near_wall, r):
         return total
     _, force_over_r = central(potential, distance * distance)
     force = scaled(force_over_r * distance, out)
-    take(asked.impulse, surface, lever, scaled(-asked.time, force), asked.scale)
+    add_recoil(asked.impulse, surface, lever, scaled(-asked.time, force), asked.scale)
     return added(total, force)
 
 

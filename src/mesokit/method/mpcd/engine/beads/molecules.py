@@ -17,7 +17,7 @@ from mesokit.method.mpcd.engine.beads.interactions import Virial
 from mesokit.method.mpcd.engine.beads.links import Kick, each_link
 from mesokit.method.mpcd.engine.beads.registers import WIDTH, bead_at, load_bead, store_bead
 from mesokit.method.mpcd.engine.beads.verlet import drift, flown, kick, verlet
-from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, Fluid
+from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, FluidMemory
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW, forget
 from mesokit.method.mpcd.engine.cpu.physics import field_of, kind_of_solid
 from mesokit.method.mpcd.engine.cpu.stages import clear_of
@@ -41,11 +41,11 @@ class Batch(NamedTuple):
     lanes: int  # so many of the WIDTH hold molecules
 
 
-class Moving(NamedTuple):
+class MovingMolecules(NamedTuple):
     """A batch of molecules of a fluid, and the thread that moves them."""
 
     worker: Worker
-    fluid: Fluid
+    fluid: FluidMemory
     batch: Batch
     flags: int
 
@@ -65,17 +65,19 @@ def _fly_springs(worker, now, physics, fluid, batch):
     for k in range(physics.molecule.beads):
         bead = fluid.scratch.beads[worker.thread][bead_at(k, physics.zero)]
         remember(physics.solid, bead, physics.zero)
-    verlet(Moving(worker, fluid, batch, now.flags), now, physics, physics.molecule.substeps)
+    verlet(
+        MovingMolecules(worker, fluid, batch, now.flags), now, physics, physics.molecule.substeps
+    )
 
 
-@drift.register(Moving)
+@drift.register(MovingMolecules)
 def _(moving, counter, physics, time):
     for k in range(physics.molecule.beads):
-        if drift_bead(moving, counter, physics, time, k):
+        if drift_molecule_bead(moving, counter, physics, time, k):
             forget(moving.fluid.room, moving.batch.strip + k, 1 << (moving.batch.start // FEW))
 
 
-@kick.register(Moving)
+@kick.register(MovingMolecules)
 def _(moving, step, box, physics, time):
     molecule, zero, batch, fluid = physics.molecule, physics.zero, moving.batch, moving.fluid
     work = fluid.scratch.beads[moving.worker.thread]
@@ -151,7 +153,7 @@ def _remember(solid, bead, zero):
 
 
 @by_type
-def drift_bead(moving, counter, physics, time, k):
+def drift_molecule_bead(moving, counter, physics, time, k):
     """Straight flight of bead k, with reflections; whether any of the batch came near a solid."""
     return _drift if kind_of_solid(physics) is Nothing else _drift_among_solids
 

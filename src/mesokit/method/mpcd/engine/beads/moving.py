@@ -4,8 +4,8 @@ from typing import Any, NamedTuple
 
 from mesokit.geometry.solids.none import Nothing
 from mesokit.loops.threads import Worker, barrier
-from mesokit.method.mpcd.engine.beads.external import from_outside, turned
-from mesokit.method.mpcd.engine.beads.interactions import Force, Virial
+from mesokit.method.mpcd.engine.beads.external import from_outside, turned_by_field
+from mesokit.method.mpcd.engine.beads.interactions import BeadForce, Virial
 from mesokit.method.mpcd.engine.beads.neighbours import refresh
 from mesokit.method.mpcd.engine.beads.state import (
     GROUP,
@@ -30,7 +30,7 @@ from mesokit.scalar.random import FIRST_BEAD
 from mesokit.scalar.vector import added_scaled, scaled
 
 
-class Moving(NamedTuple):
+class MovingBeads(NamedTuple):
     """The beads from the first to that before the last, and the thread that moves them."""
 
     worker: Worker
@@ -41,7 +41,7 @@ class Moving(NamedTuple):
     measured: int
 
 
-@drift.register(Moving)
+@drift.register(MovingBeads)
 def _(moving, counter, physics, time):
     barrier(moving.worker)  # nobody looks at the places before any more
     for n in range(moving.first, moving.last):
@@ -67,7 +67,7 @@ def _drift_among_solids(beads, i, counter, physics, time, impulse):
     store_velocity(beads, i, v)
 
 
-@kick.register(Moving)
+@kick.register(MovingBeads)
 def _(moving, step, box, physics, time):
     beads, worker, zero = moving.beads, moving.worker, physics.zero
     barrier(worker)
@@ -79,7 +79,7 @@ def _(moving, step, box, physics, time):
             virial = Virial(time, beads.tensor[2, n // GROUP], physics.stress_scale)
             each_on_bead(virial, (), beads, i, load_place(beads, i, zero), box)
     scale, faults = momentum_scale(physics), beads.faults[worker.thread]
-    force = Force(time, moving.impulse, scale, step, faults)
+    force = BeadForce(time, moving.impulse, scale, step, faults)
     for n in range(moving.first, moving.last):
         kick_bead(force, beads, bead_of(beads.halo, OWN, n), box, physics, time)
 
@@ -105,7 +105,7 @@ def _kick_from_outside(asked, beads, i, box, physics, time):
     force = from_outside(beads.external, force, i, r)
     half = 0.5 * time
     v = added_scaled(v, half * inverse_mass_of(beads, i), force)
-    v = turned(beads.external, time, i, accelerated(physics.field, half, r, v))
+    v = turned_by_field(beads.external, time, i, accelerated(physics.field, half, r, v))
     v = added_scaled(v, half * inverse_mass_of(beads, i), force)
     store_velocity(beads, i, accelerated(physics.field, half, r, v))
 

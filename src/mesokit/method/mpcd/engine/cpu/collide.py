@@ -11,7 +11,7 @@ from mesokit.method.mpcd.collision.protocol import Cell, freedom
 from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.method.mpcd.engine.cell_gradient import gradient_at
 from mesokit.method.mpcd.engine.cpu.physics import of_cells
-from mesokit.method.mpcd.engine.cpu.strips.records import spread, take
+from mesokit.method.mpcd.engine.cpu.strips.records import gather_sums, spread
 from mesokit.method.mpcd.engine.cpu.strips.rows import (
     load_scratch,
     load_values,
@@ -45,7 +45,7 @@ def total_block(sums, start, count, totals, terms):
             for j in range(QUAD):
                 found |= sums[t, np.uint64(start + i + j) * length]
             if found != 0:
-                take(sums[t], start + i, i, totals, terms)
+                gather_sums(sums[t], start + i, i, totals, terms)
         for i in range(together, count):
             cell = np.uint64(start + i) * length
             store_scratch(
@@ -168,7 +168,7 @@ def _nobody(fluid):
 
 
 @inner
-def collide(worker, now, physics, fluid):
+def collide_cells(worker, now, physics, fluid):
     """Coefficients of every cell from its sums, which are cleared for the next step."""
     _collide(worker, now.counter, of_cells(physics), fluid)
 

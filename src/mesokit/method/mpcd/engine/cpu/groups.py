@@ -74,7 +74,7 @@ class Taken(NamedTuple):
     faults: Any  # (threads, 8) step and beads of the first bond that tore
 
 
-class Fluid(NamedTuple):
+class FluidMemory(NamedTuple):
     """A fluid in memory."""
 
     particles: Particles

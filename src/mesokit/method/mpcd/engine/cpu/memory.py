@@ -23,11 +23,18 @@ from mesokit.loops.layout import (
     sums_length,
     zeros,
 )
-from mesokit.method.mpcd.engine.beads.allocate import beads_of
+from mesokit.method.mpcd.engine.beads.allocate import allocate_beads
 from mesokit.method.mpcd.engine.beads.registers import bead_size
 from mesokit.method.mpcd.engine.cell_gradient import Field
 from mesokit.method.mpcd.engine.cpu.grid import Grid
-from mesokit.method.mpcd.engine.cpu.groups import Cells, Fluid, Particles, Scratch, Taken, Walls
+from mesokit.method.mpcd.engine.cpu.groups import (
+    Cells,
+    FluidMemory,
+    Particles,
+    Scratch,
+    Taken,
+    Walls,
+)
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW
 from mesokit.method.mpcd.engine.cpu.physics import Physics
 from mesokit.method.mpcd.engine.cpu.sort import Order
@@ -69,7 +76,7 @@ class Memory:
         self.solutes: Any = ()
         if case.solutes is not None:
             embedded = embedded_of(case.solutes, numbers, threads)
-            self.solutes = beads_of(case.solutes, self)._replace(embedded=embedded)
+            self.solutes = allocate_beads(case.solutes, self)._replace(embedded=embedded)
         zero, cells = (0.0,) * d, tuple(float(n) for n in numbers.cells)
         self.grid: Any = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
         if domain is not None:
@@ -146,7 +153,7 @@ class Memory:
         lanes = blocks_for(self.strips * LANES) * BLOCK
         data, image = zeros(lanes // BLOCK * self.rows * ROW), zeros((d, lanes), np.int32)
         cell = zeros(lanes, np.int32)
-        self.fluid = Fluid(
+        self.fluid = FluidMemory(
             Particles(data, cell, np.arange(lanes), image, filling, self.rows),
             self._cells(),
             zeros((2, self.strips * (LANES // FEW))),

@@ -6,7 +6,7 @@ from mesokit.loops.clock import BEADS, CELLS, FINISH, START, SWEEP, lap
 from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.beads.coupling import answer_beads, join_beads
 from mesokit.method.mpcd.engine.cell_gradient import fill_field
-from mesokit.method.mpcd.engine.cpu.collide import collide
+from mesokit.method.mpcd.engine.cpu.collide import collide_cells
 from mesokit.method.mpcd.engine.cpu.grid import moved_grid
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM, Now
 from mesokit.method.mpcd.engine.cpu.physics import field_of_step, with_field
@@ -21,7 +21,7 @@ from mesokit.method.mpcd.engine.domains.messages.migrate import (
     note_done,
     room_left,
 )
-from mesokit.method.mpcd.engine.embedded.stages import move_beads, stream
+from mesokit.method.mpcd.engine.embedded.stages import move_embedded_beads, stream_embedded
 from mesokit.method.mpcd.engine.virtual.stages import fill_walls, follow_flow, recoil, top_up_walls
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.random import Counter, grid_shift
@@ -30,9 +30,11 @@ from mesokit.scalar.random import Counter, grid_shift
 @inner
 def step(worker, now, physics, fluid, beads, walls):
     """One collision interval: r, v from t to t + dt."""
-    stream(worker, now, physics, fluid, beads)  # v: the collision at t; r, v: t -> t + dt; sums
+    stream_embedded(
+        worker, now, physics, fluid, beads
+    )  # v: the collision at t; r, v: t -> t + dt; sums
     lap(worker, SWEEP)
-    move_beads(worker, now, physics, fluid, beads)  # the same for solutes, in sub-steps
+    move_embedded_beads(worker, now, physics, fluid, beads)  # the same for solutes, in sub-steps
     lap(worker, BEADS)
     fill_walls(worker, now, physics, fluid, walls)  # virtual particles at t + dt
     barrier(worker)
@@ -43,7 +45,9 @@ def step(worker, now, physics, fluid, beads, walls):
     fill_field(worker, physics, fluid)  # what cells must know of those next to them
     join_beads(worker, now, physics, fluid, beads)  # cells with solutes: sums of both
     answer_others(worker, now, physics, fluid, beads, walls)  # ranks: who have particles here
-    collide(worker, now, physics, fluid)  # thermostat and rule at t + dt: coefficients of each cell
+    collide_cells(
+        worker, now, physics, fluid
+    )  # thermostat and rule at t + dt: coefficients of each cell
     answer_beads(worker, now, physics, fluid, beads)
     take_answers(worker, now, physics, fluid, walls)
     barrier(worker)
@@ -64,8 +68,8 @@ def advance(worker, course, physics, fluid, beads, walls):
     note_done(worker, fluid, n)
     if n > 0:
         now = last_collision(course, now)
-        stream(worker, now, physics, fluid, beads)
-        move_beads(worker, now, physics, fluid, beads)
+        stream_embedded(worker, now, physics, fluid, beads)
+        move_embedded_beads(worker, now, physics, fluid, beads)
         barrier(worker)
         lap(worker, FINISH)
 

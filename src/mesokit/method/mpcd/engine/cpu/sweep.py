@@ -34,7 +34,7 @@ from mesokit.method.mpcd.engine.cpu.stages import (
 )
 from mesokit.method.mpcd.engine.cpu.stress import flux
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
-from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle, mass_of
+from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle
 from mesokit.method.mpcd.engine.domains.messages.ghosts import note_ghosts
 from mesokit.method.mpcd.engine.domains.messages.migrate import note_strays
 from mesokit.scalar.fixed_point import add_fixed, added_fixed, integers
@@ -158,7 +158,7 @@ def add_strip_flux(physics, box, grid, strip, count, tensor):
     d, sums = len(zero), integers(products(zero, zero) + products(zero, zero))
     for i in range(count):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
-        m = mass_of(physics.masses, strip, i, 2 * d)
+        m = lane_mass(physics.masses, strip, i, 2 * d)
         carried = flux(m, peculiar(box, r, v), v, added(r, grid.shift))
         sums = added_fixed(carried, physics.stress_scale, sums)
     add_fixed(tensor, count, sums)

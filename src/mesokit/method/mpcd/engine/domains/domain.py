@@ -26,7 +26,7 @@ from mesokit.method.mpcd.engine.domains.blocks.tree import Block, Tree
 from mesokit.method.mpcd.engine.domains.messages.mpi import post
 from mesokit.method.mpcd.engine.domains.messages.shared import METER_SIZE, Shared
 from mesokit.method.mpcd.engine.virtual.gradient import PROBES
-from mesokit.method.mpcd.engine.virtual.particles import Seen
+from mesokit.method.mpcd.engine.virtual.particles import FlowAtSurface
 from mesokit.potential.thermal import mean_square
 
 if TYPE_CHECKING:
@@ -228,10 +228,10 @@ class Domain:
         """Which beads of solutes are whose."""
         return halo_of(self, given, terms)
 
-    def seen(self, probes: NDArray[np.float64]) -> Seen:
+    def seen(self, probes: NDArray[np.float64]) -> FlowAtSurface:
         """Which pieces of surface this rank keeps, and which the others do."""
         given = [self._pieces(probes, p) for p in self.partners]
-        return Seen(
+        return FlowAtSurface(
             limits=self._limits,
             here=self._pieces(probes, self.rank),
             step=np.full((len(probes), PROBES), -1, np.int64),

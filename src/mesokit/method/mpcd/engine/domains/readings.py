@@ -12,7 +12,7 @@ from mesokit.method.mpcd.engine.beads.readings import SoluteReadings, energy_in
 from mesokit.method.mpcd.engine.beads.state import OWN
 from mesokit.method.mpcd.engine.cpu.memory import Floats, Memory
 from mesokit.method.mpcd.engine.domains.state import ROOT
-from mesokit.method.mpcd.engine.measure.readings import Readings, Seen
+from mesokit.method.mpcd.engine.measure.readings import Observed, Readings
 
 
 class SharedReadings(Readings):
@@ -82,9 +82,9 @@ class SharedReadings(Readings):
         part = slice(*np.searchsorted(who, (first, last)))
         return who[part], self.memory.columns(name, self.memory.places[order[part]])
 
-    def _seen_of(self, rows: Floats) -> Seen:
+    def _seen_of(self, rows: Floats) -> Observed:
         d = self.dimension
-        return Seen(rows[:, :d], rows[:, d : 2 * d], rows[:, 2 * d :].astype(np.int32))
+        return Observed(rows[:, :d], rows[:, d : 2 * d], rows[:, 2 * d :].astype(np.int32))
 
     def wall_rates(self) -> Floats:
         """How the flow rises from all pieces of surface, each as the rank nearby has it."""
@@ -95,7 +95,7 @@ class SharedReadings(Readings):
         bits = np.where(mine[:, None], virtual.rates.view(np.int64), 0)
         return self.reduced(bits).view(float)
 
-    def _gather_fluid(self, ids: NDArray | None, unwrapped: bool) -> Seen:
+    def _gather_fluid(self, ids: NDArray | None, unwrapped: bool) -> Observed:
         asked = np.arange(self.n) if ids is None else np.asarray(ids, np.int64)
         here, which = self.own_rows(asked)
         rows = self.rows_at(self.memory.places[which], unwrapped)

@@ -13,7 +13,7 @@ from mesokit.geometry.solids.none import Nothing
 from mesokit.kernels.part import stage
 from mesokit.loops.layout import LANES, share, strip_at
 from mesokit.loops.threads import barrier
-from mesokit.method.mpcd.engine.beads.moving import Moving, accelerated
+from mesokit.method.mpcd.engine.beads.moving import MovingBeads, accelerated
 from mesokit.method.mpcd.engine.beads.neighbours import apart
 from mesokit.method.mpcd.engine.beads.state import (
     inverse_mass_of,
@@ -24,7 +24,7 @@ from mesokit.method.mpcd.engine.beads.state import (
 from mesokit.method.mpcd.engine.beads.verlet import drift, flown, kick, verlet
 from mesokit.method.mpcd.engine.cpu.groups import STREAM
 from mesokit.method.mpcd.engine.cpu.physics import kind_of_solid, momentum_scale
-from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, mass_of, store_values
+from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_values, store_values
 from mesokit.method.mpcd.engine.embedded.near import has_left, note
 from mesokit.method.mpcd.engine.embedded.state import (
     COUNT,
@@ -45,7 +45,7 @@ MOST_UNITS = 2.0**52  # that a particle may hand over at once: a thousand therma
 class Together(NamedTuple):
     """Beads and the particles near them, as one thread moves its share of both."""
 
-    solutes: Moving
+    solutes: MovingBeads
     embedded: Embedded
     particles: Any
 
@@ -57,7 +57,7 @@ def move_in_fluid(worker, now, physics, fluid, beads):
         (embedded,) = beads.embedded
         first, last = share(len(beads.cell), worker.thread, worker.threads)
         impulse = fluid.taken.impulse[worker.thread]
-        solutes = Moving(worker, beads, first, last, impulse, 0)
+        solutes = MovingBeads(worker, beads, first, last, impulse, 0)
         moving = Together(solutes, embedded, fluid.particles)
         verlet(moving, now, physics, beads.potentials.substeps)
 
@@ -114,7 +114,7 @@ def moved(physics, time, counter, moving, lane, r, v):
 def mass_in_lane(physics, particles, lane):
     """Mass of the particle in a lane, counted through the strips."""
     strip = particles.data[strip_at(lane // LANES, particles.rows)]
-    return mass_of(physics.masses, strip, lane % LANES, 2 * len(physics.zero))
+    return lane_mass(physics.masses, strip, lane % LANES, 2 * len(physics.zero))
 
 
 @kick.register(Together)

@@ -12,7 +12,7 @@ move_alone = flight.move_beads
 
 
 @by_type
-def stream(worker, now, physics, fluid, beads):
+def stream_embedded(worker, now, physics, fluid, beads):
     """The fluid's part (see `cpu.sweep.stream`)."""
     if is_embedded(beads):
         return lambda worker, now, physics, fluid, beads: stream_around(
@@ -22,7 +22,7 @@ def stream(worker, now, physics, fluid, beads):
 
 
 @by_type
-def move_beads(worker, now, physics, fluid, beads):
+def move_embedded_beads(worker, now, physics, fluid, beads):
     """The solutes' part (see `beads.flight.move_beads`), with the fluid near them."""
     if not is_embedded(beads):
         return lambda worker, now, physics, fluid, beads: move_alone(

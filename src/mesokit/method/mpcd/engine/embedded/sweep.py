@@ -32,8 +32,8 @@ from mesokit.method.mpcd.engine.cpu.stages import (
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.rows import (
     add_values,
+    lane_mass,
     load_values,
-    mass_of,
     store_particle,
 )
 from mesokit.method.mpcd.engine.cpu.strips.terms import terms_of
@@ -113,7 +113,7 @@ def put_one_back(worker, now, physics, fluid, embedded, n):
     strip, sums = particles.data[strip_at(s, particles.rows)], fluid.cells.sums[worker.thread]
     start = load_values(embedded.start[worker.thread], at, zero)
     forget_leap(physics, fluid.room, lane, added_scaled(r, -1.0, start))
-    m, who = mass_of(physics.masses, strip, i, 2 * d), (particles.ident[lane], 0)
+    m, who = lane_mass(physics.masses, strip, i, 2 * d), (particles.ident[lane], 0)
     kept, own = contribute(physics.rule, now.counter, who, m, v, in_cell(r, now.grid))
     particles.cell[lane] = cell_index(r, now.grid)
     store_particle(strip, i, 0, r + kept)

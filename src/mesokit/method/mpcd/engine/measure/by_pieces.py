@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from mesokit.method.mpcd import topology
 from mesokit.method.mpcd.engine.cpu.memory import Floats
 from mesokit.method.mpcd.engine.measure import sums as measure
-from mesokit.method.mpcd.engine.measure.readings import Readings, Seen
+from mesokit.method.mpcd.engine.measure.readings import Observed, Readings
 from mesokit.method.mpcd.engine.pieces import pieces
 from mesokit.scalar.bin_sums import BinSums
 
@@ -116,10 +116,10 @@ class ByPieces:
             number = len(separations) if self.readings.tells_solutes else 0
             yield np.arange(number), separations[:number]
 
-    def _seen(self, molecules: Integers) -> Seen:
+    def _seen(self, molecules: Integers) -> Observed:
         return self.readings.seen_at(molecules.ravel(), False)
 
-    def _between(self, seen: Seen, links: Integers) -> Floats:
+    def _between(self, seen: Observed, links: Integers) -> Floats:
         """Vectors along links (n, 2) of the beads of each molecule."""
         first = np.arange(0, len(seen.positions), self.beads)[:, None, None]
         return self.readings.separation(

@@ -12,7 +12,7 @@ from mesokit.case.box import fold
 from mesokit.kernels.kernel import kernel
 from mesokit.loops.layout import LANES, lanes_in, share, strip_at, strips_in
 from mesokit.method.mpcd.engine.cpu.stages import add_strip
-from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle, mass_of, store_scratch
+from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle, store_scratch
 from mesokit.potential.angle import bend
 from mesokit.potential.protocol import central
 from mesokit.scalar.elementary import sincos_turn
@@ -46,7 +46,7 @@ def totals(worker, masses, particles, scales, out, fastest):
         top = np.int64(0)  # bits of numbers without a sign have their order, with nan above all
         for i in range(lanes_in(filling, b)):
             v = load_particle(strip, i, d, zero)
-            m = mass_of(masses, strip, i, 2 * d)
+            m = lane_mass(masses, strip, i, 2 * d)
             momentum = added_quanta(scaled(m, v), scales[0], momentum)
             energy += quanta(m * dot(v, v), scales[d])
             for k in range(d):
@@ -84,7 +84,7 @@ def bin_sums(worker, zero, masses, box, particles, bins, sums):
         for i in range(LANES):
             r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
             r, v, _ = fold(box, r, v, scaled(0.0, zero))
-            m = mass_of(masses, strip, i, 2 * d)
+            m = lane_mass(masses, strip, i, 2 * d)
             index = 0.0
             for k in range(2):
                 axis, number = bins.axes[k], bins.number[k]
@@ -126,7 +126,7 @@ def modes(worker, zero, masses, box, particles, waves, out):
             for i in range(LANES):
                 r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
                 r, v, _ = fold(box, r, v, scaled(0.0, zero))
-                m = mass_of(masses, strip, i, 2 * d)
+                m = lane_mass(masses, strip, i, 2 * d)
                 who = particles.ident[b * LANES + i]
                 m = m if i < lanes and waves.first <= who < waves.last else 0.0
                 phase = dot(wave, r)

@@ -29,7 +29,7 @@ LEAST_APART = 0.5  # of the first mean height: nearer to one another, two tell n
 
 
 @scalar
-def columns(d):
+def numbers_of_piece(d):
     """Numbers kept for each piece: slope s (d), bend q (d), and of each probe the mean of u / h (d)
     and of h."""
     return 2 * d + PROBES * (d + 1)
@@ -71,7 +71,7 @@ def _follow_all(worker, now, physics, sums, virtual):
         for p in range(PROBES):
             good, seen = look(virtual, e, p, physics, now.grid, sums)
             if good:
-                remember(virtual.rates, e, p, seen, physics.zero)
+                average_probe(virtual.rates, e, p, seen, physics.zero)
         straighten(virtual.rates, e, physics.zero)
 
 
@@ -123,7 +123,7 @@ def look(virtual, e, p, physics, grid, sums):
 
 
 @scalar
-def remember(rates, e, p, seen, zero):
+def average_probe(rates, e, p, seen, zero):
     """Take what was seen at a probe into its means."""
     d = len(zero)
     place = 2 * d + p * (d + 1)

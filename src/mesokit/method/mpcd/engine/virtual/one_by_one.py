@@ -19,7 +19,7 @@ from mesokit.method.mpcd.engine.cpu.groups import MEASURE_WALLS
 from mesokit.method.mpcd.engine.cpu.physics import momentum_scale
 from mesokit.method.mpcd.engine.cpu.stages import add_strip, bin_strip, collide_strip, gather_strip
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
-from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle, mass_of, store_particle
+from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle, store_particle
 from mesokit.method.mpcd.engine.cpu.strips.terms import number_in_cell
 from mesokit.method.mpcd.engine.virtual.gas import body_takes, thermal
 from mesokit.method.mpcd.engine.virtual.gradient import flow_at
@@ -112,7 +112,7 @@ def draw_velocities(virtual, count, worker, now, physics, fluid):
         who = virtual.number[thread, s * LANES : (s + 1) * LANES]
         for i in range(LANES):
             r, u = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
-            m = max(mass_of(physics.masses, strip, i, 2 * d), 1e-300)
+            m = max(lane_mass(physics.masses, strip, i, 2 * d), 1e-300)
             v = added(u, thermal(physics, m, now.counter, VIRTUAL_VELOCITY, who[i], 0))
             store_particle(strip, i, 0, r + v)
         if now.flags & MEASURE_WALLS:
@@ -129,7 +129,7 @@ def take_momentum(virtual, worker, physics, s, strip, impulse, sign):
     for i in range(min(LANES, virtual.filled[thread] - s * LANES)):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         term = virtual.term[thread, s * LANES + i]
-        m = mass_of(physics.masses, strip, i, 2 * d)
+        m = lane_mass(physics.masses, strip, i, 2 * d)
         body_takes(impulse, solid, term, homed(solid, r), scaled(sign * m, v), scale)
 
 

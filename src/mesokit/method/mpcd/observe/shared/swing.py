@@ -91,7 +91,7 @@ def in_slit(case: Case, swing: Swing, component: int, low: Array, high: Array) -
         return None
     height, acceleration = (
         float(case.box.size[flow.across]),
-        setting.acceleration(steady)[component],
+        setting.uniform_acceleration(steady)[component],
     )
     places = np.linspace(low[flow.across], high[flow.across], 2 * DRAWN + 1)[1::2]
     chi = theory.oscillating_slit_response(places, height, known.viscosity, swing.frequency)

@@ -120,7 +120,7 @@ def body_of(solid, term):
 
 
 @scalar
-def contact_of(solid, i, term):
+def contact_with(solid, i, term):
     """Which contact sphere i has with a term: one that is free if it is new."""
     free = 0
     for s in range(MOST):

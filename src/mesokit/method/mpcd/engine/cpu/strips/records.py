@@ -100,7 +100,7 @@ def scatter_add(
 
 
 @intrinsic
-def take(typing_context: Any, sums: Any, start: Any, i: Any, rows: Any, terms: Any) -> Any:
+def gather_sums(typing_context: Any, sums: Any, start: Any, i: Any, rows: Any, terms: Any) -> Any:
     """Add the sums of the four cells from `start` to lanes i to i + 3 of the rows; clear them."""
     count = len(terms)
 

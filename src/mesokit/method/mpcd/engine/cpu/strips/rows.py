@@ -57,7 +57,7 @@ def count_images(image, i, crossed):
 
 
 @by_type
-def mass_of(masses, strip, i, row):
+def lane_mass(masses, strip, i, row):
     """Mass of the particle in lane i: `masses` is (mass,) for all, or () for a row of masses."""
     if len(masses) == 1:
         return lambda masses, strip, i, row: masses[0]

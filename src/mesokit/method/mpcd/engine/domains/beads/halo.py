@@ -126,7 +126,7 @@ def hand_over(now, physics, box, shared, beads):
         else:
             append(halo.out, owner, i, load_place(beads, i, zero), load_velocity(beads, i, zero))
     gone = number - kept
-    exchange(halo, shared, NUMBERS)
+    exchange_bead_rows(halo, shared, NUMBERS)
     for p in range(len(halo.ranks)):
         for row in range(1, 1 + int(halo.into[p, 0, 0])):
             i = take_place(halo.into, p, row, beads, zero)
@@ -192,7 +192,7 @@ def put_velocity(rows, p, row, beads, i, zero):
 
 
 @scalar
-def exchange(halo, shared, tag):
+def exchange_bead_rows(halo, shared, tag):
     """Messages of whole rows to all partners, and from them."""
     post, n, words = halo.post, 0, halo.out.shape[2]
     most = halo.out.shape[1] * words
@@ -227,7 +227,7 @@ def hear_of_others(now, physics, box, shared, beads):
                 halo.tell[p, halo.told[p]] = i
                 halo.told[p] += 1
         halo.seen[i] = step
-    exchange(halo, shared, NUMBERS)
+    exchange_bead_rows(halo, shared, NUMBERS)
     for p in range(len(halo.ranks)):
         halo.heard[p] = int(halo.into[p, 0, 0])
         for row in range(1, 1 + halo.heard[p]):

@@ -8,7 +8,7 @@ import numpy as np
 
 from mesokit.method.mpcd.engine.cpu.physics import field_of
 from mesokit.method.mpcd.engine.domains.messages.shared import FAULTS, FULL, HEADER
-from mesokit.method.mpcd.engine.virtual.gradient import PROBES, remember, straighten
+from mesokit.method.mpcd.engine.virtual.gradient import PROBES, average_probe, straighten
 from mesokit.scalar.jit import by_type, elementwise, for_each
 
 
@@ -75,7 +75,7 @@ def _take(walls, now, physics, shared):
         for p in range(PROBES):
             if seen.step[e, p] == np.int64(now.counter.step):
                 values = seen_at(seen.values, e, p, physics.zero + (0.0,))
-                remember(virtual.rates, e, p, values, physics.zero)
+                average_probe(virtual.rates, e, p, values, physics.zero)
                 new = True
         if new:
             straighten(virtual.rates, e, physics.zero)

@@ -91,7 +91,7 @@ def _migrate(worker, now, physics, fluid):
             for j in range(shared.left[t, 0] - 1, -1, -1):
                 n = leave(fluid, physics, shared.leaving[t, j], shared.owner[t, j], n)
             shared.left[t, 0] = 0
-        exchange(shared)
+        exchange_particles(shared)
         shared.noted[ARRIVED] = 0
         for p in range(len(shared.ranks)):
             begin = shared.moved_at[p] + HEADER + 1
@@ -200,7 +200,7 @@ def forget_part(fluid, i):
 
 
 @scalar
-def exchange(shared):
+def exchange_particles(shared):
     """Messages to all partners, and from them."""
     n = receive_rows(shared, 0, shared.moved_in, shared.moved_at, PARTICLES)
     for p in range(len(shared.ranks)):

@@ -11,7 +11,7 @@ from mesokit.method.spheres.soft.engine.groups import Solid
 from mesokit.method.spheres.soft.engine.solid import (
     Place,
     body_of,
-    contact_of,
+    contact_with,
     forget_others,
     place_at_solid,
     solid_moves,
@@ -61,7 +61,7 @@ def _(solid, law, i, step, world, room):
     forget_others(solid, i, places[0].term, places[1].term, places[2].term)
     for place in places:
         if place.term != NOBODY:
-            there, c = surface_at(solid, bodies, i, place), contact_of(solid, i, place.term)
+            there, c = surface_at(solid, bodies, i, place), contact_with(solid, i, place.term)
             bound, counts = add_force(law, i, there, solid.springs, c, step, bodies)
             take(room.taken, len(world.walls.rows) + body_of(solid, place.term), counts)
             largest = max(largest, bound)
@@ -74,5 +74,5 @@ def _(solid, law, i, world, told):
         if place.term != NOBODY and place.distance < reach(world.bodies, i):
             there = surface_at(solid, world.bodies, i, place)
             touch = at_wall(0.0, body(world.bodies, world.bodies.velocity, i), there)
-            springs = kept(solid.springs, contact_of(solid, i, place.term))
+            springs = kept(solid.springs, contact_with(solid, i, place.term))
             tell_wall(law, touch, springs, told)
