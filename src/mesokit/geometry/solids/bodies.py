@@ -20,7 +20,7 @@ from mesokit.scalar.pointer import real, short, whole, word
 from mesokit.scalar.vector import dot, scaled
 
 REACH = 1.0  # lists hold the terms within this distance of a cell; flights are cut into such pieces
-NOBODY = -1
+NO_TERM = -1
 
 
 class Bodies(NamedTuple):
@@ -180,7 +180,7 @@ def nearest_within(tables, away, r):
     Where nothing is nearer than `away`, which the lists of the tables must reach, that is the
     clearance, and the term is NOBODY.
     """
-    least, part, term = away, 0, NOBODY
+    least, part, term = away, 0, NO_TERM
     cell = home_cell(tables, r)
     for j in range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1)):
         candidate = whole(word(tables, NEAR), j)

@@ -7,7 +7,7 @@ import math
 
 from mesokit.geometry.solids.bodies import (
     NEAR,
-    NOBODY,
+    NO_TERM,
     STARTS,
     home_cell,
     in_box,
@@ -32,7 +32,7 @@ def planes_above(solid, pattern, away, columns, points, planes):
         c, part, term = nearest(solid.tables, r)
         n = with_item(scaled(0.0, pattern), 0, 1.0)
         top = away
-        if term != NOBODY:
+        if term != NO_TERM:
             n = part_normal(solid.tables, part, r)
             alone = True
             for j in near_terms(solid.tables, r):

@@ -187,7 +187,7 @@ class Solids(SolidTables):
         points = self._rows(points)
         terms = np.zeros(len(points), np.int64)
         distance, normal = np.zeros(len(points)), np.zeros(points.shape)
-        survey.who_is_near(self.kernel, self.pattern, points, terms, distance, normal)
+        survey.nearest_terms(self.kernel, self.pattern, points, terms, distance, normal)
         return self._body_of[terms], distance, normal
 
     def depths(self, away: float) -> Callable[[Any], tuple[NDArray[np.int64], Floats, Floats]]:
@@ -322,7 +322,7 @@ class Solids(SolidTables):
         centres = self._centres()
         terms = np.zeros(len(centres), np.int64)
         distance, normal = np.zeros(len(centres)), np.zeros(centres.shape)
-        survey.who_is_near(self.kernel, self.pattern, centres, terms, distance, normal)
+        survey.nearest_terms(self.kernel, self.pattern, centres, terms, distance, normal)
         found: dict[int, tuple[float, float]] = {}
         for term in np.unique(terms[terms >= 0]):
             body = self.bodies[self.body_of_term[term]]

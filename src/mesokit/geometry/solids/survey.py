@@ -121,7 +121,7 @@ def bound(solid, least, r, pattern):
 
 
 @kernel
-def who_is_near(solid, pattern, points, terms, clearance, normals):
+def nearest_terms(solid, pattern, points, terms, clearance, normals):
     """Nearest term (-1: none within reach), clearance and normal at each point."""
     for i in range(len(points)):
         r = in_box(solid, row(points, i, pattern))

@@ -20,7 +20,7 @@ from mesokit.geometry.solids.bodies import (
     KINDS,
     NEAR,
     NO_SLIP,
-    NOBODY,
+    NO_TERM,
     NUMBERS,
     PIVOT,
     REACH,
@@ -124,7 +124,7 @@ class SolidTables:
             for shut, length in zip(self.room.closed, self.size, strict=True)
         )
         self.body_of_term = np.array([row for _, row in pieces], np.int32)
-        self._body_of = np.array([*self.body_of_term, NOBODY])  # of no term: the last
+        self._body_of = np.array([*self.body_of_term, NO_TERM])  # of no term: the last
         self.pivots = pivots
         surfaces = [self._surface(body) for body in self.bodies]
         tables = {

@@ -42,7 +42,7 @@ class Uncollided(NamedTuple):
 
 
 @contribute.register(Uncollided)
-def _(rule, counter, who, m, v, r):
+def _(rule, counter, key, m, v, r):
     return v, ()
 
 

@@ -45,7 +45,7 @@ def drawn(
     as `octant` has them. Molecules that reach into a solid or have beads that repel one another
     strongly are drawn again. Raises RunError if that is in vain.
     """
-    d, number = len(box), len(random.who)
+    d, number = len(box), len(random.ids)
     places = np.empty((number, molecule.length, d))
     left = np.arange(number)
     for _ in range(TRIES):
@@ -62,7 +62,7 @@ def drawn(
 
 def _one_draw(molecule: Molecule, kT: float, box: Floats, random: Draws) -> Floats:
     d = len(box)
-    places = np.empty((len(random.who), molecule.length, d))
+    places = np.empty((len(random.ids), molecule.length, d))
     places[:, 0] = random.units(d) * box
     ring = molecule.topology == "ring"
     links = molecule.bonds[:-1] if ring else molecule.bonds

@@ -27,7 +27,7 @@ from mesokit.scalar.poisson import poisson_number
 from mesokit.scalar.random import CELL, CELL_VIRTUAL, FIRST_BEAD, VIRTUAL_NUMBER, normals, words
 from mesokit.scalar.vector import added, dot, scaled
 
-NOBODY = -1
+NO_BEAD = -1
 
 
 @by_type
@@ -78,7 +78,7 @@ def answer_for(beads, leader, physics, counter, cells, cell):
         beads.solvent, beads, physics, counter, key, total
     )
     i = leader
-    while i != NOBODY:
+    while i != NO_BEAD:
         given = load_values(beads.given, np.uint64(i * len(beads.terms)), beads.terms)
         more, its_energy, its_own = parts_of(given, physics.zero)
         n, mass, momentum = n + 1.0, mass + mass_of(beads, i), added(momentum, more)
@@ -124,8 +124,8 @@ def _with_random_solvent(solvent, beads, physics, counter, cell, total):
         if asks(physics.energy):
             inner = gamma_number(float(d * (number - 1)), counter, VIRTUAL_NUMBER, cell)
             energy += m * dot(v, v) + 2.0 * physics.kT * inner
-        who = (FIRST_BEAD + len(beads.cell) + np.int64(cell), 0)
-        _, drawn = contribute(physics.rule, counter, who, m, v, scaled(0.0, zero))
+        key = (FIRST_BEAD + len(beads.cell) + np.int64(cell), 0)
+        _, drawn = contribute(physics.rule, counter, key, m, v, scaled(0.0, zero))
         own = added(own, drawn)
     return n, mass, momentum, energy, own
 
@@ -146,7 +146,7 @@ def _put_answers(worker, now, physics, fluid, beads):
         i = bead_of(beads.halo, PRESENT, n)
         cell = beads.cell[i]
         if first <= cell < last and beads.leads[i]:
-            beads.head[cell] = NOBODY
+            beads.head[cell] = NO_BEAD
             start = np.uint64(cell) * np.uint64(record_length(len(needed)))
             store_values(
                 cells.coefficients,

@@ -109,8 +109,8 @@ def bin_bead(beads, i, physics, now):
     """The cell of a bead, and what it adds to the sums of that cell."""
     r, v, boxes = load_folded(beads, i, now.box, now.grid.shift)
     beads.cell[i] = cell_index(r, now.grid)
-    who, m = (FIRST_BEAD + i, 0), mass_of(beads, i)
-    kept, own = contribute(physics.rule, now.counter, who, m, v, in_cell(r, now.grid))
+    key, m = (FIRST_BEAD + i, 0), mass_of(beads, i)
+    kept, own = contribute(physics.rule, now.counter, key, m, v, in_cell(r, now.grid))
     _, kept = unfold(now.box, r, kept, boxes)
     store_velocity(beads, i, kept)
     terms = scaled(m, v) + (m * dot(v, v),) + own

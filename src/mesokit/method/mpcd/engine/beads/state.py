@@ -90,7 +90,7 @@ def bead_of(halo, which, n):
     """Number of the nth of these."""
     if len(halo) == 0:
         return lambda halo, which, n: n
-    return lambda halo, which, n: halo.who[which, n]
+    return lambda halo, which, n: halo.numbers[which, n]
 
 
 @by_type

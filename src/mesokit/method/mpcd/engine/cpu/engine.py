@@ -91,7 +91,7 @@ class CPU:
     def _take(self, particles: Iterable[Piece]) -> None:
         """Have these particles, in the order of their numbers."""
         for piece in particles:
-            self.memory.put(*piece, first=int(piece.who[0]) // self.numbers.beads)
+            self.memory.put(*piece, first=int(piece.ids[0]) // self.numbers.beads)
 
     def advance(self, steps: int, measure: Collection[str] = ()) -> None:
         """Run some steps; velocities are then those after the collision of the last."""

@@ -69,7 +69,7 @@ def _stream_singles(worker, now, physics, fluid):
     for s in range(first, last):
         lanes, places = lanes_in(particles.filling, s), slice(s * LANES, (s + 1) * LANES)
         strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
-        who, image = particles.ident[places], particles.image[:, places]
+        ids, image = particles.ident[places], particles.image[:, places]
         quiet, behind = 0, np.int64(0)
         if now.flags & STREAM:
             quiet = look_around_strip(physics.solid, strip, s, fluid.room, clear, zero)
@@ -85,13 +85,13 @@ def _stream_singles(worker, now, physics, fluid):
             if now.flags & STREAM:
                 behind = stream_strip(physics, strip, clear, hits)
         if behind != 0:
-            far = bounce_strip(physics, now.counter, strip, lanes, behind, who, hits, impulse)
+            far = bounce_strip(physics, now.counter, strip, lanes, behind, ids, hits, impulse)
             forget(fluid.room, s, far)
         if now.flags & STREAM:
             slide_strip(now.box, now.grid, strip, image, zero)
             if measured:
                 add_strip_flux(physics, now.box, now.grid, strip, lanes, tensor[0, s])
-            bin_strip(physics, now, strip, cell, who, terms)
+            bin_strip(physics, now, strip, cell, ids, terms)
             tallied = tally(physics.energy, 0.0, zero)
             add_strip(cell, terms, sums, lanes, physics.terms, tallied)
             note_ghosts(worker, s, fluid, cell, terms, lanes, physics.terms, tallied)

@@ -104,8 +104,8 @@ def moved(physics, time, counter, moving, lane, r, v):
         )
 
     def among_solids(physics, time, counter, moving, lane, r, v):
-        m, who = mass_in_lane(physics, moving.particles, lane), moving.particles.ident[lane]
-        return flown(physics, time, counter, who, m, r, v, moving.solutes.impulse)
+        m, number = mass_in_lane(physics, moving.particles, lane), moving.particles.ident[lane]
+        return flown(physics, time, counter, number, m, r, v, moving.solutes.impulse)
 
     return among_solids
 

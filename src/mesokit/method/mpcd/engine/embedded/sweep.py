@@ -62,7 +62,7 @@ def stream_around(worker, now, physics, fluid, beads):
     for s in range(first, last):
         lanes, places = lanes_in(particles.filling, s), slice(s * LANES, (s + 1) * LANES)
         strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
-        who = particles.ident[places]
+        ids = particles.ident[places]
         if now.flags & COLLIDE:
             gather_strip(cell, fluid.cells.coefficients, gathered, physics.coefficients)
             collide_strip(physics, now.old, strip, gathered)
@@ -73,9 +73,9 @@ def stream_around(worker, now, physics, fluid, beads):
             if behind != 0:
                 for j in range(near):  # they meet walls in sub-steps
                     marks[chosen[j]] = 0
-                far = bounce_strip(physics, now.counter, strip, lanes, behind, who, marks, impulse)
+                far = bounce_strip(physics, now.counter, strip, lanes, behind, ids, marks, impulse)
                 forget(fluid.room, s, far)
-            bin_strip(physics, now, strip, cell, who, terms)
+            bin_strip(physics, now, strip, cell, ids, terms)
             for j in range(near):
                 cell[chosen[j]] = fluid.cells.number  # which takes what must not act
             add_strip(cell, terms, sums, lanes, physics.terms, tally(physics.energy, 0.0, zero))
@@ -113,8 +113,8 @@ def put_one_back(worker, now, physics, fluid, embedded, n):
     strip, sums = particles.data[strip_at(s, particles.rows)], fluid.cells.sums[worker.thread]
     start = load_values(embedded.start[worker.thread], at, zero)
     forget_leap(physics, fluid.room, lane, added_scaled(r, -1.0, start))
-    m, who = lane_mass(physics.masses, strip, i, 2 * d), (particles.ident[lane], 0)
-    kept, own = contribute(physics.rule, now.counter, who, m, v, in_cell(r, now.grid))
+    m, key = lane_mass(physics.masses, strip, i, 2 * d), (particles.ident[lane], 0)
+    kept, own = contribute(physics.rule, now.counter, key, m, v, in_cell(r, now.grid))
     particles.cell[lane] = cell_index(r, now.grid)
     store_particle(strip, i, 0, r + kept)
     place = np.uint64(np.uint32(particles.cell[lane])) * np.uint64(sums_length(len(physics.terms)))

@@ -127,8 +127,8 @@ def modes(worker, zero, masses, box, particles, waves, out):
                 r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
                 r, v, _ = fold(box, r, v, scaled(0.0, zero))
                 m = lane_mass(masses, strip, i, 2 * d)
-                who = particles.ident[b * LANES + i]
-                m = m if i < lanes and waves.first <= who < waves.last else 0.0
+                number = particles.ident[b * LANES + i]
+                m = m if i < lanes and waves.first <= number < waves.last else 0.0
                 phase = dot(wave, r)
                 s, c = sincos_turn(phase - floor(phase))
                 c, s = m * c, -m * s

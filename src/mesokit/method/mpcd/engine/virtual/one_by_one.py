@@ -109,15 +109,15 @@ def draw_velocities(virtual, count, worker, now, physics, fluid):
     for s in range((count + LANES - 1) // LANES):
         strip, lanes = virtual.data[thread][strip_at(s, rows)], min(LANES, count - s * LANES)
         here = virtual.cell[thread, s * LANES : (s + 1) * LANES]
-        who = virtual.number[thread, s * LANES : (s + 1) * LANES]
+        numbers = virtual.number[thread, s * LANES : (s + 1) * LANES]
         for i in range(LANES):
             r, u = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
             m = max(lane_mass(physics.masses, strip, i, 2 * d), 1e-300)
-            v = added(u, thermal(physics, m, now.counter, VIRTUAL_VELOCITY, who[i], 0))
+            v = added(u, thermal(physics, m, now.counter, VIRTUAL_VELOCITY, numbers[i], 0))
             store_particle(strip, i, 0, r + v)
         if now.flags & MEASURE_WALLS:
             take_momentum(virtual, worker, physics, s, strip, fluid.taken.impulse[thread], -1.0)
-        bin_strip(physics, now, strip, here, who, terms)
+        bin_strip(physics, now, strip, here, numbers, terms)
         add_strip(here, terms, sums, lanes, physics.terms, tally(physics.energy, 0.0, zero))
 
 

@@ -191,8 +191,8 @@ def place_particles(virtual, at, physics, now, sums):
         if inner < 0.0:
             inner = gamma_number(float(d * (number - 1)), now.counter, VIRTUAL_NUMBER, at.key)
         inner *= 2.0 * physics.kT
-    who = (FIRST_VIRTUAL + at.key * MOST, 0)
-    kept, own = contribute(physics.rule, now.counter, who, mass, v, in_cell(r, now.grid))
+    key = (FIRST_VIRTUAL + at.key * MOST, 0)
+    kept, own = contribute(physics.rule, now.counter, key, mass, v, in_cell(r, now.grid))
     width = sums_length(len(physics.terms))
     m_v_squared = inner
     for k in range(d):

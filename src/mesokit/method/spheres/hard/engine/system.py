@@ -272,9 +272,9 @@ class System:
         i = int(self.queue.heap[0])
         now = self.windows * self.window + float(self.queue.time[i])
         many = np.argsort(-self.spheres.hits, kind="stable")[:2]
-        who = " and ".join(str(number) for number in sorted(self.spheres.number[many]))
+        numbers = " and ".join(str(number) for number in sorted(self.spheres.number[many]))
         return (
-            f"inelastic collapse at t = {now:.9g}: spheres {who} collide without end; set "
+            f"inelastic collapse at t = {now:.9g}: spheres {numbers} collide without end; set "
             "spheres.collision.contact_time"
         )
 

@@ -14,7 +14,7 @@ from mesokit.geometry.solids.bodies import (
     BODY,
     KINDS,
     NEAR,
-    NOBODY,
+    NO_TERM,
     STARTS,
     home_cell,
     part_clearance,
@@ -59,7 +59,7 @@ def lengthened(x):
 @seldom
 def nearest_place(tables, x, within, one, other):
     """The nearest term whose surface faces another way than these two normals do."""
-    least, normal, term = within, scaled(0.0, x), NOBODY
+    least, normal, term = within, scaled(0.0, x), NO_TERM
     cell = home_cell(tables, x)
     for j in range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1)):
         candidate = whole(word(tables, NEAR), j)
@@ -126,7 +126,7 @@ def contact_with(solid, i, term):
     for s in range(MOST):
         if solid.terms[i, s] == term:
             return i * MOST + s
-        if solid.terms[i, s] == NOBODY:
+        if solid.terms[i, s] == NO_TERM:
             free = s
     keep(solid.springs, i * MOST + free, NO_SPRINGS)
     solid.terms[i, free] = np.int64(term)
@@ -139,4 +139,4 @@ def forget_others(solid, i, one, two, three):
     for s in range(MOST):
         term = solid.terms[i, s]
         if term != one and term != two and term != three:
-            solid.terms[i, s] = NOBODY
+            solid.terms[i, s] = NO_TERM

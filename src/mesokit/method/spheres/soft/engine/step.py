@@ -34,7 +34,9 @@ def advance(worker, counter, steps, law, motion, world, noted, rooms):
     first, last = share(len(world.bodies.number), worker.thread, worker.threads)
     mine = noted[worker.thread]
     thread = worker.thread
-    room = Room(rooms.numbers[thread], rooms.counts[thread], rooms.who[thread], rooms.taken[thread])
+    room = Room(
+        rooms.numbers[thread], rooms.counts[thread], rooms.pairs[thread], rooms.taken[thread]
+    )
     done, pending = 0, mine[PENDING] != 0.0
     while done < steps:
         now = Counter(counter.seed, counter.step + np.uint64(done))
@@ -72,7 +74,9 @@ def find_forces(worker, time, law, world, noted, rooms):
         for k in range(3):
             world.bodies.seen[i, k] = world.bodies.velocity[i, k]
     thread = worker.thread
-    room = Room(rooms.numbers[thread], rooms.counts[thread], rooms.who[thread], rooms.taken[thread])
+    room = Room(
+        rooms.numbers[thread], rooms.counts[thread], rooms.pairs[thread], rooms.taken[thread]
+    )
     act(law, (first, last), time, 0.0, world, noted[worker.thread], room)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
-from mesokit.geometry.solids.bodies import NOBODY
+from mesokit.geometry.solids.bodies import NO_TERM
 from mesokit.geometry.solids.none import Nothing
 from mesokit.kernels.group import Packing
 from mesokit.loops.threads import Threads
@@ -122,7 +122,7 @@ class System:
 
     def _no_contacts(self) -> Walls:
         n, width = self.n, self.given.width
-        terms, solid_springs = np.full((n, MOST), NOBODY, np.int32), np.zeros((n * MOST, width))
+        terms, solid_springs = np.full((n, MOST), NO_TERM, np.int32), np.zeros((n * MOST, width))
         return self._walls(np.zeros((n * len(self.given.rows), width)), terms, solid_springs)
 
     def _lists(self, most: int) -> Lists:

@@ -21,7 +21,7 @@ from mesokit.method.mpcd.engine.beads.state import (
 )
 from mesokit.method.mpcd.engine.cpu.grid import cell_in_box, in_block, moved_grid
 from mesokit.method.mpcd.engine.cpu.strips.rows import store_values
-from mesokit.method.mpcd.engine.domains.messages.ghosts import NOBODY, owner_of
+from mesokit.method.mpcd.engine.domains.messages.ghosts import NO_OWNER, owner_of
 from mesokit.method.mpcd.engine.domains.messages.mpi import Post, finish, receive, send
 from mesokit.method.mpcd.engine.domains.messages.shared import (
     BEAD_WORDS,
@@ -38,10 +38,10 @@ NUMBERS, PLACES = 5, 6  # tags of messages
 class Halo(NamedTuple):
     """Who is where; q partners, B beads.
 
-    ranks (q,): the partners. count (3,), who (3, B): numbers of own beads, of these and those that
-    are heard of, of those in own cells, whoever moves them; see `state.OWN`.
+    ranks (q,): the partners. count (3,), numbers (3, B): of own beads, of these and those received from
+    partners, of those in own cells, whichever rank moves them; see `state.OWN`.
     seen (B,): step at which each was last around; began (B * d,): where own beads were when it did.
-    reach: how far from a block beads matter there; most: square of the longest way in a step.
+    reach: how far from a block beads matter there; most: square of the longest path in a step.
     told, heard (q,), tell, hear (q, B): which beads the partners are told of, and tell of.
     asked (q,), ask, cell (q, B): own beads in cells of partners, and their cells there.
     out, into (q, 1 + B, 1 + 2 d); terms_out, terms_in (q, 1 + B, 2 + terms): messages.
@@ -51,7 +51,7 @@ class Halo(NamedTuple):
     post: Post
     ranks: Any
     count: Any
-    who: Any
+    numbers: Any
     seen: Any
     began: Any
     reach: float
@@ -115,13 +115,13 @@ def hand_over(now, physics, box, shared, beads):
         halo.out[p, 0, 0] = 0.0
     number = halo.count[OWN]
     for n in range(number):
-        i = halo.who[OWN, n]
+        i = halo.numbers[OWN, n]
         r, _, _ = fold(
             box, load_place(beads, i, zero), load_velocity(beads, i, zero), zero_of(zero)
         )
         owner = owner_or_own(shared, cell_in_box(r, grid))
-        if owner == NOBODY:
-            halo.who[OWN, kept] = i
+        if owner == NO_OWNER:
+            halo.numbers[OWN, kept] = i
             kept += 1
         else:
             append(halo.out, owner, i, load_place(beads, i, zero), load_velocity(beads, i, zero))
@@ -131,11 +131,11 @@ def hand_over(now, physics, box, shared, beads):
         for row in range(1, 1 + int(halo.into[p, 0, 0])):
             i = take_place(halo.into, p, row, beads, zero)
             put_velocity(halo.into, p, row, beads, i, zero)
-            kept = insert(halo.who, OWN, kept, i)
+            kept = insert(halo.numbers, OWN, kept, i)
             gone += 1
     halo.count[OWN] = kept
     for n in range(kept):
-        i = halo.who[OWN, n]
+        i = halo.numbers[OWN, n]
         store_values(halo.began, np.uint64(i * len(zero)), load_place(beads, i, zero))
     return gone != 0
 
@@ -150,17 +150,17 @@ def zero_of(pattern):
 def owner_or_own(shared, place):
     """The partner whose cell that is; NOBODY if it is this rank's own, or nobody's in reach."""
     owner, _ = owner_of(shared, place)
-    return NOBODY if in_block(shared.limits, place) else owner
+    return NO_OWNER if in_block(shared.limits, place) else owner
 
 
 @scalar
-def insert(who, which, number, i):
+def insert(numbers, which, number, i):
     """Put a number into an ordered list; how many there are then."""
     place = number
-    while place > 0 and who[which, place - 1] > i:
-        who[which, place] = who[which, place - 1]
+    while place > 0 and numbers[which, place - 1] > i:
+        numbers[which, place] = numbers[which, place - 1]
         place -= 1
-    who[which, place] = i
+    numbers[which, place] = i
     return number + 1
 
 
@@ -217,8 +217,8 @@ def hear_of_others(now, physics, box, shared, beads):
     for p in range(len(halo.ranks)):
         halo.out[p, 0, 0], halo.told[p] = 0.0, 0
     for n in range(number):
-        i = halo.who[OWN, n]
-        halo.who[AROUND, n] = i
+        i = halo.numbers[OWN, n]
+        halo.numbers[AROUND, n] = i
         mine, v = load_place(beads, i, zero), load_velocity(beads, i, zero)
         r, _, _ = fold(box, mine, v, zero_of(zero))
         for p in range(len(halo.ranks)):
@@ -233,7 +233,7 @@ def hear_of_others(now, physics, box, shared, beads):
         for row in range(1, 1 + halo.heard[p]):
             i = take_place(halo.into, p, row, beads, zero)
             halo.hear[p, row - 1] = i
-            halo.who[AROUND, number] = i
+            halo.numbers[AROUND, number] = i
             new |= halo.seen[i] != step - 1
             halo.seen[i] = step
             number += 1
@@ -265,7 +265,7 @@ def require_partners(now, shared, beads):
     """Note a fault if a bead is bonded to one that nobody told of."""
     halo, step = beads.halo, np.int64(now.counter.step)
     for n in range(halo.count[OWN]):
-        i = halo.who[OWN, n]
+        i = halo.numbers[OWN, n]
         for m in range(beads.bond_starts[i], beads.bond_starts[i + 1]):
             if halo.seen[beads.bonds[m]] != step:
                 shared.noted[FAULTS] |= STRETCHED

@@ -53,7 +53,7 @@ def halo_of(domain: Any, given: Solutes, terms: int) -> Halo:
         post=post(domain.comm, 2 * q, domain.crowded),
         ranks=np.array(domain.partners, np.int64),
         count=whole(8),
-        who=whole(3, beads),
+        numbers=whole(3, beads),
         seen=np.full(beads, -9, np.int64),
         began=np.zeros(beads * d),
         reach=reach_of_beads(numbers, given),

@@ -8,7 +8,7 @@ from mesokit.method.mpcd.engine.beads.state import OWN, PRESENT, load_folded, lo
 from mesokit.method.mpcd.engine.cpu.grid import cell_in_box, in_block
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values
 from mesokit.method.mpcd.engine.domains.beads.halo import insert
-from mesokit.method.mpcd.engine.domains.messages.ghosts import NOBODY, owner_of
+from mesokit.method.mpcd.engine.domains.messages.ghosts import NO_OWNER, owner_of
 from mesokit.method.mpcd.engine.domains.messages.mpi import receive, send
 from mesokit.method.mpcd.engine.domains.messages.shared import (
     BEAD_WORDS,
@@ -42,7 +42,7 @@ def _find_owners(worker, now, physics, fluid, beads):
         for p in range(len(halo.ranks)):
             halo.asked[p] = 0
         for n in range(halo.count[OWN]):
-            i = halo.who[OWN, n]
+            i = halo.numbers[OWN, n]
             moved = added_scaled(
                 load_place(beads, i, zero),
                 -1.0,
@@ -53,11 +53,11 @@ def _find_owners(worker, now, physics, fluid, beads):
             r, _, _ = load_folded(beads, i, now.box, now.grid.shift)
             place = cell_in_box(r, now.grid)
             if in_block(shared.limits, place):
-                halo.who[PRESENT, present] = i
+                halo.numbers[PRESENT, present] = i
                 present += 1
             else:
                 p, cell = owner_of(shared, place)
-                if p == NOBODY:
+                if p == NO_OWNER:
                     shared.noted[FAULTS] |= FAR
                 else:
                     halo.ask[p, halo.asked[p]], halo.cell[p, halo.asked[p]] = i, cell
@@ -130,7 +130,7 @@ def _take_terms(beads):
             beads.cell[i] = np.int32(halo.terms_in[p, row, 1])
             for k in range(terms):
                 beads.given[i * terms + k] = halo.terms_in[p, row, 2 + k]
-            present = insert(halo.who, PRESENT, present, i)
+            present = insert(halo.numbers, PRESENT, present, i)
     halo.count[PRESENT] = present
 
 

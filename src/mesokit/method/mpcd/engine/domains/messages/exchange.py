@@ -1,7 +1,7 @@
 """The messages of a step: sums go to the ranks whose cells they are of, answers come back.
 
 Rows are those of cells that are not empty, in one order, and then those of ghosts. Integers are
-added, so that who found them changes no bit.
+added, so that the rank that found them changes no bit.
 """
 
 import numpy as np

@@ -12,7 +12,7 @@ from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle, load_scrat
 from mesokit.method.mpcd.engine.domains.messages.shared import FAR, FAULTS, FULL, shares
 from mesokit.scalar.jit import by_type, optional, scalar, seldom
 
-NOBODY = -1
+NO_OWNER = -1
 
 
 @by_type
@@ -65,7 +65,7 @@ def owner_of(shared, place):
             stride *= shared.regions[p, 1, k]
         if inside:
             return p, number
-    return NOBODY, np.int64(0)
+    return NO_OWNER, np.int64(0)
 
 
 @scalar
@@ -78,5 +78,5 @@ def find_owners(worker, now, physics, fluid):
         r = load_particle(strip, place % LANES, 0, physics.zero)
         owner, number = owner_of(shared, cell_in_box(r, now.grid))
         shared.ghost_owner[t, n], shared.ghost_cell[t, n] = owner, number
-        if owner == NOBODY:
+        if owner == NO_OWNER:
             shared.noted[FAULTS] |= FAR

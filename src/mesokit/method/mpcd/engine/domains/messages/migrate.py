@@ -24,7 +24,7 @@ from mesokit.loops.threads import barrier
 from mesokit.method.mpcd.engine.cpu.grid import cell_in_box, in_block, moved_grid
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle
-from mesokit.method.mpcd.engine.domains.messages.ghosts import NOBODY, owner_of
+from mesokit.method.mpcd.engine.domains.messages.ghosts import NO_OWNER, owner_of
 from mesokit.method.mpcd.engine.domains.messages.mpi import finish
 from mesokit.method.mpcd.engine.domains.messages.rows import receive_rows, send_rows
 from mesokit.method.mpcd.engine.domains.messages.shared import (
@@ -145,7 +145,7 @@ def note_leaving(thread, fluid, strip, s, grid, zero):
         if marks[i] != 0 and found < shared.leaving.shape[1]:
             r = load_particle(strip, i, 0, zero)
             owner, _ = owner_of(shared, cell_in_box(r, grid))
-            if owner != NOBODY:
+            if owner != NO_OWNER:
                 shared.leaving[thread, found], shared.owner[thread, found] = first + i, owner
                 found += 1
     shared.left[thread, 0] = found

@@ -92,7 +92,7 @@ def find_near(law, i, begin, end, world, room, n):
         near = 1 if dot(separation, separation) < apart * apart else 0
         c = np.uint64(n)
         at = np.uint64(kept_at + s)
-        room.who[FIRST + c], room.who[SECOND + c], room.who[PLACE + c] = np.uint64(i), j, at
+        room.pairs[FIRST + c], room.pairs[SECOND + c], room.pairs[PLACE + c] = np.uint64(i), j, at
         store(room.numbers, SEPARATION, c, separation)
         n += near
     return n
@@ -103,10 +103,10 @@ def bring(world, room, n):
     """What the spheres of a batch have, side by side."""
     bodies = world.bodies
     for c in range(np.uint64(n)):
-        i, j = room.who[FIRST + c], room.who[SECOND + c]
+        i, j = room.pairs[FIRST + c], room.pairs[SECOND + c]
         met = meeting(body(bodies, bodies.seen, i), body(bodies, bodies.seen, j))
         store_meeting(room.numbers, c, met)
-        store_springs(room.numbers, c, kept(world.lists.springs, room.who[PLACE + c]))
+        store_springs(room.numbers, c, kept(world.lists.springs, room.pairs[PLACE + c]))
 
 
 @scalar
@@ -131,7 +131,7 @@ def add_up(law, mine, world, room, n):
     """Add a batch to the sums of its spheres; a bound of its forces and torques."""
     bodies, largest = world.bodies, 0.0
     for c in range(np.uint64(n)):
-        i, j = room.who[FIRST + c], room.who[SECOND + c]
+        i, j = room.pairs[FIRST + c], room.pairs[SECOND + c]
         force = load(room.counts, FORCE, c, COUNT)
         add(bodies.force, i, force)
         add(bodies.torque, i, load(room.counts, TORQUE, c, COUNT))
@@ -139,7 +139,7 @@ def add_up(law, mine, world, room, n):
             subtract(bodies.force, j, force)
             add(bodies.torque, j, load(room.counts, BACK, c, COUNT))
         largest = max(largest, room.numbers[np.uint64(BOUND) * ROW + c])
-        keep(world.lists.springs, room.who[PLACE + c], load_springs(room.numbers, c))
+        keep(world.lists.springs, room.pairs[PLACE + c], load_springs(room.numbers, c))
     return largest
 
 

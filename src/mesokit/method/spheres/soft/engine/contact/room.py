@@ -30,7 +30,7 @@ class Room(NamedTuple):
 
     numbers: Any
     counts: Any
-    who: Any
+    pairs: Any
     taken: Any
 
 
