@@ -199,8 +199,8 @@ def _surveyed(solids: Solids, middles: Any) -> survey.Planes:
     found = survey.Planes(normals, heights, terms, feet)
     survey.planes(near, pattern, away, shifts, middles, share, found)
     slippery = np.array([body.surface.rule == "slip" for body in solids.bodies])
-    nobody = slippery[solids.body_of_term[terms]] | (share <= ROUNDING) | (share >= 1.0 - ROUNDING)
-    heights[nobody | (terms < 0)] = EVERYWHERE
+    empty = slippery[solids.body_of_term[terms]] | (share <= ROUNDING) | (share >= 1.0 - ROUNDING)
+    heights[empty | (terms < 0)] = EVERYWHERE
     return found
 
 

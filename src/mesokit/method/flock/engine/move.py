@@ -103,7 +103,7 @@ def turn(physics, counter, strip, rows, count, pattern):
         around = strip[d * STRIP + i]
         new = turned(physics.noise, counter, name, old, total, around)
         store(strip, heading, i, new)
-        store(strip, away, i, scaled(physics.way, chosen(physics.follows, old, new)))
+        store(strip, away, i, scaled(physics.step_length, chosen(physics.follows, old, new)))
 
 
 @inner
@@ -112,8 +112,8 @@ def fly(physics, strip, rows, count, pattern):
     axes, d = physics.axes, len(pattern)
     heading, place, away = rows, rows + d, rows + 2 * d
     for i in range(count):
-        r, way = load(strip, place, i, pattern), load(strip, away, i, pattern)
-        r, new = flown(physics.solid, r, way, load(strip, heading, i, pattern))
+        r, displacement = load(strip, place, i, pattern), load(strip, away, i, pattern)
+        r, new = flown(physics.solid, r, displacement, load(strip, heading, i, pattern))
         if exposed(physics.solid):
             store(strip, heading, i, new)
         boxes = boxes_away(axes.inverse, r)

@@ -37,7 +37,7 @@ LEAST = 4  # groups for a thread: fewer do not pay for the gate
 
 
 @by_type
-def move_beads(worker, now, physics, fluid, beads):
+def move_solutes(worker, now, physics, fluid, beads):
     """Do what the flags ask: the pending collision, the flight, the cells (see `stream`)."""
     if len(beads) == 0:
         return lambda worker, now, physics, fluid, beads: None

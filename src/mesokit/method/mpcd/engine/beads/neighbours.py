@@ -108,7 +108,7 @@ def note_moves(lists, halo, box, thread, places, share_of, zero):
 
 
 @scalar
-def stale(lists, box, worker):
+def lists_outdated(lists, box, worker):
     """Whether the lists must be made anew; the answer is the same in all threads."""
     farthest = 0.0
     for t in range(worker.threads):
@@ -129,7 +129,7 @@ def _refresh(worker, lists, halo, box, places, zero):
     around = share(number_of(halo, everybody, AROUND), worker.thread, worker.threads)
     note_moves(lists, halo, box, worker.thread, places, around, zero)
     barrier(worker)
-    if stale(lists, box, worker):
+    if lists_outdated(lists, box, worker):
         find_cells(lists, halo, box, places, around, zero)
         lists.noted[worker.thread, OFFSET] = offset_of_images(box)
         lists.noted[worker.thread, MADE] = 1.0

@@ -158,12 +158,12 @@ def settle_batch(worker, counter, physics, fluid, which, count):
 
 
 @by_type
-def nobody(fluid):
+def is_empty(fluid):
     """Whether there is no fluid at all; a rank that has no particles may have cells of others."""
-    return (lambda fluid: False) if shares(fluid) else _nobody
+    return (lambda fluid: False) if shares(fluid) else _is_empty
 
 
-def _nobody(fluid):
+def _is_empty(fluid):
     return fluid.particles.filling.molecules == 0
 
 
@@ -178,7 +178,7 @@ def _collide(worker, counter, physics, fluid):
     cells, scratch = fluid.cells, fluid.scratch
     rows, totals = scratch.coefficients[worker.thread], scratch.terms[worker.thread]
     batches = (cells.number + LANES - 1) // LANES
-    if nobody(fluid):  # a random solvent is only where beads are
+    if is_empty(fluid):  # a random solvent is only where beads are
         batches = 0
     first, last = share(batches, worker.thread, worker.threads)
     for b in range(first, last):

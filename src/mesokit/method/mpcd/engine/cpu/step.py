@@ -21,7 +21,7 @@ from mesokit.method.mpcd.engine.domains.messages.migrate import (
     note_done,
     room_left,
 )
-from mesokit.method.mpcd.engine.embedded.stages import move_embedded_beads, stream_embedded
+from mesokit.method.mpcd.engine.embedded.stages import move_beads, stream
 from mesokit.method.mpcd.engine.virtual.stages import fill_walls, follow_flow, recoil, top_up_walls
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.random import Counter, grid_shift
@@ -30,11 +30,9 @@ from mesokit.scalar.random import Counter, grid_shift
 @inner
 def step(worker, now, physics, fluid, beads, walls):
     """One collision interval: r, v from t to t + dt."""
-    stream_embedded(
-        worker, now, physics, fluid, beads
-    )  # v: the collision at t; r, v: t -> t + dt; sums
+    stream(worker, now, physics, fluid, beads)  # v: the collision at t; r, v: t -> t + dt; sums
     lap(worker, SWEEP)
-    move_embedded_beads(worker, now, physics, fluid, beads)  # the same for solutes, in sub-steps
+    move_beads(worker, now, physics, fluid, beads)  # the same for solutes, in sub-steps
     lap(worker, BEADS)
     fill_walls(worker, now, physics, fluid, walls)  # virtual particles at t + dt
     barrier(worker)
@@ -45,9 +43,7 @@ def step(worker, now, physics, fluid, beads, walls):
     fill_field(worker, physics, fluid)  # what cells must know of those next to them
     join_beads(worker, now, physics, fluid, beads)  # cells with solutes: sums of both
     answer_others(worker, now, physics, fluid, beads, walls)  # ranks: who have particles here
-    collide_cells(
-        worker, now, physics, fluid
-    )  # thermostat and rule at t + dt: coefficients of each cell
+    collide_cells(worker, now, physics, fluid)  # thermostat, rule at t + dt: coefficients
     answer_beads(worker, now, physics, fluid, beads)
     take_answers(worker, now, physics, fluid, walls)
     barrier(worker)
@@ -68,8 +64,8 @@ def advance(worker, course, physics, fluid, beads, walls):
     note_done(worker, fluid, n)
     if n > 0:
         now = last_collision(course, now)
-        stream_embedded(worker, now, physics, fluid, beads)
-        move_embedded_beads(worker, now, physics, fluid, beads)
+        stream(worker, now, physics, fluid, beads)
+        move_beads(worker, now, physics, fluid, beads)
         barrier(worker)
         lap(worker, FINISH)
 

@@ -43,7 +43,7 @@ from mesokit.scalar.vector import added, products
 
 
 @by_type
-def stream(worker, now, physics, fluid):
+def stream_fluid(worker, now, physics, fluid):
     """Do what the flags ask, in this order, for each strip in turn.
 
     Time levels: velocities of step n before COLLIDE, after it; positions and velocities of

@@ -74,10 +74,10 @@ def mark_around(embedded, r, stamp):
 
 @scalar
 def path_of(embedded, physics, r, v):
-    """The longest way that a particle can fly in a timestep, far from beads."""
+    """The longest path that a particle can fly in a timestep, far from beads."""
     a, time = vector(halfway(physics.field, r, v, physics.timestep), r), physics.timestep
-    way = time * math.sqrt(dot(v, v)) + 0.5 * time * time * math.sqrt(dot(a, a))
-    return way + embedded.further
+    path = time * math.sqrt(dot(v, v)) + 0.5 * time * time * math.sqrt(dot(a, a))
+    return path + embedded.further
 
 
 @scalar
@@ -174,5 +174,5 @@ def note(faults, step, what, which):
 @scalar
 def has_left(start, r, bound):
     """Whether a place is farther from where it was than it was said to be."""
-    way = added_scaled(r, -1.0, start)
-    return not dot(way, way) <= bound * bound
+    displacement = added_scaled(r, -1.0, start)
+    return not dot(displacement, displacement) <= bound * bound

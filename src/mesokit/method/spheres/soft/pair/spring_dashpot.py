@@ -67,7 +67,7 @@ class SpringDashpot(ContactLaw):
     pulls: bool = param(True, doc="whether the dashpot may pull at the end of a contact")
 
     @model_validator(mode="after")
-    def _one_way(self) -> SpringDashpot:
+    def _one_choice(self) -> SpringDashpot:
         if self.stiffness is None and self.damping is not None:
             raise ValueError("expected a stiffness with the damping")
         if self.stiffness is not None and self.contact_time is not None:

@@ -36,10 +36,10 @@ NUMBERS, PLACES = 5, 6  # tags of messages
 
 
 class Halo(NamedTuple):
-    """Who is where; q partners, B beads.
+    """Which rank has which bead; q partners, B beads.
 
-    ranks (q,): the partners. count (3,), numbers (3, B): of own beads, of these and those received from
-    partners, of those in own cells, whichever rank moves them; see `state.OWN`.
+    ranks (q,): the partners. count (3,), numbers (3, B): of own beads, of these and those
+    received from partners, of those in own cells, whichever rank moves them; see `state.OWN`.
     seen (B,): step at which each was last around; began (B * d,): where own beads were when it did.
     reach: how far from a block beads matter there; most: square of the longest path in a step.
     told, heard (q,), tell, hear (q, B): which beads the partners are told of, and tell of.
