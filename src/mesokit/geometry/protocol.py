@@ -41,7 +41,7 @@ def touches(solid, clear, r, v, a, time):
 
 
 @generic
-def leaps(solid, way):
+def leaps(solid, displacement):
     """Whether a way is longer than a stride, of solids in tables: `clear` may not be so large."""
 
 

@@ -280,7 +280,7 @@ def _particles(
     n, frames = trajectory.number, len(steps)
     group.attrs["dimension"] = case.box.dimension
     own = trajectory.own
-    _who(group, case, trajectory, own)
+    _identities(group, case, trajectory, own)
     if "diameter" in own:
         group["radius"] = 0.5 * own["diameter"]
         group["radius"].attrs["reduced_unit"] = UNITS["radius"]
@@ -320,7 +320,9 @@ def _particles(
     del group["step"], group["time"]  # the elements have linked them
 
 
-def _who(group: Any, case: Case, trajectory: TrajectoryWriter, own: Mapping[str, Any]) -> None:
+def _identities(
+    group: Any, case: Case, trajectory: TrajectoryWriter, own: Mapping[str, Any]
+) -> None:
     """Number, mass and kind of each particle, some after the other."""
     n = trajectory.number
     masses = np.array([kind.mass for one in case.groups for kind in one.kinds], float)

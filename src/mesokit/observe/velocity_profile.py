@@ -188,9 +188,11 @@ def _poiseuille(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
     basis = acc.powers(2)
     parabola = fit(velocity, basis, mass * acc.inside())
     c0, _, c2 = parabola.value
-    push = setting.acceleration(acc.case)[acc.component]
+    acceleration = setting.uniform_acceleration(acc.case)[acc.component]
     value, error = parabola.scalar(
-        -push / (2 * c2), np.array([0, 0, push / (2 * c2**2)]), over=(c2, np.eye(3)[2])
+        -acceleration / (2 * c2),
+        np.array([0, 0, acceleration / (2 * c2**2)]),
+        over=(c2, np.eye(3)[2]),
     )
     short = acc.short_run(acc.expected_viscosity() if np.isnan(value) else value)
     found = [

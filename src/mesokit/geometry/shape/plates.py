@@ -157,7 +157,7 @@ def _(solid, r, v, a, time, last):
 
 
 @leaps.register(SlitX, SlitY, SlitZ)
-def _(solid, way):
+def _(solid, displacement):
     return False
 
 

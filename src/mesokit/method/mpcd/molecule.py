@@ -137,7 +137,7 @@ class Molecule:
             cosine=cosine,
             late=sine / omega,
             early=-sine * omega,
-            ways=-K * (timestep + swing),
+            separations=-K * (timestep + swing),
             mixed=-K * (sine / omega) ** 2,
             rates=-K * (timestep - swing) / omega**2,
         )
@@ -176,7 +176,7 @@ class Dimers(NamedTuple):
     cosine: float
     late: float
     early: float
-    ways: float
+    separations: float
     mixed: float
     rates: float
 

@@ -90,7 +90,7 @@ class SphereSource:
         once = [(0, 1, -1) if k not in closed else (0,) for k in self.setting.columns]
         found: dict[tuple[float, float], None] = {}
         for counts in itertools.product(*once):
-            way = sum(n * edges[k] for n, k in zip(counts, self.setting.columns, strict=True))
-            first, second = way[self.setting.columns].tolist()
+            shift = sum(n * edges[k] for n, k in zip(counts, self.setting.columns, strict=True))
+            first, second = shift[self.setting.columns].tolist()
             found[first, second] = None
         return tuple(found)

@@ -24,9 +24,9 @@ class NoCollision(CollisionRule):
     conserves: ClassVar[tuple[str, ...]] = ("mass", "momentum", "energy", "angular momentum")
     rates: ClassVar[dict[int, float]] = {2: 280.0, 3: 190.0}
 
-    def kernel(self, dimension: int, kT: float) -> Free:
+    def kernel(self, dimension: int, kT: float) -> Uncollided:
         """Parameters for the scalar functions below."""
-        return Free()
+        return Uncollided()
 
     def own_sums(self, dimension: int) -> tuple[str, ...]:
         """None."""
@@ -37,25 +37,25 @@ class NoCollision(CollisionRule):
         return 1
 
 
-class Free(NamedTuple):
+class Uncollided(NamedTuple):
     """No collision."""
 
 
-@contribute.register(Free)
-def _(rule, counter, who, m, v, r):
+@contribute.register(Uncollided)
+def _(rule, counter, key, m, v, r):
     return v, ()
 
 
-@freedom.register(Free)
+@freedom.register(Uncollided)
 def _(rule, n):
     return 0.0
 
 
-@coefficients.register(Free)
+@coefficients.register(Uncollided)
 def _(rule, thermostat, variate, chance, cell):
     return (0.0,)
 
 
-@collide.register(Free)
+@collide.register(Uncollided)
 def _(rule, c, v, r):
     return v

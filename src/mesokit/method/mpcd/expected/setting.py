@@ -145,8 +145,8 @@ def temperature_note(case: Case) -> str:
     percent = 100 * offset(case)
     if abs(percent) <= 0.1:
         return ""
-    way = "warm" if percent > 0 else "cold"
-    return f"approximate: this thermostat reads up to {abs(percent):.2g} % {way}"
+    side = "warm" if percent > 0 else "cold"
+    return f"approximate: this thermostat reads up to {abs(percent):.2g} % {side}"
 
 
 def mass_density(case: Case) -> float:
@@ -219,7 +219,7 @@ def slipping(case: Case) -> str:
     return "approximate: particles of so thin a fluid fly from wall to wall" if thin else ""
 
 
-def acceleration(case: Case) -> Array:
+def uniform_acceleration(case: Case) -> Array:
     """The uniform acceleration (d,), zero without one."""
     dimension = case.box.dimension
     return np.array(case.fluid.force.uniform(dimension) or (0.0,) * dimension, float)
@@ -231,9 +231,9 @@ def gathered(case: Case) -> bool:
     return demixes or (force.gathers and force.uniform(case.box.dimension) is None)
 
 
-def push_axis(case: Case) -> int | None:
+def driven_axis(case: Case) -> int | None:
     """Number of the only axis along which a uniform force drives the fluid, None for another."""
-    axes = np.flatnonzero(acceleration(case))
+    axes = np.flatnonzero(uniform_acceleration(case))
     return int(axes[0]) if len(axes) == 1 else None
 
 
@@ -341,7 +341,7 @@ def flow(case: Case, component: int) -> Flow:
         coefficients = transport(case)
         viscosity = coefficients.viscosity if coefficients else None
         return Flow(*force.steady_flow(component, box.size, viscosity))
-    if acceleration(case)[component]:
+    if uniform_acceleration(case)[component]:
         return Flow("accelerating", 1, None)
     return Flow("rest", 1, np.zeros_like)
 
@@ -374,16 +374,25 @@ def _slit(case: Case, wall: Plates, component: int) -> Flow:
         return Flow("sheared slit", across, None)
     if component == across:
         return Flow("rest", across, np.zeros_like)
-    height, push = float(case.box.size[across]), float(acceleration(case)[component])
+    height, acceleration_along = (
+        float(case.box.size[across]),
+        float(uniform_acceleration(case)[component]),
+    )
     lower, upper = (surface_velocity(s, component) for s in (wall.lower, wall.upper))
     sticky = [s.rule == "no-slip" for s in (wall.lower, wall.upper)]
     force = case.fluid.force
     if force.uniform(case.box.dimension) is None and force.drives(component):
         return Flow(f"{name_of(force)} slit", across, None)
     if not any(sticky):
-        return Flow("plug", across, None if push else np.zeros_like)
-    kind = "poiseuille" if push else "couette" if lower != upper and all(sticky) else "rest"
-    if not push:
+        return Flow("plug", across, None if acceleration_along else np.zeros_like)
+    kind = (
+        "poiseuille"
+        if acceleration_along
+        else "couette"
+        if lower != upper and all(sticky)
+        else "rest"
+    )
+    if not acceleration_along:
         lower, upper = (lower if sticky[0] else upper), (upper if sticky[1] else lower)
         return Flow(kind, across, lambda y: theory.couette_velocity(y, height, upper, lower))
     coefficients = transport(case)
@@ -396,7 +405,7 @@ def _slit(case: Case, wall: Plates, component: int) -> Flow:
             across,
             lambda y: (
                 theory.couette_velocity(y, height, upper, lower)
-                + theory.poiseuille_velocity(y, height, push, nu)
+                + theory.poiseuille_velocity(y, height, acceleration_along, nu)
             ),
         )
 
@@ -404,7 +413,7 @@ def _slit(case: Case, wall: Plates, component: int) -> Flow:
     def half(y: Array) -> Array:
         distance = y if sticky[0] else height - y
         wall_speed = lower if sticky[0] else upper
-        return wall_speed + theory.poiseuille_velocity(distance, 2 * height, push, nu)
+        return wall_speed + theory.poiseuille_velocity(distance, 2 * height, acceleration_along, nu)
 
     return Flow("half poiseuille", across, half)
 

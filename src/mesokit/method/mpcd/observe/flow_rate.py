@@ -48,9 +48,9 @@ class FlowRate(Observable):
         """Number of the axis in this case."""
         if self.axis is not None:
             return AXES.index(self.axis)
-        pushed = setting.push_axis(case)
-        if pushed is not None:
-            return pushed
+        driven = setting.driven_axis(case)
+        if driven is not None:
+            return driven
         flowing = setting.flowing_axes(case)
         return AXES.index(flowing[0]) if len(flowing) == 1 else 0
 
@@ -109,8 +109,12 @@ class FlowRateAccumulator(BlockAccumulator):
         A force drives the flow to the momentum that it gives in that time: exact in slow flow, for
         the response to a force is the integral of the momentum's correlation (Kubo 1957).
         """
-        case, push = self.case, float(setting.acceleration(self.case)[self.axis])
-        time = float(self.blocks.mean()) * self.mass / (self.moving_mass() * push) if push else -1.0
+        case, acceleration = self.case, float(setting.uniform_acceleration(self.case)[self.axis])
+        time = (
+            float(self.blocks.mean()) * self.mass / (self.moving_mass() * acceleration)
+            if acceleration
+            else -1.0
+        )
         return time if case.walls and time > 0 else np.nan
 
     def moving_mass(self) -> float:
@@ -157,9 +161,12 @@ class FlowRateAccumulator(BlockAccumulator):
                 note,
             ),
         ]
-        push, coefficients = setting.acceleration(self.case), setting.transport(self.case)
-        if setting.push_axis(self.case) == self.axis and coefficients is not None:
-            scale = coefficients.viscosity / float(push[self.axis])
+        acceleration, coefficients = (
+            setting.uniform_acceleration(self.case),
+            setting.transport(self.case),
+        )
+        if setting.driven_axis(self.case) == self.axis and coefficients is not None:
+            scale = coefficients.viscosity / float(acceleration[self.axis])
             found.append(
                 Comparison(
                     f"permeability along {letter}",
@@ -175,7 +182,7 @@ class FlowRateAccumulator(BlockAccumulator):
     def expected(self) -> tuple[float, str]:
         """The superficial velocity and what says so; nan where nothing is known."""
         case, coefficients = self.case, setting.transport(self.case)
-        push = float(setting.acceleration(case)[self.axis])
+        acceleration = float(setting.uniform_acceleration(case)[self.axis])
         if not setting.obstructed(case):
             flow = setting.flow(case, self.axis)
             edges = np.linspace(0.0, case.box.size[flow.across], 65)
@@ -183,7 +190,7 @@ class FlowRateAccumulator(BlockAccumulator):
             return (np.nan, "") if bins is None else (float(bins.mean()), flow.kind)
         if not setting.driven(case):
             return 0.0, "rest"
-        if coefficients is None or not push or setting.push_axis(case) != self.axis:
+        if coefficients is None or not acceleration or setting.driven_axis(case) != self.axis:
             return np.nan, ""
         viscosity, pipe, lattice = (
             coefficients.viscosity,
@@ -191,7 +198,7 @@ class FlowRateAccumulator(BlockAccumulator):
             recognise.lattice(case),
         )
         if pipe is not None and pipe.axis == self.axis:
-            rate = theory.hagen_poiseuille_flow_rate(pipe.radius, push, viscosity)
+            rate = theory.hagen_poiseuille_flow_rate(pipe.radius, acceleration, viscosity)
             area = np.prod(case.box.size) / case.box.size[self.axis]
             return float(rate / area), "hagen-poiseuille"
         if lattice is None or self.axis not in lattice.across:
@@ -199,8 +206,8 @@ class FlowRateAccumulator(BlockAccumulator):
         try:
             if len(lattice.across) == 2:
                 k = theory.square_array_permeability(lattice.concentration, lattice.pitch)
-                return k * push / viscosity, "square array, slow flow"
+                return k * acceleration / viscosity, "square array, slow flow"
             k = theory.cubic_array_permeability(lattice.concentration, lattice.pitch)
-            return k * push / viscosity, "cubic array, slow flow"
+            return k * acceleration / viscosity, "cubic array, slow flow"
         except ValueError:  # denser than the theory goes
             return np.nan, ""

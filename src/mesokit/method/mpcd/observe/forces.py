@@ -73,7 +73,7 @@ class Forces(Observable):
             raise CaseError("area: only in 3D; leave it out")
         if self.flow is not None:
             case.box.index(self.flow, "flow")
-        elif setting.push_axis(case) is None:
+        elif setting.driven_axis(case) is None:
             raise CaseError("flow: missing; no force along one axis says which is that of the drag")
 
     def accumulator(self, case: Case) -> ForcesAccumulator:
@@ -188,7 +188,7 @@ class ForcesAccumulator(BlockAccumulator):
             rest[[case.fluid.force.drives(axis) for axis in range(self.dimension)]] = np.nan
             return rest
         mass = setting.mass_density(case) * free_volume(case)
-        total: Array = setting.acceleration(case) * mass
+        total: Array = setting.uniform_acceleration(case) * mass
         if all(isinstance(wall, Plates) and wall.slips for wall in case.walls):
             closed = np.isin(range(self.dimension), list(setting.closed_axes(case)))
             total[~closed & (total != 0)] = np.nan
@@ -238,7 +238,7 @@ class ForcesAccumulator(BlockAccumulator):
         force = np.arange(np.prod(self.shape)).reshape(self.shape)  # places of the components
         found = []
         few = len(self.bodies) <= NAMED
-        for axis in map(int, np.flatnonzero(setting.acceleration(self.case))):
+        for axis in map(int, np.flatnonzero(setting.uniform_acceleration(self.case))):
             every = np.zeros(mean.value.shape)
             every[force[:, axis]] = 1.0
             value, error = mean.scalar(every @ mean.value, every)
@@ -310,7 +310,7 @@ class ForcesAccumulator(BlockAccumulator):
     def along(self) -> int:
         """Number of the axis of the drag."""
         given = self.observable.flow
-        flow = setting.push_axis(self.case) if given is None else AXES.index(given)
+        flow = setting.driven_axis(self.case) if given is None else AXES.index(given)
         assert flow is not None  # as `check` has seen
         return flow
 

@@ -232,8 +232,8 @@ class RoundFlow:
 
     def __init__(self, case: Case) -> None:
         pipe, gap, drum = recognise.pipe(case), recognise.gap(case), recognise.drum(case)
-        post = recognise.post(case)
-        push, coefficients = setting.acceleration(case), setting.transport(case)
+        post = recognise.lone_post(case)
+        acceleration, coefficients = setting.uniform_acceleration(case), setting.transport(case)
         self.kind, self.component, self.round = "rest", "azimuthal", True
         self.profile: Callable[[Array], Array] | None = None
         self.surfaces: tuple[float, ...] = ()
@@ -241,8 +241,8 @@ class RoundFlow:
         if pipe is not None and forced:
             self.axis, self.centre, self.radii = pipe.axis, pipe.centre, (0.0, pipe.radius)
             self.kind, self.component = "hagen-poiseuille", "axial"
-            if coefficients and setting.push_axis(case) == pipe.axis:
-                nu, g = coefficients.viscosity, float(push[pipe.axis])
+            if coefficients and setting.driven_axis(case) == pipe.axis:
+                nu, g = coefficients.viscosity, float(acceleration[pipe.axis])
                 self.profile = lambda r: theory.hagen_poiseuille_velocity(r, pipe.radius, g, nu)
         elif gap is not None:
             self.axis, self.centre, self.radii = gap.axis, gap.centre, (gap.inner, gap.outer)
@@ -331,9 +331,12 @@ def _pipe(acc: RadialProfileAccumulator, velocity: Estimate) -> Fitted:
     basis, radius = acc.powers(0, 2), acc.flow.radii[1]
     parabola = fit(velocity, basis, acc.crowd * acc.inside())
     c0, c2 = parabola.value
-    push, coefficients = setting.acceleration(acc.case)[acc.axis], setting.transport(acc.case)
-    curved = np.array([0, push / (4 * c2**2)])
-    nu, error = parabola.scalar(-push / (4 * c2), curved, over=(c2, np.eye(2)[1]))
+    acceleration, coefficients = (
+        setting.uniform_acceleration(acc.case)[acc.axis],
+        setting.transport(acc.case),
+    )
+    curved = np.array([0, acceleration / (4 * c2**2)])
+    nu, error = parabola.scalar(-acceleration / (4 * c2), curved, over=(c2, np.eye(2)[1]))
     known = coefficients.viscosity if coefficients else np.nan
     slowest = known if np.isnan(nu) else nu
     short = acc.short_run(5.78 * slowest / radius**2)  # the first zero of J0, squared

@@ -20,22 +20,22 @@ class NoThermostat(Thermostat):
     canonical: ClassVar[bool] = True
     in_theory: ClassVar[Named | None] = "none"
 
-    def kernel(self, kT: float, floor: float) -> Free:
+    def kernel(self, kT: float, floor: float) -> NoRescaling:
         """Parameters for the scalar functions below; an energy below the floor is noise."""
-        return Free(kT)
+        return NoRescaling(kT)
 
 
-class Free(NamedTuple):
+class NoRescaling(NamedTuple):
     """No thermostat; kT only sets the temperature of the start."""
 
     kT: float
 
 
-@target.register(Free)
+@target.register(NoRescaling)
 def _(thermostat, variate, freedom, energy):
     return energy
 
 
-@stretch.register(Free)
+@stretch.register(NoRescaling)
 def _(thermostat, variate, freedom, energy):
     return ()

@@ -23,11 +23,18 @@ from mesokit.loops.layout import (
     sums_length,
     zeros,
 )
-from mesokit.method.mpcd.engine.beads.allocate import beads_of
+from mesokit.method.mpcd.engine.beads.allocate import allocate_beads
 from mesokit.method.mpcd.engine.beads.registers import bead_size
 from mesokit.method.mpcd.engine.cell_gradient import Field
 from mesokit.method.mpcd.engine.cpu.grid import Grid
-from mesokit.method.mpcd.engine.cpu.groups import Cells, Fluid, Particles, Scratch, Taken, Walls
+from mesokit.method.mpcd.engine.cpu.groups import (
+    Cells,
+    FluidMemory,
+    Particles,
+    Scratch,
+    Taken,
+    Walls,
+)
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW
 from mesokit.method.mpcd.engine.cpu.physics import Physics
 from mesokit.method.mpcd.engine.cpu.sort import Order
@@ -69,7 +76,7 @@ class Memory:
         self.solutes: Any = ()
         if case.solutes is not None:
             embedded = embedded_of(case.solutes, numbers, threads)
-            self.solutes = beads_of(case.solutes, self)._replace(embedded=embedded)
+            self.solutes = allocate_beads(case.solutes, self)._replace(embedded=embedded)
         zero, cells = (0.0,) * d, tuple(float(n) for n in numbers.cells)
         self.grid: Any = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
         if domain is not None:
@@ -146,7 +153,7 @@ class Memory:
         lanes = blocks_for(self.strips * LANES) * BLOCK
         data, image = zeros(lanes // BLOCK * self.rows * ROW), zeros((d, lanes), np.int32)
         cell = zeros(lanes, np.int32)
-        self.fluid = Fluid(
+        self.fluid = FluidMemory(
             Particles(data, cell, np.arange(lanes), image, filling, self.rows),
             self._cells(),
             zeros((2, self.strips * (LANES // FEW))),
@@ -252,13 +259,13 @@ class Memory:
 
     def fill(self, positions: Floats, velocities: Floats, images: Any = 0) -> None:
         """Write what is known of each particle (n, d), by particle number, in the present order."""
-        who = self.fluid.particles.ident[self.places]
+        ids = self.fluid.particles.ident[self.places]
         images = np.broadcast_to(images, positions.shape)
-        self.put(who, positions[who], velocities[who], images[who])
+        self.put(ids, positions[ids], velocities[ids], images[ids])
 
     def put(
         self,
-        who: NDArray[np.int64],
+        ids: NDArray[np.int64],
         positions: Floats,
         velocities: Floats,
         images: NDArray[Any],
@@ -270,26 +277,26 @@ class Memory:
             self.numbers.dimension,
             first * self.numbers.beads,
         )
-        data, places = particles.data, self.places[start : start + len(who)]
-        particles.ident[places] = who
+        data, places = particles.data, self.places[start : start + len(ids)]
+        particles.ident[places] = ids
         for k in range(d):
             data[self.at(k, places)] = positions[:, k]
             data[self.at(d + k, places)] = velocities[:, k]
         particles.image[:, places] = images.T
         if self.rows > 2 * d:
-            data[self.at(2 * d, places)] = self.numbers.masses_of(who)
+            data[self.at(2 * d, places)] = self.numbers.masses_of(ids)
         self.fluid.room[:] = 0.0
 
     def read(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
         """Positions and velocities as they lie in memory, and images (n, d), by particle number."""
-        who, (positions, velocities, images) = (
+        ids, (positions, velocities, images) = (
             self.fluid.particles.ident[self.places],
             self.rows_of(),
         )
-        out = np.empty((len(who), 2 * self.numbers.dimension))
-        out[who] = np.concatenate([positions, velocities], axis=1)
+        out = np.empty((len(ids), 2 * self.numbers.dimension))
+        out[ids] = np.concatenate([positions, velocities], axis=1)
         counts = np.empty(images.shape, np.int32)
-        counts[who] = images
+        counts[ids] = images
         return out[:, : positions.shape[1]], out[:, positions.shape[1] :], counts
 
     def rows_of(self) -> tuple[Floats, Floats, NDArray[np.int32]]:

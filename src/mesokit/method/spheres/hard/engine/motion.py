@@ -13,8 +13,8 @@ from mesokit.scalar.vector import added_scaled
 
 
 @elementwise
-def entries(rows, i, start, like):
-    """Consecutive entries of row i, as a tuple as long as `like`."""
+def entries(rows, i, start, pattern):
+    """Consecutive entries of row i, as a tuple as long as `pattern`."""
     return "rows[i, start + {k}]"
 
 
@@ -78,22 +78,22 @@ class Mover(NamedTuple):
 
 
 @elementwise
-def in_column(columns, a, start, like):
-    """Consecutive entries of column a, as a tuple as long as `like`."""
+def in_column(columns, a, start, pattern):
+    """Consecutive entries of column a, as a tuple as long as `pattern`."""
     return "columns[start + {k}, a]"
 
 
 @scalar
-def of_column(columns, a, like):
+def of_column(columns, a, pattern):
     """A sphere whose state is a column."""
-    r, v = in_column(columns, a, 0, like), in_column(columns, a, VELOCITY, like)
+    r, v = in_column(columns, a, 0, pattern), in_column(columns, a, VELOCITY, pattern)
     return Mover(r, v, columns[TIME, a], columns[RADIUS, a])
 
 
 @scalar
-def of_row(state, i, like):
+def of_row(state, i, pattern):
     """Sphere i as it is in memory."""
-    r, v = entries(state, i, 0, like), entries(state, i, VELOCITY, like)
+    r, v = entries(state, i, 0, pattern), entries(state, i, VELOCITY, pattern)
     return Mover(r, v, state[i, TIME], state[i, RADIUS])
 
 
