@@ -197,3 +197,12 @@ def numbers_with(*notes: str) -> list[Result]:
 def test_pooled_numbers_have_the_caveats_of_runs(pooled, runs, note):
     (found,) = with_those_of(*numbers_with(pooled), numbers_with(*runs)).comparisons
     assert found.note.startswith(note) and ("law" in found.note) == ("law" in pooled)
+
+
+@pytest.mark.parametrize(("steps", "height"), [(60, 16), (100, 24)])
+def test_a_short_run_of_a_flow_that_has_built_up_has_its_own_caveat(steps, height):
+    simulation = Simulation(flow(steps, 8 * height**2, height=height))
+    simulation.run()
+    [viscosity, *_] = simulation["velocity-profile"].comparisons
+    assert "error bar is a lower bound: the run has 0." in viscosity.note
+    assert "needs" not in viscosity.note

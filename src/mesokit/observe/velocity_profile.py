@@ -162,6 +162,11 @@ class VelocityProfileAccumulator(ProfileAccumulator):
         coefficients = setting.transport(self.case)
         return coefficients.viscosity if coefficients else np.nan
 
+    def viscosity_note(self, error: float) -> str:
+        """Why that of the theory is not this fluid's, or is off by more than the error bar."""
+        caveat = setting.caveat(self.case)
+        return caveat or setting.chaos_is_off(self.case, self.expected_viscosity(), error)
+
     def short_run(self, viscosity: float) -> str:
         """Where blocking cannot see the slowest eddies, which live H^2/(pi^2 nu): a note."""
         time = self.blocks.count * self.observable.every * self.case.fluid.timestep
@@ -202,7 +207,7 @@ def _poiseuille(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
             error,
             acc.expected_viscosity(),
             VISCOSITY,
-            noted(value, setting.caveat(acc.case), short) or "independent of slip",
+            noted(value, acc.viscosity_note(error), short) or "independent of slip",
         )
     ]
     quarter = acc.edges[-1] ** 2 / 4
@@ -277,7 +282,7 @@ def _kolmogorov(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
             error,
             acc.expected_viscosity(),
             VISCOSITY,
-            noted(value, setting.caveat(acc.case)) or "steady",
+            noted(value, acc.viscosity_note(error)) or "steady",
         )
     ]
 

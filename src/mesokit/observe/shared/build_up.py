@@ -7,6 +7,7 @@ import dataclasses
 import math
 from typing import TYPE_CHECKING, Any
 
+from mesokit.observe.shared.caveats import LOWER_BOUND
 from mesokit.observe.shared.short_run import bounded
 from mesokit.seam.method import method_of
 from mesokit.seam.observable import Accumulator
@@ -46,8 +47,13 @@ def _too_early(accumulator: Accumulator, result: Result, case: Case, every: int)
         return ""
     series = getattr(getattr(accumulator, "blocks", None), "series", 1)  # pooled runs
     length = result.samples // series * every
-    if not length or not any(_is_off(c, build_up.lacks(length)) for c in result.comparisons):
+    lacks = build_up.lacks(length) if length else 0.0
+    enough = build_up.had >= build_up.need  # then only an error bar that is known tells more
+    seen = [c for c in result.comparisons if not (enough and LOWER_BOUND in c.note)]
+    if not any(_is_off(c, lacks) for c in seen):
         return ""
+    if enough:
+        return f"{NOT_STEADY}: the flow still lacked {100 * lacks:.2g} % of its speed"
     return f"{NOT_STEADY}: the flow needs {build_up.need} steps before samples, had {build_up.had}"
 
 
@@ -73,7 +79,7 @@ def _drift(accumulator: Accumulator, result: Result) -> str:
 def _of_theory(comparison: Comparison) -> list[str]:
     """What its note says of the theory; error bars of a flow that builds up are another matter."""
     parts = comparison.note.split("; ")
-    return [part for part in parts if part and not part.startswith("error bar is a lower bound")]
+    return [part for part in parts if part and not part.startswith(LOWER_BOUND)]
 
 
 def _is_off(comparison: Comparison, share: float) -> bool:

@@ -340,7 +340,8 @@ def _pipe(acc: RadialProfileAccumulator, velocity: Estimate) -> Fitted:
     known = coefficients.viscosity if coefficients else np.nan
     slowest = known if np.isnan(nu) else nu
     short = acc.short_run(5.78 * slowest / radius**2)  # the first zero of J0, squared
-    note = noted(nu, setting.caveat(acc.case), short) or "independent of slip"
+    off = setting.caveat(acc.case) or setting.chaos_is_off(acc.case, known, error)
+    note = noted(nu, off, short) or "independent of slip"
     found = [Comparison("viscosity from curvature", nu, error, known, "a^2/tau", note)]
     share = 1 + radius**2 * c2 / c0
     gradient = np.array([-(radius**2) * c2 / c0**2, radius**2 / c0])

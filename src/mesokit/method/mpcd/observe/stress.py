@@ -206,17 +206,12 @@ class StressAccumulator(TensorAccumulator):
                     nu, note = bonded.viscosity / setting.mass_density(case), shear_note(case)
                 elif self.bonded_beads:
                     note = IN_SHEAR if part < 0 else OF_PART
-                note = self.cautioned(note, part)
-                found.append(
-                    Comparison(
-                        f"{name} from the stress",
-                        float(mean[part, 0, 1] / scale),
-                        float(error[part, 0, 1] / abs(scale)),
-                        nu,
-                        "a^2/tau",
-                        note,
-                    )
-                )
+                value = float(mean[part, 0, 1] / scale)
+                spread = float(error[part, 0, 1] / abs(scale))
+                if part < 0 and not note:
+                    note = setting.chaos_is_off(case, nu, spread)
+                what, note = f"{name} from the stress", self.cautioned(note, part)
+                found.append(Comparison(what, value, spread, nu, "a^2/tau", note))
             if self.bonded_beads:
                 found.append(self.bond_part(scale))
             found += self.normal_differences()
