@@ -10,9 +10,14 @@ from mesokit import theory
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
 from mesokit.method.mpcd.expected import recognise, setting
-from mesokit.method.mpcd.observe.shared.flow_memory import FlowMemory, flow_memory
+from mesokit.method.mpcd.observe.shared.flow_memory import (
+    FlowMemory,
+    build_up_of,
+    flow_memory,
+)
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate, of_mean
+from mesokit.seam.method import BuildUp
 from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks, TimeSeries
@@ -105,6 +110,10 @@ class FlowRateAccumulator(BlockAccumulator):
         """How long the run is beside the memory of the flow."""
         momentum = float(self.blocks.mean()) * self.mass
         return flow_memory(self.case, self.axis, momentum, self.blocks, self.observable.every)
+
+    def build_up(self) -> BuildUp | None:
+        """How the flow came from rest."""
+        return build_up_of(self.flow_memory(), self.case)
 
     def error(self) -> float:
         """Standard error of the mean velocity."""

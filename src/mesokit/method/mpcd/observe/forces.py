@@ -14,11 +14,16 @@ from mesokit.errors import CaseError
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import free_volume, slit_of, solids_of
 from mesokit.method.mpcd.expected import recognise, setting
-from mesokit.method.mpcd.observe.shared.flow_memory import flow_memory
+from mesokit.method.mpcd.observe.shared.flow_memory import (
+    FlowMemory,
+    build_up_of,
+    flow_memory,
+)
 from mesokit.method.mpcd.observe.shared.walls import SinceLast, require_counted
 from mesokit.method.mpcd.observe.wall_stress import PLATES, balance
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import SURE, Estimate, noted, of_mean
+from mesokit.seam.method import BuildUp
 from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array, Comparison, Result, with_error
 from mesokit.statistics import Blocks, TimeSeries
@@ -327,10 +332,18 @@ class ForcesAccumulator(BlockAccumulator):
         """
         slope = self.slope()
         value, error = of_mean(self.blocks).scalar(slope @ self.blocks.mean(), slope)
-        place = int(np.flatnonzero(slope)[0])
-        momentum, every = float(self.blocks.mean()[place]), self.observable.every
-        memory = flow_memory(self.case, self.along(), momentum, self.blocks, every)
-        return value, max(error, memory.least * float(slope[place])), memory.note
+        memory = self.flow_memory(self.along())
+        return value, max(error, memory.least * float(slope.max())), memory.note
+
+    def flow_memory(self, axis: int) -> FlowMemory:
+        """How long the run is beside the memory of the flow along an axis."""
+        momentum = float(self.blocks.mean()[int(np.prod(self.shape)) + axis])
+        return flow_memory(self.case, axis, momentum, self.blocks, self.observable.every)
+
+    def build_up(self) -> BuildUp | None:
+        """How the flow came from rest, where a uniform force drives it along one axis."""
+        axis = setting.driven_axis(self.case)
+        return None if axis is None else build_up_of(self.flow_memory(axis), self.case)
 
     def coefficients(self, mean: Estimate, force: NDArray[np.intp], few: bool) -> list[Comparison]:
         """Reynolds number, drag and lift, with the error of the speed where that is measured."""
