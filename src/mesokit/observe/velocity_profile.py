@@ -18,6 +18,7 @@ from mesokit.observe.shared.profile import (
     expected_in_slices,
     part_of,
 )
+from mesokit.observe.shared.short_run import of_relaxations
 from mesokit.observe.shared.whose import KIND, ids_of_kind
 from mesokit.seam.estimate import Estimate, fit, noted, of_ratio
 from mesokit.seam.result import Comparison, Result
@@ -173,7 +174,7 @@ class VelocityProfileAccumulator(ProfileAccumulator):
         times = time * np.pi**2 * viscosity / self.edges[-1] ** 2
         if not 0 < times < ENOUGH:
             return ""
-        return f"error bar is a lower bound: the run has {times:.2g} relaxation times"
+        return of_relaxations(times)
 
     def plates(self) -> tuple[float, float]:
         """Velocities of the lower and the upper plate."""
@@ -208,6 +209,7 @@ def _poiseuille(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
             acc.expected_viscosity(),
             VISCOSITY,
             noted(value, acc.viscosity_note(error), short) or "independent of slip",
+            inverse=True,
         )
     ]
     quarter = acc.edges[-1] ** 2 / 4
@@ -283,6 +285,7 @@ def _kolmogorov(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
             acc.expected_viscosity(),
             VISCOSITY,
             noted(value, acc.viscosity_note(error)) or "steady",
+            inverse=True,
         )
     ]
 

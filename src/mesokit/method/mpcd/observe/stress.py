@@ -18,6 +18,7 @@ from mesokit.method.mpcd.expected.molecules import (
 )
 from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH, kept
 from mesokit.method.mpcd.observe.shared.tensor import TensorAccumulator
+from mesokit.observe.shared.short_run import of_relaxations
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.observable import Observable
 from mesokit.seam.result import Array, Comparison, Result
@@ -87,7 +88,7 @@ class StressAccumulator(TensorAccumulator):
         if not 0 < self.length() < ENOUGH * slowest:
             return ""
         times = self.length() / slowest
-        return f"error bar is a lower bound: the run has {times:.2g} relaxation times"
+        return of_relaxations(times)
 
     def least(self, weight: Array) -> float:
         """Least error of a sum of elements of the stress of bonds, and so of the total, with these

@@ -12,6 +12,7 @@ from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.expected import setting
 from mesokit.method.mpcd.numbers import TIMES
 from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
+from mesokit.observe.shared.short_run import of_relaxations
 from mesokit.observe.velocity_profile import ENOUGH
 from mesokit.seam.method import BuildUp
 from mesokit.statistics import Blocks
@@ -39,7 +40,7 @@ class FlowMemory(NamedTuple):
         """Where blocking cannot see how slowly the flow changes: a caveat."""
         if not self.times < ENOUGH:
             return ""
-        return f"error bar is a lower bound: the run has {self.times:.2g} relaxation times"
+        return of_relaxations(self.times)
 
 
 def flow_memory(case: Case, axis: int, momentum: float, blocks: Blocks, every: int) -> FlowMemory:
