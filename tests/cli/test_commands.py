@@ -123,7 +123,7 @@ class TestCheck:
             ({"wall": "[]"}, "speeds up for ever"),
             ({"fluid.force.acceleration": "[0, 0.1]"}, "presses the fluid"),
             ({"run.warmup": "10"}, "run.warmup = 10"),
-            ({"run.steps": "5"}, "takes no sample"),
+            ({"run.steps": "5"}, "takes one sample, of the start"),
             ({"observe": FAR}, "observe[#1].max_lag = 90000: more than run.steps"),
             ({"run.steps": "500"}, "one frame, of a window cut short"),
             ({"observe": "[]"}, "no [[observe]]"),

@@ -50,7 +50,7 @@ DTYPES = {"image": np.int32, "site": np.int16}  # of the others by the precision
 CHUNK = 65536  # particles
 MOST_IN_MEMORY = 2**28  # bytes kept in memory once the disk is full
 LARGE = 2**20  # numbers of one result, beyond which it is compressed
-_TABLE = ("what", "measured", "error", "expected", "unit", "note")
+_TABLE = ("what", "measured", "error", "expected", "unit", "note", "inverse")
 
 
 def write(
@@ -469,9 +469,8 @@ def _read_result(group: Any) -> Result:
 
 
 def _comparisons(table: Any) -> Iterator[Comparison]:
-    columns = [_load(table[name]) for name in _TABLE]
-    for row in zip(*columns, strict=True):
-        what, measured, error, expected, unit, note = row
-        yield Comparison(
-            str(what), float(measured), float(error), float(expected), str(unit), str(note)
-        )
+    columns = [_load(table[name]) for name in _TABLE if name in table]
+    for what, measured, error, expected, unit, note, *inverse in zip(*columns, strict=True):
+        numbers = float(measured), float(error), float(expected)
+        # files of 0.2.0 and before have no last column
+        yield Comparison(str(what), *numbers, str(unit), str(note), any(inverse))

@@ -18,6 +18,7 @@ from mesokit.observe.shared.profile import (
     expected_in_slices,
     part_of,
 )
+from mesokit.observe.shared.short_run import of_relaxations
 from mesokit.observe.shared.whose import KIND, ids_of_kind
 from mesokit.seam.estimate import Estimate, fit, noted, of_ratio
 from mesokit.seam.result import Comparison, Result
@@ -162,13 +163,18 @@ class VelocityProfileAccumulator(ProfileAccumulator):
         coefficients = setting.transport(self.case)
         return coefficients.viscosity if coefficients else np.nan
 
+    def viscosity_note(self, error: float) -> str:
+        """Why that of the theory is not this fluid's, or is off by more than the error bar."""
+        caveat = setting.caveat(self.case)
+        return caveat or setting.chaos_is_off(self.case, self.expected_viscosity(), error)
+
     def short_run(self, viscosity: float) -> str:
         """Where blocking cannot see the slowest eddies, which live H^2/(pi^2 nu): a note."""
         time = self.blocks.count * self.observable.every * self.case.fluid.timestep
         times = time * np.pi**2 * viscosity / self.edges[-1] ** 2
         if not 0 < times < ENOUGH:
             return ""
-        return f"error bar is a lower bound: the run has {times:.2g} relaxation times"
+        return of_relaxations(times)
 
     def plates(self) -> tuple[float, float]:
         """Velocities of the lower and the upper plate."""
@@ -202,7 +208,8 @@ def _poiseuille(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
             error,
             acc.expected_viscosity(),
             VISCOSITY,
-            noted(value, setting.caveat(acc.case), short) or "independent of slip",
+            noted(value, acc.viscosity_note(error), short) or "independent of slip",
+            inverse=True,
         )
     ]
     quarter = acc.edges[-1] ** 2 / 4
@@ -277,7 +284,8 @@ def _kolmogorov(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
             error,
             acc.expected_viscosity(),
             VISCOSITY,
-            noted(value, setting.caveat(acc.case)) or "steady",
+            noted(value, acc.viscosity_note(error)) or "steady",
+            inverse=True,
         )
     ]
 

@@ -95,22 +95,35 @@ def chaos(case: Case, off: str) -> str:
 
 
 def loop(case: Case) -> float:
-    """Part by which the fluctuations of a 2D fluid raise its viscosity, one loop; 0 in 3D.
+    """Part by which the fluctuations of a fluid raise its viscosity, one loop; 0 where unknown.
 
-    It grows with the logarithm of the box, whose sides are taken by their geometric mean.
+    In 2D it grows with the logarithm of the box, whose sides are taken by their geometric mean. The
+    shortest wave that counts is 2 cells long for short flights and 8 for flights of a cell.
+    Measured: +1.2 % where it is 1.8 (2D, 90 degrees, timestep 0.1), +6.1 where it is 5.2 (3D, 90
+    degrees, density 5, timestep 0.25), +0.2 where it is 0.2 (3D, 130 degrees, timestep 1).
     """
-    known = transport(case)
-    if known is None or known.sound_attenuation is None or case.box.dimension == 3:
+    known, d = transport(case), case.box.dimension
+    if known is None:
         return 0.0
-    length = float(np.prod(case.box.size)) ** 0.5
-    shortest = 2.0 + 6.0 * min(mean_free_path(case), 1.0)  # 2 for short flights, 8 for a cell
+    length = float(np.prod(case.box.size)) ** (1 / d)
+    shortest = 2.0 + 6.0 * min(mean_free_path(case), 1.0) ** 2
     if length <= shortest:
         return 0.0
     fluid, nu = case.fluid, known.viscosity
+    sound = known.sound_attenuation or nu
     raised = theory.viscosity_renormalised(
-        2, nu, known.sound_attenuation, fluid.density, length, fluid.kT, fluid.mass, shortest
+        d, nu, sound, fluid.density, length, fluid.kT, fluid.mass, shortest
     )
     return raised / nu - 1.0
+
+
+def chaos_is_off(case: Case, expected: float, error: float) -> str:
+    """A note where fluctuations raise a viscosity by more than its error bar, so that
+    molecular chaos is known to be off; "" elsewhere."""
+    part = loop(case)
+    if not part * abs(expected) > error:
+        return ""
+    return f"approximate: molecular chaos; fluctuations add some {100 * part:.1g} %"
 
 
 def chaos_label(case: Case) -> str:

@@ -9,12 +9,15 @@ import numpy as np
 from mesokit import theory
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
-from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.expected import recognise, setting
-from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
-from mesokit.observe.velocity_profile import ENOUGH
+from mesokit.method.mpcd.observe.shared.flow_memory import (
+    FlowMemory,
+    build_up_of,
+    flow_memory,
+)
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate, of_mean
+from mesokit.seam.method import BuildUp
 from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks, TimeSeries
@@ -103,44 +106,18 @@ class FlowRateAccumulator(BlockAccumulator):
             },
         )
 
-    def relaxation(self) -> float:
-        """The time in which the flow's momentum is forgotten; nan where no force tells it.
+    def flow_memory(self) -> FlowMemory:
+        """How long the run is beside the memory of the flow."""
+        momentum = float(self.blocks.mean()) * self.mass
+        return flow_memory(self.case, self.axis, momentum, self.blocks, self.observable.every)
 
-        A force drives the flow to the momentum that it gives in that time: exact in slow flow, for
-        the response to a force is the integral of the momentum's correlation (Kubo 1957).
-        """
-        case, acceleration = self.case, float(setting.uniform_acceleration(self.case)[self.axis])
-        time = (
-            float(self.blocks.mean()) * self.mass / (self.moving_mass() * acceleration)
-            if acceleration
-            else -1.0
-        )
-        return time if case.walls and time > 0 else np.nan
-
-    def moving_mass(self) -> float:
-        """Of fluid and solutes in the box."""
-        return setting.mass_density(self.case) * free_volume(self.case)
-
-    def length(self) -> float:
-        """Of a run, in relaxation times."""
-        steps = self.blocks.count / self.blocks.series * self.observable.every
-        return steps * self.case.fluid.timestep / self.relaxation()
-
-    def short_run(self) -> str:
-        """Where blocking cannot see how slowly the flow changes: a note."""
-        times = self.length()
-        if not times < ENOUGH:
-            return ""
-        return f"error bar is a lower bound: the run has {times:.2g} relaxation times"
+    def build_up(self) -> BuildUp | None:
+        """How the flow came from rest."""
+        return build_up_of(self.flow_memory(), self.case)
 
     def error(self) -> float:
-        """Standard error of the mean velocity: in a short run at least that of a thermal momentum,
-        of variance M kT, whose correlation falls as an exponential."""
-        error, times = float(self.blocks.error()), self.length()
-        if not times < ENOUGH:
-            return error
-        variance = self.moving_mass() * self.case.fluid.kT / self.mass**2
-        return float(np.maximum(error, (variance * kept(times) / self.blocks.series) ** 0.5))
+        """Standard error of the mean velocity."""
+        return max(float(self.blocks.error()), self.flow_memory().least / self.mass)
 
     def comparisons(self, known: float, name: str) -> list[Comparison]:
         """Mean velocity, flow rate, permeability."""
@@ -148,7 +125,7 @@ class FlowRateAccumulator(BlockAccumulator):
         speed, error = float(mean.value), self.error()
         size, letter = np.array(self.case.box.size, float), AXES[self.axis]
         area = float(np.prod(size) / size[self.axis])
-        short = self.short_run()
+        short = self.flow_memory().note
         note = "; ".join(filter(None, (setting.caveat(self.case) or name, short)))
         found = [
             Comparison(f"mean velocity along {letter}", speed, error, known, "a/tau", note),

@@ -14,10 +14,16 @@ from mesokit.errors import CaseError
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import free_volume, slit_of, solids_of
 from mesokit.method.mpcd.expected import recognise, setting
+from mesokit.method.mpcd.observe.shared.flow_memory import (
+    FlowMemory,
+    build_up_of,
+    flow_memory,
+)
 from mesokit.method.mpcd.observe.shared.walls import SinceLast, require_counted
 from mesokit.method.mpcd.observe.wall_stress import PLATES, balance
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.estimate import Estimate, noted, of_mean
+from mesokit.seam.estimate import SURE, Estimate, noted, of_mean
+from mesokit.seam.method import BuildUp
 from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array, Comparison, Result, with_error
 from mesokit.statistics import Blocks, TimeSeries
@@ -282,12 +288,10 @@ class ForcesAccumulator(BlockAccumulator):
         """What turns a force along the flow into its coefficient, nan without a length."""
         if self.observable.length is None or not self.blocks.count:
             return np.nan
-        slope, speed = self.slope(), self.observable.speed
-        if speed is not None:
-            return self.scale(speed)
-        mean = of_mean(self.blocks, falling=True)
-        speed = float(slope @ mean.value)
-        return mean.scalar(self.scale(speed), slope, over=(speed, slope))[0] if speed else np.nan
+        if self.observable.speed is not None:
+            return self.scale(self.observable.speed)
+        speed, spread, _ = self.speed()
+        return self.scale(speed) if abs(speed) > SURE * spread else np.nan
 
     def note_on_torque(self, body: int) -> str:
         """How well cells resolve one of two round surfaces: the inner one takes too little.
@@ -321,34 +325,54 @@ class ForcesAccumulator(BlockAccumulator):
         area = given.length if self.dimension == 2 else given.area or given.length**2
         return float(2.0 / (rho * speed**2 * area) * np.sign(speed))
 
+    def speed(self) -> tuple[float, float, str]:
+        """Mean superficial velocity along the flow, its standard error and its caveat.
+
+        The error is that of blocks of time, whatever the momentum of all solids together does.
+        """
+        slope = self.slope()
+        value, error = of_mean(self.blocks).scalar(slope @ self.blocks.mean(), slope)
+        memory = self.flow_memory(self.along())
+        return value, max(error, memory.least * float(slope.max())), memory.note
+
+    def flow_memory(self, axis: int) -> FlowMemory:
+        """How long the run is beside the memory of the flow along an axis."""
+        momentum = float(self.blocks.mean()[int(np.prod(self.shape)) + axis])
+        return flow_memory(self.case, axis, momentum, self.blocks, self.observable.every)
+
+    def build_up(self) -> BuildUp | None:
+        """How the flow came from rest, where a uniform force drives it along one axis."""
+        axis = setting.driven_axis(self.case)
+        return None if axis is None else build_up_of(self.flow_memory(axis), self.case)
+
     def coefficients(self, mean: Estimate, force: NDArray[np.intp], few: bool) -> list[Comparison]:
         """Reynolds number, drag and lift, with the error of the speed where that is measured."""
         given, flow = self.observable, self.along()
         assert given.length is not None
-        slope: Array = np.zeros(mean.value.shape)  # of the speed
+        speed, spread, short = (given.speed, 0.0, "") if given.speed else self.speed()
+        note = f"U = {speed:g} a/tau"
         if given.speed is None:
-            slope = self.slope()
-            speed, error = mean.scalar(slope @ mean.value, slope)
-            note = f"U = {with_error(abs(speed), error)} a/tau, the mean superficial velocity"
-        else:
-            speed, note = given.speed, f"U = {given.speed:g} a/tau"
+            note = f"U = {with_error(abs(speed), spread)} a/tau, the mean superficial velocity"
+            note = "; ".join(filter(None, (note, short)))
         if speed == 0:
             return []
         transport, found = setting.transport(self.case), []
         if transport is not None:
             inverse = given.length / transport.viscosity
-            value, error = mean.scalar(abs(speed) * inverse, slope * inverse)
-            found.append(Comparison("Reynolds number", value, error, note=note))
-        scale = self.scale(speed)
+            found.append(
+                Comparison("Reynolds number", abs(speed) * inverse, spread * inverse, note=note)
+            )
+        scale, part = self.scale(speed), spread / abs(speed)
         for body in self.obstacles() if few else ():
             for axis in (flow, *(k for k in range(self.dimension) if k != flow)):
-                place = force[body, axis]
-                value = scale * mean.value[place]
-                gradient = -2.0 * value / speed * slope
-                gradient[place] += scale
+                one: Array = np.zeros(mean.value.shape)
+                one[force[body, axis]] = scale
+                value, error = mean.scalar(one @ mean.value, one)
+                error = float(np.hypot(error, 2 * part * value))  # the coefficient goes as 1/U^2
+                if part > 1 / SURE:  # U may be zero
+                    value = error = np.nan
                 kind = "drag coefficient" if axis == flow else "lift coefficient"
                 where = f" along {AXES[axis]}" if self.dimension == 3 and axis != flow else ""
                 what = f"{kind} of {self.bodies[body]}{where}"
-                value, error = mean.scalar(value, gradient, over=(speed, slope))
                 found.append(Comparison(what, value, error, note=noted(value, note)))
         return found

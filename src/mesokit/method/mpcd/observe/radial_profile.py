@@ -21,6 +21,7 @@ from mesokit.method.mpcd.observe.shared.shells import (
     shell_edges,
     shell_volumes,
 )
+from mesokit.observe.shared.short_run import of_relaxations
 from mesokit.seam.estimate import Estimate, fit, noted
 from mesokit.seam.observable import Observable
 from mesokit.seam.result import Comparison, Result
@@ -220,7 +221,7 @@ class RadialProfileAccumulator(ShellAccumulator):
         time = self.blocks.count * self.observable.every * self.case.fluid.timestep
         if not 0 < time * rate < ENOUGH:
             return ""
-        return f"error bar is a lower bound: the run has {time * rate:.2g} relaxation times"
+        return of_relaxations(time * rate)
 
 
 class RoundFlow:
@@ -340,8 +341,9 @@ def _pipe(acc: RadialProfileAccumulator, velocity: Estimate) -> Fitted:
     known = coefficients.viscosity if coefficients else np.nan
     slowest = known if np.isnan(nu) else nu
     short = acc.short_run(5.78 * slowest / radius**2)  # the first zero of J0, squared
-    note = noted(nu, setting.caveat(acc.case), short) or "independent of slip"
-    found = [Comparison("viscosity from curvature", nu, error, known, "a^2/tau", note)]
+    off = setting.caveat(acc.case) or setting.chaos_is_off(acc.case, known, error)
+    note = noted(nu, off, short) or "independent of slip"
+    found = [Comparison("viscosity from curvature", nu, error, known, "a^2/tau", note, True)]
     share = 1 + radius**2 * c2 / c0
     gradient = np.array([-(radius**2) * c2 / c0**2, radius**2 / c0])
     value, error = parabola.scalar(100 * share, 100 * gradient, over=(c0, np.eye(2)[0]))

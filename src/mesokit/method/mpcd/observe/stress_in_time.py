@@ -292,7 +292,9 @@ class StressInTimeAccumulator:
             value, error = flat.scalar(flat.value @ weight.ravel(), weight.ravel())
             error *= student(len(flat.weights))
             error = max(error, self.of_factor(rows, flat, weight[:, k], name))
-            note = shear_note(self.case) if molecules else ""
+            note = setting.chaos_is_off(self.case, 1.0, error)
+            if molecules:
+                note = shear_note(self.case)
             if name == FIRST:
                 note = (
                     "approximate: of uniform shear, which takes "

@@ -1,0 +1,91 @@
+"""How long the momentum of a driven flow is remembered, and what that leaves of its error bar."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from mesokit.geometry.solids.solids import free_volume
+from mesokit.method.mpcd.expected import setting
+from mesokit.method.mpcd.numbers import TIMES
+from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
+from mesokit.observe.shared.short_run import of_relaxations
+from mesokit.observe.velocity_profile import ENOUGH
+from mesokit.seam.method import BuildUp
+from mesokit.statistics import Blocks
+
+if TYPE_CHECKING:
+    from mesokit.case.case import Case
+
+LONGEST = 100.0  # relaxation time that a run may show, in lengths of the run with its warm-up
+
+
+class FlowMemory(NamedTuple):
+    """A run beside the relaxation time of the momentum of its flow.
+
+    time: the relaxation time; times: length of the run in such times, both nan where no force tells
+    them. least: least standard error of the mean momentum, 0 in a long run; in a short one that of
+    a thermal momentum, of variance M kT, whose correlation falls as an exponential.
+    """
+
+    time: float
+    times: float
+    least: float
+
+    @property
+    def note(self) -> str:
+        """Where blocking cannot see how slowly the flow changes: a caveat."""
+        if not self.times < ENOUGH:
+            return ""
+        return of_relaxations(self.times)
+
+
+def flow_memory(case: Case, axis: int, momentum: float, blocks: Blocks, every: int) -> FlowMemory:
+    """That of a run of a mean momentum along an axis, with a sample every so many steps.
+
+    A force drives the flow to the momentum M g t that it gives in the relaxation time t: exact in
+    slow flow, for the response to a force is the integral of the momentum's correlation (Kubo
+    1957). A flow from rest has not all of it yet: t is that of an exponential approach whose mean
+    over the samples is the momentum seen.
+    """
+    mass = setting.mass_density(case) * free_volume(case)
+    acceleration = float(setting.uniform_acceleration(case)[axis])
+    given = momentum / (mass * acceleration) if acceleration else -1.0
+    length = blocks.count / blocks.series * every * case.fluid.timestep
+    if not (case.walls and given > 0 and length > 0):
+        return FlowMemory(np.nan, np.nan, 0.0)
+    had = np.inf if case.fluid.start.run is not None else case.run.warmup * case.fluid.timestep
+    time = _relaxation(given, had, length)
+    times, least = length / time, 0.0
+    if times < ENOUGH:
+        least = float((mass * case.fluid.kT * kept(times) / blocks.series) ** 0.5)
+    return FlowMemory(time, times, least)
+
+
+def _relaxation(given: float, had: float, length: float) -> float:
+    """Time t whose t (1 - mean of exp(-s/t) over s from had to had + length) is the time given, at
+    most `LONGEST` of the run.
+
+    >>> [round(_relaxation(t, 100.0, 50.0), 1) for t in (1.0, 79.0, 124.9)]
+    [1.0, 119.3, 15000.0]
+    """
+    longest = LONGEST * (had + length)
+
+    def missing(time: float) -> float:
+        left = math.exp(-had / time) * -math.expm1(-length / time) * time / length
+        return time * (1 - left) - given
+
+    if math.isinf(had) or missing(given) >= 0:
+        return given
+    return longest if missing(longest) < 0 else float(brentq(missing, given, longest))
+
+
+def build_up_of(memory: FlowMemory, case: Case) -> BuildUp | None:
+    """How the flow came from rest, by its own momentum; None where no force tells it."""
+    if np.isnan(memory.time) or case.fluid.start.run is not None or not case.fluid.force.steady:
+        return None
+    steps = memory.time / case.fluid.timestep
+    return BuildUp(steps, math.ceil(TIMES * steps), case.run.warmup)
