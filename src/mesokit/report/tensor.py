@@ -69,9 +69,7 @@ def _legend(figure: Any, panels: Any, ax: Any = None) -> None:
         )
         return
     for number in range(len(handles), 0, -1):
-        legend = figure.legend(
-            handles.values(), handles, loc="outside upper center", ncols=number
-        )
+        legend = figure.legend(handles.values(), handles, loc="outside upper center", ncols=number)
         if number == 1 or legend.get_window_extent().width <= figure.bbox.width:
             return
         legend.remove()
