@@ -44,7 +44,12 @@ def looks() -> Iterator[tuple[Any, str]]:
 
 
 def labelled(label: str, unit: str) -> str:
-    """An axis label with its unit."""
+    """An axis label with its unit; a letter alone is a symbol.
+
+    >>> labelled("q", "1/a")
+    '$q$  [$a^{-1}$]'
+    """
+    label = f"${label}$" if len(label) == 1 and label.isalpha() else label
     return f"{mathematics(label)}  [{symbols(unit)}]" if unit else mathematics(label)
 
 

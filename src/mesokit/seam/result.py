@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.floating[Any]]
 FIGURES = "mesokit.report"  # by their names: results know nothing of how they are drawn
 TABLES = "mesokit.io.tables"  # and written
-EXACT = 2.0**-52  # of a value: an error below is that of rounding
+EXACT = 2.0**-50  # of a value: an error below is that of rounding
 ROUNDING = 1e-12  # relative: two numbers that differ by less are the same
 NOT_STEADY = "not steady"  # how the note of a comparison begins, where that is so
 
