@@ -291,13 +291,30 @@ def test_one_that_fails_does_not_stop_the_others(case_file, tmp_path, capsys):
     assert len(study.table()) > 0
 
 
+def test_a_list_of_runs_writes_nothing(case_file, tmp_path, capsys, monkeypatch):
+    """So that a later study of other settings finds no folder in its way."""
+    monkeypatch.chdir(tmp_path)
+    vary = ["study", case_file, "--vary", f"{FORCE}=0.01:0.03:5"]
+    code, out, _ = said(capsys, *vary, "--set", "run.warmup=40", "--list")
+    assert code == 0 and out.count("not begun") == 5 and not list(tmp_path.iterdir())
+    with pytest.raises(CaseError, match=r"with .*acceleration = 1e\+400|acceleration = inf"):
+        Study(case_file, {FORCE: [0.01, float("inf")]}, output="s", write=False)
+    study = Study(case_file, {FORCE: [0.01, 0.03]}, output="s", write=False)
+    assert [run.state for run in study.runs] == ["not begun"] * 2 and not Path("s").exists()
+    monkeypatch.setattr("mesokit.study.study.drive", lambda runs, *rest: [])
+    study.run()
+    assert Study.open("s").keys == [FORCE] and all(run.files.case for run in study.runs)
+    code, out, _ = said(capsys, *vary, "--list", "--output", "s")
+    assert code == 0 and len(list(Path("s/runs").iterdir())) == 2
+
+
 def test_study_files_and_the_command(case_file, tmp_path, capsys, monkeypatch, here):
     monkeypatch.chdir(tmp_path)
     text = f'case = "{case_file.as_posix()}"\nseeds = [5]\n[set]\n"run.steps" = 60\n'
     Path("forces.toml").write_text(f'{text}[[vary]]\n"{FORCE}" = "0.02:0.04:2"\n')
     code, out, _ = said(capsys, "study", "forces.toml", "--list")
     assert code == 0 and out.count("not begun") == 2 and "acceleration=0.04" in out
-    code, out, _ = said(capsys, "study", "forces", "--only", 2)
+    code, out, _ = said(capsys, "study", "forces.toml", "--only", 2)
     assert code == 0 and said(capsys, "study", "forces", "--list")[1].count("ended") == 1
     code, out, err = said(capsys, "study", "forces", "--jobs", 1)
     assert code == 0 and "study: 2 of 2 runs" in err

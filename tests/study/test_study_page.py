@@ -96,7 +96,7 @@ def test_the_command_of_the_page_makes_the_same_study(study, tmp_path, monkeypat
     (tmp_path / "case.toml").write_text(case)
     words = shlex.split(commands.splitlines()[1])
     with pytest.raises(SystemExit) as end:
-        main([*words[1:], "--list"])
+        main([*words[1:], "--job-array"])
     assert not end.value.code
     again = Study.open("again")
     assert [(run.point, run.seed) for run in again.runs] == [

@@ -63,7 +63,7 @@ def _axes(context: click.Context, option: click.Parameter, values: Sequence[str]
     metavar="NAME=VALUE",
     help="Of the jobs of a cluster, such as walltime=10:00:00. May be repeated.",
 )
-@click.option("--list", "listing", is_flag=True, help="Show the runs, and carry none.")
+@click.option("--list", "listing", is_flag=True, help="Show the runs; nothing is run or written.")
 @click.option("--job-array", is_flag=True, help="Write a Slurm script with a job for each run.")
 @click.option("--only", type=click.IntRange(1), help="Carry the run of this number alone.")
 @click.option("--x", metavar="KEY", help="Draw against this key (the first varied unless said).")
@@ -122,10 +122,15 @@ def _made(Study: Any, what: Path, given: dict[str, Any]) -> Any:
         for name, option in options.items():
             if given[name]:
                 raise CaseError(f"--{option}: only with a case file; {what} says it already")
-        return Study.open(what, given["output"])
+        return Study.open(what, given["output"], write=not given["listing"])
     output = given["output"] or Path(f"{what.stem}-study")
     return Study(
-        what, given["axes"], given["seeds"] or 1, output=output, settings=given["settings"]
+        what,
+        given["axes"],
+        given["seeds"] or 1,
+        output=output,
+        settings=given["settings"],
+        write=not given["listing"],
     )
 
 

@@ -28,7 +28,7 @@ from mesokit.study.local import Here, Processes
 from mesokit.study.merge import merge
 from mesokit.study.names import called
 from mesokit.study.numbers import numbers, words_of
-from mesokit.study.plan import Base, Planned, by_point, make, planned, short_names
+from mesokit.study.plan import Base, Planned, by_point, checked, make, planned, short_names
 from mesokit.study.plot import curves_of, drawable, find_rows, plot
 
 if TYPE_CHECKING:
@@ -56,6 +56,8 @@ class Study(Shown):
     output : path
         Folder of the study. Runs that are in it already are kept, so that a study can be made
         larger, or go on after a stop.
+    write : bool, optional
+        False writes nothing: the runs are listed and their cases checked. `run` makes the folder.
 
     Raises
     ------
@@ -87,20 +89,24 @@ class Study(Shown):
         *,
         output: str | Path,
         settings: Mapping[str, Any] | None = None,
+        write: bool = True,
     ) -> None:
         require_one_process()  # before two ranks make the same folder
         base = Base.of(case, settings)
         self.path = Path(output)
         axes = Axis.from_mapping(vary) if isinstance(vary, Mapping) else list(vary or ())
         self._set(base, axes, _seeds(seeds, base))
-        self._make()
+        self._make(write)
 
     @classmethod
-    def open(cls, path: str | Path, output: str | Path | None = None) -> Study:
+    def open(
+        cls, path: str | Path, output: str | Path | None = None, *, write: bool = True
+    ) -> Study:
         """The study in a folder, or of a study file. Raises RunError or CaseError if there is none.
 
         A study file names a `case`, `seeds` and [[vary]] tables; its runs go to `output`, a folder
-        of the name of the file in the working directory unless said.
+        of the name of the file in the working directory unless said. With `write=False` nothing is
+        written.
         """
         path = Path(path)
         file = path / FILE if path.is_dir() else path
@@ -133,7 +139,7 @@ class Study(Shown):
             self.path = path if path.is_dir() else Path(output or path.stem)
             self._set(base, axes, _seeds(data.get("seeds", 1), base))
             if not path.is_dir():
-                self._make()
+                self._make(write)
         except CaseError as error:
             raise CaseError(f"{file}: {error}") from None
         return self
@@ -142,8 +148,10 @@ class Study(Shown):
         self.base, self.axes, self.seeds = base, axes, seeds
         self.runs: list[Planned] = planned(axes, seeds, self.path)
 
-    def _make(self) -> None:
+    def _make(self, write: bool = True) -> None:
         """The folder with all runs in it; those that are there are kept.
+
+        Without `write` it is only checked that it can be made.
 
         Raises RunError where a study lies that has runs which this one has not.
         """
@@ -158,7 +166,10 @@ class Study(Shown):
                         f"{run.path.relative_to(self.path)}; name its values as well, or choose "
                         "another output"
                     )
-        make(self.runs, self.base)
+        cases = checked(self.runs, self.base)
+        if not write:
+            return
+        make(cases)
         lines = [HEAD, f"case = {json.dumps(CASE)}\n"]
         lines += [f"folder = {json.dumps(str(self.base.folder))}  # of files that the case names\n"]
         lines += [f"seeds = {json.dumps(self.seeds)}\n"]
@@ -236,8 +247,9 @@ class Study(Shown):
         """
         require_one_process()
         reporter = reporter_for(progress)
-        if not all((run.path / CASE).exists() for run in self.runs):  # somebody removed them
-            make(self.runs, self.base)
+        made = [self.path / FILE, *(run.path / CASE for run in self.runs)]
+        if not all(file.exists() for file in made):  # not written yet, or somebody removed them
+            self._make()
         workers = self._workers(jobs, threads, cluster, options)
         failed = drive(self.runs, workers, reporter)
         if failed:
