@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import csv
+import json
 import shutil
 import signal
 import subprocess
@@ -289,6 +290,45 @@ def test_one_that_fails_does_not_stop_the_others(case_file, tmp_path, capsys):
     assert "particle moves at" in err
     assert "particle moves at" in study.runs[0].failed
     assert len(study.table()) > 0
+
+
+def test_figures_for_a_paper(study, tmp_path, capsys):
+    """A study is drawn again in another form and width, as a run is."""
+    figure = study.plot("acceleration", "flow-rate.mean", width=3.1)
+    assert figure.get_size_inches()[0] == pytest.approx(3.1)
+    [legend] = [figure.axes[0].get_legend()]
+    figure.canvas.draw()
+    assert legend.get_window_extent().y0 >= figure.axes[0].bbox.y1 - 3  # above, not on the data
+    code, out, _ = said(capsys, "plot", study.path, "--format", "svg", "--width", 3.1)
+    files = [Path(line) for line in out.splitlines()]
+    assert code == 0 and len(files) > 3 and all(b"<svg" in file.read_bytes() for file in files)
+    for file in files:
+        assert file.parent == study.path and "-against-acceleration" in file.name
+        file.unlink()
+    one = tmp_path / "one.pdf"
+    y = ["--y", "flow-rate.mean", "--fit", "line"]
+    code, out, _ = said(capsys, "plot", study.path, *y, "--output", one)
+    assert code == 0 and out.startswith("fit: y = ") and one.read_bytes()[:4] == b"%PDF"
+    run = study.runs[0].path
+    for arguments, words in (
+        ([study.path, "--result", "flow-rate"], "--result: only of a run"),
+        ([study.path, "--region", "0:2,0:2"], "--region: only of a run"),
+        ([study.path, "--output", one], "there are many pictures; add --y"),
+        ([study.path, "--fit", "line"], "--fit: of which number? add --y"),
+        ([run, "--y", "flow-rate.mean"], "--y: only of a study"),
+    ):
+        code, _, err = said(capsys, "plot", *arguments)
+        assert code == 2 and words in err, err
+
+
+def test_info_prints_the_pooled_numbers(study, capsys):
+    code, out, _ = said(capsys, "info", study.path)
+    assert code == 0 and "6 of 6 runs have ended" in out
+    assert all(line in out.splitlines() for line in study.lines())
+    record = json.loads(said(capsys, "info", study.path, "--json")[1])
+    assert record["varied"] == {FORCE: [0.02, 0.04]} and len(record["numbers"]) == len(
+        study.table()
+    )
 
 
 def test_a_list_of_runs_writes_nothing(case_file, tmp_path, capsys, monkeypatch):

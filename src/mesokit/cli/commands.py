@@ -142,6 +142,13 @@ def naming(path: Path) -> Iterator[None]:
         raise CaseError(f"{path}: {error}") from None
 
 
+def is_study(folder: Path) -> bool:
+    """Whether a study lies in a folder."""
+    from mesokit.io.run_directory import RunDirectory
+
+    return RunDirectory(folder).study_file.exists()
+
+
 def require_run(run: Path) -> None:
     """Raise CaseError, as the command is wrong, if there is no run in the folder."""
     from mesokit.io.run_directory import RunDirectory

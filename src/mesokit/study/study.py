@@ -298,9 +298,9 @@ class Study(Shown):
         fit : "line" or "power", optional
             Fit y = a + b x, or y = a x^b, to each curve.
         look : optional
-            `log`, which axes are logarithmic: "x", "y", "x,y", True for both, False for none.
-            Unless said, x is where its values are a geometric sequence, and y with it where numbers
-            above zero span a decade.
+            `width` of the figure, in inches; a column has 3.4. `log`, which axes are logarithmic:
+            "x", "y", "x,y", True for both, False for none. Unless said, x is where its values are a
+            geometric sequence, and y with it where numbers above zero span a decade.
 
         Raises CaseError for a key or number that is not there, with the nearest one, and for a
         logarithmic axis of values that are not above zero.
@@ -345,13 +345,28 @@ class Study(Shown):
             found.append(f"  {row.observable}: {row.number}{agree}")
         return found
 
-    def save_pictures(self) -> list[Path]:
-        """Draw every number that has an error bar against the first key that is varied."""
-        names = drawable(self.table(), self.axes)
-        return [self.save_picture(self.keys[0], name) for name in names]
+    def save_pictures(self, ending: str = ".png", **look: Any) -> list[Path]:
+        """Draw every number that has an error bar against the first key that is varied.
 
-    def save_picture(self, x: str, y: str, fit: str | None = None, **look: Any) -> Path:
-        """Draw one number against one varied value into a file of the folder, as `plot` does."""
+        `ending` is ".png", ".pdf" or ".svg"; `look` is that of `plot`.
+        """
+        names = drawable(self.table(), self.axes)
+        return [self.save_picture(self.keys[0], name, ending=ending, **look) for name in names]
+
+    def save_picture(
+        self,
+        x: str,
+        y: str,
+        fit: str | None = None,
+        *,
+        ending: str = ".png",
+        path: str | Path | None = None,
+        **look: Any,
+    ) -> Path:
+        """Draw one number against one varied value into a file, as `plot` does.
+
+        The file lies in the folder unless `path` says where.
+        """
         from mesokit.report import save_figure
         from mesokit.report.finish.origin import Origin
 
@@ -359,8 +374,8 @@ class Study(Shown):
         title = self.base.case(self.runs[0].point, self.runs[0].seed).title
         figure.origin = Origin(", ".join(filter(None, [title, f"study {self.path.name}"])))
         number = next(row.name for row in find_rows(self.table(), y))
-        file = self.path / f"{number}-against-{names[self.keys.index(self.key(x))]}.png"
-        return save_figure(figure, file)
+        file = f"{number}-against-{names[self.keys.index(self.key(x))]}{ending}"
+        return save_figure(figure, path or self.path / file)
 
     def report(self, path: str | Path | None = None) -> Path:
         """Write one HTML file with all of the study, also of one that has not ended.
@@ -392,6 +407,17 @@ class Study(Shown):
             return names[name]
         known = [*names, *self.keys]
         raise CaseError(f"{name}: not varied; expected {one_of(list(names))}{nearest(name, known)}")
+
+    def record(self) -> dict[str, Any]:
+        """What `mesokit info --json` prints: plain numbers and texts."""
+        return {
+            "study": str(self.path),
+            "ended": self.ended,
+            "varied": {key: values for axis in self.axes for key, values in axis.table().items()},
+            "seeds": self.seeds,
+            "runs": [{"run": str(run.path), "state": run.state} for run in self.runs],
+            "numbers": [row.row() for row in self.table()],
+        }
 
     def __len__(self) -> int:
         return len(self.runs)
