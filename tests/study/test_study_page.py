@@ -225,7 +225,7 @@ def test_merged_runs_whose_results_are_lost_are_merged_again(merged):
 
 
 def test_a_study_is_no_run(study, capsys):
-    status, out, err = said(capsys, "info", study.path)
+    status, out, err = said(capsys, "table", study.path)
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert f"{study.path}: holds a study, not a run; mesokit study {study.path}" in err
     with pytest.raises(RunError, match=r"mesokit\.Study\.open reads"):
