@@ -484,6 +484,15 @@ def test_a_module_that_cannot_be_imported(text, wanted, capsys, monkeypatch) -> 
     assert wanted in refusal(capsys, "--import", "mine", "schema")
 
 
+@pytest.mark.parametrize("name", ["parts_here", "parts_here.py"])
+def test_a_module_of_this_folder_is_imported(name, capsys, monkeypatch) -> None:
+    monkeypatch.setattr(sys, "path", sys.path.copy())
+    monkeypatch.delitem(sys.modules, "parts_here", raising=False)
+    Path("parts_here.py").write_text("KNOWN = True")
+    assert "none.toml: no such file" in refusal(capsys, "--import", name, "check", "none.toml")
+    assert sys.modules["parts_here"].KNOWN
+
+
 @pytest.mark.parametrize("name", ["", "..mine", "mine/parts", "mine.py-"])
 def test_what_is_no_name_of_a_module(name: str, capsys: Captured) -> None:
     told = refusal(capsys, "--import", name, "schema")

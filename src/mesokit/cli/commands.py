@@ -82,6 +82,7 @@ def cli(context: click.Context, modules: Sequence[str]) -> None:
     take_part(context.invoked_subcommand)
     for module in modules:
         sys.path[:0] = [os.getcwd()] if os.getcwd() not in sys.path else []
+        module = module.removesuffix(".py")  # as a file of this folder is called
         if not all(part.isidentifier() for part in module.split(".")):
             raise CaseError(f"--import {module!r}: expected the name of a module, such as mine")
         try:
@@ -140,6 +141,13 @@ def naming(path: Path) -> Iterator[None]:
         yield
     except CaseError as error:
         raise CaseError(f"{path}: {error}") from None
+
+
+def is_study(folder: Path) -> bool:
+    """Whether a study lies in a folder."""
+    from mesokit.io.run_directory import RunDirectory
+
+    return RunDirectory(folder).study_file.exists()
 
 
 def require_run(run: Path) -> None:
