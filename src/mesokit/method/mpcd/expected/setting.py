@@ -123,7 +123,7 @@ def chaos_is_off(case: Case, expected: float, error: float) -> str:
     part = loop(case)
     if not part * abs(expected) > error:
         return ""
-    return f"approximate: molecular chaos; fluctuations add some {100 * part:.1g} %"
+    return f"approximate: molecular chaos; fluctuations add {100 * part:.1g} % or more"
 
 
 def chaos_label(case: Case) -> str:

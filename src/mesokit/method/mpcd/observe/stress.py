@@ -192,12 +192,11 @@ class StressAccumulator(TensorAccumulator):
             scale = setting.mass_density(case) * rate
             notes = (
                 setting.caveat(case),
+                # measured: docs/validation/viscosity_rules.md
                 setting.chaos(
-                    case, "10 to 30 % low at mean free path 0.1, with rules +a in 2D half"
+                    case, "short flights carry 10 to 40 % more, in 2D up to 3 times more"
                 ),
-                setting.chaos(
-                    case, "1 to 2 % high at mean free path 0.1, with rules +a in 2D 10 %"
-                ),
+                setting.chaos(case, "cells hand over 0 to 3 % less where flights are short"),
             )
             for part, name, note in zip(
                 (-1, 0, 1), ("viscosity", "kinetic part", "collisional part"), notes, strict=True
