@@ -38,6 +38,10 @@ COMMANDS = {command: module for module, commands in MODULES.items() for command 
 class Finite(click.FloatRange):
     """A number within bounds, if there are any; nan lies within none."""
 
+    def _describe_range(self) -> str:
+        """For the help: no bounds are not described."""
+        return super()._describe_range() if self.min is not None else ""
+
     def convert(self, value: Any, option: click.Parameter | None, context: Any) -> Any:
         """The number. Raises click.BadParameter, as for one out of bounds."""
         number = super().convert(value, option, context)
