@@ -357,7 +357,7 @@ def _own(given: Any, known: Sequence[str], hint: Any) -> str:
         return ""
     if difflib.get_close_matches(given, known, 1, 0.6):
         return ""
-    return "; is it a part of your own? then mesokit --import MODULE ... (docs/extending.md)"
+    return "; your own parts need mesokit --import MODULE"
 
 
 def _is_open(hint: Any) -> bool:

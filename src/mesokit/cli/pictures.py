@@ -20,7 +20,7 @@ from mesokit.cli.commands import (
     result_named,
 )
 from mesokit.cli.completion import colours, kinds
-from mesokit.cli.dependence import dependence, draw_number, require_number
+from mesokit.cli.studies import dependence, draw_number, require_number
 from mesokit.cli.words import say
 from mesokit.errors import CaseError
 

@@ -3,17 +3,33 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import click
 
 from mesokit.cli.commands import RUN, SET, cli, require_run
-from mesokit.cli.dependence import dependence, draw_number, first_key, require_number
 from mesokit.cli.outcome import show_results, stopping
 from mesokit.cli.words import patience, say, show_table
 from mesokit.errors import CaseError, RunError
+
+FITS = click.Choice(["line", "power"])
+LOGS = click.Choice(["x", "y", "x,y"])
+OPTIONS = (
+    click.option("--x", metavar="KEY", help="Draw against this key (the first unless said)."),
+    click.option("--y", metavar="NUMBER", help="Draw this number, such as flow-rate.permeability."),
+    click.option("--fit", type=FITS, help="Fit a straight line or a power law to it."),
+    click.option("--log", type=LOGS, help="Logarithmic axes of it."),
+    click.option("--linear", is_flag=True, help="Linear axes of it."),
+)
+
+
+def dependence(command: Any) -> Any:
+    """The options that say which number of a study is drawn, and how."""
+    for option in reversed(OPTIONS):
+        command = option(command)
+    return command
 
 
 def _options(context: click.Context, option: click.Parameter, values: Sequence[str]) -> Any:
@@ -169,6 +185,32 @@ def _show(made: Any, given: dict[str, Any]) -> None:
         return click.echo(f"picture: {picture}")
     for path in made.save_pictures():
         click.echo(f"picture: {path}")
+
+
+def require_number(given: Mapping[str, Any]) -> None:
+    """Raise CaseError for options of a number without the number, or that exclude one another."""
+    for option in ("x", "fit", "log", "linear"):
+        if given[option] and not given["y"]:
+            raise CaseError(f"--{option}: of which number? add --y")
+    if given["log"] and given["linear"]:
+        raise CaseError("--linear: not with --log")
+
+
+def draw_number(made: Any, given: Mapping[str, Any], **look: Any) -> Path:
+    """Draw the number of a study that is given into a file, and print its fit."""
+    x, y, fit = given["x"] or first_key(made), given["y"], given["fit"]
+    log = False if given["linear"] else given["log"]
+    picture: Path = made.save_picture(x, y, fit, log=log, **look)
+    for found in made.fit(x, y, fit) if fit else ():
+        click.echo(f"fit: {found}")
+    return picture
+
+
+def first_key(made: Any) -> str:
+    """What a number is drawn against unless said. Raises CaseError where nothing is varied."""
+    if not made.keys:
+        raise CaseError("--y: nothing is varied that it could be drawn against")
+    return str(made.keys[0])
 
 
 def _numbered(made: Any) -> Any:

@@ -324,9 +324,13 @@ class Solids(SolidTables):
         distance, normal = np.zeros(len(centres)), np.zeros(centres.shape)
         survey.nearest_terms(self.kernel, self.pattern, centres, terms, distance, normal)
         found: dict[int, tuple[float, float]] = {}
-        for term in np.unique(terms[terms >= 0]):
+        order = np.argsort(terms, kind="stable")  # all cells of one term follow one another
+        starts = np.flatnonzero(np.diff(terms[order], prepend=-2))
+        for at in np.split(order, starts[1:]):
+            term = terms[at[0]]
+            if term < 0:
+                continue
             body = self.bodies[self.body_of_term[term]]
-            at = terms == term
             arm = centres[at] - distance[at, None] * normal[at]
             arm -= self.pivots[term, : self.dimension]
             full = np.zeros((len(arm), 3))
