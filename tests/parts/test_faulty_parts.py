@@ -40,7 +40,7 @@ def rule(name, answer=None, kernel=Numbers(1.0)):
         def coefficient_count(self, dimension, stretched):
             return 2
 
-    contribute.register(Kernel)(lambda rule, counter, who, m, v, r: (v, ()))
+    contribute.register(Kernel)(lambda rule, counter, key, m, v, r: (v, ()))
     freedom.register(Kernel)(lambda rule, n: n)
     collide.register(Kernel)(lambda rule, c, v, r: v)
     if answer is not None:

@@ -172,3 +172,21 @@ def result_named(files: Any, name: str) -> Any:
 
     known = f"{', '.join(files) or 'none'}{nearest(name, files)}"
     raise CaseError(f"--result {name}: no such result; there are {known}")
+
+
+FITS = click.Choice(["line", "power"])
+LOGS = click.Choice(["x", "y", "x,y"])
+OF_DEPENDENCE = (
+    click.option("--x", metavar="KEY", help="Draw against this key (the first unless said)."),
+    click.option("--y", metavar="NUMBER", help="Draw this number, such as flow-rate.permeability."),
+    click.option("--fit", type=FITS, help="Fit a straight line or a power law to it."),
+    click.option("--log", type=LOGS, help="Logarithmic axes of it."),
+    click.option("--linear", is_flag=True, help="Linear axes of it."),
+)
+
+
+def dependence(command: Any) -> Any:
+    """The options that say which number of a study is drawn, and how."""
+    for option in reversed(OF_DEPENDENCE):
+        command = option(command)
+    return command

@@ -15,12 +15,12 @@ from mesokit.cli.commands import (
     Finite,
     axes_of,
     cli,
+    dependence,
     is_study,
     require_run,
     result_named,
 )
 from mesokit.cli.completion import colours, kinds
-from mesokit.cli.studies import dependence, draw_number, require_number
 from mesokit.cli.words import say
 from mesokit.errors import CaseError
 
@@ -148,6 +148,7 @@ def _plot_study(
     path: Path, output: Path | None, width: float | None, ending: str, chosen: Any, others: Any
 ) -> None:
     """Draw every number of a study, or the chosen one."""
+    from mesokit.cli.studies import draw_number, require_number
     from mesokit.study.study import Study
 
     for option, value in others.items():

@@ -9,27 +9,10 @@ from typing import Any
 
 import click
 
-from mesokit.cli.commands import RUN, SET, cli, require_run
+from mesokit.cli.commands import RUN, SET, cli, dependence, require_run
 from mesokit.cli.outcome import show_results, stopping
 from mesokit.cli.words import patience, say, show_table
 from mesokit.errors import CaseError, RunError
-
-FITS = click.Choice(["line", "power"])
-LOGS = click.Choice(["x", "y", "x,y"])
-OPTIONS = (
-    click.option("--x", metavar="KEY", help="Draw against this key (the first unless said)."),
-    click.option("--y", metavar="NUMBER", help="Draw this number, such as flow-rate.permeability."),
-    click.option("--fit", type=FITS, help="Fit a straight line or a power law to it."),
-    click.option("--log", type=LOGS, help="Logarithmic axes of it."),
-    click.option("--linear", is_flag=True, help="Linear axes of it."),
-)
-
-
-def dependence(command: Any) -> Any:
-    """The options that say which number of a study is drawn, and how."""
-    for option in reversed(OPTIONS):
-        command = option(command)
-    return command
 
 
 def _options(context: click.Context, option: click.Parameter, values: Sequence[str]) -> Any:

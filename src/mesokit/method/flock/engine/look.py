@@ -35,7 +35,7 @@ def place_of(places, i, pattern):
 
 @elementwise
 def separation_from(near, j, here, unit):
-    """The way to bird j of those near, float32."""
+    """The separation from bird j of those near, float32."""
     return "np.float32(np.int32(near[{k}, j] - here[{k}])) * unit[{k}]"
 
 
@@ -56,8 +56,8 @@ def with_heading(near, j, reached, sums):
 
 @elementwise
 def with_separation(factor, reached, separation, sums):
-    """Sums with the way times a factor added, where it counts."""
-    return "np.int32(sums[{k}] + (np.int32(way[{k}] * factor) if reached else _NONE))"
+    """Sums with the separation times a factor added, where it counts."""
+    return "np.int32(sums[{k}] + (np.int32(separation[{k}] * factor) if reached else _NONE))"
 
 
 @for_each
