@@ -24,12 +24,14 @@ def flight_moduli(
 
     Raises ValueError unless all are above 0.
 
-    Source: sum of the geometric memory of molecular chaos (Kikuchi et al. 2003, equation 9) over
-    steps, G' + i G'' = i w n kT dt (1 + f)/2 / (1 - f exp(-i w dt)).
+    Returns both in the unit of n kT.
+
+    Source: derived here, as the sum over steps of the geometric memory by which `transport` has its
+    kinetic viscosity: G' + i G'' = i w n kT dt (1 + f)/2 / (1 - f exp(-i w dt)).
 
     >>> storage, loss = flight_moduli(0.16, 1.2, 6.0 * 1.2 * 0.7, 6.0)
     >>> round(storage, 4), round(loss, 3)
-    (0.0308, 0.803)
+    (0.0305, 0.802)
     """
     positive(frequency=frequency, timestep=timestep, viscosity=viscosity, pressure=pressure)
     kept = 1 - 1 / (viscosity / (pressure * timestep) + 0.5)

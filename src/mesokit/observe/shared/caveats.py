@@ -9,12 +9,14 @@ from mesokit.seam.named import keyed
 from mesokit.seam.result import NOT_STEADY, Comparison, Result
 
 ROUGH, LOWER_BOUND = "approximate", "error bar is a lower bound"
+FEW_SAMPLES = "samples, which may be correlated"
 
 
 def with_those_of(result: Result, runs: Sequence[Result]) -> Result:
     """A pooled result whose comparisons have the caveats of its runs, however near theory is.
 
-    A lower bound holds for all samples where most of the runs say so: one may by chance.
+    A lower bound holds for all samples where most of the runs say so: one may by chance. That a run
+    has few samples says nothing of all runs together.
     """
     each = [keyed(run.comparisons) for run in runs]
     comparisons = tuple(
@@ -32,9 +34,10 @@ def _with(pooled: Comparison, notes: Sequence[str]) -> Comparison:
     """
     said = [_first(notes, NOT_STEADY) if pooled.steady else ""]
     said += [_first(notes, ROUGH) if not pooled.approximate else "", *pooled.note.split("; ")]
-    most = sum(LOWER_BOUND in note for note in notes) > len(notes) / 2
+    bounds = [note for note in notes if LOWER_BOUND in note and FEW_SAMPLES not in note]
+    most = len(bounds) > len(notes) / 2
     if most and LOWER_BOUND not in pooled.note and pooled.error > 0:
-        said.append(_first(notes, LOWER_BOUND))
+        said.append(_first(bounds, LOWER_BOUND))
     if said[0]:  # error bars of a flow that changes are another matter
         said = [part for part in said if LOWER_BOUND not in part]
     return dataclasses.replace(pooled, note="; ".join(filter(None, dict.fromkeys(said))))

@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from mesokit.observe.shared.caveats import FEW_SAMPLES, LOWER_BOUND
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks, plateau
 
 FEWEST = 32  # blocks: of fewer chance alone may make errors grow to the end
 MOST = 0.5  # of the means of an observable that may have no plateau
-NOTE = "error bar is a lower bound: it still grows with the length of blocks of time"
+NOTE = f"{LOWER_BOUND}: it still grows with the length of blocks of time"
 CHI_SQUARE = "chi-square"  # in the name of a number that is one
 SAMPLES = 128  # of fewer in a row, blocks of time hardly tell how long they are correlated
 VERY_FEW = 8  # samples: of fewer no error bar is known to within its half
@@ -40,7 +41,7 @@ def of_relaxations(times: float) -> str:
     >>> of_relaxations(2.345)
     'error bar is a lower bound: the run has 2.3 relaxation times'
     """
-    return f"error bar is a lower bound: the run has {times:.2g} relaxation times"
+    return f"{LOWER_BOUND}: the run has {times:.2g} relaxation times"
 
 
 def _noted(comparison: Comparison, note: str) -> Comparison:
@@ -54,7 +55,7 @@ def _few(blocks: Blocks) -> str:
     """What to say of a sum over samples that are few, nothing if there are many."""
     if blocks.count >= SAMPLES:
         return ""
-    return f"error bar is a lower bound: of {blocks.count} samples, which may be correlated"
+    return f"{LOWER_BOUND}: of {blocks.count} {FEW_SAMPLES}"
 
 
 def unresolved(blocks: Blocks) -> bool:

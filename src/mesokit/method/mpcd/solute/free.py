@@ -54,7 +54,7 @@ def problem(links: Links, length: int, columns: int) -> str | None:
 def linked_parts(bonds: Links, length: int) -> int:
     """Into how many parts beads and bonds fall.
 
-    >>> pieces(((0, 1), (2, 3)), 5)
+    >>> linked_parts(((0, 1), (2, 3)), 5)
     3
     """
     from scipy.sparse import coo_array

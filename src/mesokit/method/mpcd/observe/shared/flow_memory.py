@@ -70,7 +70,7 @@ def _relaxation(given: float, had: float, length: float) -> float:
     most `LONGEST` of the run.
 
     >>> [round(_relaxation(t, 100.0, 50.0), 1) for t in (1.0, 79.0, 124.9)]
-    [1.0, 119.3, 15000.0]
+    [1.0, 126.1, 15000.0]
     """
     longest = LONGEST * (had + length)
 
