@@ -283,14 +283,14 @@ from mesokit.kernels import ahead
 ahead._has_a_core = lambda: True
 values, physics = np.ones(3), law.Physics((1.0,), 2.0, (5.0,))
 done = threading.Event()
-other = threading.Thread(target=done.wait)
+other = threading.Thread(target=done.wait, daemon=True)
 other.start()
 law.advance.compile_ahead(physics, values, 1)
-begun = len(ahead._under_way)
+begun = len(ahead._in_progress)
 done.set()
 other.join()
 law.advance.compile_ahead(physics, values, 1)
-print(begun, len(ahead._under_way))
+print(begun, len(ahead._in_progress))
 """
 
 
