@@ -24,6 +24,7 @@ from mesokit import (
     VelocityProfile,
 )
 from mesokit.io.tables import record
+from mesokit.method.mpcd.observe.shared.flow_memory import flow_memory
 from mesokit.observe.shared.build_up import result_of
 from mesokit.observe.shared.caveats import with_those_of
 from mesokit.report.caption import compared
@@ -31,6 +32,7 @@ from mesokit.run.opened import RunFiles
 from mesokit.seam.method import summary_of
 from mesokit.seam.observable import Accumulator
 from mesokit.seam.result import Comparison, Result
+from mesokit.statistics import Blocks
 from mesokit.study.axes import Axis
 from mesokit.study.merge import merge
 from tests.helpers.fake_fluid import FakeFluid
@@ -227,3 +229,25 @@ def test_the_momentum_tells_how_long_a_flow_past_an_obstacle_takes(side, radius,
         found[warmup] = [note.startswith("not steady: the flow needs") for note in notes]
     assert len(found[0]) >= 6
     assert found == {0: [True] * len(found[0]), 1500: [False] * len(found[0])}
+
+
+@pytest.mark.parametrize("time", [5.0, 40.0, 300.0])
+@pytest.mark.parametrize(("had", "length"), [(0.0, 60.0), (30.0, 200.0)])
+def test_the_time_of_a_flow_from_rest_is_that_of_its_exponential(time, had, length):
+    """A slit in free fall gains g t; what holds it leaves g time (1 - exp(-t/time))."""
+    case = Case(
+        run=Run(steps=round(length / 0.1), warmup=round(had / 0.1)),
+        box=Box([32, 32]),
+        fluid=Fluid(force=Uniform([0.02, 0.0])),
+        walls=[Disk([16, 16], 4)],
+        observe=[FlowRate()],
+    )
+    mass = 10 * (32 * 32 - math.pi * 16)
+    t = had + length * (np.arange(10_000) + 0.5) / 10_000
+    momentum = mass * 0.02 * float((time * (1 - np.exp(-t / time))).mean())
+    blocks = Blocks()
+    for _ in range(round(length)):
+        blocks.add(0.0)
+    found = flow_memory(case, 0, momentum, blocks, every=10)
+    assert found.time == pytest.approx(time, rel=5e-3)
+    assert found.times == pytest.approx(length / time, rel=5e-3)
