@@ -13,9 +13,7 @@ import hashlib
 import json
 import sys
 import time
-from collections.abc import Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,14 +38,13 @@ TEMPLATES = ROOT / "src" / "mesokit" / "method"
 
 class Scene(NamedTuple):
     """A short case of a method: a template or example, what differs in it, and how often all
-    observables look. given: by the name of an observable, what it asks for beyond that."""
+    observables look."""
 
     name: str
     method: str
     file: Path
     set: dict[str, Any]
     every: int = 5
-    given: Mapping[str, Mapping[str, Any]] = MappingProxyType({})
 
 
 def template(method: str, name: str = "") -> Path:
@@ -112,14 +109,6 @@ SCENES = (
         {"run.steps": 6000, "run.warmup": 1500, "box.size": [16, 12]}, 10,
     ),
     Scene(
-        "a flow past a disk", "mpcd", template("mpcd", "obstacle"),
-        {
-            "run.steps": 16000, "run.warmup": 2000, "box.size": [14, 14],
-            "fluid.force.acceleration": [0.008, 0],
-            "wall": [{"shape": "disk", "centre": [7, 7], "radius": 3}],
-        }, 10, {"Forces": {"length": 6.0}},
-    ),
-    Scene(
         "a shear", "mpcd", template("mpcd", "shear"),
         {"run.steps": 2000, "run.warmup": 200, "box.size": [6, 6, 6]},
     ),
@@ -152,7 +141,7 @@ def case_of(scene: Scene, seed: int) -> Case:
         if not is_offered(kind, method.name, method.observables):
             continue
         try:
-            observable = kind(every=scene.every, **scene.given.get(kind.__name__, {}))
+            observable = kind(every=scene.every)
             dataclasses.replace(plain, observe=[*accepted, observable])
         except (CaseError, TypeError):
             continue  # not in this case, or not without more being said

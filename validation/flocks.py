@@ -10,7 +10,7 @@ from common import BLUE, GREEN, GREY, PURPLE, RED, Page, long, main, mean_and_er
 
 from mesokit import Box, Comparison, Run, Simulation, theory
 from mesokit.method.flock import AngularNoise, Flock, VectorialNoise
-from mesokit.method.flock.observe.number_fluctuations import counts_in_squares
+from mesokit.method.flock.observe.number_fluctuations import counted
 
 BLOCKS = 20
 SEEDS, WINDOWS, WINDOW = 3, 3, 3_000  # runs of giant fluctuations; windows of each, in steps
@@ -186,10 +186,7 @@ def fluctuations(page: Page, axis: Any) -> None:
                 engine.advance(50)
                 places = engine.positions()
                 variances.append(
-                    [
-                        ((counts_in_squares(places, a, engine.box) - 2 * a * a) ** 2).mean()
-                        for a in sides
-                    ]
+                    [((counted(places, a, engine.box) - 2 * a * a) ** 2).mean() for a in sides]
                 )
                 orders.append(order(engine))
             spreads.append(np.sqrt(np.mean(variances, axis=0)))

@@ -1,4 +1,4 @@
-"""Disks about freezing: pressure and hexatic order of many."""
+"""Disks about freezing: pressure and hexatic order of many. Half an hour, so not in `all.py`."""
 
 from __future__ import annotations
 

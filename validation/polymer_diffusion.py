@@ -96,11 +96,9 @@ def exponent(values: dict[int, Value]) -> Value:
     return Value(float((weight * x * y).sum() / spread), float(1 / math.sqrt(spread)))
 
 
-def slope_of(law: Any, pattern: dict[int, Value]) -> float:
+def slope_of(law: Any, like: dict[int, Value]) -> float:
     """The same of a theory, at the same lengths with the same weights."""
-    return exponent(
-        {n: Value(law(n), v.error * law(n) / v.value) for n, v in pattern.items()}
-    ).value
+    return exponent({n: Value(law(n), v.error * law(n) / v.value) for n, v in like.items()}).value
 
 
 def smeared(n: int) -> float:

@@ -13,9 +13,9 @@ matplotlib.use("Agg")  # no screen
 import matplotlib.pyplot as plt
 from matplotlib.patches import Rectangle
 
-import mesokit.geometry.solids.contact  # registers the flight to solids  # noqa: F401
 from mesokit import Box, Disk, Plates, Surface
 from mesokit.geometry.protocol import Chance, first_hit, happens, rebound, unmet
+from mesokit.geometry.solids.clearance import centres
 from mesokit.geometry.solids.solids import Solids
 from mesokit.report.style import COLOURS, STYLE
 
@@ -107,8 +107,7 @@ def particles_about(ax: Any, wall: Any, rng: np.random.Generator) -> None:
     ax.contourf(*np.moveaxis(fine, -1, 0), clear, [-99, 0], colors=[SOLID])
     ax.contour(*np.moveaxis(fine, -1, 0), clear, [0], colors="black", linewidths=1.5)
     # the first cell of the grid lies below 0 where it is shifted that way
-    cells = np.indices((width + 2, height + 2)).reshape(2, -1).T
-    middle = cells + 0.5 - (1.0 - np.array(SHIFT))
+    middle = centres((width + 2, height + 2), tuple(1.0 - s for s in SHIFT))
     part = solids.open_part(middle, 1.0)
     for place in middle - 0.5:
         ax.add_patch(Rectangle(place, 1, 1, fill=False, ec="0.55", lw=0.6))

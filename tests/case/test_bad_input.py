@@ -283,17 +283,6 @@ def test_the_good_case_is_good(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert "Reynolds" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(("given", "hint"), [("turnover", True), ("sdr", False)])
-def test_an_unknown_rule_may_be_a_part_of_ones_own(given, hint, tmp_path, capsys) -> None:
-    """The message says how it is imported, unless a rule of mesokit is meant."""
-    file = tmp_path / "own.toml"
-    file.write_text(GOOD.replace('rule = "srd"', f'rule = "{given}"'))
-    message = refused(capsys, "check", file)
-    assert f"fluid.collision.rule = {given!r}: expected 'at'" in message
-    assert ("mesokit --import MODULE" in message) is hint
-    assert ("did you mean 'srd'?" in message) is not hint
-
-
 @pytest.mark.parametrize("command", ["check", "run"])
 @pytest.mark.parametrize("name", BAD)
 def test_bad_case_is_refused(

@@ -401,9 +401,9 @@ def test_many_copies_are_held_against_few_cells(monkeypatch: pytest.MonkeyPatch)
     """So many that every copy cannot be held against every cell."""
     near_blocks, held = survey.near_blocks, []
 
-    def counted(kernel, pattern, away, above, blocks):
-        held.append(len(above.near) * (above.edge / blocks.edge) ** len(pattern))
-        near_blocks(kernel, pattern, away, above, blocks)
+    def counted(kernel, like, away, above, blocks):
+        held.append(len(above.near) * (above.edge / blocks.edge) ** len(like))
+        near_blocks(kernel, like, away, above, blocks)
 
     monkeypatch.setattr(survey, "near_blocks", counted)
     posts = Array(of=Disk(centre=(4, 4), radius=2), repeat=(64, 64))

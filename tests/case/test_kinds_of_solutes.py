@@ -32,7 +32,7 @@ from mesokit.method.mpcd.expected.molecules import (
     mode_times_of,
     springs_of,
 )
-from mesokit.method.mpcd.groups import bonded_pairs
+from mesokit.method.mpcd.groups import bonds
 from mesokit.method.mpcd.method import METHOD
 from mesokit.method.mpcd.solute.polymer import Between
 
@@ -113,7 +113,7 @@ class TestAmongMolecules:
         assert [kind_of(case, group) for group in (fluid, chain)] == ["fluid", 2]
         assert bonds_of(case, "fluid") == slice(0, 1024)
         assert bonds_of(case, "chain") == slice(1024, 1030)
-        linked = bonded_pairs(case)
+        linked = bonds(case)
         assert linked[:2].tolist() == [[0, 1], [1, 2]] and linked[1024].tolist() == [1539, 1540]
 
     def test_a_fluid_of_molecules_alone_has_two_names(self):

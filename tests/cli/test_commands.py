@@ -123,7 +123,7 @@ class TestCheck:
             ({"wall": "[]"}, "speeds up for ever"),
             ({"fluid.force.acceleration": "[0, 0.1]"}, "presses the fluid"),
             ({"run.warmup": "10"}, "run.warmup = 10"),
-            ({"run.steps": "5"}, "takes one sample, of the start"),
+            ({"run.steps": "5"}, "takes no sample"),
             ({"observe": FAR}, "observe[#1].max_lag = 90000: more than run.steps"),
             ({"run.steps": "500"}, "one frame, of a window cut short"),
             ({"observe": "[]"}, "no [[observe]]"),
@@ -482,15 +482,6 @@ def test_a_module_that_cannot_be_imported(text, wanted, capsys, monkeypatch) -> 
     monkeypatch.delitem(sys.modules, "mine", raising=False)
     Path("mine.py").write_text(text)
     assert wanted in refusal(capsys, "--import", "mine", "schema")
-
-
-@pytest.mark.parametrize("name", ["parts_here", "parts_here.py"])
-def test_a_module_of_this_folder_is_imported(name, capsys, monkeypatch) -> None:
-    monkeypatch.setattr(sys, "path", sys.path.copy())
-    monkeypatch.delitem(sys.modules, "parts_here", raising=False)
-    Path("parts_here.py").write_text("KNOWN = True")
-    assert "none.toml: no such file" in refusal(capsys, "--import", name, "check", "none.toml")
-    assert sys.modules["parts_here"].KNOWN
 
 
 @pytest.mark.parametrize("name", ["", "..mine", "mine/parts", "mine.py-"])

@@ -13,20 +13,18 @@ from mesokit.method.mpcd.engine.cpu.strips import records
 
 CELLS = 12
 
-gather = njit(lambda data, cell, i, rows, pattern: records.gather(data, cell, i, rows, pattern))
-spread = njit(lambda data, start, i, rows, pattern: records.spread(data, start, i, rows, pattern))
+gather = njit(lambda data, cell, i, rows, like: records.gather(data, cell, i, rows, like))
+spread = njit(lambda data, start, i, rows, like: records.spread(data, start, i, rows, like))
 
 
 @njit
-def scatter_add(sums, cell, i, rows, pattern, tallied):
-    records.scatter_add(sums, cell, i, rows, pattern, tallied)
+def scatter_add(sums, cell, i, rows, like, tallied):
+    records.scatter_add(sums, cell, i, rows, like, tallied)
 
 
-take = njit(
-    lambda sums, start, i, rows, pattern: records.gather_sums(sums, start, i, rows, pattern)
-)
-put = njit(lambda data, start, count, rows, pattern: put_block(data, start, count, rows, pattern))
-add = njit(lambda cell, rows, sums, count, pattern: add_strip(cell, rows, sums, count, pattern, ()))
+take = njit(lambda sums, start, i, rows, like: records.take(sums, start, i, rows, like))
+put = njit(lambda data, start, count, rows, like: put_block(data, start, count, rows, like))
+add = njit(lambda cell, rows, sums, count, like: add_strip(cell, rows, sums, count, like, ()))
 
 for_every_count = pytest.mark.parametrize("count", range(1, 21))
 cells = st.lists(st.integers(0, CELLS - 1), min_size=LANES, max_size=LANES)

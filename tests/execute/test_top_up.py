@@ -5,7 +5,7 @@ import pytest
 from numba import njit
 
 from mesokit import AT, Plates
-from mesokit.loops.threads import Worker
+from mesokit.loops.threads import Team
 from mesokit.method.mpcd.engine.cpu.engine import CPU
 from mesokit.method.mpcd.engine.cpu.groups import Now
 from mesokit.method.mpcd.engine.virtual.stages import top_up_walls
@@ -28,7 +28,7 @@ def topped_up():
     memory, number = cpu.memory, cpu.numbers.number_of_cells
     grid = memory.grid._replace(shift=(0.0, 0.5), origin=(0.0, 0.5))
     now = Now(Counter(np.uint64(1), np.uint64(1)), memory.box, memory.grid, grid, 0)
-    alone = Worker(0, 1, np.zeros(1, np.int64), np.zeros(1, np.int64))
+    alone = Team(0, 1, np.zeros(1, np.int64), np.zeros(1, np.int64))
     fill(alone, now, memory.physics, memory.fluid, memory.walls)
     sums = memory.fluid.cells.sums[0].reshape(number + 1, -1)[:LENGTH]
     number, own = sums[:, 0], sums[:, 3:5]

@@ -22,9 +22,7 @@ def one_by_one(solids, away):
     starts, least = np.zeros(cells + 1, np.int64), np.zeros(cells)
     for _ in range(2):
         near = np.zeros(starts[-1], np.int64)
-        survey.near_blocks(
-            solids.kernel, solids.pattern, away, whole, Blocks(1, starts, near, least)
-        )
+        survey.near_blocks(solids.kernel, solids.like, away, whole, Blocks(1, starts, near, least))
     return starts, near, least
 
 

@@ -104,7 +104,7 @@ def slit(d: int) -> Any:
 
 def total(asked: Any, d: int) -> tuple[float, ...]:
     """What a traversal adds up."""
-    return {interactions.BeadForce: vec(d), interactions.Energy: (0.0,)}.get(type(asked), ())
+    return {interactions.Force: vec(d), interactions.Energy: (0.0,)}.get(type(asked), ())
 
 
 # Of each generic function: the arguments after the first, which is p, in d dimensions.
@@ -139,7 +139,7 @@ ASKED: dict[Callable, Callable[[Any, int], tuple[Any, ...]]] = {
     fields.field_at: lambda p, d: (1.0,),
     varying.factor: lambda p, d: (1.0,),
     potentials.central: lambda p, d: (1.0,),
-    potentials.breaks: lambda p, d: (1.0,),
+    potentials.torn: lambda p, d: (1.0,),
     potentials.angular: lambda p, d: (1.0,),
     solids.across: lambda p, d: (),
     solids.exposed: lambda p, d: (),
@@ -197,7 +197,7 @@ def parts(d: int) -> Iterator[Any]:
     yield bodies(d)
     yield from ENERGIES
     faults, tensor = np.zeros(8, np.int64), np.zeros(d * d, np.int64)
-    yield interactions.BeadForce(1.0, np.zeros(8, np.int64), 1.0, 1, faults)
+    yield interactions.Force(1.0, np.zeros(8, np.int64), 1.0, 1, faults)
     yield interactions.Energy()
     yield from (rule().kernel() for rule in (*RULES, *NOISES))
     yield from (Linear(1.0, 0.0, 1.0, 0.0, 1.0), HertzContact(1.0, 1.0, 1.0))

@@ -27,7 +27,7 @@ from mesokit import (
 from mesokit.case.component import tag_of
 from mesokit.geometry.protocol import homed
 from mesokit.geometry.shape import SHAPES
-from mesokit.geometry.solids.bodies import NO_TERM
+from mesokit.geometry.solids.bodies import NOBODY
 from mesokit.geometry.solids.flight import first_meeting
 from mesokit.method.mpcd.engine.cpu.bounce import bounce
 from mesokit.method.mpcd.streaming import fall
@@ -174,13 +174,13 @@ def on_surface(solids: Solids, n: int, seed: int = 0) -> tuple[np.ndarray, np.nd
 def _meets(solid, r, v, a, time):
     gone, x, u = 0.0, homed(solid, r), v
     for _ in range(1000):
-        t, _, term = first_meeting(solid.tables, x, u, a, time - gone, 0, NO_TERM)
+        t, _, term = first_meeting(solid.tables, x, u, a, time - gone, 0, NOBODY)
         if t > time - gone:
             break
         gone += t
         x, u = fall(x, u, a, t)
         x = homed(solid, x)
-        if term != NO_TERM:
+        if term != NOBODY:
             return gone
     return np.inf
 

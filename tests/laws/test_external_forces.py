@@ -24,7 +24,7 @@ from mesokit import (
 )  # fmt: skip
 from mesokit.errors import CaseError
 from mesokit.method.mpcd.derived import derive
-from mesokit.method.mpcd.engine.beads.external import external_of, turned_by_field
+from mesokit.method.mpcd.engine.beads.external import external_of, turned
 from tests.helpers.comparisons import comparisons
 from tests.helpers.small_fluids import make_fluid, mean
 
@@ -48,7 +48,7 @@ def test_a_magnetic_field_turns_at_the_cyclotron_frequency_and_does_no_work(d):
     field = np.array([0.0, 0.0, 0.7]) if d == 2 else np.array([0.3, -0.5, 0.7])
     given = Solutes((Polymer(2),), mass=2.0, magnetic=[MagneticField(field, charge=3.0)])
     external = external_of(given, d)
-    turn = njit(lambda external, time, i, v: turned_by_field(external, time, i, v))
+    turn = njit(lambda external, time, i, v: turned(external, time, i, v))
     v = tuple(np.array([0.4, -1.1, 0.8])[:d])
     w, u = turn(external, 2.5, 1, v), v
     for _ in range(50):

@@ -276,7 +276,7 @@ def test_start_from_arrays_takes_folded_ones():
     np.testing.assert_allclose(other.velocities(), v)
 
 
-def test_a_broken_bond_stops_the_run():
+def test_a_torn_bond_stops_the_run():
     molecule = Molecule(length=2, bond=FENE(k=3.0, R0=2.0), substeps=2)
     parts = {"density": 2, "molecule": molecule, "thermostat": MaxwellBoltzmann()}
     fluid = make_fluid((8, 8), **parts)

@@ -10,7 +10,7 @@ from scipy import special
 import mesokit
 from mesokit import AT, Box, CaseError, DensityProfile, Plates, SampledForce, Simulation, Uniform
 from mesokit.method.mpcd.field.protocol import acceleration
-from mesokit.method.mpcd.field.sampled import table_interval
+from mesokit.method.mpcd.field.sampled import interval
 from mesokit.method.mpcd.field.sinusoidal import Sinusoidal
 from tests.helpers.small_fluids import make_case, make_fluid
 
@@ -209,6 +209,6 @@ def test_no_place_leads_beyond_the_table(tmp_path):
     nodes = force.kernel((4, 8))
     for x in (np.nan, np.inf, -np.inf, 1e300, -1e300, 4.0):
         for axis in (0, 1):
-            place, _ = table_interval(nodes, axis, x)
+            place, _ = interval(nodes, axis, x)
             last = nodes.intervals[axis] - 1
             assert 0 <= place <= last * nodes.strides[axis]

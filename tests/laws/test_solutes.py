@@ -276,7 +276,7 @@ class TestRandomSolvent:
             assert size.agrees(expected) and size.error < 0.04 * expected
 
 
-def test_a_broken_bond_stops_the_run():
+def test_a_torn_bond_stops_the_run():
     solutes = dataclasses.replace(STIFF, polymers=(Polymer(2, length=3),), mass=1.0)
     fluid = make_fluid((8, 8, 8), solutes=solutes, density=2)
     fluid.solutes.places[4] = fluid.solutes.places[3] + [1.6, 0.0, 0.0]

@@ -87,8 +87,8 @@ def test_poiseuille_gives_the_viscosity_that_drove_the_flow(make_case):
         assert viscosity.error < 0.08 * actual
         assert abs(found["slip at the walls"].deviation) < 4
     assert np.abs(result.deviation).max() > 6  # twice the viscosity is not the line
-    known, length = setting.transport(case), 96**0.5  # of the box, 2.06 cells the shortest wave
-    raised = nu + (1 / nu + 1 / known.sound_attenuation) * np.log(length / 2.06) / (160 * np.pi)
+    known, length = setting.transport(case), 96**0.5  # of the box, 2.6 cells the shortest wave
+    raised = nu + (1 / nu + 1 / known.sound_attenuation) * np.log(length / 2.6) / (160 * np.pi)
     assert result.extra["raised"] == pytest.approx(result.expected * nu / raised)
     assert result.extra["raised_by"] == pytest.approx(100 * (raised / nu - 1))
     fitted = (result.value - result.fit) / result.error

@@ -13,7 +13,6 @@ import pytest
 
 import mesokit
 from mesokit.io import atomic
-from mesokit.method.mpcd.summary import summary
 from mesokit.processes.cores import usable_cores
 
 ON_POSIX = pytest.mark.skipif(sys.platform == "win32", reason="what it stands for is real there")
@@ -117,17 +116,17 @@ del time.CLOCK_MONOTONIC
 
 from mesokit.loops.clock import CELLS, FIRST, START, lap
 from mesokit.scalar.system import TICK
-from mesokit.loops.threads import Threads, barrier
+from mesokit.loops.threads import Threads, meet
 
 @numba.njit(nogil=True)
-def work(worker, most, sums):
-    lap(worker, START)
+def work(team, most, sums):
+    lap(team, START)
     for turn in range(100):
-        if worker.thread == turn % worker.threads:  # the others wait for it
+        if team.thread == turn % team.threads:  # the others wait for it
             for k in range(most):
                 sums[0] += sums[0] % 7 + 1
-        barrier(worker)
-    lap(worker, CELLS)
+        meet(team)
+    lap(team, CELLS)
 
 threads, sums = Threads(2), np.zeros(1, np.int64)
 threads.run(work, 0, sums)
@@ -152,11 +151,11 @@ def test_cores_are_those_that_may_be_used(monkeypatch: pytest.MonkeyPatch) -> No
     assert usable_cores() == 3
     case = mesokit.Case(run=mesokit.Run(steps=5), box=mesokit.Box([8, 8]), fluid=mesokit.Fluid())
     assert mesokit.Simulation(case).threads == 3
-    told = dict(row[:1] + row[2:] for row in summary(case).rows)
+    told = dict(row[:1] + row[2:] for row in mesokit.method.mpcd.summary.summary(case).rows)
     assert "3 threads" in told["run time"]
     monkeypatch.delattr(os, "sched_getaffinity")
     assert usable_cores() == 64
-    monkeypatch.setattr(os, "cpu_count", lambda: None)  # where it is not known
+    monkeypatch.setattr(os, "cpu_count", lambda: None)  # nobody knows
     assert usable_cores() == 1
     monkeypatch.setattr(os, "process_cpu_count", lambda: 7, raising=False)
     assert usable_cores() == 7

@@ -116,41 +116,6 @@ def test_the_legend_of_a_tensor_hides_no_data(make_case):
         assert legend.get_window_extent().y0 > ax.get_window_extent().y1
 
 
-@pytest.mark.parametrize(("width", "columns"), [(6.4, 4), (3.4, 1)])
-def test_error_bars_of_a_tensor_are_named_once_in_a_legend_that_fits(make_case, width, columns):
-    figure = plot(result_of(Stress, make_case, 30), width=width)
-    (legend,) = figure.legends
-    texts = [text.get_text() for text in legend.get_texts()]
-    assert sum("standard error" in text for text in texts) == 1 and texts[-1].startswith("theory")
-    assert legend._ncols >= columns and legend.get_window_extent().width <= figure.bbox.width
-
-
-def test_species_of_snapshots_are_named_and_times_have_units():
-    seen = np.zeros((2, 4, 4))
-    result = Result(
-        quantity="snapshots",
-        drawing="snapshots",
-        name="snapshots",
-        x={"step": np.array([0, 1]), "particle": np.arange(4), "component": np.array(list("xyuv"))},
-        value=seen,
-        error=np.full(seen.shape, np.nan),
-        label="positions and velocities",
-        units={"value": "", "position": "a", "velocity": "a/tau", "time": "tau"},
-        samples=2,
-        extra={
-            "time": np.array([0.0, 0.1]),
-            "species": np.array([0, 0, 1, 1]),
-            "size": np.array([4.0, 4.0]),
-        },
-    )
-    figure = plot(result)
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["species 1", "species 2"]
-    assert [ax.get_title() for ax in figure.axes[:2]] == [
-        r"0 steps, $t = 0\,\tau$",
-        r"1 step, $t = 0.1\,\tau$",
-    ]
-
-
 def test_wrong_ending_and_missing_folder(make_case, tmp_path):
     result = result_of(OBSERVABLES[0], make_case, 5)
     with pytest.raises(RunError, match="choose one of"):

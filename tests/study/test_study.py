@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import csv
-import json
 import shutil
 import signal
 import subprocess
@@ -292,69 +291,13 @@ def test_one_that_fails_does_not_stop_the_others(case_file, tmp_path, capsys):
     assert len(study.table()) > 0
 
 
-def test_figures_for_a_paper(study, tmp_path, capsys):
-    """A study is drawn again in another form and width, as a run is."""
-    figure = study.plot("acceleration", "flow-rate.mean", width=3.1)
-    assert figure.get_size_inches()[0] == pytest.approx(3.1)
-    [legend] = [figure.axes[0].get_legend()]
-    figure.canvas.draw()
-    assert legend.get_window_extent().y0 >= figure.axes[0].bbox.y1 - 3  # above, not on the data
-    code, out, _ = said(capsys, "plot", study.path, "--format", "svg", "--width", 3.1)
-    files = [Path(line) for line in out.splitlines()]
-    assert code == 0 and len(files) > 3 and all(b"<svg" in file.read_bytes() for file in files)
-    for file in files:
-        assert file.parent == study.path and "-against-acceleration" in file.name
-        file.unlink()
-    one = tmp_path / "one.pdf"
-    y = ["--y", "flow-rate.mean", "--fit", "line"]
-    code, out, _ = said(capsys, "plot", study.path, *y, "--output", one)
-    assert code == 0 and out.startswith("fit: y = ") and one.read_bytes()[:4] == b"%PDF"
-    run = study.runs[0].path
-    for arguments, words in (
-        ([study.path, "--result", "flow-rate"], "--result: only of a run"),
-        ([study.path, "--region", "0:2,0:2"], "--region: only of a run"),
-        ([study.path, "--output", one], "there are many pictures; add --y"),
-        ([study.path, "--fit", "line"], "--fit: of which number? add --y"),
-        ([run, "--y", "flow-rate.mean"], "--y: only of a study"),
-    ):
-        code, _, err = said(capsys, "plot", *arguments)
-        assert code == 2 and words in err, err
-
-
-def test_info_prints_the_pooled_numbers(study, capsys):
-    code, out, _ = said(capsys, "info", study.path)
-    assert code == 0 and "6 of 6 runs have ended" in out
-    assert all(line in out.splitlines() for line in study.lines())
-    record = json.loads(said(capsys, "info", study.path, "--json")[1])
-    assert record["varied"] == {FORCE: [0.02, 0.04]} and len(record["numbers"]) == len(
-        study.table()
-    )
-
-
-def test_a_list_of_runs_writes_nothing(case_file, tmp_path, capsys, monkeypatch):
-    """So that a later study of other settings finds no folder in its way."""
-    monkeypatch.chdir(tmp_path)
-    vary = ["study", case_file, "--vary", f"{FORCE}=0.01:0.03:5"]
-    code, out, _ = said(capsys, *vary, "--set", "run.warmup=40", "--list")
-    assert code == 0 and out.count("not begun") == 5 and not list(tmp_path.iterdir())
-    with pytest.raises(CaseError, match=r"with .*acceleration = 1e\+400|acceleration = inf"):
-        Study(case_file, {FORCE: [0.01, float("inf")]}, output="s", write=False)
-    study = Study(case_file, {FORCE: [0.01, 0.03]}, output="s", write=False)
-    assert [run.state for run in study.runs] == ["not begun"] * 2 and not Path("s").exists()
-    monkeypatch.setattr("mesokit.study.study.drive", lambda runs, *rest: [])
-    study.run()
-    assert Study.open("s").keys == [FORCE] and all(run.files.case for run in study.runs)
-    code, out, _ = said(capsys, *vary, "--list", "--output", "s")
-    assert code == 0 and len(list(Path("s/runs").iterdir())) == 2
-
-
 def test_study_files_and_the_command(case_file, tmp_path, capsys, monkeypatch, here):
     monkeypatch.chdir(tmp_path)
     text = f'case = "{case_file.as_posix()}"\nseeds = [5]\n[set]\n"run.steps" = 60\n'
     Path("forces.toml").write_text(f'{text}[[vary]]\n"{FORCE}" = "0.02:0.04:2"\n')
     code, out, _ = said(capsys, "study", "forces.toml", "--list")
     assert code == 0 and out.count("not begun") == 2 and "acceleration=0.04" in out
-    code, out, _ = said(capsys, "study", "forces.toml", "--only", 2)
+    code, out, _ = said(capsys, "study", "forces", "--only", 2)
     assert code == 0 and said(capsys, "study", "forces", "--list")[1].count("ended") == 1
     code, out, err = said(capsys, "study", "forces", "--jobs", 1)
     assert code == 0 and "study: 2 of 2 runs" in err

@@ -96,7 +96,7 @@ def test_the_command_of_the_page_makes_the_same_study(study, tmp_path, monkeypat
     (tmp_path / "case.toml").write_text(case)
     words = shlex.split(commands.splitlines()[1])
     with pytest.raises(SystemExit) as end:
-        main([*words[1:], "--job-array"])
+        main([*words[1:], "--list"])
     assert not end.value.code
     again = Study.open("again")
     assert [(run.point, run.seed) for run in again.runs] == [
@@ -225,7 +225,7 @@ def test_merged_runs_whose_results_are_lost_are_merged_again(merged):
 
 
 def test_a_study_is_no_run(study, capsys):
-    status, out, err = said(capsys, "table", study.path)
+    status, out, err = said(capsys, "info", study.path)
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert f"{study.path}: holds a study, not a run; mesokit study {study.path}" in err
     with pytest.raises(RunError, match=r"mesokit\.Study\.open reads"):

@@ -271,8 +271,7 @@ def first_line(
             close = difflib.get_close_matches(tag, map(str, first["input"]), 1, 0.7)
             hint = f"; is {close[0]!r} meant to be it?" if close else ""
             return f"{path}: missing{hint}; expected {one_of(known)}"
-        own = _own(context["tag"], known, here)
-        return f"{path} = {show(context['tag'])}: {_tag(context['tag'], known, path)}{own}"
+        return f"{path} = {show(context['tag'])}: {_tag(context['tag'], known, path)}"
     words = _expected(first)
     if kind == "value_error" and _names_key_of(here if first["loc"] else cls, words):
         return f"{path}.{words}" if path else words
@@ -349,20 +348,6 @@ def _tag(given: Any, known: Sequence[str], path: str) -> str:
     if len(known) <= MANY or nearest(given, known):
         return _choice(given, known)
     return f"expected {_names(known, path)}"
-
-
-def _own(given: Any, known: Sequence[str], hint: Any) -> str:
-    """How a part of the user's own comes to be known, for a name that is much like no other."""
-    if not _is_open(hint) or not isinstance(given, str):
-        return ""
-    if difflib.get_close_matches(given, known, 1, 0.6):
-        return ""
-    return "; is it a part of your own? then mesokit --import MODULE ... (docs/extending.md)"
-
-
-def _is_open(hint: Any) -> bool:
-    """Whether a type hint names a family, to which users can add parts."""
-    return isinstance(hint, Family) or any(map(_is_open, typing.get_args(hint)))
 
 
 def _names(known: Sequence[str], path: str) -> str:

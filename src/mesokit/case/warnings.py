@@ -24,10 +24,9 @@ def run_warnings(case: Case, memory: int, trajectory: int) -> Iterator[str]:
         yield "no [[observe]] and no [trajectory]: the run will leave nothing but its last state"
     for i, observable in enumerate(case.observe):
         if observable.every > run.steps:
-            samples = "no sample" if observable.measures else "one sample, of the start"
             yield (
                 f"observe[#{i + 1}].every = {observable.every}: more than run.steps = {run.steps}; "
-                f"{observable.label} takes {samples}"
+                f"{observable.label} takes no sample"
             )
         else:
             longest, usual = getattr(observable, "max_lag", None), _usual(observable, "max_lag")

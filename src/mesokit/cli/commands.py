@@ -38,10 +38,6 @@ COMMANDS = {command: module for module, commands in MODULES.items() for command 
 class Finite(click.FloatRange):
     """A number within bounds, if there are any; nan lies within none."""
 
-    def _describe_range(self) -> str:
-        """For the help: no bounds are not described."""
-        return super()._describe_range() if self.min is not None else ""
-
     def convert(self, value: Any, option: click.Parameter | None, context: Any) -> Any:
         """The number. Raises click.BadParameter, as for one out of bounds."""
         number = super().convert(value, option, context)
@@ -86,7 +82,6 @@ def cli(context: click.Context, modules: Sequence[str]) -> None:
     take_part(context.invoked_subcommand)
     for module in modules:
         sys.path[:0] = [os.getcwd()] if os.getcwd() not in sys.path else []
-        module = module.removesuffix(".py")  # as a file of this folder is called
         if not all(part.isidentifier() for part in module.split(".")):
             raise CaseError(f"--import {module!r}: expected the name of a module, such as mine")
         try:
@@ -145,13 +140,6 @@ def naming(path: Path) -> Iterator[None]:
         yield
     except CaseError as error:
         raise CaseError(f"{path}: {error}") from None
-
-
-def is_study(folder: Path) -> bool:
-    """Whether a study lies in a folder."""
-    from mesokit.io.run_directory import RunDirectory
-
-    return RunDirectory(folder).study_file.exists()
 
 
 def require_run(run: Path) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from mesokit.cli.commands import RUN, cli, is_study, require_run, result_named
+from mesokit.cli.commands import RUN, cli, require_run, result_named
 from mesokit.errors import CaseError
 
 FILE = click.Path(dir_okay=False, path_type=Path)
@@ -19,8 +19,9 @@ FILE = click.Path(dir_okay=False, path_type=Path)
 def report(what: Path, output: Path | None, films: bool) -> None:
     """Write one HTML file with the case, all numbers and all figures of RUN or STUDY."""
     import mesokit
+    from mesokit.io.run_directory import RunDirectory
 
-    if is_study(what):
+    if RunDirectory(what).study_file.exists():
         if films:
             raise CaseError(f"--films: only of a run; {what} holds a study")
         click.echo(mesokit.Study.open(what).report(output))

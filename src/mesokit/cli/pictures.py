@@ -15,12 +15,10 @@ from mesokit.cli.commands import (
     Finite,
     axes_of,
     cli,
-    is_study,
     require_run,
     result_named,
 )
 from mesokit.cli.completion import colours, kinds
-from mesokit.cli.dependence import dependence, draw_number, require_number
 from mesokit.cli.words import say
 from mesokit.errors import CaseError
 
@@ -96,31 +94,23 @@ def _choices(command: Any) -> Any:
 
 
 @cli.command()
-@click.argument("run", type=RUN, metavar="RUN|STUDY")
+@click.argument("run", type=RUN)
 @click.option("--kind", shell_complete=kinds, help=f"Draw the flow: {KIND}.")
 @_choices
 @click.option("--result", metavar="NAME", help="Draw this result alone.")
-@dependence
 @click.option("--format", "kind_of_file", type=click.Choice(FORMATS), help="[png]")
 @click.option("--width", type=Finite(2, 20), help="Inches; a column has 3.4.  [6.4]")
 @click.option("--output", type=FILE, help="The file of one picture: PNG, PDF or SVG.")
 def plot(run: Path, output: Path | None, width: float | None, **given: Any) -> None:
     """Draw the results of RUN again, one of them, or with --kind a picture of the flow.
 
-    Options of a picture without --kind draw the usual kind for which the run has kept all. Of STUDY
-    every number is drawn against the first varied key, or that of --y against --x.
+    Options of a picture without --kind draw the usual kind for which the run has kept all.
     """
     import mesokit
 
-    ending = f".{given.pop('kind_of_file') or 'png'}"
-    of_study = {option: given.pop(option) for option in ("x", "y", "fit", "log", "linear")}
-    if is_study(run):
-        return _plot_study(run, output, width, ending, of_study, given)
     kind, name = given.pop("kind"), given.pop("result")
+    ending = f".{given.pop('kind_of_file') or 'png'}"
     require_run(run)
-    for option, value in of_study.items():
-        if value:
-            raise CaseError(f"--{option}: only of a study; {run} holds a run")
     files = mesokit.open(run)
     if kind is None and name is None and any(value is not None for value in given.values()):
         kind = _usual(files, "four", given, given["window"] is not None)
@@ -142,31 +132,6 @@ def plot(run: Path, output: Path | None, width: float | None, **given: Any) -> N
     else:
         for picture in files.plot(ending=ending, width=width):
             click.echo(picture)
-
-
-def _plot_study(
-    path: Path, output: Path | None, width: float | None, ending: str, chosen: Any, others: Any
-) -> None:
-    """Draw every number of a study, or the chosen one."""
-    from mesokit.study.study import Study
-
-    for option, value in others.items():
-        if value is not None:
-            raise CaseError(f"--{option}: only of a run; {path} holds a study")
-    require_number(chosen)
-    study = Study.open(path)
-    if not study.ended:
-        say(f"{path}: {sum(run.ended for run in study.runs)} of {len(study)} runs have ended")
-    if chosen["y"]:
-        picture = draw_number(study, chosen, ending=ending, path=output, width=width)
-        return click.echo(picture)
-    if output is not None:
-        raise CaseError(f"--output {output}: there are many pictures; add --y NUMBER")
-    pictures = study.save_pictures(ending, width=width)
-    if not pictures:
-        raise CaseError(f"{path}: no number has error bars at two values of a varied key")
-    for picture in pictures:
-        click.echo(picture)
 
 
 def _require_one(kind: str | None, name: str | None, output: Path | None, given: Any) -> None:

@@ -16,7 +16,6 @@ from mesokit.cli.commands import (
     SET,
     THREADS,
     cli,
-    is_study,
     naming,
     read,
     require_run,
@@ -139,16 +138,12 @@ def resume(
 
 
 @cli.command()
-@click.argument("run", type=RUN, metavar="RUN|STUDY")
+@click.argument("run", type=RUN)
 @JSON
 def info(run: Path, as_json: bool) -> None:
-    """Show what is in the files of RUN, or the pooled numbers of STUDY."""
+    """Show what is in the files of RUN."""
     import mesokit
 
-    if is_study(run):
-        study = mesokit.Study.open(run)
-        click.echo(in_json(study.record()) if as_json else "\n".join([repr(study), *study.lines()]))
-        return
     require_run(run)
     files = mesokit.open(run)
     click.echo(in_json(files.record()) if as_json else files)

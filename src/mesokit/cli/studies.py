@@ -10,10 +10,12 @@ from typing import Any
 import click
 
 from mesokit.cli.commands import RUN, SET, cli, require_run
-from mesokit.cli.dependence import dependence, draw_number, first_key, require_number
 from mesokit.cli.outcome import show_results, stopping
 from mesokit.cli.words import patience, say, show_table
 from mesokit.errors import CaseError, RunError
+
+FITS = click.Choice(["line", "power"])
+LOGS = click.Choice(["x", "y", "x,y"])
 
 
 def _options(context: click.Context, option: click.Parameter, values: Sequence[str]) -> Any:
@@ -61,10 +63,14 @@ def _axes(context: click.Context, option: click.Parameter, values: Sequence[str]
     metavar="NAME=VALUE",
     help="Of the jobs of a cluster, such as walltime=10:00:00. May be repeated.",
 )
-@click.option("--list", "listing", is_flag=True, help="Show the runs; nothing is run or written.")
+@click.option("--list", "listing", is_flag=True, help="Show the runs, and carry none.")
 @click.option("--job-array", is_flag=True, help="Write a Slurm script with a job for each run.")
 @click.option("--only", type=click.IntRange(1), help="Carry the run of this number alone.")
-@dependence
+@click.option("--x", metavar="KEY", help="Draw against this key (the first varied unless said).")
+@click.option("--y", metavar="NUMBER", help="Draw this number, such as flow-rate.permeability.")
+@click.option("--fit", type=FITS, help="Fit a straight line or a power law to it.")
+@click.option("--log", type=LOGS, help="Logarithmic axes of it.")
+@click.option("--linear", is_flag=True, help="Linear axes of it.")
 @click.option("--quiet", is_flag=True, help="No progress, no table; errors only.")
 def study(what: Path, **given: Any) -> None:
     """Run CASE for several values and seeds, or go on with a STUDY (its folder, or a study file).
@@ -72,7 +78,11 @@ def study(what: Path, **given: Any) -> None:
     Runs that have ended are not repeated. At the end there are a table (table.csv) and a picture of
     every number against the first key that is varied.
     """
-    require_number(given)
+    for option in ("x", "fit", "log", "linear"):
+        if given[option] and not given["y"]:
+            raise CaseError(f"--{option}: of which number? add --y")
+    if given["log"] and given["linear"]:
+        raise CaseError("--linear: not with --log")
     from mesokit.study.job_array import write_job_array
     from mesokit.study.study import Study
 
@@ -89,7 +99,7 @@ def study(what: Path, **given: Any) -> None:
         for warning in made.warnings():
             say(f"warning: {warning}")
     if given["y"]:
-        made.require(given["x"] or first_key(made), given["y"])
+        made.require(given["x"] or _first(made), given["y"])
     failed = None
     with stopping(f"mesokit study {shlex.quote(str(made.path))}"):
         try:
@@ -112,15 +122,10 @@ def _made(Study: Any, what: Path, given: dict[str, Any]) -> Any:
         for name, option in options.items():
             if given[name]:
                 raise CaseError(f"--{option}: only with a case file; {what} says it already")
-        return Study.open(what, given["output"], write=not given["listing"])
+        return Study.open(what, given["output"])
     output = given["output"] or Path(f"{what.stem}-study")
     return Study(
-        what,
-        given["axes"],
-        given["seeds"] or 1,
-        output=output,
-        settings=given["settings"],
-        write=not given["listing"],
+        what, given["axes"], given["seeds"] or 1, output=output, settings=given["settings"]
     )
 
 
@@ -165,10 +170,20 @@ def _show(made: Any, given: dict[str, Any]) -> None:
             click.echo(line)
     click.echo(f"table: {table}")
     if given["y"]:
-        picture = draw_number(made, given)
+        x, fit = given["x"] or _first(made), given["fit"]
+        log = False if given["linear"] else given["log"]
+        picture = made.save_picture(x, given["y"], fit, log=log)
+        for found in made.fit(x, given["y"], fit) if fit else ():
+            click.echo(f"fit: {found}")
         return click.echo(f"picture: {picture}")
     for path in made.save_pictures():
         click.echo(f"picture: {path}")
+
+
+def _first(made: Any) -> str:
+    if not made.keys:
+        raise CaseError("--y: nothing is varied that it could be drawn against")
+    return str(made.keys[0])
 
 
 def _numbered(made: Any) -> Any:

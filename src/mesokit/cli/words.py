@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import errno
-import itertools
 import json
 import math
 import threading
@@ -38,14 +37,13 @@ def patience(why: str, quiet: bool = False) -> Iterator[None]:
 
 def show_table(rows: Sequence[tuple[str, str, str]]) -> None:
     """Print rows in aligned columns."""
-    import click
-    from rich.cells import cell_len
+    from rich.console import Console
+    from rich.table import Table
 
-    lengths = [[cell_len(text) for text in row] for row in rows]
-    widths = [max(column) for column in zip(*lengths, strict=True)]
-    for row, length in zip(rows, lengths, strict=True):
-        gaps = (" " * (width - own + 2) for width, own in zip(widths, length, strict=True))
-        click.echo("".join(itertools.chain(*zip(row, gaps, strict=True))).rstrip())
+    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))
+    for row in rows:
+        table.add_row(*row)
+    Console(highlight=False, soft_wrap=True).print(table)
 
 
 def in_json(record: object) -> str:

@@ -41,7 +41,7 @@ def touches(solid, clear, r, v, a, time):
 
 
 @generic
-def leaps(solid, displacement):
+def leaps(solid, way):
     """Whether a way is longer than a stride, of solids in tables: `clear` may not be so large."""
 
 

@@ -50,7 +50,7 @@ DTYPES = {"image": np.int32, "site": np.int16}  # of the others by the precision
 CHUNK = 65536  # particles
 MOST_IN_MEMORY = 2**28  # bytes kept in memory once the disk is full
 LARGE = 2**20  # numbers of one result, beyond which it is compressed
-_TABLE = ("what", "measured", "error", "expected", "unit", "note", "inverse")
+_TABLE = ("what", "measured", "error", "expected", "unit", "note")
 
 
 def write(
@@ -280,7 +280,7 @@ def _particles(
     n, frames = trajectory.number, len(steps)
     group.attrs["dimension"] = case.box.dimension
     own = trajectory.own
-    _identities(group, case, trajectory, own)
+    _who(group, case, trajectory, own)
     if "diameter" in own:
         group["radius"] = 0.5 * own["diameter"]
         group["radius"].attrs["reduced_unit"] = UNITS["radius"]
@@ -320,9 +320,7 @@ def _particles(
     del group["step"], group["time"]  # the elements have linked them
 
 
-def _identities(
-    group: Any, case: Case, trajectory: TrajectoryWriter, own: Mapping[str, Any]
-) -> None:
+def _who(group: Any, case: Case, trajectory: TrajectoryWriter, own: Mapping[str, Any]) -> None:
     """Number, mass and kind of each particle, some after the other."""
     n = trajectory.number
     masses = np.array([kind.mass for one in case.groups for kind in one.kinds], float)
@@ -469,8 +467,9 @@ def _read_result(group: Any) -> Result:
 
 
 def _comparisons(table: Any) -> Iterator[Comparison]:
-    columns = [_load(table[name]) for name in _TABLE if name in table]
-    for what, measured, error, expected, unit, note, *inverse in zip(*columns, strict=True):
-        numbers = float(measured), float(error), float(expected)
-        # files of 0.2.0 and before have no last column
-        yield Comparison(str(what), *numbers, str(unit), str(note), any(inverse))
+    columns = [_load(table[name]) for name in _TABLE]
+    for row in zip(*columns, strict=True):
+        what, measured, error, expected, unit, note = row
+        yield Comparison(
+            str(what), float(measured), float(error), float(expected), str(unit), str(note)
+        )

@@ -25,13 +25,13 @@ from mesokit.kernels.kept import counts, kept
 
 PATIENCE = 300  # seconds: a child that hangs ends, and holds no run up for ever
 
-_in_progress: dict[Any, tuple[int, int]] = {}  # of each kernel: the child, and where it reports
+_under_way: dict[Any, tuple[int, int]] = {}  # of each kernel: the child, and where it reports
 
 
 def begin(kernel: Any, compile: Callable[[], Any]) -> None:
     """Compile a kernel in a child of this process, if that can be done."""
     own = kept().own
-    if own is None or not own.writes or kernel in _in_progress or not _can_copy():
+    if own is None or not own.writes or kernel in _under_way or not _can_copy():
         return
     with global_compiler_lock, warnings.catch_warnings():
         # Python warns of threads: the child has none, and the locks that it needs are held here
@@ -41,7 +41,7 @@ def begin(kernel: Any, compile: Callable[[], Any]) -> None:
         if child == 0:
             _compile(compile, reported)
     os.close(reported)
-    _in_progress[kernel] = child, report
+    _under_way[kernel] = child, report
     counts.compiles_ahead += 1
 
 
@@ -80,9 +80,9 @@ def _compile(compile: Callable[[], Any], reported: int) -> None:
 
 def end(kernel: Any) -> None:
     """Wait for the child that compiles a kernel, if there is one, and count what it made."""
-    if kernel not in _in_progress:
+    if kernel not in _under_way:
         return
-    child, report = _in_progress.pop(kernel)
+    child, report = _under_way.pop(kernel)
     told = b""
     try:
         with os.fdopen(report, "rb") as pipe:
@@ -104,8 +104,8 @@ def _stop(child: int) -> None:
 
 def _forget() -> None:
     """In a copy of this process: the children are those of the other."""
-    while _in_progress:
-        os.close(_in_progress.popitem()[1][1])
+    while _under_way:
+        os.close(_under_way.popitem()[1][1])
     counts.compiles_ahead = 0
 
 
@@ -115,7 +115,7 @@ if hasattr(os, "register_at_fork"):
 
 @atexit.register
 def _stop_all() -> None:
-    while _in_progress:
-        child, report = _in_progress.popitem()[1]
+    while _under_way:
+        child, report = _under_way.popitem()[1]
         os.close(report)
         _stop(child)

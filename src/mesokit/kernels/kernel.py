@@ -59,7 +59,7 @@ def inner(function: Callable) -> Any:
 def kernel(function: Callable) -> Any:
     """Compile a loop over particles or cells, and keep the result on disk.
 
-    Those that take a `Worker` first are run by all its threads at once.
+    Those that take a `Team` first are run by all its threads at once.
     """
     names = ", ".join(inspect.signature(function).parameters)
     space = {"body": inner(function), "__name__": function.__module__}

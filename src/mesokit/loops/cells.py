@@ -54,7 +54,7 @@ def next_along(lists, box, k, x):
 
 
 @scalar
-def outdated(farthest, slip, skin):
+def worn(farthest, slip, skin):
     """Whether lists may miss somebody: two have gone toward one another by more than the skin.
 
     `farthest` is the square of the longest way since the lists were made, `slip` how far the images

@@ -13,10 +13,10 @@ CLOCK_SIZE = FIRST + STAGES
 
 
 @scalar
-def lap(worker, stage):
+def lap(team, stage):
     """Add the time since the last lap to a stage; START only starts the clock."""
-    if worker.thread == 0:
-        clock = worker.clock
+    if team.thread == 0:
+        clock = team.clock
         now = read_clock(clock)
         if stage >= 0:
             clock[FIRST + stage] += now - clock[2]

@@ -33,7 +33,7 @@ def _add_atomic(typing_context: Any, pointer: Any, value: Any) -> Any:
     return types.int64(types.uintp, types.int64), generate
 
 
-class Worker(NamedTuple):
+class Team(NamedTuple):
     """The threads that run a kernel together, as one of them sees it."""
 
     thread: int
@@ -43,14 +43,14 @@ class Worker(NamedTuple):
 
 
 @scalar
-def barrier(worker):
+def meet(team):
     """Go on when all threads have come here: what each wrote before, all can read after."""
-    if worker.threads > 1:
-        arrived = np.uint64(worker.gate.ctypes.data + 8 * ARRIVED)
-        opened = np.uint64(worker.gate.ctypes.data + 8 * OPENED)
+    if team.threads > 1:
+        arrived = np.uint64(team.gate.ctypes.data + 8 * ARRIVED)
+        opened = np.uint64(team.gate.ctypes.data + 8 * OPENED)
         now = _add_atomic(opened, np.int64(0))
-        if _add_atomic(arrived, np.int64(1)) == worker.threads - 1:
-            _add_atomic(arrived, np.int64(-worker.threads))
+        if _add_atomic(arrived, np.int64(1)) == team.threads - 1:
+            _add_atomic(arrived, np.int64(-team.threads))
             _add_atomic(opened, np.int64(1))
         spins = 0
         while _add_atomic(opened, np.int64(0)) == now:
@@ -62,12 +62,12 @@ def barrier(worker):
 class Threads:
     """A fixed number of threads; the caller is one of them.
 
-    Kernels are compiled with `nogil=True` and take a `Worker` first.
+    Kernels are compiled with `nogil=True` and take a `Team` first.
 
     Examples
     --------
     >>> seen = []
-    >>> Threads(2).run(lambda worker, x: seen.append((worker.thread, worker.threads, x)), "a")
+    >>> Threads(2).run(lambda team, x: seen.append((team.thread, team.threads, x)), "a")
     >>> sorted(seen)
     [(0, 2, 'a'), (1, 2, 'a')]
     """
@@ -76,15 +76,15 @@ class Threads:
         self.size = size
         self.clock = np.zeros(CLOCK_SIZE, np.int64)
         self._gate = np.zeros(GATE_SIZE, np.int64)
-        self._own = self._worker(0)  # of the caller
+        self._own = self._team(0)  # of the caller
         self._inboxes: list[SimpleQueue] = [SimpleQueue() for _ in range(size - 1)]
         self._done: SimpleQueue = SimpleQueue()
         for thread, inbox in enumerate(self._inboxes, start=1):
-            args = (self._worker(thread), inbox, self._done)
+            args = (self._team(thread), inbox, self._done)
             threading.Thread(target=_work, args=args, daemon=True).start()
 
     def run(self, kernel: Any, *arguments: Any) -> None:
-        """Call kernel(worker, *arguments) in every thread; return when all are done.
+        """Call kernel(team, *arguments) in every thread; return when all are done.
 
         A kernel that is still to be compiled is compiled before any thread starts it.
         """
@@ -103,21 +103,21 @@ class Threads:
         """Have another core compile what `run` will call, if there is one."""
         kernel.compile_ahead(self._own, *arguments)
 
-    def _worker(self, thread: int) -> Any:
-        return packed(Worker(thread, self.size, self._gate, self.clock))
+    def _team(self, thread: int) -> Any:
+        return packed(Team(thread, self.size, self._gate, self.clock))
 
     def __del__(self) -> None:
         for inbox in self._inboxes:
             inbox.put(None)
 
 
-def _work(worker: Worker, inbox: SimpleQueue, done: SimpleQueue) -> None:
+def _work(team: Team, inbox: SimpleQueue, done: SimpleQueue) -> None:
     """Life of a thread; it holds no reference to `Threads`, so that these can be dropped."""
     while (job := inbox.get()) is not None:
         kernel, arguments = job
         error: BaseException | None = None
         try:
-            kernel(worker, *arguments)
+            kernel(team, *arguments)
         except BaseException as raised:  # handed to the caller
             error = raised
         del job, kernel, arguments

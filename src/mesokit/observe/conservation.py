@@ -177,8 +177,8 @@ class ConservationAccumulator:
         case, flow = self.case, setting.flow(self.case, axis)
         mass = setting.superficial_mass(case)
         if flow.kind == "accelerating" and not case.walls:
-            acceleration = float(setting.uniform_acceleration(case)[axis])
-            return self.first[1 + axis] + mass * acceleration * since
+            push = float(setting.acceleration(case)[axis])
+            return self.first[1 + axis] + mass * push * since
         if flow.profile is None or setting.obstructed(case):
             return np.nan
         edges = np.linspace(0.0, case.box.size[flow.across], 65)

@@ -51,8 +51,7 @@ class DensityFieldAccumulator(FieldAccumulator):
         else:
             expected = np.full(self.bins, self.case.fluid.density)
             pressed = setting.gathered(self.case) or any(
-                setting.uniform_acceleration(self.case)[axis]
-                for axis in setting.closed_axes(self.case)
+                setting.acceleration(self.case)[axis] for axis in setting.closed_axes(self.case)
             )
         return Result(
             quantity="density-field",

@@ -246,7 +246,7 @@ class DensityProfileAccumulator(ProfileAccumulator):
             return None
         if self.trapped:
             return self.expected_in_traps()
-        weight = 0.0 if self.periodic else float(setting.uniform_acceleration(case)[self.axis])
+        weight = 0.0 if self.periodic else float(setting.acceleration(case)[self.axis])
         solutes = None if group.first < case.particles else case.solutes
         kind = solutes.index_of(self.kind) if solutes else 0
         mass = solutes.masses[kind] if solutes else case.fluid.mass

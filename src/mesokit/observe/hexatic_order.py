@@ -99,8 +99,8 @@ def psi_6(places: Array, box: Array) -> NDArray[np.complex128]:
     starts, others = Delaunay(points).vertex_neighbor_vertices
     owner = np.repeat(np.arange(len(points)), np.diff(starts))
     own = owner < n
-    separation = points[others[own]] - points[owner[own]]
-    phase = np.exp(6j * np.arctan2(separation[:, 1], separation[:, 0]))
+    way = points[others[own]] - points[owner[own]]
+    phase = np.exp(6j * np.arctan2(way[:, 1], way[:, 0]))
     count = np.bincount(owner[own], minlength=n)[:n]
     real, imaginary = (np.bincount(owner[own], part, n)[:n] for part in (phase.real, phase.imag))
     return np.asarray((real + 1j * imaginary) / count)

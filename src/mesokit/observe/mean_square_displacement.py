@@ -198,12 +198,10 @@ class MeanSquareDisplacementAccumulator(BlockAccumulator):
         expected, note = self.theory.coefficient()
         what = "diffusion coefficient"
         if slope.growth:
-            trend = "grows" if slope.growth > 0 else "falls"
+            way = "grows" if slope.growth > 0 else "falls"
             short = not (slope.straight or self.theory.grows())
             why = ": no straight line yet, a larger max_lag" if short else ""
             decade = "error bar with its change in a decade of lags"
             rest = note.removeprefix("approximate: ")
-            note = "; ".join(
-                filter(None, (f"approximate: {trend} with the lag{why}", decade, rest))
-            )
+            note = "; ".join(filter(None, (f"approximate: {way} with the lag{why}", decade, rest)))
         return fitted_number(what, value, error, expected, "a^2/tau", note)

@@ -181,7 +181,7 @@ class StructureFactorAccumulator(BlockAccumulator):
             x={"q": self.over_shells(self.lengths)},
             value=self.means.mean(),
             error=self.error(),
-            label="S(q) of one molecule" if what == "chain" else "S(q)",
+            label="S(q) of one chain" if what == "chain" else "S(q)",
             units={"value": "", "q": "1/a"},
             expected=expected,
             theory="Debye" if bonded else "ideal gas",

@@ -18,7 +18,6 @@ from mesokit.observe.shared.profile import (
     expected_in_slices,
     part_of,
 )
-from mesokit.observe.shared.short_run import of_relaxations
 from mesokit.observe.shared.whose import KIND, ids_of_kind
 from mesokit.seam.estimate import Estimate, fit, noted, of_ratio
 from mesokit.seam.result import Comparison, Result
@@ -163,18 +162,13 @@ class VelocityProfileAccumulator(ProfileAccumulator):
         coefficients = setting.transport(self.case)
         return coefficients.viscosity if coefficients else np.nan
 
-    def viscosity_note(self, error: float) -> str:
-        """Why that of the theory is not this fluid's, or is off by more than the error bar."""
-        caveat = setting.caveat(self.case)
-        return caveat or setting.chaos_is_off(self.case, self.expected_viscosity(), error)
-
     def short_run(self, viscosity: float) -> str:
         """Where blocking cannot see the slowest eddies, which live H^2/(pi^2 nu): a note."""
         time = self.blocks.count * self.observable.every * self.case.fluid.timestep
         times = time * np.pi**2 * viscosity / self.edges[-1] ** 2
         if not 0 < times < ENOUGH:
             return ""
-        return of_relaxations(times)
+        return f"error bar is a lower bound: the run has {times:.2g} relaxation times"
 
     def plates(self) -> tuple[float, float]:
         """Velocities of the lower and the upper plate."""
@@ -194,11 +188,9 @@ def _poiseuille(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
     basis = acc.powers(2)
     parabola = fit(velocity, basis, mass * acc.inside())
     c0, _, c2 = parabola.value
-    acceleration = setting.uniform_acceleration(acc.case)[acc.component]
+    push = setting.acceleration(acc.case)[acc.component]
     value, error = parabola.scalar(
-        -acceleration / (2 * c2),
-        np.array([0, 0, acceleration / (2 * c2**2)]),
-        over=(c2, np.eye(3)[2]),
+        -push / (2 * c2), np.array([0, 0, push / (2 * c2**2)]), over=(c2, np.eye(3)[2])
     )
     short = acc.short_run(acc.expected_viscosity() if np.isnan(value) else value)
     found = [
@@ -208,8 +200,7 @@ def _poiseuille(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
             error,
             acc.expected_viscosity(),
             VISCOSITY,
-            noted(value, acc.viscosity_note(error), short) or "independent of slip",
-            inverse=True,
+            noted(value, setting.caveat(acc.case), short) or "independent of slip",
         )
     ]
     quarter = acc.edges[-1] ** 2 / 4
@@ -284,8 +275,7 @@ def _kolmogorov(acc: VelocityProfileAccumulator, velocity: Estimate, mass: Array
             error,
             acc.expected_viscosity(),
             VISCOSITY,
-            noted(value, acc.viscosity_note(error)) or "steady",
-            inverse=True,
+            noted(value, setting.caveat(acc.case)) or "steady",
         )
     ]
 

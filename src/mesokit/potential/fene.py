@@ -6,7 +6,7 @@ import math
 from typing import Literal, NamedTuple
 
 from mesokit.case.component import component, param, tag
-from mesokit.potential.protocol import Bond, breaks, central
+from mesokit.potential.protocol import Bond, central, torn
 
 
 @component
@@ -36,10 +36,10 @@ class Finite(NamedTuple):
 
 @central.register(Finite)
 def _(potential, square):
-    left = max(1.0 - square / potential.limit, 1e-12)  # a broken bond stops the run: see `breaks`
+    left = max(1.0 - square / potential.limit, 1e-12)  # a torn bond stops the run: see `torn`
     return -0.5 * potential.k * potential.limit * math.log(left), -potential.k / left
 
 
-@breaks.register(Finite)
+@torn.register(Finite)
 def _(potential, square):
     return square >= potential.limit

@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 
 from mesokit import theory
 from mesokit.case.component import component, param, tag
-from mesokit.potential.protocol import Bond, breaks, central
+from mesokit.potential.protocol import Bond, central, torn
 
 
 @component
@@ -84,6 +84,6 @@ def _(potential, square):
     return 0.5 * potential.k * beyond * beyond, -potential.k * beyond / max(r, NO_LENGTH)
 
 
-@breaks.register(Square, AboutLength)
+@torn.register(Square, AboutLength)
 def _(potential, square):
     return False

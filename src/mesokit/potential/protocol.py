@@ -17,7 +17,7 @@ from mesokit.scalar.jit import generic
 @family("bond", "rule", "mesokit.potential")
 @component
 class Bond(ABC):
-    """What links two beads: `central` and `breaks` below."""
+    """What links two beads: `central` and `torn` below."""
 
     @property
     @abstractmethod
@@ -84,11 +84,11 @@ def central(potential, square):
 
 
 @generic
-def breaks(potential, square):
+def torn(potential, square):
     """Whether a bond of this squared length is longer than it can be (a literal where none is)."""
 
 
-breaks.otherwise(lambda potential, square: False)
+torn.otherwise(lambda potential, square: False)
 
 
 @generic

@@ -50,17 +50,17 @@ def several(potentials: Sequence[Any]) -> Several:
     for kind in reversed(classes):
         mine = list(dict.fromkeys(one for one in potentials if type(one) is kind))
         rows = [mine.index(one) if type(one) is kind else NONE for one in potentials]
-        table = np.concatenate([_words(one, pattern=mine[0]) for one in mine])
+        table = np.concatenate([_words(one, like=mine[0]) for one in mine])
         made = (Several(mine[0], _kept(table), _kept(np.array(rows, np.int64)), made),)
     (found,) = made
     return found
 
 
-def _words(potential: Any, pattern: Any) -> NDArray[np.int64]:
+def _words(potential: Any, like: Any) -> NDArray[np.int64]:
     """Its parameters, eight bytes each, of the types of those of another."""
     whole = [isinstance(value, int | np.integer) for value in potential]
     numbers = all(isinstance(value, int | float | np.integer) for value in potential)
-    if not numbers or whole != [isinstance(value, int | np.integer) for value in pattern]:
+    if not numbers or whole != [isinstance(value, int | np.integer) for value in like]:
         raise CaseError(
             f"{type(potential).__name__}: parameters that are no plain numbers; a potential of "
             "that kind cannot differ between kinds of solutes"

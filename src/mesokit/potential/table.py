@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from mesokit.case.component import FileName, FromContents, component, param, show, tag
 from mesokit.errors import CaseError
-from mesokit.potential.protocol import Pair, breaks, central
+from mesokit.potential.protocol import Pair, central, torn
 from mesokit.potential.table_file import rows_of
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.pointer import address, real
@@ -183,13 +183,13 @@ def _(potential, square):
         number(potential.table, c + 3),
     )
     energy = number(potential.table, c) + t * (b + t * (quadratic + t * cubic))
-    force_over_r = -2.0 * potential.per * (b + t * (2.0 * quadratic + t * 3.0 * cubic))
+    push = -2.0 * potential.per * (b + t * (2.0 * quadratic + t * 3.0 * cubic))
     if square < potential.near:
-        energy -= 0.5 * force_over_r * (square - potential.near)
+        energy -= 0.5 * push * (square - potential.near)
     inside = square < potential.far
-    return (energy if inside else 0.0), (force_over_r if inside else 0.0)
+    return (energy if inside else 0.0), (push if inside else 0.0)
 
 
-@breaks.register(Cubics)
+@torn.register(Cubics)
 def _(potential, square):
     return False

@@ -57,8 +57,8 @@ def watch(here: Any) -> None:
     earlier = sys.excepthook
 
     def hook(kind: type[BaseException], value: BaseException, trace: Any) -> None:
-        def say(rank_name: str) -> None:
-            print(rank_name and f"mesokit: {rank_name}", end="", file=sys.stderr)
+        def say(who: str) -> None:
+            print(who and f"mesokit: {who}", end="", file=sys.stderr)
             earlier(kind, value, trace)
 
         status = getattr(value, "status", 130) if issubclass(kind, KeyboardInterrupt) else 1

@@ -1,7 +1,7 @@
 """Ranks do not outlive the process that has started them on this machine, even if it is killed.
 
 It holds a lock, of which the system lets go when that process ends in whatever way; ranks ask for
-the lock, and the process that gets it ends.
+the lock, and who gets it ends.
 """
 
 from __future__ import annotations

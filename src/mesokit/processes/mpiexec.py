@@ -132,11 +132,11 @@ def _pass_on(process: subprocess.Popen[str]) -> list[str]:
 
 def _what_is_known(folder: Path, said: list[str], status: int) -> End:
     """Which rank has ended, and how, by what the launcher said."""
-    text, rank_name = "".join(said), "a rank"
+    text, who = "".join(said), "a rank"
     if found := DIED.search(text):
         rank = found["rank"] or parent.rank_of(folder, int(found["process"]))
-        rank_name = "a rank" if rank is None else f"rank {rank}"
+        who = "a rank" if rank is None else f"rank {rank}"
     if found := SIGNAL.search(text):
         by = signal.Signals(int(found[1] or found[2]))
-        return End(128 + by, f"{rank_name} ended by {by.name}")
-    return End(status if 0 < status < 256 else 1, f"{rank_name} ended with status {status}")
+        return End(128 + by, f"{who} ended by {by.name}")
+    return End(status if 0 < status < 256 else 1, f"{who} ended with status {status}")

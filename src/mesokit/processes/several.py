@@ -207,7 +207,7 @@ class Several:
         end.leave_orderly(status)
 
 
-def _nothing(rank_name: str) -> None:
+def _nothing(who: str) -> None:
     """No run fails."""
 
 

@@ -24,7 +24,6 @@ from mesokit.seam.result import Result
 if TYPE_CHECKING:
     from mesokit.case.case import Case
 
-FEW = 10  # samples: of fewer a mean says how many
 NO_FLUID = "0.85"  # grey of bins without fluid, where nobody knows the solids
 DENSITIES = 0.5, 99.5  # percent of the bins: from where to where the colours of a density go
 FLAT = 0.5  # of the highest density: where the lowest is above it, colours start there
@@ -91,8 +90,6 @@ def _note(result: Result, flow: Flow) -> str:
     text = f"mean {'velocity' if flow.density is None else 'density'} of the run"
     unit = "a/tau" if flow.density is None else f"1/a^{flow.dimension}"
     error = result.error if flow.sure is None else result.error[flow.sure]
-    if result.samples < FEW:
-        text += f", of {result.samples} sample" + "s" * (result.samples != 1)
     if (error > 0).any():
         text += f"; median standard error {np.nanmedian(error[error > 0]):.2g} {symbols(unit)}"
     if flow.density is not None and result.expected is not None:

@@ -38,7 +38,7 @@ from mesokit.report.particles import (
     structure_factor,
 )
 from mesokit.report.rheology import stress_in_time
-from mesokit.report.style import STYLE, WIDTH, fonts, height_of
+from mesokit.report.style import HEIGHT, STYLE, WIDTH
 from mesokit.seam.result import Result
 
 if TYPE_CHECKING:
@@ -76,6 +76,7 @@ DRAW: dict[str, Callable[[Result, Any, Any], None]] = {
 MAPS = ("map", "frames")
 FEW, FLAT = 4, ("tensor", "moduli")  # places of a curve that fill no page; what has few numbers
 LOW = 0.6  # of the usual height, of a figure of few numbers
+LEAST_HEIGHT, LEAST_FONT = 0.7, 0.75  # of the usual, however narrow a figure is
 
 
 def plot(
@@ -107,7 +108,7 @@ def plot(
         if result.drawing in MAPS:
             return field.draw(result, None, case)
         text = compared(result.comparisons, wide)
-        height = height_of(wide) * (LOW if _few(result) else 1.0)
+        height = HEIGHT * max(wide / WIDTH, LEAST_HEIGHT) * (LOW if _few(result) else 1.0)
         height += LINE * len(text.splitlines())
         figure = ShownFigure(figsize=(wide, height), layout="constrained")
         DRAW[result.drawing](result, figure, None)
@@ -130,6 +131,19 @@ def _around_one_place(ax: Any) -> None:
         if getattr(ax, f"get_{name}scale")() == "log" and 0 < low == high:
             getattr(ax, f"set_autoscale{name}_on")(False)  # which would warn of it
             getattr(ax, f"set_{name}lim")(low / 2, 2 * high)
+
+
+def fonts(width: float) -> dict[str, float]:
+    """Sizes of letters in a figure that is narrower than usual: no smaller than can be read.
+
+    >>> fonts(6.4), fonts(3.2)["font.size"]
+    ({}, 7.5)
+    """
+    if width >= WIDTH:
+        return {}
+    names = ("font.size", "axes.labelsize", "legend.fontsize")
+    factor = max(width / WIDTH, LEAST_FONT)
+    return {name: STYLE[name] * factor for name in names} | {"axes.titlesize": 10 * factor}
 
 
 def _draw_into(result: Result, ax: Any, case: Case | None) -> None:

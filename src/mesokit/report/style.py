@@ -9,7 +9,6 @@ from typing import Any
 from mesokit.report.caption import mathematics, symbols
 
 WIDTH, HEIGHT = 6.4, 4.8  # inches
-LEAST_HEIGHT, LEAST_FONT = 0.7, 0.75  # of the usual, however narrow a figure is
 WIDER = 1.1  # than axes are before margins are taken away, what a legend above may be
 MARKERS = "osD^v<>pP*X"
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)))
@@ -32,28 +31,6 @@ STYLE: Any = {
 }
 
 
-def fonts(width: float) -> dict[str, float]:
-    """Sizes of letters in a figure that is narrower than usual: no smaller than can be read.
-
-    >>> fonts(6.4), fonts(3.2)["font.size"]
-    ({}, 7.5)
-    """
-    if width >= WIDTH:
-        return {}
-    names = ("font.size", "axes.labelsize", "legend.fontsize")
-    factor = max(width / WIDTH, LEAST_FONT)
-    return {name: STYLE[name] * factor for name in names} | {"axes.titlesize": 10 * factor}
-
-
-def height_of(width: float) -> float:
-    """The usual height of a figure that is so wide, in inches.
-
-    >>> height_of(6.4), round(height_of(3.2), 2)
-    (4.8, 3.36)
-    """
-    return HEIGHT * max(width / WIDTH, LEAST_HEIGHT)
-
-
 def looks() -> Iterator[tuple[Any, str]]:
     """Dash and colour of one curve after another, for pictures with many lines.
 
@@ -67,12 +44,7 @@ def looks() -> Iterator[tuple[Any, str]]:
 
 
 def labelled(label: str, unit: str) -> str:
-    """An axis label with its unit; a letter alone is a symbol.
-
-    >>> labelled("q", "1/a")
-    '$q$  [$a^{-1}$]'
-    """
-    label = f"${label}$" if len(label) == 1 and label.isalpha() else label
+    """An axis label with its unit."""
     return f"{mathematics(label)}  [{symbols(unit)}]" if unit else mathematics(label)
 
 

@@ -17,7 +17,6 @@ SYMBOLS = {
     "products of bond components": r"$\langle b_\alpha b_\beta\rangle$",
 }
 
-BARS = r", $\pm$ one standard error"  # said once
 TITLES = {"products of bond components": ("off the diagonal", "on the diagonal")}  # of panels
 
 
@@ -56,7 +55,7 @@ def draw_moduli(result: Result, figure: Any, ax: Any) -> None:
 
 
 def _legend(figure: Any, panels: Any, ax: Any = None) -> None:
-    """One for all panels, outside of them: no data there; in as many columns as fit."""
+    """One for all panels, below them: no data there."""
     handles: dict[str, Any] = {}
     for panel in panels:
         found, labels = panel.get_legend_handles_labels()
@@ -67,19 +66,14 @@ def _legend(figure: Any, panels: Any, ax: Any = None) -> None:
         ax.legend(
             handles.values(), handles, loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=2
         )
-        return
-    for number in range(len(handles), 0, -1):
-        legend = figure.legend(handles.values(), handles, loc="outside upper center", ncols=number)
-        if number == 1 or legend.get_window_extent().width <= figure.bbox.width:
-            return
-        legend.remove()
+    else:
+        figure.legend(handles.values(), handles, loc="outside upper center", ncols=len(handles))
 
 
 def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) -> None:
     groups, inner = next(iter(result.x.values())), _inner_names(result, entries)
     numbers = sorted({e[0] for e in entries})
     width = 0.6 / max(len(numbers), 1)
-    known = bool(np.isfinite(result.error).any())
     for place_of, number in enumerate(numbers):
         chosen = [e for e in entries if e[0] == number]
         place = np.array([inner.index(_name(result, e)) for e in chosen], float)
@@ -93,7 +87,7 @@ def _panel(ax: Any, result: Result, entries: list[tuple[int, ...]], title: str) 
             fmt=MARKERS[number],
             mfc="white",
             color=COLOURS[number],
-            label=str(groups[number]) + BARS * (known and not number),
+            label=str(groups[number]),
             zorder=3,
         )
         if result.expected is not None:

@@ -248,7 +248,7 @@ class Simulation(Shown):
         except Exception as error:
             reason, directory = str(error) or repr(error), self.directory
             if directory is not None:
-                self.ranks.failed(lambda rank_name: note_failed(directory, f"{rank_name}{reason}"))
+                self.ranks.failed(lambda who: note_failed(directory, f"{who}{reason}"))
             raise
         finally:
             progress.finish()

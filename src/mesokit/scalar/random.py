@@ -121,16 +121,16 @@ def normal(a, b):
 
 
 @scalar
-def normals(pattern, a, b, c, d):
-    """Standard normal numbers from four words, as many (2 or 3) as `pattern` has elements."""
+def normals(like, a, b, c, d):
+    """Standard normal numbers from four words, as many (2 or 3) as `like` has elements."""
     x, y = normal_pair(a, b)
-    return first((x, y, normal(c, d)), pattern)
+    return first((x, y, normal(c, d)), like)
 
 
 @scalar
-def grid_shift(counter, pattern, strength):
+def grid_shift(counter, like, strength):
     """Shift of the cells of one step, uniform in [-1/2, 1/2) times the strength along each axis."""
-    for k in range(len(pattern)):
+    for k in range(len(like)):
         a, b, _, _ = words(counter, GRID_SHIFT, k, 0)
-        pattern = with_item(pattern, k, strength * (unit(a, b) - 0.5))
-    return pattern
+        like = with_item(like, k, strength * (unit(a, b) - 0.5))
+    return like

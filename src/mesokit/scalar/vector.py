@@ -5,8 +5,8 @@ from mesokit.scalar.jit import by_type, elementwise, scalar
 
 
 @elementwise
-def first(values, pattern):
-    """As many of the values as the tuple `pattern` has elements."""
+def first(values, like):
+    """As many of the values as the tuple `like` has elements."""
     return "values[{k}]"
 
 
@@ -35,11 +35,11 @@ def added_scaled(a, factor, b):
 
 
 @scalar
-def row(vectors, i, pattern):
-    """Row i of an array as a vector, a tuple as long as `pattern`."""
-    for k in range(len(pattern)):
-        pattern = with_item(pattern, k, vectors[i, k])
-    return pattern
+def row(vectors, i, like):
+    """Row i of an array as a vector, a tuple as long as `like`."""
+    for k in range(len(like)):
+        like = with_item(like, k, vectors[i, k])
+    return like
 
 
 @scalar

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.floating[Any]]
 FIGURES = "mesokit.report"  # by their names: results know nothing of how they are drawn
 TABLES = "mesokit.io.tables"  # and written
-EXACT = 2.0**-50  # of a value: an error below is that of rounding
+EXACT = 2.0**-52  # of a value: an error below is that of rounding
 ROUNDING = 1e-12  # relative: two numbers that differ by less are the same
 NOT_STEADY = "not steady"  # how the note of a comparison begins, where that is so
 
@@ -42,8 +42,6 @@ class Comparison:
         that the theory is known to be off by more than an error bar: deviations are in percent.
         One that starts with "not steady" says that the run began to measure too early for the
         theory: there is no deviation.
-    inverse: whether the number is one over what was averaged, such as a viscosity from a curvature.
-        Its deviation is that of what was averaged, whose error bar is the same on both sides.
 
     >>> c = Comparison("viscosity", 0.88, 0.01, 0.87, "a^2/time")
     >>> round(c.deviation, 6), round(c.percent, 2)
@@ -58,7 +56,6 @@ class Comparison:
     expected: float = math.nan
     unit: str = ""
     note: str = ""
-    inverse: bool = False
 
     @property
     def key(self) -> str:
@@ -71,15 +68,10 @@ class Comparison:
 
     @property
     def deviation(self) -> float:
-        """(measured - expected) in standard errors; nan without an error bar or an exact theory.
-
-        >>> round(Comparison("viscosity", 0.317, 0.082, 0.783, inverse=True).deviation, 1)
-        -2.3
-        """
+        """(measured - expected) in standard errors; nan without an error bar or an exact theory."""
         if self.approximate or not self.steady or not self.error > EXACT * abs(self.measured):
             return math.nan
-        deviation = (self.measured - self.expected) / self.error
-        return deviation * self.measured / self.expected if self.inverse else deviation
+        return (self.measured - self.expected) / self.error
 
     @property
     def approximate(self) -> bool:

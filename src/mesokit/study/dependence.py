@@ -14,14 +14,12 @@ from mesokit.case.component import one_of, show
 from mesokit.errors import CaseError
 from mesokit.report.style import (
     COLOURS,
+    HEIGHT,
     LINES,
     MARKERS,
     STYLE,
     WIDTH,
-    fonts,
-    height_of,
     labelled,
-    legend_above,
     sparse_logarithm,
 )
 from mesokit.seam.result import Array, with_error
@@ -71,7 +69,6 @@ def draw(
     fit: str | None = None,
     log: bool | str | None = None,
     note: str = "",
-    width: float | None = None,
 ) -> Any:
     """A figure of several curves.
 
@@ -84,7 +81,6 @@ def draw(
         is where its values are a geometric sequence, and y if it is then above zero everywhere and
         spans a decade; both are for a power.
     note: what the points are, for the legend.
-    width: that of the figure, in inches.
 
     Raises CaseError for another fit, or one without enough points, and for a logarithmic axis of
     values that are not above zero.
@@ -94,9 +90,8 @@ def draw(
     from mesokit.report.notebook import ShownFigure
 
     scales = logarithmic(curves, fit, log)
-    wide = WIDTH if width is None else width
-    with mpl.rc_context(STYLE | fonts(wide)):
-        figure = ShownFigure(figsize=(wide, height_of(wide)), layout="constrained")
+    with mpl.rc_context(STYLE):
+        figure = ShownFigure(figsize=(WIDTH, HEIGHT), layout="constrained")
         ax = figure.subplots()
         for set_scale, logs in zip((ax.set_xscale, ax.set_yscale), scales, strict=True):
             set_scale("log" if logs else "linear")
@@ -117,8 +112,6 @@ def draw(
         ax.set_xlabel(labelled(*x))
         ax.set_ylabel(labelled(y[0], y[1]))
         ax.legend(loc="best")
-        if wide < WIDTH:
-            legend_above(ax)
         return figure
 
 

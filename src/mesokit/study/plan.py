@@ -233,30 +233,20 @@ class Base:
             raise CaseError(f"with {words}: {error}" if words else str(error)) from None
 
 
-def checked(runs: Sequence[Planned], base: Base) -> list[tuple[Planned, Case]]:
-    """The runs with their cases. Nothing is written.
+def make(runs: Sequence[Planned], base: Base) -> list[Planned]:
+    """Make the folders of runs that are not there yet, and longer what is to be; returns all.
 
-    Raises CaseError for a case that cannot be, and RunError where another case lies in the place of
-    a run.
+    Raises CaseError for a case that cannot be, before any folder is made, and RunError where
+    another case lies in the place of a run.
     """
     cases = [(run, _prepared(base.case(run.point, run.seed))) for run in runs]
     for run, case in cases:
         if RunDirectory(run.path).case_file.exists():
             _require_same(run, case)
-    return cases
-
-
-def make(cases: Iterable[tuple[Planned, Case]]) -> None:
-    """Make the folders of runs that are not there yet, and longer what is to be. Raises RunError.
-
-    The runs are those that are `checked`.
-    """
     for run, case in cases:
-        there = RunDirectory(run.path)
-        if not there.case_file.exists():
+        if not RunDirectory(run.path).case_file.exists():
             RunDirectory.create(run.path, case)
-        elif case.run.steps > run.files.case.run.steps:
-            there.write_case(longer(run.files.case, case.run.steps, 0))
+    return list(runs)
 
 
 def _prepared(case: Case) -> Case:
@@ -267,7 +257,7 @@ def _prepared(case: Case) -> Case:
 def _require_same(run: Planned, case: Case) -> None:
     """Raise RunError if another case lies there; files lie elsewhere once they are kept.
 
-    One that is shorter can be made longer: its run goes on.
+    One that is shorter is made longer: its run goes on.
     """
     there = flat(RunDirectory(run.path).case_file.read_text(encoding="utf-8"))
     wanted = flat(case.to_toml())
@@ -281,6 +271,8 @@ def _require_same(run: Planned, case: Case) -> None:
     steps, done = wanted["run.steps"], there["run.steps"]
     if steps < done:
         raise RunError(f"{run.path}: holds a run with run.steps = {done}, which cannot be {steps}")
+    if steps > done:
+        RunDirectory(run.path).write_case(longer(run.files.case, steps, 0))
 
 
 def by_point(runs: Sequence[Planned]) -> Iterator[list[Planned]]:

@@ -30,19 +30,17 @@ def plot(
     fit: str | None = None,
     log: bool | str | None = None,
     between: Between | None = None,
-    width: float | None = None,
 ) -> Any:
     """A figure with error bars, what is expected, and a fit; a curve for each other value.
 
     `rows` are the table of a study, `axes` what it varies, `key` what the number is drawn against,
-    which is `called` so, in a unit; `between` gives theory between the points; `width` is in
-    inches.
+    which is `called` so, in a unit; `between` gives theory between the points.
     Raises CaseError for a number that is not there, or values that are no numbers.
     """
     drawn, first = curves_of(rows, axes, key, number, between), find_rows(rows, number)[0]
     note = f"{first.runs} runs pooled" if first.runs > 1 else "one run each"
     named = with_symbol(first.number.what), first.number.unit
-    return draw(drawn, x=called or (key, ""), y=named, fit=fit, log=log, note=note, width=width)
+    return draw(drawn, x=called or (key, ""), y=named, fit=fit, log=log, note=note)
 
 
 # of the rows of a curve, the keys of its axis, and whether that is logarithmic

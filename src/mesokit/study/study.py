@@ -28,7 +28,7 @@ from mesokit.study.local import Here, Processes
 from mesokit.study.merge import merge
 from mesokit.study.names import called
 from mesokit.study.numbers import numbers, words_of
-from mesokit.study.plan import Base, Planned, by_point, checked, make, planned, short_names
+from mesokit.study.plan import Base, Planned, by_point, make, planned, short_names
 from mesokit.study.plot import curves_of, drawable, find_rows, plot
 
 if TYPE_CHECKING:
@@ -56,8 +56,6 @@ class Study(Shown):
     output : path
         Folder of the study. Runs that are in it already are kept, so that a study can be made
         larger, or go on after a stop.
-    write : bool, optional
-        False writes nothing: the runs are listed and their cases checked. `run` makes the folder.
 
     Raises
     ------
@@ -89,24 +87,20 @@ class Study(Shown):
         *,
         output: str | Path,
         settings: Mapping[str, Any] | None = None,
-        write: bool = True,
     ) -> None:
         require_one_process()  # before two ranks make the same folder
         base = Base.of(case, settings)
         self.path = Path(output)
         axes = Axis.from_mapping(vary) if isinstance(vary, Mapping) else list(vary or ())
         self._set(base, axes, _seeds(seeds, base))
-        self._make(write)
+        self._make()
 
     @classmethod
-    def open(
-        cls, path: str | Path, output: str | Path | None = None, *, write: bool = True
-    ) -> Study:
+    def open(cls, path: str | Path, output: str | Path | None = None) -> Study:
         """The study in a folder, or of a study file. Raises RunError or CaseError if there is none.
 
         A study file names a `case`, `seeds` and [[vary]] tables; its runs go to `output`, a folder
-        of the name of the file in the working directory unless said. With `write=False` nothing is
-        written.
+        of the name of the file in the working directory unless said.
         """
         path = Path(path)
         file = path / FILE if path.is_dir() else path
@@ -139,7 +133,7 @@ class Study(Shown):
             self.path = path if path.is_dir() else Path(output or path.stem)
             self._set(base, axes, _seeds(data.get("seeds", 1), base))
             if not path.is_dir():
-                self._make(write)
+                self._make()
         except CaseError as error:
             raise CaseError(f"{file}: {error}") from None
         return self
@@ -148,10 +142,8 @@ class Study(Shown):
         self.base, self.axes, self.seeds = base, axes, seeds
         self.runs: list[Planned] = planned(axes, seeds, self.path)
 
-    def _make(self, write: bool = True) -> None:
+    def _make(self) -> None:
         """The folder with all runs in it; those that are there are kept.
-
-        Without `write` it is only checked that it can be made.
 
         Raises RunError where a study lies that has runs which this one has not.
         """
@@ -166,10 +158,7 @@ class Study(Shown):
                         f"{run.path.relative_to(self.path)}; name its values as well, or choose "
                         "another output"
                     )
-        cases = checked(self.runs, self.base)
-        if not write:
-            return
-        make(cases)
+        make(self.runs, self.base)
         lines = [HEAD, f"case = {json.dumps(CASE)}\n"]
         lines += [f"folder = {json.dumps(str(self.base.folder))}  # of files that the case names\n"]
         lines += [f"seeds = {json.dumps(self.seeds)}\n"]
@@ -247,9 +236,8 @@ class Study(Shown):
         """
         require_one_process()
         reporter = reporter_for(progress)
-        made = [self.path / FILE, *(run.path / CASE for run in self.runs)]
-        if not all(file.exists() for file in made):  # not written yet, or somebody removed them
-            self._make()
+        if not all((run.path / CASE).exists() for run in self.runs):  # somebody removed them
+            make(self.runs, self.base)
         workers = self._workers(jobs, threads, cluster, options)
         failed = drive(self.runs, workers, reporter)
         if failed:
@@ -298,9 +286,9 @@ class Study(Shown):
         fit : "line" or "power", optional
             Fit y = a + b x, or y = a x^b, to each curve.
         look : optional
-            `width` of the figure, in inches; a column has 3.4. `log`, which axes are logarithmic:
-            "x", "y", "x,y", True for both, False for none. Unless said, x is where its values are a
-            geometric sequence, and y with it where numbers above zero span a decade.
+            `log`, which axes are logarithmic: "x", "y", "x,y", True for both, False for none.
+            Unless said, x is where its values are a geometric sequence, and y with it where numbers
+            above zero span a decade.
 
         Raises CaseError for a key or number that is not there, with the nearest one, and for a
         logarithmic axis of values that are not above zero.
@@ -345,28 +333,13 @@ class Study(Shown):
             found.append(f"  {row.observable}: {row.number}{agree}")
         return found
 
-    def save_pictures(self, ending: str = ".png", **look: Any) -> list[Path]:
-        """Draw every number that has an error bar against the first key that is varied.
-
-        `ending` is ".png", ".pdf" or ".svg"; `look` is that of `plot`.
-        """
+    def save_pictures(self) -> list[Path]:
+        """Draw every number that has an error bar against the first key that is varied."""
         names = drawable(self.table(), self.axes)
-        return [self.save_picture(self.keys[0], name, ending=ending, **look) for name in names]
+        return [self.save_picture(self.keys[0], name) for name in names]
 
-    def save_picture(
-        self,
-        x: str,
-        y: str,
-        fit: str | None = None,
-        *,
-        ending: str = ".png",
-        path: str | Path | None = None,
-        **look: Any,
-    ) -> Path:
-        """Draw one number against one varied value into a file, as `plot` does.
-
-        The file lies in the folder unless `path` says where.
-        """
+    def save_picture(self, x: str, y: str, fit: str | None = None, **look: Any) -> Path:
+        """Draw one number against one varied value into a file of the folder, as `plot` does."""
         from mesokit.report import save_figure
         from mesokit.report.finish.origin import Origin
 
@@ -374,8 +347,8 @@ class Study(Shown):
         title = self.base.case(self.runs[0].point, self.runs[0].seed).title
         figure.origin = Origin(", ".join(filter(None, [title, f"study {self.path.name}"])))
         number = next(row.name for row in find_rows(self.table(), y))
-        file = f"{number}-against-{names[self.keys.index(self.key(x))]}{ending}"
-        return save_figure(figure, path or self.path / file)
+        file = self.path / f"{number}-against-{names[self.keys.index(self.key(x))]}.png"
+        return save_figure(figure, file)
 
     def report(self, path: str | Path | None = None) -> Path:
         """Write one HTML file with all of the study, also of one that has not ended.
@@ -407,17 +380,6 @@ class Study(Shown):
             return names[name]
         known = [*names, *self.keys]
         raise CaseError(f"{name}: not varied; expected {one_of(list(names))}{nearest(name, known)}")
-
-    def record(self) -> dict[str, Any]:
-        """What `mesokit info --json` prints: plain numbers and texts."""
-        return {
-            "study": str(self.path),
-            "ended": self.ended,
-            "varied": {key: values for axis in self.axes for key, values in axis.table().items()},
-            "seeds": self.seeds,
-            "runs": [{"run": str(run.path), "state": run.state} for run in self.runs],
-            "numbers": [row.row() for row in self.table()],
-        }
 
     def __len__(self) -> int:
         return len(self.runs)

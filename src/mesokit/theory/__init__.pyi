@@ -38,7 +38,6 @@ from mesokit.theory.enskog_diffusion import enskog_diffusion as enskog_diffusion
 from mesokit.theory.enskog_rate import contact_value as contact_value
 from mesokit.theory.enskog_rate import enskog_rate as enskog_rate
 from mesokit.theory.finite_size import viscosity_renormalised as viscosity_renormalised
-from mesokit.theory.flight_moduli import flight_moduli as flight_moduli
 from mesokit.theory.fourth_cumulant import fourth_cumulant as fourth_cumulant
 from mesokit.theory.free_time import collision_speeds as collision_speeds
 from mesokit.theory.free_time import free_time_cdf as free_time_cdf

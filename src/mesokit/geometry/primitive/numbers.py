@@ -15,8 +15,8 @@ def offset(p, r):
 
 
 @elementwise
-def vector(p, start, pattern):
-    """Numbers from `start`, as many as `pattern` has."""
+def vector(p, start, like):
+    """Numbers from `start`, as many as `like` has."""
     return "real(p, start + {k})"
 
 

@@ -37,20 +37,20 @@ def signed_distance(
     corners = np.ascontiguousarray((simplices - np.array(origin)) / spacing)
     squares = np.full(math.prod(counts), (reach / spacing) ** 2)
     crossings = np.zeros(math.prod(counts), np.uint8)
-    pattern = (0.0,) * len(counts)
-    measure(corners, counts, reach / spacing, squares, pattern)
-    cross(corners - ASIDE * np.sqrt(np.arange(2.0, len(counts) + 2.0)), counts, crossings, pattern)
+    like = (0.0,) * len(counts)
+    measure(corners, counts, reach / spacing, squares, like)
+    cross(corners - ASIDE * np.sqrt(np.arange(2.0, len(counts) + 2.0)), counts, crossings, like)
     inside = np.cumsum(crossings.reshape(counts), axis=-1) % 2 == 1
     distance = spacing * np.sqrt(squares).reshape(counts)
     return np.where(inside & (distance > 0.0), -distance, distance)
 
 
 @scalar
-def corner_of(corners, i, j, pattern):
+def corner_of(corners, i, j, like):
     """Corner j of simplex i, as a tuple."""
-    for k in range(len(pattern)):
-        pattern = with_item(pattern, k, corners[i, j, k])
-    return pattern
+    for k in range(len(like)):
+        like = with_item(like, k, corners[i, j, k])
+    return like
 
 
 @scalar
@@ -77,9 +77,9 @@ def square_to_face(r, a, b, c):
 
 
 @seldom
-def measure(corners, counts, reach, squares, pattern):
+def measure(corners, counts, reach, squares, like):
     """Lower the squares of distances to those from each simplex."""
-    d = len(pattern)
+    d = len(like)
     for i in range(len(corners)):
         low, wide, total = counts, counts, 1
         for k in range(d):
@@ -90,9 +90,9 @@ def measure(corners, counts, reach, squares, pattern):
             end = min(int(floor(most + reach)) + 1, counts[k])
             low, wide = with_item(low, k, begin), with_item(wide, k, max(end - begin, 0))
             total *= wide[k]
-        a, b = corner_of(corners, i, 0, pattern), corner_of(corners, i, 1, pattern)
+        a, b = corner_of(corners, i, 0, like), corner_of(corners, i, 1, like)
         for number in range(total):
-            r, rest, place, stride = pattern, number, 0, 1
+            r, rest, place, stride = like, number, 0, 1
             for back in range(d):
                 k = d - 1 - back
                 n = low[k] + rest % wide[k]
@@ -103,14 +103,14 @@ def measure(corners, counts, reach, squares, pattern):
             if d == 2:
                 square = square_to_edge(r, a, b)
             else:
-                square = square_to_face(r, a, b, corner_of(corners, i, d - 1, pattern))
+                square = square_to_face(r, a, b, corner_of(corners, i, d - 1, like))
             squares[place] = min(squares[place], square)
 
 
 @seldom
-def cross(corners, counts, crossings, pattern):
+def cross(corners, counts, crossings, like):
     """Count, at the first point beyond each crossing, where lines along the last axis cross."""
-    d = len(pattern)
+    d = len(like)
     for i in range(len(corners)):
         low, wide, total = counts, counts, 1
         for k in range(d - 1):
@@ -121,8 +121,8 @@ def cross(corners, counts, crossings, pattern):
             end = min(int(floor(most)) + 1, counts[k])
             low, wide = with_item(low, k, begin), with_item(wide, k, max(end - begin, 0))
             total *= wide[k]
-        a, b = corner_of(corners, i, 0, pattern), corner_of(corners, i, 1, pattern)
-        c = corner_of(corners, i, d - 1, pattern)
+        a, b = corner_of(corners, i, 0, like), corner_of(corners, i, 1, like)
+        c = corner_of(corners, i, d - 1, like)
         for number in range(total):
             x = float(low[0] + number % wide[0])
             y = float(low[1] + number // wide[0]) if d == 3 else 0.0

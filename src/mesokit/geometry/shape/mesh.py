@@ -86,7 +86,7 @@ class Mesh(FromFile):
             raise self.wrong(
                 "the mesh is not watertight: it has holes or loose triangles; close it first"
             )
-        triangles = _one_winding(np.asarray(mesh.faces))
+        triangles = _one_way(np.asarray(mesh.faces))
         return _bodies(self.scale * np.asarray(mesh.vertices, float)[triangles], triangles)
 
     def grid(self, room: Room) -> Grid:
@@ -175,7 +175,7 @@ class Mesh(FromFile):
         return {} if self.position is None else {"position": self.position}
 
 
-def _one_winding(faces: NDArray[np.intp]) -> NDArray[np.intp]:
+def _one_way(faces: NDArray[np.intp]) -> NDArray[np.intp]:
     """The triangles of closed surfaces, by the numbers of their corners, each the way round that
     most triangles of its surface have."""
     n = len(faces)

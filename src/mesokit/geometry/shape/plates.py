@@ -157,7 +157,7 @@ def _(solid, r, v, a, time, last):
 
 
 @leaps.register(SlitX, SlitY, SlitZ)
-def _(solid, displacement):
+def _(solid, way):
     return False
 
 

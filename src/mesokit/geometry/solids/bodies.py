@@ -20,7 +20,7 @@ from mesokit.scalar.pointer import real, short, whole, word
 from mesokit.scalar.vector import dot, scaled
 
 REACH = 1.0  # lists hold the terms within this distance of a cell; flights are cut into such pieces
-NO_TERM = -1
+NOBODY = -1
 
 
 class Bodies(NamedTuple):
@@ -118,19 +118,19 @@ def between_plates(solid, r):
 
 
 @seldom
-def sure_to_miss(solid, r, displacement):
+def sure_to_miss(solid, r, way):
     """Whether the way from r surely leads into no solid, plates not counted.
 
     Both ends are above the plane of the cube that holds r, or the way is shorter than is clear.
     """
-    cube, path = np.int64(cube_of(solid, r)), dot(displacement, displacement)
+    cube, path = np.int64(cube_of(solid, r)), dot(way, way)
     plane, d = whole(solid.plane_of, cube), len(r)
     if plane < 0:
         return path < short(solid.clear, cube)
     place = solid.planes + 8 * (d + 1) * plane
     n = vector(place, 0, r)
     start = dot(n, in_box(solid, r)) - real(place, d)
-    return min(start, start + dot(n, displacement)) > 0.0 and path < solid.reach * solid.reach
+    return min(start, start + dot(n, way)) > 0.0 and path < solid.reach * solid.reach
 
 
 @scalar
@@ -180,7 +180,7 @@ def nearest_within(tables, away, r):
     Where nothing is nearer than `away`, which the lists of the tables must reach, that is the
     clearance, and the term is NOBODY.
     """
-    least, part, term = away, 0, NO_TERM
+    least, part, term = away, 0, NOBODY
     cell = home_cell(tables, r)
     for j in range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1)):
         candidate = whole(word(tables, NEAR), j)

@@ -126,7 +126,7 @@ def free_planes(
     planes = np.zeros((len(numbers), d + 1))
     away = corner + reach + bend
     in_box = middles % np.where(solids.room.closed, np.inf, solids.size)
-    planes_above(solids.kernel, solids.pattern, away, COLUMNS[d], in_box, planes)
+    planes_above(solids.kernel, solids.like, away, COLUMNS[d], in_box, planes)
     planes[:, d] += bend + MARGIN
     plane_of = np.full(len(clear), -1, np.int32)
     plane_of[numbers] = np.arange(len(numbers))
@@ -143,7 +143,7 @@ def surface_pieces(solids: Solids) -> tuple[Any, Any, Any, Any]:
     middle = corners_of(size) + 0.5
     terms = np.zeros(len(middle), np.int64)
     distance, normal = np.zeros(len(middle)), np.zeros(middle.shape)
-    survey.nearest_terms(solids.kernel, solids.pattern, middle, terms, distance, normal)
+    survey.who_is_near(solids.kernel, solids.like, middle, terms, distance, normal)
     follows = np.array([body.virtual == "extrapolate" for body in solids.bodies])
     sticks = np.array([body.surface.rule != "slip" for body in solids.bodies])
     near = (terms >= 0) & (np.abs(distance) <= 0.5 * math.sqrt(d))

@@ -20,7 +20,7 @@ from mesokit.geometry.protocol import (
 from mesokit.geometry.solids.bodies import (
     BODY,
     DIFFUSE,
-    NO_TERM,
+    NOBODY,
     RULE,
     SLIP,
     Bodies,
@@ -74,15 +74,15 @@ def beyond(solid, clear, r, ahead):
 
 
 @leaps.register(Bodies)
-def _(solid, displacement):
-    return dot(displacement, displacement) >= solid.stride * solid.stride
+def _(solid, way):
+    return dot(way, way) >= solid.stride * solid.stride
 
 
 @free.register(Bodies)
 def _(solid, r, v, a, time):
-    displacement = added_scaled(scaled(time, v), 0.5 * time * time, a)
-    past = between_plates(solid, r) & between_plates(solid, added(r, displacement))
-    return past and sure_to_miss(solid, r, displacement)
+    way = added_scaled(scaled(time, v), 0.5 * time * time, a)
+    past = between_plates(solid, r) & between_plates(solid, added(r, way))
+    return past and sure_to_miss(solid, r, way)
 
 
 @facing.register(Bodies)
@@ -91,7 +91,7 @@ def _(solid, away, r):
     if sure_clearance(solid, r) >= away:
         return away, scaled(0.0, r), 0, r
     distance, part, term = nearest_within(solid.tables, away, x)
-    if term == NO_TERM:
+    if term == NOBODY:
         return distance, scaled(0.0, r), 0, r
     surface = whole(word(solid.tables, BODY), term)
     out = part_normal(solid.tables, part, x)
@@ -105,7 +105,7 @@ def _(solid, r):
 
 @unmet.register(Bodies)
 def _(solid):
-    return 0, NO_TERM
+    return 0, NOBODY
 
 
 @first_hit.register(Bodies)
@@ -116,7 +116,7 @@ def _(solid, r, v, a, time, last):
 
 @happens.register(Bodies)
 def _(solid, contact):
-    return contact[1] != NO_TERM
+    return contact[1] != NOBODY
 
 
 @surface_of.register(Bodies)

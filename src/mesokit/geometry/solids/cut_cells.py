@@ -119,7 +119,7 @@ def _search(solids: Solids, every: Any, origin: tuple[float, ...]) -> Any:
     middle = every + 0.5 - np.array(origin)
     near = np.flatnonzero(np.abs(solids.distance(middle)) <= half * math.sqrt(solids.dimension))
     found = np.zeros(len(near), np.int64)
-    survey.cut(solids.kernel, solids.pattern, middle[near], half, PIECES, found)
+    survey.cut(solids.kernel, solids.like, middle[near], half, PIECES, found)
     return near[found > 0]
 
 
@@ -179,7 +179,7 @@ def _nearest(solids: Solids, middles: Any, heights: Any) -> survey.Planes:
     terms, clearance = np.zeros(len(middles), np.int64), np.zeros(len(middles))
     normals = np.zeros(middles.shape)
     near = _reaching(solids, _away(solids.dimension))
-    survey.depths(near, solids.pattern, _away(solids.dimension), middles, terms, clearance, normals)
+    survey.depths(near, solids.like, _away(solids.dimension), middles, terms, clearance, normals)
     return survey.Planes(normals, heights, terms, middles - clearance[:, None] * normals)
 
 
@@ -195,12 +195,12 @@ def _surveyed(solids: Solids, middles: Any) -> survey.Planes:
     normals, heights = np.zeros(middles.shape), np.zeros(len(middles))
     terms, feet = np.zeros(len(middles), np.int64), np.zeros(middles.shape)
     away = _away(solids.dimension)
-    near, pattern = _reaching(solids, away), solids.pattern
+    near, like = _reaching(solids, away), solids.like
     found = survey.Planes(normals, heights, terms, feet)
-    survey.planes(near, pattern, away, shifts, middles, share, found)
+    survey.planes(near, like, away, shifts, middles, share, found)
     slippery = np.array([body.surface.rule == "slip" for body in solids.bodies])
-    empty = slippery[solids.body_of_term[terms]] | (share <= ROUNDING) | (share >= 1.0 - ROUNDING)
-    heights[empty | (terms < 0)] = EVERYWHERE
+    nobody = slippery[solids.body_of_term[terms]] | (share <= ROUNDING) | (share >= 1.0 - ROUNDING)
+    heights[nobody | (terms < 0)] = EVERYWHERE
     return found
 
 

@@ -17,7 +17,7 @@ from mesokit.geometry.solids.bodies import (
     FIRST,
     KINDS,
     NEAR,
-    NO_TERM,
+    NOBODY,
     NUMBERS,
     REACH,
     SAMPLES,
@@ -229,7 +229,7 @@ def first_meeting(tables, r, v, a, time, last_part, last_term):
     """
     speed = length(v) + 0.5 * length(a) * time
     path, late = speed * time, 2.0 * time + 1.0
-    part, term = 0, NO_TERM
+    part, term = 0, NOBODY
     soonest = late
     if path > REACH:
         soonest = REACH / speed

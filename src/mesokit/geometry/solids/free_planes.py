@@ -7,7 +7,7 @@ import math
 
 from mesokit.geometry.solids.bodies import (
     NEAR,
-    NO_TERM,
+    NOBODY,
     STARTS,
     home_cell,
     in_box,
@@ -24,15 +24,15 @@ from mesokit.scalar.vector import added_scaled, dot, outer, row, scaled
 
 
 @kernel
-def planes_above(solid, pattern, away, columns, points, planes):
+def planes_above(solid, like, away, columns, points, planes):
     """Normal and height n r of a plane above which no solid is within `away` of each point."""
-    d = len(pattern)
+    d = len(like)
     for i in range(len(points)):
-        r = row(points, i, pattern)
+        r = row(points, i, like)
         c, part, term = nearest(solid.tables, r)
-        n = with_item(scaled(0.0, pattern), 0, 1.0)
+        n = with_item(scaled(0.0, like), 0, 1.0)
         top = away
-        if term != NO_TERM:
+        if term != NOBODY:
             n = part_normal(solid.tables, part, r)
             alone = True
             for j in near_terms(solid.tables, r):

@@ -169,7 +169,7 @@ class Solids(SolidTables):
             return self._others.distance(points)
         points = self._rows(points)
         out = np.zeros(len(points))
-        survey.clearances(self.kernel, self.least, self.pattern, points, out)
+        survey.clearances(self.kernel, self.least, self.like, points, out)
         return out
 
     def _rows(self, points: Any) -> Floats:
@@ -187,7 +187,7 @@ class Solids(SolidTables):
         points = self._rows(points)
         terms = np.zeros(len(points), np.int64)
         distance, normal = np.zeros(len(points)), np.zeros(points.shape)
-        survey.nearest_terms(self.kernel, self.pattern, points, terms, distance, normal)
+        survey.who_is_near(self.kernel, self.like, points, terms, distance, normal)
         return self._body_of[terms], distance, normal
 
     def depths(self, away: float) -> Callable[[Any], tuple[NDArray[np.int64], Floats, Floats]]:
@@ -199,7 +199,7 @@ class Solids(SolidTables):
             points = self._rows(points)
             terms = np.zeros(len(points), np.int64)
             distance, normal = np.zeros(len(points)), np.zeros(points.shape)
-            survey.depths(kernel, self.pattern, float(away), points, terms, distance, normal)
+            survey.depths(kernel, self.like, float(away), points, terms, distance, normal)
             return self._body_of[terms], distance, normal
 
         return look
@@ -247,7 +247,7 @@ class Solids(SolidTables):
             some = centres[first : first + 4096]
             points = (some[:, None] + grid).reshape(-1, self.dimension)
             out = np.zeros(len(points))
-            survey.open_volume(self.kernel, self.pattern, points, side / fine, out)
+            survey.open_volume(self.kernel, self.like, points, side / fine, out)
             share[first : first + 4096] = out.reshape(len(some), -1).mean(axis=1)
         return share
 
@@ -322,7 +322,7 @@ class Solids(SolidTables):
         centres = self._centres()
         terms = np.zeros(len(centres), np.int64)
         distance, normal = np.zeros(len(centres)), np.zeros(centres.shape)
-        survey.nearest_terms(self.kernel, self.pattern, centres, terms, distance, normal)
+        survey.who_is_near(self.kernel, self.like, centres, terms, distance, normal)
         found: dict[int, tuple[float, float]] = {}
         for term in np.unique(terms[terms >= 0]):
             body = self.bodies[self.body_of_term[term]]

@@ -33,13 +33,13 @@ class Blocks(NamedTuple):
 
 
 @scalar
-def block_centre(block, edge, solid, pattern):
+def block_centre(block, edge, solid, like):
     """Middle of a cube of cells; x varies fastest."""
-    for k in range(len(pattern)):
+    for k in range(len(like)):
         along = -(-int(solid.size[k]) // edge)
-        pattern = with_item(pattern, k, (block % along + 0.5) * edge)
+        like = with_item(like, k, (block % along + 0.5) * edge)
         block //= along
-    return pattern
+    return like
 
 
 @scalar
@@ -53,17 +53,17 @@ def block_at(r, edge, solid):
 
 
 @kernel
-def near_blocks(solid, pattern, away, above, blocks):
+def near_blocks(solid, like, away, above, blocks):
     """Count, or list once `near` has room, the terms that may be `away` or nearer from any part of
     a cell in each block, or be the nearest to its middle, of those that may in the block above.
 
     A clearance is never more than the distance, which changes no more than the place does: so what
     is left out is farther than that from all cells of the block.
     """
-    span = 0.5 * math.sqrt(float(len(pattern)))
+    span = 0.5 * math.sqrt(float(len(like)))
     inside = span * (blocks.edge - 1)  # from the middle of the block to that of a cell
     for block in range(len(blocks.starts) - 1):
-        r = block_centre(block, blocks.edge, solid, pattern)
+        r = block_centre(block, blocks.edge, solid, like)
         parent = block_at(r, above.edge, solid)
         first, last = above.starts[parent], above.starts[parent + 1]
         if len(blocks.near) == 0:
@@ -98,20 +98,20 @@ def term_clearances(solid, r, out):
 
 
 @kernel
-def clearances(solid, least, pattern, points, out):
+def clearances(solid, least, like, points, out):
     """A lower bound of the distance of each point from the solid, exact within REACH."""
     for i in range(len(points)):
-        out[i] = bound(solid, least, in_box(solid, row(points, i, pattern)), pattern)
+        out[i] = bound(solid, least, in_box(solid, row(points, i, like)), like)
 
 
 @seldom
-def bound(solid, least, r, pattern):
+def bound(solid, least, r, like):
     """Clearance of r, in the box; far from all solids, what the middle of its cell lets it have."""
     c, _, _ = nearest(solid.tables, r)
     if c < REACH:
         return c
     cell, stride, away = 0, 1, 0.0
-    for k in range(len(pattern)):
+    for k in range(len(like)):
         length = int(solid.size[k])
         i = min(max(int(floor(r[k])), 0), length - 1)
         cell += i * stride
@@ -121,46 +121,46 @@ def bound(solid, least, r, pattern):
 
 
 @kernel
-def nearest_terms(solid, pattern, points, terms, clearance, normals):
+def who_is_near(solid, like, points, terms, clearance, normals):
     """Nearest term (-1: none within reach), clearance and normal at each point."""
     for i in range(len(points)):
-        r = in_box(solid, row(points, i, pattern))
+        r = in_box(solid, row(points, i, like))
         c, part, term = nearest(solid.tables, r)
         terms[i], clearance[i] = term, c
-        n = part_normal(solid.tables, part, r) if term >= 0 else scaled(0.0, pattern)
-        for k in range(len(pattern)):
+        n = part_normal(solid.tables, part, r) if term >= 0 else scaled(0.0, like)
+        for k in range(len(like)):
             normals[i, k] = n[k]
 
 
 @kernel
-def depths(solid, pattern, away, points, terms, clearance, normals):
+def depths(solid, like, away, points, terms, clearance, normals):
     """Nearest term (-1: none so near), clearance and normal at each point, exact up to `away` if
     the lists of the solid are."""
     for i in range(len(points)):
-        r = in_box(solid, row(points, i, pattern))
+        r = in_box(solid, row(points, i, like))
         c, part, term = nearest_within(solid.tables, away, r)
         terms[i], clearance[i] = term, c
-        n = part_normal(solid.tables, part, r) if term >= 0 else scaled(0.0, pattern)
-        for k in range(len(pattern)):
+        n = part_normal(solid.tables, part, r) if term >= 0 else scaled(0.0, like)
+        for k in range(len(like)):
             normals[i, k] = n[k]
 
 
 @kernel
-def cut(solid, pattern, points, half, pieces, out):
+def cut(solid, like, points, half, pieces, out):
     """Whether cubes of half a side `half` about the points hold both fluid and solid, as far as
     pieces of them, so many along each axis, can tell; 1 if they may, else 0."""
-    d = len(pattern)
+    d = len(like)
     small = half / pieces
     corner = small * math.sqrt(float(d))
     for i in range(len(points)):
-        c, _, _ = nearest(solid.tables, in_box(solid, row(points, i, pattern)))
+        c, _, _ = nearest(solid.tables, in_box(solid, row(points, i, like)))
         whole = half * math.sqrt(float(d))
         if abs(c) > whole:
             out[i] = 0
             continue
         fluid, inside = False, False
         for number in range(pieces**d):
-            r, rest = row(points, i, pattern), number
+            r, rest = row(points, i, like), number
             for k in range(d):
                 step = 2.0 * (rest % pieces) + 1.0 - pieces
                 r = with_item(r, k, r[k] + small * step)
@@ -172,10 +172,10 @@ def cut(solid, pattern, points, half, pieces, out):
 
 
 @kernel
-def open_volume(solid, pattern, points, side, out):
+def open_volume(solid, like, points, side, out):
     """Part of cubes about the points that is fluid: cubes cut by a plane, the nearest surface."""
     for i in range(len(points)):
-        r = in_box(solid, row(points, i, pattern))
+        r = in_box(solid, row(points, i, like))
         c, part, term = nearest(solid.tables, r)
         if term < 0:
             out[i] = 1.0
@@ -195,13 +195,13 @@ class Planes(NamedTuple):
 
 
 @kernel
-def planes(solid, pattern, away, shifts, points, open_share, found):
+def planes(solid, like, away, shifts, points, open_share, found):
     """The plane that cuts unit cubes about the points as the solid does: it has the normal of the
     surface nearest to the middle, and leaves `open_share` of the cube to the fluid in the mean over
     the shifts. Terms are -1 where no surface is within `away`.
     """
     for i in range(len(points)):
-        r = in_box(solid, row(points, i, pattern))
+        r = in_box(solid, row(points, i, like))
         c, part, term = nearest_within(solid.tables, away, r)
         found.terms[i] = term
         if term < 0:
@@ -211,12 +211,12 @@ def planes(solid, pattern, away, shifts, points, open_share, found):
         for _ in range(40):
             middle, share = 0.5 * (low + high), 0.0
             for j in range(len(shifts)):
-                share += share_beyond(middle - dot(n, row(shifts, j, pattern)), n)
+                share += share_beyond(middle - dot(n, row(shifts, j, like)), n)
             if share < open_share[i] * len(shifts):
                 low = middle
             else:
                 high = middle
         found.heights[i] = 0.5 * (low + high)
-        for k in range(len(pattern)):
+        for k in range(len(like)):
             found.normals[i, k] = n[k]
             found.feet[i, k] = r[k] - c * n[k]

@@ -20,7 +20,7 @@ from mesokit.geometry.solids.bodies import (
     KINDS,
     NEAR,
     NO_SLIP,
-    NO_TERM,
+    NOBODY,
     NUMBERS,
     PIVOT,
     REACH,
@@ -47,7 +47,7 @@ class SolidTables:
     def __init__(self, room: Room, bodies: list[Body]) -> None:
         self.room, self.bodies = room, bodies
         self.size, self.dimension = room.size, len(room.size)
-        self.pattern = (0.0,) * self.dimension
+        self.like = (0.0,) * self.dimension
         self._tables: list[NDArray[Any]] = []
         pieces = [(piece, row) for row, body in enumerate(bodies) for piece in body.pieces]
         self.kernel = self._kernel(pieces)
@@ -86,14 +86,14 @@ class SolidTables:
         number = math.prod(-(-length // edge) for length in self.size)
         starts, least = np.zeros(number + 1, np.int64), np.zeros(number)
         counted = Blocks(edge, starts, np.zeros(0, np.int64), least)
-        survey.near_blocks(self.kernel, self.pattern, away, above, counted)
+        survey.near_blocks(self.kernel, self.like, away, above, counted)
         if starts[-1] > MOST_NEAR:
             raise CaseError(
                 f"wall: {starts[-1]} parts of solids are near cells of this box; expected at most "
                 f"{MOST_NEAR}: fewer parts, or a smaller box"
             )
         listed = counted._replace(near=np.zeros(max(starts[-1], 1), np.int64))
-        survey.near_blocks(self.kernel, self.pattern, away, above, listed)
+        survey.near_blocks(self.kernel, self.like, away, above, listed)
         return listed
 
     def _keep(self, table: Any, kind: Any = np.int32) -> int:
@@ -124,7 +124,7 @@ class SolidTables:
             for shut, length in zip(self.room.closed, self.size, strict=True)
         )
         self.body_of_term = np.array([row for _, row in pieces], np.int32)
-        self._body_of = np.array([*self.body_of_term, NO_TERM])  # of no term: the last
+        self._body_of = np.array([*self.body_of_term, NOBODY])  # of no term: the last
         self.pivots = pivots
         surfaces = [self._surface(body) for body in self.bodies]
         tables = {
@@ -147,8 +147,8 @@ class SolidTables:
             inverse,
             address(self._places),
             parts=1.0,
-            first=self.pattern,
-            held=self.pattern,
+            first=self.like,
+            held=self.like,
             clear=self._keep([0.0], np.float32),
             plane_of=self._keep([-1]),
             planes=0,

@@ -30,7 +30,7 @@ class Brownians:
         self.places = np.zeros((self.n, self.dimension))
         self.counts = np.zeros((self.n, self.dimension), np.int32)  # boxes away
         self.edges = np.linspace(0, self.n, threads + 1).astype(int)  # of what each thread has
-        self.worker = ThreadPoolExecutor(threads)
+        self.team = ThreadPoolExecutor(threads)
         self.seconds = {"steps": 0.0}
 
     def start(self, positions: Array | None) -> None:
@@ -51,7 +51,7 @@ class Brownians:
     def _run(self, loop: Callable, *arguments: Any) -> None:
         counter = Counter(np.uint64(self.seed), np.uint64(self.step))
         parts = zip(self.edges[:-1], self.edges[1:], strict=True)
-        jobs = [self.worker.submit(loop, first, last, counter, *arguments) for first, last in parts]
+        jobs = [self.team.submit(loop, first, last, counter, *arguments) for first, last in parts]
         for job in jobs:
             job.result()
 

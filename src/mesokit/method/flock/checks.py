@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 MOST_BIRDS = 2**31 - 1  # their numbers are 32-bit
 MOST_BOXES = 2.0**30  # crossed in a run: counts are 32-bit
-LONGEST_STEP = 0.5  # of the box, in a step
+LONGEST_WAY = 0.5  # of the box, in a step
 
 
 def check(case: Case) -> None:
@@ -48,14 +48,14 @@ def _birds(case: Case) -> Iterator[str]:
             f"flock.{key} = {show(getattr(given, key))}: {count_text(birds)} birds in this box; "
             f"expected 1 to {MOST_BIRDS}"
         )
-    step_length = given.speed * given.timestep
-    if step_length > LONGEST_STEP * least:
+    way = given.speed * given.timestep
+    if way > LONGEST_WAY * least:
         yield (
-            f"flock.speed = {show(given.speed)}: a step of {step_length:.4g} is more than half "
-            f"of the box; expected at most {LONGEST_STEP * least / given.timestep:.4g}"
+            f"flock.speed = {show(given.speed)}: a step of {way:.4g} is more than half of the box; "
+            f"expected at most {LONGEST_WAY * least / given.timestep:.4g}"
         )
     steps = case.run.warmup + case.run.steps
-    if step_length * steps > MOST_BOXES * least:
+    if way * steps > MOST_BOXES * least:
         yield (
             f"flock.speed = {show(given.speed)}: in {steps} steps birds go so far that boxes "
             "cannot be counted; expected less"

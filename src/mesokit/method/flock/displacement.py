@@ -42,7 +42,7 @@ class Displacement:
             raise CaseError("components: walls close all axes; expected the axes that count")
         given, d = case.flock, case.box.dimension
         self.length, self.number, self.dimension = 1, case.particles, d
-        self.step_length, self.timestep = given.speed * given.timestep, given.timestep
+        self.way, self.timestep = given.speed * given.timestep, given.timestep
         alone = case.particles == 1 and given.cohesion is None and not case.walls
         self.memory = given.noise.memory(d) if alone else math.nan
 
@@ -55,15 +55,13 @@ class Displacement:
         if math.isnan(self.memory):
             return None
         share = len(self.axes) / self.dimension
-        return theory.msd_persistent_walk(steps, self.step_length, self.memory, share)
+        return theory.msd_persistent_walk(steps, self.way, self.memory, share)
 
     def coefficient(self) -> tuple[float, str]:
         """Of a bird alone."""
         if math.isnan(self.memory):
             return math.nan, "birds among others have no theory"
-        walk = theory.persistent_diffusion(
-            self.step_length, self.timestep, self.memory, self.dimension
-        )
+        walk = theory.persistent_diffusion(self.way, self.timestep, self.memory, self.dimension)
         return (walk, "a lone bird") if math.isfinite(walk) else (math.nan, "a straight flight")
 
     def diffusive_from(self) -> float:

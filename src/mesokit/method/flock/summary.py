@@ -37,17 +37,13 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     bird = SECONDS[d] + EACH[d] * looked_at
     seconds = case.particles * steps * bird / threads
     memory_of = given.noise.memory(d)
-    step_length = given.speed * given.timestep
+    way = given.speed * given.timestep
     crowd = given.noise.crowd(d, case.particles)
     rows: list[Row] = [
         ("birds", f"{case.particles:,}".replace(",", " "), ""),
         ("density", number(density, case.box.density_unit), ""),
         ("birds in reach", number(in_reach), "others, where birds are spread at random"),
-        (
-            "length of a step",
-            number(step_length, "a"),
-            f"{step_length / given.radius:.3g} of the reach",
-        ),
+        ("way of a step", number(way, "a"), f"{way / given.radius:.3g} of the reach"),
         ("order without order", number(theory.disordered_order(case.particles, d)), "chance alone"),
     ]
     if crowd is not None:
@@ -76,16 +72,16 @@ def ball(dimension: int, radius: float) -> float:
 
 def _warnings(case: Case, in_reach: float) -> Iterator[str]:
     given = case.flock
-    step_length = given.speed * given.timestep
+    way = given.speed * given.timestep
     if in_reach < FEW:
         yield (
             f"flock.radius = {show(given.radius)}: {in_reach:.3g} birds in reach on average: "
             "hardly any two meet"
         )
-    if step_length > given.radius:
+    if way > given.radius:
         yield (
-            f"flock.speed = {show(given.speed)}: birds fly {step_length:.3g} in a step, farther "
-            f"than they see ({given.radius:.3g})"
+            f"flock.speed = {show(given.speed)}: birds fly {way:.3g} in a step, farther than they "
+            f"see ({given.radius:.3g})"
         )
     if case.run.warmup == 0 and case.observe and given.start.run is None:
         yield "run.warmup = 0: order takes time to grow, and the mean counts from the first step"

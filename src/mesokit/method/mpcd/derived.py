@@ -176,12 +176,10 @@ def _flow(case: Case) -> tuple[str, int, float | None]:
 def _pipe_speed(case: Case) -> float | None:
     """Of the flow on the axis of a round pipe at rest, None for another case."""
     pipe, coefficients = recognise.pipe(case), setting.transport(case)
-    if pipe is None or coefficients is None or setting.driven_axis(case) != pipe.axis:
+    if pipe is None or coefficients is None or setting.push_axis(case) != pipe.axis:
         return None
-    acceleration = float(abs(setting.uniform_acceleration(case)[pipe.axis]))
-    middle = theory.hagen_poiseuille_velocity(
-        0.0, pipe.radius, acceleration, coefficients.viscosity
-    )
+    push = float(abs(setting.acceleration(case)[pipe.axis]))
+    middle = theory.hagen_poiseuille_velocity(0.0, pipe.radius, push, coefficients.viscosity)
     return float(middle)
 
 

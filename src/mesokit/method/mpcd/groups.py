@@ -36,11 +36,11 @@ def groups(case: Case) -> tuple[Group, ...]:
 
 def _diameter(solutes: Solutes, kind: int) -> tuple[float, ...]:
     """Of the beads of a kind, if they feel one another, others, or else the fluid."""
-    own, repelled = solutes.own_pair(kind), solutes.solvent_pair
+    own, pushed = solutes.own_pair(kind), solutes.solvent_pair
     if own is not None:
         return (own.diameter,)
     found = [pair.diameter for pair in solutes.pairs[kind] if pair is not None]
-    found += [2.0 * repelled.diameter] if repelled is not None else []
+    found += [2.0 * pushed.diameter] if pushed is not None else []
     return tuple(found[:1])
 
 
@@ -66,7 +66,7 @@ def fluid_volume(case: Case) -> float:
     return volume - solutes.beads * solutes.excluded_volume(case.box.dimension, case.fluid.kT)
 
 
-def bonded_pairs(case: Case) -> NDArray[np.int64]:
+def bonds(case: Case) -> NDArray[np.int64]:
     """Numbers of particles (bonds, 2) that are linked: in molecules of the fluid and in solutes."""
     found, molecule = [np.zeros((0, 2), np.int64)], case.fluid.molecule
     if molecule is not None:

@@ -20,7 +20,7 @@ from mesokit.method.mpcd.expected.displacement import Displacement
 from mesokit.method.mpcd.expected.setting import aperiodic_axes
 from mesokit.method.mpcd.expected.velocities import Velocities
 from mesokit.method.mpcd.expected.velocity_memory import VelocityMemory
-from mesokit.method.mpcd.groups import bonded_pairs, groups
+from mesokit.method.mpcd.groups import bonds, groups
 from mesokit.method.mpcd.observe import Observable
 from mesokit.method.mpcd.sections import KEYS, Sections
 from mesokit.processes.world import world
@@ -145,7 +145,7 @@ METHOD = Method(
     observables=(Observable,),
     check=combinations.check,
     groups=groups,
-    bonds=bonded_pairs,
+    bonds=bonds,
     enclosure=Enclosure(aperiodic_axes, solids),
     timestep=lambda case: float(case.fluid.timestep),
     summary=_summary,

@@ -137,7 +137,7 @@ class Molecule:
             cosine=cosine,
             late=sine / omega,
             early=-sine * omega,
-            separations=-K * (timestep + swing),
+            ways=-K * (timestep + swing),
             mixed=-K * (sine / omega) ** 2,
             rates=-K * (timestep - swing) / omega**2,
         )
@@ -176,7 +176,7 @@ class Dimers(NamedTuple):
     cosine: float
     late: float
     early: float
-    separations: float
+    ways: float
     mixed: float
     rates: float
 

@@ -19,11 +19,11 @@ def fall(r, v, a, time):
 
 
 @by_type
-def vector(a, pattern):
+def vector(a, like):
     """The acceleration as a vector, also where it is ()."""
     if len(a) == 0:
-        return lambda a, pattern: scaled(0.0, pattern)
-    return lambda a, pattern: a
+        return lambda a, like: scaled(0.0, like)
+    return lambda a, like: a
 
 
 @scalar

@@ -214,8 +214,8 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
             f"velocities; above {STRONG:g} its steps are coarse: a shorter timestep, or less force"
         )
     random = case.solutes is not None and case.solutes.solvent == "random"
-    for axis, acceleration in zip(AXES, setting.uniform_acceleration(case).tolist(), strict=False):
-        if acceleration and not case.walls and not random:
+    for axis, push in zip(AXES, setting.acceleration(case).tolist(), strict=False):
+        if push and not case.walls and not random:
             yield (
                 f"fluid.force.acceleration: nothing holds the fluid along {axis}: without "
                 "walls it speeds up for ever (without a thermostat it also heats)"
@@ -223,8 +223,8 @@ def _flow_warnings(case: Case, numbers: Derived, across: int) -> Iterator[str]:
                 else f"fluid.force.acceleration: nothing holds the fluid along {axis}: without "
                 "walls it speeds up for ever"
             )
-        elif acceleration and AXES.index(axis) in setting.closed_axes(case):
-            drop = fluid.mass * abs(acceleration) * case.box.size[across] / fluid.kT
+        elif push and AXES.index(axis) in setting.closed_axes(case):
+            drop = fluid.mass * abs(push) * case.box.size[across] / fluid.kT
             if drop > 0.1:
                 yield (
                     f"fluid.force.acceleration along {axis} presses the fluid on a plate: its "

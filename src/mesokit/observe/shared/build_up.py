@@ -5,11 +5,10 @@ from __future__ import annotations
 import copy
 import dataclasses
 import math
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any
 
-from mesokit.observe.shared.caveats import LOWER_BOUND
 from mesokit.observe.shared.short_run import bounded
-from mesokit.seam.method import BuildUp, method_of
+from mesokit.seam.method import method_of
 from mesokit.seam.observable import Accumulator
 from mesokit.seam.result import NOT_STEADY, Comparison, Result, with_error
 
@@ -18,14 +17,6 @@ if TYPE_CHECKING:
 
 MATTERS = 0.5  # of the standard error: a missing part that is larger is told
 DRIFTS = 5.0  # standard errors between both halves of the samples: the flow still changes
-
-
-@runtime_checkable
-class OfFlow(Protocol):
-    """An accumulator that sees how long its flow takes to build up."""
-
-    def build_up(self) -> BuildUp | None:
-        """How the flow came from rest, None where that is not known."""
 
 
 def result_of(accumulator: Accumulator, case: Case) -> Result:
@@ -48,23 +39,15 @@ def result_of(accumulator: Accumulator, case: Case) -> Result:
 
 
 def _too_early(accumulator: Accumulator, result: Result, case: Case, every: int) -> str:
-    """That samples began before the flow had built up, where the method knows how long it takes, or
-    the flow itself tells."""
+    """That samples began before the flow had built up, where the method knows how long it takes."""
     method = method_of(case)
     build_up = method.build_up(case) if method.build_up is not None else None
-    if build_up is None and isinstance(accumulator, OfFlow):
-        build_up = accumulator.build_up()
     if build_up is None:
         return ""
     series = getattr(getattr(accumulator, "blocks", None), "series", 1)  # pooled runs
     length = result.samples // series * every
-    lacks = build_up.lacks(length) if length else 0.0
-    enough = build_up.had >= build_up.need  # then only an error bar that is known tells more
-    seen = [c for c in result.comparisons if not (enough and LOWER_BOUND in c.note)]
-    if not any(_is_off(c, lacks) for c in seen):
+    if not length or not any(_is_off(c, build_up.lacks(length)) for c in result.comparisons):
         return ""
-    if enough:
-        return f"{NOT_STEADY}: the flow still lacked {100 * lacks:.2g} % of its speed"
     return f"{NOT_STEADY}: the flow needs {build_up.need} steps before samples, had {build_up.had}"
 
 
@@ -88,18 +71,15 @@ def _drift(accumulator: Accumulator, result: Result) -> str:
 
 
 def _of_theory(comparison: Comparison) -> list[str]:
-    """What its note says of the theory, but that the flow is steady; error bars of a flow that
-    builds up are another matter."""
+    """What its note says of the theory; error bars of a flow that builds up are another matter."""
     parts = comparison.note.split("; ")
-    told = ("steady", "steady flow", "")
-    return [part for part in parts if part not in told and not part.startswith(LOWER_BOUND)]
+    return [part for part in parts if part and not part.startswith("error bar is a lower bound")]
 
 
 def _is_off(comparison: Comparison, share: float) -> bool:
     """Whether the part that is missing would be seen; of few samples, whose error is unknown,
     whether it is more than a twentieth."""
-    expected = comparison.expected
-    missing = share * abs(comparison.measured if math.isnan(expected) else expected)
+    missing = share * abs(comparison.expected)
     if not comparison.error > 0:
         return share > 0.05 and missing > 0
     return missing > MATTERS * comparison.error

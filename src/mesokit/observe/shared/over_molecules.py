@@ -13,7 +13,6 @@ from mesokit.seam.estimate import Array, of_mean
 from mesokit.seam.observable import BlockAccumulator, State, pack
 from mesokit.statistics import Blocks, student
 
-FEW = 5  # molecules: the scatter of fewer is no error bar
 ROUNDING = 1e-9  # of the scatter of molecules: what they have together never changed
 
 
@@ -89,11 +88,8 @@ class OwnMeans:
         return student(len(groups)) * groups.std(axis=0, ddof=1) / np.sqrt(len(groups))
 
     def caution(self) -> str:
-        """Where there is no scatter, or hardly any: a note."""
-        if self.number >= FEW:
-            return ""
-        many = f"{self.number} molecules" if self.number > 1 else "one molecule"
-        return f"error bar is a lower bound: of {many}"
+        """Where there is no scatter: a note."""
+        return "" if self.number > 1 else "error bar is a lower bound: of one molecule"
 
 
 class MeansOverMolecules(BlockAccumulator):

@@ -36,9 +36,9 @@ def count_within(molecules: Array, box: Array, edges: Array) -> NDArray[np.int64
     """
     found = np.zeros(len(edges) - 1, np.int64)
     for apart in range(1, molecules.shape[1]):
-        separation = molecules[:, apart:] - molecules[:, :-apart]
-        separation -= box * np.rint(separation / box)
-        found += np.histogram(np.sqrt((separation**2).sum(axis=2)), edges)[0]
+        way = molecules[:, apart:] - molecules[:, :-apart]
+        way -= box * np.rint(way / box)
+        found += np.histogram(np.sqrt((way**2).sum(axis=2)), edges)[0]
     return found
 
 
@@ -59,9 +59,9 @@ def count_each(
     number, bins, (_, length, d) = groups[-1] + 1, len(edges) - 1, molecules.shape
     within = np.zeros(number * (bins + 2), np.int64)
     for apart in range(1, length):
-        separation = molecules[:, apart:] - molecules[:, :-apart]
-        separation -= box * np.rint(separation / box)
-        place = np.searchsorted(edges, np.sqrt((separation**2).sum(axis=2)))
+        way = molecules[:, apart:] - molecules[:, :-apart]
+        way -= box * np.rint(way / box)
+        place = np.searchsorted(edges, np.sqrt((way**2).sum(axis=2)))
         place += groups[:, None] * (bins + 2)
         within += np.bincount(place.ravel(), minlength=len(within))
     inside = within.reshape(number, -1)[:, 1:-1]

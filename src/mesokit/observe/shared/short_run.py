@@ -15,7 +15,6 @@ MOST = 0.5  # of the means of an observable that may have no plateau
 NOTE = "error bar is a lower bound: it still grows with the length of blocks of time"
 CHI_SQUARE = "chi-square"  # in the name of a number that is one
 SAMPLES = 128  # of fewer in a row, blocks of time hardly tell how long they are correlated
-VERY_FEW = 8  # samples: of fewer no error bar is known to within its half
 
 
 def bounded(result: Result, accumulator: Any) -> Result:
@@ -28,19 +27,9 @@ def bounded(result: Result, accumulator: Any) -> Result:
     return dataclasses.replace(
         result,
         comparisons=tuple(
-            _noted(c, note or (few if CHI_SQUARE in c.what or blocks.count < VERY_FEW else ""))
-            for c in result.comparisons
+            _noted(c, note or (few if CHI_SQUARE in c.what else "")) for c in result.comparisons
         ),
     )
-
-
-def of_relaxations(times: float) -> str:
-    """The caveat of a run of so many relaxation times of what it measures.
-
-    >>> of_relaxations(2.345)
-    'error bar is a lower bound: the run has 2.3 relaxation times'
-    """
-    return f"error bar is a lower bound: the run has {times:.2g} relaxation times"
 
 
 def _noted(comparison: Comparison, note: str) -> Comparison:

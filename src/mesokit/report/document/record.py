@@ -71,18 +71,6 @@ def citation(record: Mapping[str, Any]) -> str:
 
 
 def install(record: Mapping[str, Any]) -> str:
-    """The command that installs the sources which made the numbers, and which these are.
-
-    >>> install({"versions": {"mesokit": "0.2"}, "sources": {"commit": "ab1", "digest": "cd2"}})
-    'pip install .  # in a clone of mesokit: version 0.2, commit ab1, sources sha256 cd2'
-    """
-    sources = record.get("sources") or {}
-    version, commit = record.get("versions", {}).get("mesokit", ""), sources.get("commit")
-    changed = ", changed since" * (sources.get("changed") == "true")
-    known = [
-        f"version {version}" * bool(version),
-        f"commit {commit}{changed}" * bool(commit),
-        f"sources sha256 {sources.get('digest')}" * bool(sources.get("digest")),
-    ]
-    found = ", ".join(filter(None, known))
-    return f"pip install .  # in a clone of mesokit{f': {found}' * bool(found)}"
+    """The command that installs the version which made the numbers."""
+    version = record.get("versions", {}).get("mesokit", "")
+    return f"pip install mesokit=={version}" if version[:1].isdigit() else "pip install mesokit"

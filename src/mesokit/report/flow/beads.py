@@ -83,11 +83,11 @@ class BeadFrames:
         r = r.copy()
         for first, last in self.bonds[np.argsort(self.bonds.max(axis=1), kind="stable")]:
             near, far = min(first, last), max(first, last)
-            separation = r[far] - r[near]
-            separation[0] -= slid * np.rint(separation[1] / self.periods[1])
-            boxes = np.rint(separation / self.periods)
-            separation -= boxes * np.where(np.isinf(self.periods), 0.0, self.periods)
-            r[far] = r[near] + separation
+            way = r[far] - r[near]
+            way[0] -= slid * np.rint(way[1] / self.periods[1])
+            boxes = np.rint(way / self.periods)
+            way -= boxes * np.where(np.isinf(self.periods), 0.0, self.periods)
+            r[far] = r[near] + way
         return r
 
     def _repeats(self, whole: Array, edges: Array) -> tuple[tuple[float, float], ...]:

@@ -91,11 +91,9 @@ def neighbours(now: Frame) -> Array:
     places = np.asarray(now.fields["position"], float)
     tree = cKDTree(places, boxsize=periods)
     pairs = tree.query_pairs(2 * REACH * float(radii.max()), output_type="ndarray")
-    separation = places[pairs[:, 0]] - places[pairs[:, 1]]
-    separation -= np.where(periods > 0, periods, 0.0) * np.rint(
-        separation / np.where(periods > 0, periods, 1.0)
-    )
-    near = np.linalg.norm(separation, axis=1) < REACH * radii[pairs].sum(axis=1)
+    way = places[pairs[:, 0]] - places[pairs[:, 1]]
+    way -= np.where(periods > 0, periods, 0.0) * np.rint(way / np.where(periods > 0, periods, 1.0))
+    near = np.linalg.norm(way, axis=1) < REACH * radii[pairs].sum(axis=1)
     return np.bincount(pairs[near].ravel(), minlength=len(places)).astype(float)
 
 

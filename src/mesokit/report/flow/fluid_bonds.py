@@ -36,12 +36,12 @@ class FluidBonds:
         if not len(self.rows):
             return None
         first, last = position[self.rows[:, 0]], position[self.rows[:, 1]]
-        separation = last - first
+        way = last - first
         box = self.case.box
         if box.sheared:  # images above and below have slid
-            separation[:, 0] -= box.displacement(time) * np.rint(separation[:, 1] / self.lengths[1])
-        separation -= np.where(self.open, 0.0, self.lengths * np.rint(separation / self.lengths))
-        over = (abs(first + separation - last) > 1e-6 * self.lengths).any(axis=1)
-        starts = np.concatenate([first, (last - separation)[over]])
-        separations = np.concatenate([separation, separation[over]])
-        return np.stack([starts, starts + separations], axis=1)[:, :, self.columns]
+            way[:, 0] -= box.displacement(time) * np.rint(way[:, 1] / self.lengths[1])
+        way -= np.where(self.open, 0.0, self.lengths * np.rint(way / self.lengths))
+        over = (abs(first + way - last) > 1e-6 * self.lengths).any(axis=1)
+        starts = np.concatenate([first, (last - way)[over]])
+        ways = np.concatenate([way, way[over]])
+        return np.stack([starts, starts + ways], axis=1)[:, :, self.columns]

@@ -19,7 +19,7 @@ class Spheres:
     Parameters
     ----------
     places: (n, 2) along the axes of the picture.
-    depth: (n,) towards the eye, None of disks.
+    depth: (n,) towards who looks at it, None of disks.
     room: the least and the largest depth.
     diameters: (n,).
     values: (n,) numbers that colours stand for.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -26,16 +25,6 @@ if TYPE_CHECKING:
     from mesokit.report.flow.state import State
 
 
-def from_the_side(gravity: Sequence[float]) -> tuple[str, str]:
-    """Axes of a picture in which things fall, down where that is along z.
-
-    >>> from_the_side((0.0, -1.0)), from_the_side(()), from_the_side((0.0, 0.1, -1.0))
-    (('x', 'y'), ('x', 'y'), ('x', 'z'))
-    """
-    falls = len(gravity) == 3 and abs(gravity[2]) == max(map(abs, gravity))
-    return ("x", "z") if falls else ("x", "y")
-
-
 class SphereSource:
     """The frames of a trajectory of spheres."""
 
@@ -43,7 +32,7 @@ class SphereSource:
 
     def __init__(self, case: Case, reader: TrajectoryReader | State, view: View) -> None:
         self.case, self.reader, self.view = case, reader, view
-        self.axes, self.time = view.axes or from_the_side(case.spheres.gravity), reader.time
+        self.axes, self.time = view.axes or ("x", "y"), reader.time
         self.whole = np.arange(len(reader))
         self.setting = Setting.of(case, self.axes)
         self.third = next((k for k in range(3) if k not in self.setting.columns), 2)
@@ -101,7 +90,7 @@ class SphereSource:
         once = [(0, 1, -1) if k not in closed else (0,) for k in self.setting.columns]
         found: dict[tuple[float, float], None] = {}
         for counts in itertools.product(*once):
-            shift = sum(n * edges[k] for n, k in zip(counts, self.setting.columns, strict=True))
-            first, second = shift[self.setting.columns].tolist()
+            way = sum(n * edges[k] for n, k in zip(counts, self.setting.columns, strict=True))
+            first, second = way[self.setting.columns].tolist()
             found[first, second] = None
         return tuple(found)

@@ -51,12 +51,12 @@ def draw(ax: Any, flow: Flow, region: Region, reach: float) -> None:
     drawn.set_capstyle("round")
     ax.add_collection(drawn, autolim=False)
     middle = np.array([line[len(line) // 2] for line in found])
-    direction = nodes.at(middle)
-    size = np.hypot(*direction.T)
-    direction = direction / np.maximum(size, 1e-300)[:, None]
+    way = nodes.at(middle)
+    size = np.hypot(*way.T)
+    way = way / np.maximum(size, 1e-300)[:, None]
     shape = {"width": 0.012, "headwidth": 5, "headlength": 7.5, "headaxislength": 7.5}
     inches = {"units": "inches", "scale_units": "inches", "scale": 1 / HEAD}
-    ax.quiver(*middle.T, *direction.T, size, angles="xy", pivot="mid", **inches, **shape, **look)
+    ax.quiver(*middle.T, *way.T, size, angles="xy", pivot="mid", **inches, **shape, **look)
 
 
 def _nodes(flow: Flow, region: Region) -> tuple[Array, Array, Array]:

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from mesokit.report.caption import rounded, symbols
 from mesokit.report.style import COLOURS, labelled
 from mesokit.seam.result import Result
 
@@ -30,11 +29,7 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
             if k:
                 panels[row, k].set_ylabel("")
         word = "step" if step == 1 else "steps"
-        time = f"{rounded(result.extra['time'][k])}\\,{symbols(result.units['time'])[1:-1]}"
-        panels[0, k].set_title(f"{step} {word}, $t = {time}$", fontsize=10)
-    handles, labels = panels[0, 0].get_legend_handles_labels()
-    if handles:
-        figure.legend(handles, labels, loc="outside upper center", ncols=len(handles))
+        panels[0, k].set_title(f"{step} {word}, $t = {result.extra['time'][k]:.4g}$")
 
 
 def _square(result: Result, first: int) -> tuple[Any, Any]:
@@ -57,8 +52,6 @@ def _scatter(ax: Any, result: Result, k: int, first: int, names: list[str]) -> N
         colour = COLOURS[(kind if several else first // 2) % len(COLOURS)]
         of = species == kind
         ax.plot(x[of], y[of], "o", ms=size, mew=0, color=colour, rasterized=len(x) > MANY)
-        if several:
-            ax.plot([], [], "o", ms=4, mew=0, color=colour, label=f"species {kind + 1}")
     unit = result.units["velocity" if first else "position"]
     ax.set_xlabel(labelled(f"${names[first]}$", unit))
     ax.set_ylabel(labelled(f"${names[first + 1]}$", unit))
@@ -66,4 +59,4 @@ def _scatter(ax: Any, result: Result, k: int, first: int, names: list[str]) -> N
     ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
     if first == 0:  # where the box is, or was
         width, height = result.extra["size"]
-        ax.plot([0, width, width, 0, 0], [0, 0, height, height, 0], "--", color="black", lw=0.8)
+        ax.plot([0, width, width, 0, 0], [0, 0, height, height, 0], "--", color="0.4", lw=0.8)

@@ -53,9 +53,9 @@ class Flocks:
         )
         self.flock = make(self.n, self.threads, axes, bool(cohesion))
         self.seed, self.step, self.side = case.run.seed, 0, 0
-        self.worker, self._packing = Threads(self.threads), Packing()
+        self.team, self._packing = Threads(self.threads), Packing()
         self.seconds = {"steps": 0.0}
-        self.worker.compile_ahead(step, *self._arguments(0))
+        self.team.compile_ahead(step, *self._arguments(0))
 
     def start(self, positions: Array, headings: Array) -> None:
         """Put birds at places (n, d), in or out of the box, with headings (n, d)."""
@@ -74,7 +74,7 @@ class Flocks:
     def advance(self, steps: int, measure: Collection[str] = ()) -> None:
         """Run some steps."""
         began = perf_counter()
-        self.worker.run(step, *self._arguments(steps))
+        self.team.run(step, *self._arguments(steps))
         self.step, self.side = self.step + steps, (self.side + steps) % 2
         self.seconds["steps"] += perf_counter() - began
 

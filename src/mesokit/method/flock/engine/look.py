@@ -22,29 +22,29 @@ _TINY = np.float32(1e-30)
 
 
 @elementwise
-def nothing(pattern):
+def nothing(like):
     """A tuple of int32 zeros."""
     return "_NONE"
 
 
 @elementwise
-def place_of(places, i, pattern):
+def place_of(places, i, like):
     """The place of bird i, as whole numbers."""
     return "places[{k}, i]"
 
 
 @elementwise
-def separation_from(near, j, here, unit):
+def way_to(near, j, here, unit):
     """The way to bird j of those near, float32."""
     return "np.float32(np.int32(near[{k}, j] - here[{k}])) * unit[{k}]"
 
 
 @scalar
-def length_squared(separation):
+def length_squared(way):
     """The square of a length, float32."""
-    total = separation[0] * separation[0]
-    for k in range(1, len(separation)):
-        total = np.float32(total + separation[k] * separation[k])
+    total = way[0] * way[0]
+    for k in range(1, len(way)):
+        total = np.float32(total + way[k] * way[k])
     return total
 
 
@@ -55,7 +55,7 @@ def with_heading(near, j, reached, sums):
 
 
 @elementwise
-def with_separation(factor, reached, separation, sums):
+def with_way(factor, reached, way, sums):
     """Sums with the way times a factor added, where it counts."""
     return "np.int32(sums[{k}] + (np.int32(way[{k}] * factor) if reached else _NONE))"
 
@@ -67,9 +67,9 @@ def add_to(sums, first, i, values):
 
 
 @for_each
-def bring(near, j, seen, i, pattern):
+def bring(near, j, seen, i, like):
     """Place and heading of bird i become those of bird j near."""
-    return "near[{k}, j] = seen.places[{k}, i]; near[len(pattern) + {k}, j] = seen.headings[{k}, i]"
+    return "near[{k}, j] = seen.places[{k}, i]; near[len(like) + {k}, j] = seen.headings[{k}, i]"
 
 
 @by_type
@@ -83,14 +83,14 @@ def asks_number(physics):
 @by_type
 def add_seen(physics, near, top, here, sums, i):
     """Add to the sums of bird i what it sees of so many birds near."""
-    return _see_headings_and_separations if has_cohesion(physics) else _see_headings
+    return _see_headings_and_ways if has_cohesion(physics) else _see_headings
 
 
 def _see_headings(physics, near, top, here, sums, i):
     unit, d = physics.axes.unit, len(here)
     headings, around = nothing(here), _NONE
     for j in range(top):
-        reached = length_squared(separation_from(near, j, here, unit)) <= physics.reach
+        reached = length_squared(way_to(near, j, here, unit)) <= physics.reach
         headings = with_heading(near, j, reached, headings)
         if counted(physics.noise):
             around = np.int32(around + (near[2 * d, j] if reached else _NONE))
@@ -98,24 +98,22 @@ def _see_headings(physics, near, top, here, sums, i):
     sums[d, i] += np.int64(around)
 
 
-def _see_headings_and_separations(physics, near, top, here, sums, i):
+def _see_headings_and_ways(physics, near, top, here, sums, i):
     unit, d, cohesion = physics.axes.unit, len(here), physics.cohesion[0]
     core = cohesion.core * cohesion.core
     headings, pulls, out, around = nothing(here), nothing(here), nothing(here), _NONE
     for j in range(top):
-        separation = separation_from(near, j, here, unit)
-        square = length_squared(separation)
+        way = way_to(near, j, here, unit)
+        square = length_squared(way)
         reached = square <= physics.reach
         headings = with_heading(near, j, reached, headings)
         there = near[2 * d, j] > _NONE
         around = np.int32(around + (_ONE if reached & there else _NONE))
         other = reached & there & (square > _NONE)
         inside, safe = square < core, max(square, _TINY)
-        pulls = with_separation(
-            _PULL * pull(cohesion, safe), other & (not inside), separation, pulls
-        )
+        pulls = with_way(_PULL * pull(cohesion, safe), other & (not inside), way, pulls)
         away = np.float32(-_PULL / np.float32(np.sqrt(safe)))
-        out = with_separation(away, other & inside, separation, out)
+        out = with_way(away, other & inside, way, out)
     add_to(sums, 0, i, headings)
     sums[d, i] += np.int64(around)
     add_to(sums, d + 1, i, pulls)
@@ -174,7 +172,7 @@ def list_runs(axes, starts, place, runs):
 
 
 @inner
-def look(physics, seen, starts, near, runs, cell, place, pattern):
+def look(physics, seen, starts, near, runs, cell, place, like):
     """The sums of all birds of a cell, which is at this place among the cells."""
     begin, end = starts[cell], starts[cell + 1]
     for k in range(sum_rows(physics)):
@@ -185,20 +183,20 @@ def look(physics, seen, starts, near, runs, cell, place, pattern):
     while run < number:
         fit = min(runs[1, run] - first, CHUNK - held)
         for j in range(fit):
-            bring(near, past(held, j), seen, past(first, j), pattern)
+            bring(near, past(held, j), seen, past(first, j), like)
         held, first = held + fit, first + fit
         if first == runs[1, run]:
             run += 1
             first = runs[0, run]
         if (held == CHUNK) | (run == number):
-            see(physics, seen, near, held, begin, end, pattern)
+            see(physics, seen, near, held, begin, end, like)
             held = 0
 
 
 @scalar
-def see(physics, seen, near, held, begin, end, pattern):
+def see(physics, seen, near, held, begin, end, like):
     """Let the birds of a cell see those near; what only fills the lanes counts for nothing."""
-    d, top = len(pattern), (held + LANES - 1) // LANES * LANES
+    d, top = len(like), (held + LANES - 1) // LANES * LANES
     if asks_number(physics):
         for j in range(held):
             near[2 * d, j] = _ONE
@@ -206,4 +204,4 @@ def see(physics, seen, near, held, begin, end, pattern):
         for lane in range(LANES):
             near[k, past(held, lane)] = _NONE
     for i in range(begin, end):
-        add_seen(physics, near, top, place_of(seen.places, i, pattern), seen.sums, i)
+        add_seen(physics, near, top, place_of(seen.places, i, like), seen.sums, i)

@@ -47,7 +47,7 @@ class Physics(NamedTuple):
 
     axes: Axes
     reach: np.float32
-    step_length: float
+    way: float
     follows: bool
     noise: Any
     cohesion: tuple[Any, ...]
@@ -115,7 +115,7 @@ class Scratch(NamedTuple):
     runs: NDArray[np.int64]
 
 
-class FlockMemory(NamedTuple):
+class Flock(NamedTuple):
     """All arrays of a flock."""
 
     birds: Birds
@@ -153,7 +153,7 @@ def sum_rows(physics):
     return lambda physics: rows
 
 
-def make(n: int, threads: int, axes: Axes, cohesion: bool) -> FlockMemory:
+def make(n: int, threads: int, axes: Axes, cohesion: bool) -> Flock:
     """Arrays for so many birds; fill the first of `Birds` before a step."""
     d, cells = len(axes.size), math.prod(axes.cells)
     birds = Birds(
@@ -179,4 +179,4 @@ def make(n: int, threads: int, axes: Axes, cohesion: bool) -> FlockMemory:
         np.zeros((threads, (rows_of(d, cohesion) + 3 * d + 1) * STRIP)),
         np.zeros((threads, 2, MOST_RUNS + 1), np.int64),
     )
-    return FlockMemory(birds, seen, found, scratch)
+    return Flock(birds, seen, found, scratch)

@@ -18,7 +18,7 @@ from mesokit.scalar.vector import added, chosen, dot, scaled
 
 
 @elementwise
-def load(strip, first, i, pattern):
+def load(strip, first, i, like):
     """Elements i of rows from `first` on."""
     return "strip[(first + {k}) * STRIP + i]"
 
@@ -47,17 +47,17 @@ def _inside(length, x, away):
 
 
 @by_type
-def wish(physics, strip, i, pattern):
+def wish(physics, strip, i, like):
     """The sum that a bird follows: headings in reach, and what cohesion adds."""
     if not has_cohesion(physics):
-        return lambda physics, strip, i, pattern: scaled(1.0 / HEADING, load(strip, 0, i, pattern))
+        return lambda physics, strip, i, like: scaled(1.0 / HEADING, load(strip, 0, i, like))
 
-    def with_cohesion(physics, strip, i, pattern):
-        d = len(pattern)
+    def with_cohesion(physics, strip, i, like):
+        d = len(like)
         weight = physics.cohesion[0].strength / PULL
-        total = scaled(1.0 / HEADING, load(strip, 0, i, pattern))
-        total = added(total, scaled(weight, load(strip, d + 1, i, pattern)))
-        out = load(strip, 2 * d + 1, i, pattern)
+        total = scaled(1.0 / HEADING, load(strip, 0, i, like))
+        total = added(total, scaled(weight, load(strip, d + 1, i, like)))
+        out = load(strip, 2 * d + 1, i, like)
         return chosen(dot(out, out) > 0.0, out, total)
 
     return with_cohesion
@@ -66,8 +66,8 @@ def wish(physics, strip, i, pattern):
 @inner
 def move(physics, counter, birds, sums, strip, side, first, count):
     """Turn and move `count` birds from the bird `first` on."""
-    pattern = physics.axes.size
-    d, rows = len(pattern), sum_rows(physics)
+    like = physics.axes.size
+    d, rows = len(like), sum_rows(physics)
     headings, places = birds.headings[side], birds.places[side]
     images, numbers = birds.images[side], birds.numbers[side]
     heading, place, away, number = rows, rows + d, rows + 2 * d, rows + 3 * d
@@ -81,8 +81,8 @@ def move(physics, counter, birds, sums, strip, side, first, count):
             strip[(place + k) * STRIP + i] = places[k, past(first, i)]
     for i in range(count):
         strip[number * STRIP + i] = float(numbers[past(first, i)])
-    turn(physics, counter, strip, rows, count, pattern)
-    fly(physics, strip, rows, count, pattern)
+    turn(physics, counter, strip, rows, count, like)
+    fly(physics, strip, rows, count, like)
     for k in range(d):
         for i in range(count):
             headings[k, past(first, i)] = strip[(heading + k) * STRIP + i]
@@ -93,27 +93,27 @@ def move(physics, counter, birds, sums, strip, side, first, count):
 
 
 @inner
-def turn(physics, counter, strip, rows, count, pattern):
+def turn(physics, counter, strip, rows, count, like):
     """New headings, and the ways of the step."""
-    d = len(pattern)
+    d = len(like)
     heading, away, number = rows, rows + 2 * d, rows + 3 * d
     for i in range(count):
-        old, total = load(strip, heading, i, pattern), wish(physics, strip, i, pattern)
+        old, total = load(strip, heading, i, like), wish(physics, strip, i, like)
         name = bits(strip[number * STRIP + i] + ROUNDER) - ROUNDER_BITS
         around = strip[d * STRIP + i]
         new = turned(physics.noise, counter, name, old, total, around)
         store(strip, heading, i, new)
-        store(strip, away, i, scaled(physics.step_length, chosen(physics.follows, old, new)))
+        store(strip, away, i, scaled(physics.way, chosen(physics.follows, old, new)))
 
 
 @inner
-def fly(physics, strip, rows, count, pattern):
+def fly(physics, strip, rows, count, like):
     """New places in the box, and how many boxes away they were."""
-    axes, d = physics.axes, len(pattern)
+    axes, d = physics.axes, len(like)
     heading, place, away = rows, rows + d, rows + 2 * d
     for i in range(count):
-        r, displacement = load(strip, place, i, pattern), load(strip, away, i, pattern)
-        r, new = flown(physics.solid, r, displacement, load(strip, heading, i, pattern))
+        r, way = load(strip, place, i, like), load(strip, away, i, like)
+        r, new = flown(physics.solid, r, way, load(strip, heading, i, like))
         if exposed(physics.solid):
             store(strip, heading, i, new)
         boxes = boxes_away(axes.inverse, r)

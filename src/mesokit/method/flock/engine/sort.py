@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from mesokit.kernels.kernel import inner
-from mesokit.loops.threads import barrier
+from mesokit.loops.threads import meet
 from mesokit.method.flock.engine.memory import HEADING
 from mesokit.scalar.fixed_point import fixed
 from mesokit.scalar.intrinsics import with_item
@@ -33,25 +33,25 @@ def cell_along(axes, k, place):
 
 
 @scalar
-def part(number, worker):
+def part(number, team):
     """The first and the last of a number of things that a thread takes."""
-    first = number * worker.thread // worker.threads
-    return first, number * (worker.thread + 1) // worker.threads
+    first = number * team.thread // team.threads
+    return first, number * (team.thread + 1) // team.threads
 
 
 @inner
-def sort(worker, axes, birds, seen, cells, side):
+def sort(team, axes, birds, seen, cells, side):
     """Sort birds from `side` to the other side, and say what they see of one another."""
     n, number = birds.numbers.shape[1], len(cells.starts) - 1
-    first, last = part(n, worker)
-    count(axes, birds.places, cells, worker.thread, side, first, last)
-    barrier(worker)
-    add_up(worker, cells, number)
-    barrier(worker)
-    share_out(worker, cells, number)
-    barrier(worker)
-    scatter(axes, birds, seen, cells.homes, cells.counts[worker.thread], side, first, last)
-    barrier(worker)
+    first, last = part(n, team)
+    count(axes, birds.places, cells, team.thread, side, first, last)
+    meet(team)
+    add_up(team, cells, number)
+    meet(team)
+    share_out(team, cells, number)
+    meet(team)
+    scatter(axes, birds, seen, cells.homes, cells.counts[team.thread], side, first, last)
+    meet(team)
 
 
 @inner
@@ -75,36 +75,36 @@ def looks(birds):
 
 
 @inner
-def add_up(worker, cells, number):
+def add_up(team, cells, number):
     """Birds and work in the cells of this thread."""
-    first, last = part(number, worker)
+    first, last = part(number, team)
     birds = work = 0
     for cell in range(first, last):
         here = 0
-        for thread in range(worker.threads):
+        for thread in range(team.threads):
             here += cells.counts[thread, cell]
         birds += here
         work += looks(here)
-    cells.totals[worker.thread, 0], cells.totals[worker.thread, 1] = birds, work
+    cells.totals[team.thread, 0], cells.totals[team.thread, 1] = birds, work
 
 
 @inner
-def share_out(worker, cells, number):
+def share_out(team, cells, number):
     """Where the birds of each cell and thread go."""
-    first, last = part(number, worker)
+    first, last = part(number, team)
     place = work = 0
-    for thread in range(worker.thread):
+    for thread in range(team.thread):
         place += cells.totals[thread, 0]
         work += cells.totals[thread, 1]
     for cell in range(first, last):
         cells.starts[cell], cells.work[cell] = place, work
         begin = place
-        for thread in range(worker.threads):
+        for thread in range(team.threads):
             here = cells.counts[thread, cell]
             cells.counts[thread, cell] = place
             place += here
         work += looks(place - begin)
-    if worker.thread == worker.threads - 1:
+    if team.thread == team.threads - 1:
         cells.starts[number], cells.work[number] = place, work
 
 
@@ -127,12 +127,12 @@ def scatter(axes, birds, seen, homes, ahead, side, first, last):
 
 
 @scalar
-def cells_of(worker, cells):
+def cells_of(team, cells):
     """The cells that a thread looks at: about the same work for each."""
     work, number = cells.work, len(cells.work) - 1
     ends = (0, 0)
     for k in range(2):
-        wanted = work[number] * (worker.thread + k) // worker.threads
+        wanted = work[number] * (team.thread + k) // team.threads
         low, high = 0, number
         while low < high:
             middle = (low + high) // 2

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mesokit.kernels.kernel import inner, kernel
-from mesokit.loops.threads import barrier
+from mesokit.loops.threads import meet
 from mesokit.method.flock.engine.look import look, next_place, place_of_cell
 from mesokit.method.flock.engine.memory import STRIP
 from mesokit.method.flock.engine.move import move
@@ -17,29 +17,29 @@ START = METHOD + np.uint64(2)  # purpose of random numbers
 
 
 @kernel
-def step(worker, counter, steps, side, physics, flock):
+def step(team, counter, steps, side, physics, flock):
     """So many steps; birds lie on `side` before and, if they are even in number, after them."""
     birds, seen, cells = flock.birds, flock.seen, flock.cells
     for done in range(steps):
         now = Counter(counter.seed, counter.step + np.uint64(done))
-        sort(worker, physics.axes, birds, seen, cells, side)  # places, headings at t
+        sort(team, physics.axes, birds, seen, cells, side)  # places, headings at t
         side = 1 - side
-        look_and_move(worker, now, physics, flock, side)  # headings, then places: t -> t + dt
-        barrier(worker)
+        look_and_move(team, now, physics, flock, side)  # headings, then places: t -> t + dt
+        meet(team)
 
 
 @inner
-def look_and_move(worker, now, physics, flock, side):
+def look_and_move(team, now, physics, flock, side):
     """What the birds of this thread see, and where they turn and go to: a strip at a time."""
     birds, seen, cells, scratch = flock.birds, flock.seen, flock.cells, flock.scratch
-    near, runs = scratch.near[worker.thread], scratch.runs[worker.thread]
-    strip, pattern = scratch.strip[worker.thread], physics.axes.size
-    begin, end = cells_of(worker, cells)
+    near, runs = scratch.near[team.thread], scratch.runs[team.thread]
+    strip, like = scratch.strip[team.thread], physics.axes.size
+    begin, end = cells_of(team, cells)
     done, place = cells.starts[begin], place_of_cell(physics.axes, begin)
     for cell in range(begin, end):
         looked = cells.starts[cell + 1]
         if looked > cells.starts[cell]:
-            look(physics, seen, cells.starts, near, runs, cell, place, pattern)
+            look(physics, seen, cells.starts, near, runs, cell, place, like)
         place = next_place(physics.axes, place)
         while looked - done >= STRIP or (cell == end - 1 and looked > done):
             count = min(looked - done, STRIP)
@@ -57,10 +57,10 @@ def scatter_places(counter, draw, size, numbers, places):
 
 
 @kernel
-def scatter_headings(counter, pattern, headings):
+def scatter_headings(counter, like, headings):
     """Headings uniform over all directions."""
     for i in range(len(headings)):
         a, b, c, d = words(counter, FIRST_HEADING, i, 0)
-        u = unit_vector(pattern, unit(a, b), unit(c, d))
-        for k in range(len(pattern)):
+        u = unit_vector(like, unit(a, b), unit(c, d))
+        for k in range(len(like)):
             headings[i, k] = u[k]

@@ -19,13 +19,13 @@ MOST_HITS = 256  # in one step, pieces of a long flight included
 
 
 @generic
-def flown(solid, r, displacement, heading):
-    """Place and heading after a flight along `displacement` from r, in a step, with reflections."""
+def flown(solid, r, way, heading):
+    """Place and heading after a flight along `way` from r, in a step, with reflections."""
 
 
 @flown.register(Nothing)
-def _(solid, r, displacement, heading):
-    return added(r, displacement), heading
+def _(solid, r, way, heading):
+    return added(r, way), heading
 
 
 @scalar
@@ -35,20 +35,20 @@ def mirrored(u, n):
 
 
 @flown.register(Bodies)
-def _(solid, r, displacement, heading):
-    return reflected(solid, r, displacement, heading)
+def _(solid, r, way, heading):
+    return reflected(solid, r, way, heading)
 
 
 @seldom
-def reflected(solid, r, displacement, heading):
-    """The flight among solids, with a velocity of `displacement` in a time of 1.
+def reflected(solid, r, way, heading):
+    """The flight among solids, with a velocity of `way` in a time of 1.
 
     Surfaces with slip mirror it, others send it back the way it came. A heading that leads into
     the surface is turned as the flight is. A bird that rounding leaves in a solid, or that still
     flies after MOST_HITS, stays where it was.
     """
-    still, time = scaled(0.0, displacement), 1.0
-    x, v, flying = homed(solid, r), displacement, True
+    still, time = scaled(0.0, way), 1.0
+    x, v, flying = homed(solid, r), way, True
     away = added_scaled(r, -1.0, x)
     contact = unmet(solid)
     for _ in range(MOST_HITS):

@@ -64,17 +64,17 @@ def direction(total, heading):
 
 
 @by_type
-def unit_vector(pattern, along, around):
+def unit_vector(like, along, around):
     """A direction uniform on the circle or the sphere, from numbers uniform in [0, 1)."""
-    if len(pattern) == 2:
+    if len(like) == 2:
 
-        def on_circle(pattern, along, around):
+        def on_circle(like, along, around):
             s, c = sincos_turn(around)
             return c, s
 
         return on_circle
 
-    def on_sphere(pattern, along, around):
+    def on_sphere(like, along, around):
         z = 2.0 * along - 1.0
         s, c = sincos_turn(around)
         r = math.sqrt(1.0 - z * z)

@@ -114,7 +114,7 @@ class NumberFluctuationsAccumulator:
         self.order.add(mean_heading(engine.headings())[0])
         self.blocks.add(
             [
-                ((counts_in_squares(places, side, self.size) - mean) ** 2).mean()
+                ((counted(places, side, self.size) - mean) ** 2).mean()
                 for side, mean in zip(self.sides, self.mean, strict=True)
             ]
         )
@@ -191,7 +191,7 @@ class NumberFluctuationsAccumulator:
         return [Comparison("exponent of number fluctuations", *measured, expected, "", note)]
 
 
-def counts_in_squares(places: Array, side: float, size: Array) -> Array:
+def counted(places: Array, side: float, size: Array) -> Array:
     """How many places lie in each of the whole squares of a side that fit the box."""
     many = np.floor(size / side * (1 + 1e-12)).astype(int)
     bins = np.floor(places / side).astype(int)

@@ -43,11 +43,11 @@ def blind(noise: Noise, dimension: int) -> bool:
 def all_see_all(case: Case) -> bool:
     """Whether every bird is in reach of every other, wherever they are."""
     shut = closed_axes(case.walls)
-    distances = [
+    ways = [
         length if axis in shut else 0.5 * length
         for axis, length in zip(case.box.axes, case.box.size, strict=True)
     ]
-    return bool(math.hypot(*distances) < case.flock.radius)
+    return bool(math.hypot(*ways) < case.flock.radius)
 
 
 def mean_heading(headings: Array) -> tuple[float, Array]:

@@ -59,7 +59,7 @@ def size(case: Case) -> Iterator[str]:
         )
 
 
-def check_mean_free_path(case: Case) -> Iterator[str]:
+def mean_free_path(case: Case) -> Iterator[str]:
     """A fluid whose particles meet."""
     fluid = case.fluid
     path = fluid.timestep * math.sqrt(fluid.kT / fluid.mass)
@@ -151,10 +151,10 @@ def shear(case: Case) -> Iterator[str]:
             yield f"{key}: not with wall[#{i + 1}].shape = {shape}; only with one slit"
         elif wall.axis in ("x", "y"):
             yield f"{key}: not with walls across {wall.axis}; move a plate to shear a slit"
-    acceleration = rule.uniform(case.box.dimension)
-    if acceleration is None:
+    push = rule.uniform(case.box.dimension)
+    if push is None:
         yield f"{key}: not with fluid.force.rule = {show(name_of(rule))}"
-    elif acceleration[1] != 0:
+    elif push[1] != 0:
         yield f"{key}: not with fluid.force.acceleration along y, the gradient of the shear"
 
 
@@ -206,7 +206,7 @@ def molecule(case: Case) -> Iterator[str]:
             )
 
 
-def check_start(case: Case) -> Iterator[str]:
+def start(case: Case) -> Iterator[str]:
     """Arrays, an earlier run or a file."""
     for owner in ("fluid", "solutes"):
         if getattr(case, owner) is None:
@@ -247,7 +247,7 @@ RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
     room,
     moving_surfaces,
     size,
-    check_mean_free_path,
+    mean_free_path,
     collision,
     free_flight,
     open_box,
@@ -255,7 +255,7 @@ RULES: tuple[Callable[[Case], Iterator[str]], ...] = (
     shear,
     molecule,
     solutes,
-    check_start,
+    start,
     units,
     kernels,
 )

@@ -73,23 +73,23 @@ class AT3(NamedTuple):
 
 
 @scalar
-def thermal_velocity(counter, key, kT, m, pattern):
-    """A velocity from the Maxwell distribution, with as many components as `pattern`."""
-    a, b, c, d = words(counter, PARTICLE_VELOCITY, key[0], key[1])
-    x = normals(pattern, a, b, c, d)
+def thermal_velocity(counter, who, kT, m, like):
+    """A velocity from the Maxwell distribution, with as many components as `like`."""
+    a, b, c, d = words(counter, PARTICLE_VELOCITY, who[0], who[1])
+    x = normals(like, a, b, c, d)
     width = math.sqrt(kT / m)
     return scaled(width, x)
 
 
 @contribute.register(AT2)
-def _(rule, counter, key, m, v, r):
-    w = thermal_velocity(counter, key, rule.kT, m, v)
+def _(rule, counter, who, m, v, r):
+    w = thermal_velocity(counter, who, rule.kT, m, v)
     return w, (m * w[0], m * w[1])
 
 
 @contribute.register(AT3)
-def _(rule, counter, key, m, v, r):
-    w = thermal_velocity(counter, key, rule.kT, m, v)
+def _(rule, counter, who, m, v, r):
+    w = thermal_velocity(counter, who, rule.kT, m, v)
     return w, (m * w[0], m * w[1], m * w[2])
 
 

@@ -70,16 +70,16 @@ class ATPlusA3(NamedTuple):
 
 
 @contribute.register(ATPlusA2)
-def _(rule, counter, key, m, v, r):
-    w = thermal_velocity(counter, key, rule.kT, m, v)
+def _(rule, counter, who, m, v, r):
+    w = thermal_velocity(counter, who, rule.kT, m, v)
     lost = r[0] * (v[1] - w[1]) - r[1] * (v[0] - w[0])
     square = r[0] * r[0] + r[1] * r[1]
     return w, (m * w[0], m * w[1], m * r[0], m * r[1], m * square, m * lost)
 
 
 @contribute.register(ATPlusA3)
-def _(rule, counter, key, m, v, r):
-    w = thermal_velocity(counter, key, rule.kT, m, v)
+def _(rule, counter, who, m, v, r):
+    w = thermal_velocity(counter, who, rule.kT, m, v)
     lost = cross(r, (v[0] - w[0], v[1] - w[1], v[2] - w[2]))
     return w, (scaled(m, w) + scaled(m, r) + scaled(m, second_moment(r)) + scaled(m, lost))
 

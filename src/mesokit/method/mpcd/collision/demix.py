@@ -83,15 +83,15 @@ class Turning3(NamedTuple):
 
 
 @scalar
-def colour(rule, key):
+def colour(rule, who):
     """+1 for the first species, -1 for the other, 0 for the virtual particles of walls."""
-    number = np.int64(key[0])
+    number = np.int64(who[0])
     return 1.0 if number < rule.first else (-1.0 if number < rule.every else 0.0)
 
 
 @contribute.register(Turning2, Turning3)
-def _(rule, counter, key, m, v, r):
-    charge = m * colour(rule, key)
+def _(rule, counter, who, m, v, r):
+    charge = m * colour(rule, who)
     return v, ((charge,) + scaled(charge, v))
 
 

@@ -24,9 +24,9 @@ class NoCollision(CollisionRule):
     conserves: ClassVar[tuple[str, ...]] = ("mass", "momentum", "energy", "angular momentum")
     rates: ClassVar[dict[int, float]] = {2: 280.0, 3: 190.0}
 
-    def kernel(self, dimension: int, kT: float) -> Uncollided:
+    def kernel(self, dimension: int, kT: float) -> Free:
         """Parameters for the scalar functions below."""
-        return Uncollided()
+        return Free()
 
     def own_sums(self, dimension: int) -> tuple[str, ...]:
         """None."""
@@ -37,25 +37,25 @@ class NoCollision(CollisionRule):
         return 1
 
 
-class Uncollided(NamedTuple):
+class Free(NamedTuple):
     """No collision."""
 
 
-@contribute.register(Uncollided)
-def _(rule, counter, key, m, v, r):
+@contribute.register(Free)
+def _(rule, counter, who, m, v, r):
     return v, ()
 
 
-@freedom.register(Uncollided)
+@freedom.register(Free)
 def _(rule, n):
     return 0.0
 
 
-@coefficients.register(Uncollided)
+@coefficients.register(Free)
 def _(rule, thermostat, variate, chance, cell):
     return (0.0,)
 
 
-@collide.register(Uncollided)
+@collide.register(Free)
 def _(rule, c, v, r):
     return v

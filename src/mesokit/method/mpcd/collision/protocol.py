@@ -128,10 +128,10 @@ class Cell(NamedTuple):
 
 
 @generic
-def contribute(rule, counter, key, m, v, r):
+def contribute(rule, counter, who, m, v, r):
     """The velocity that a particle keeps until it collides, and what it adds to the rule's sums.
 
-    `key` is the index and the draw of its random words: no two particles of a step share them.
+    `who` is the index and the draw of its random words: no two particles of a step share them.
     """
 
 

@@ -120,7 +120,7 @@ class SRD3(NamedTuple):
 
 
 @contribute.register(SRD2, SRD2Uniform, SRD3)
-def _(rule, counter, key, m, v, r):
+def _(rule, counter, who, m, v, r):
     return v, ()
 
 

@@ -92,14 +92,14 @@ class SRDPlusA3(NamedTuple):
 
 
 @contribute.register(SRDPlusA2)
-def _(rule, counter, key, m, v, r):
+def _(rule, counter, who, m, v, r):
     x, y = m * r[0], m * r[1]
     turn, pull = x * v[1] - y * v[0], x * v[0] + y * v[1]
     return v, (x, y, x * r[0] + y * r[1], turn, pull)
 
 
 @contribute.register(SRDPlusA3)
-def _(rule, counter, key, m, v, r):
+def _(rule, counter, who, m, v, r):
     p = scaled(m, v)
     tensor = scaled(r[0], p) + scaled(r[1], p) + scaled(r[2], p)
     return v, scaled(m, r) + scaled(m, second_moment(r)) + tensor

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mesokit.loops.layout import LANES, share, sums_length
-from mesokit.loops.threads import barrier
+from mesokit.loops.threads import meet
 from mesokit.method.mpcd.engine.cpu.physics import field_of
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import untangled
 from mesokit.method.mpcd.engine.domains.messages.field import share_field
@@ -30,25 +30,25 @@ class Field(NamedTuple):
 
 
 @by_type
-def fill_field(worker, physics, fluid):
+def fill_field(team, physics, fluid):
     """Write down the sum of every cell where a rule asks for its gradient; all threads meet."""
     asked = len(field_of(field_of(fluid, "cells"), "field")) > 0
-    return _fill_field if asked else lambda worker, physics, fluid: None
+    return _fill_field if asked else lambda team, physics, fluid: None
 
 
-def _fill_field(worker, physics, fluid):
+def _fill_field(team, physics, fluid):
     cells = fluid.cells
     term, width = cells.field.term, sums_length(len(physics.terms))
     batches = (cells.number + LANES - 1) // LANES
-    first, last = share(batches, worker.thread, worker.threads)
+    first, last = share(batches, team.thread, team.threads)
     for cell in range(first * LANES, min(last * LANES, cells.number)):
         number, total = np.int64(0), np.int64(0)
         for t in range(cells.sums.shape[0]):
             number += untangled(physics.energy, cells.sums[t, cell * width])[0]
             total += cells.sums[t, cell * width + 1 + term]
         cells.field.values[cell] = from_fixed(total, number, physics.scales[term])
-    share_field(worker, fluid)
-    barrier(worker)
+    share_field(team, fluid)
+    meet(team)
 
 
 @scalar

@@ -14,7 +14,7 @@ PIECE = 2**18  # particles
 class Piece(NamedTuple):
     """Some particles: their numbers (n,), positions, velocities and images (n, d)."""
 
-    ids: NDArray[np.int64]
+    who: NDArray[np.int64]
     positions: NDArray[np.float64]
     velocities: NDArray[np.float64]
     images: NDArray[np.int32]

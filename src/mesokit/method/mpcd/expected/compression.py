@@ -32,11 +32,11 @@ def compression(case: Case) -> tuple[int, float] | None:
     without a force along one axis, without solids but plates, and in a straight pipe, whose wall
     takes what the force does everywhere alike.
     """
-    axis, fluid = setting.driven_axis(case), case.fluid
+    axis, fluid = setting.push_axis(case), case.fluid
     if axis is None or not setting.obstructed(case) or axis in setting.closed_axes(case):
         return None
     pipe = recognise.pipe(case)
     if pipe is not None and pipe.axis == axis:
         return None
-    acceleration = abs(float(setting.uniform_acceleration(case)[axis]))
-    return axis, acceleration * unit_cell(case, axis) * fluid.mass / fluid.kT
+    push = abs(float(setting.acceleration(case)[axis]))
+    return axis, push * unit_cell(case, axis) * fluid.mass / fluid.kT

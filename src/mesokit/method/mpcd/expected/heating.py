@@ -84,7 +84,7 @@ def temperature_rise(case: Case) -> Array | None:
     across = AXES.index(plates.axis)
     flows = [setting.flow(case, i) for i in range(case.box.dimension)]
     unknown = any(flow.profile is None for flow in flows)
-    if not any(taking) or setting.uniform_acceleration(case)[across] or unknown:
+    if not any(taking) or setting.acceleration(case)[across] or unknown:
         return None
     rise = np.zeros(POINTS)
     for _ in range(ROUNDS):
@@ -139,9 +139,9 @@ def _local(case: Case, kT: Array) -> _Local | None:
 
 def _friction_in_pipe(case: Case, pipe: recognise.Pipe, viscosity: float) -> float:
     """Mean heat per volume and time: what the force does to the mean flow of the pipe."""
-    acceleration = abs(float(setting.uniform_acceleration(case)[pipe.axis]))
-    rate = theory.hagen_poiseuille_flow_rate(pipe.radius, acceleration, viscosity)
-    return setting.mass_density(case) * acceleration * rate / (math.pi * pipe.radius**2)
+    push = abs(float(setting.acceleration(case)[pipe.axis]))
+    rate = theory.hagen_poiseuille_flow_rate(pipe.radius, push, viscosity)
+    return setting.mass_density(case) * push * rate / (math.pi * pipe.radius**2)
 
 
 def _work(case: Case, across: int, sticky: list[bool], here: _Local) -> Array:
@@ -153,10 +153,10 @@ def _work(case: Case, across: int, sticky: list[bool], here: _Local) -> Array:
     plates = slit_of(case)
     assert plates is not None
     step, heat = float(case.box.size[across]) / (POINTS - 1), np.zeros(POINTS)
-    for i, acceleration in enumerate(setting.uniform_acceleration(case)):
+    for i, push in enumerate(setting.acceleration(case)):
         if i == across:
             continue
-        weight = _running(case.fluid.mass * here.density * acceleration, step)
+        weight = _running(case.fluid.mass * here.density * push, step)
         at_lower = weight[-1] if sticky[0] else 0.0
         if all(sticky):
             lower, upper = (setting.surface_velocity(s, i) for s in (plates.lower, plates.upper))

@@ -116,15 +116,15 @@ def drift_of(case: Case, group: Group, kind: int | str = 1) -> Drift | None:
     assert spread is not None
     fluid, mass = case.fluid, solutes.masses[place] * group.length
     memory = max(spread * mass / fluid.kT - 0.5 * fluid.timestep, 0.0)
-    return Drift(setting.uniform_acceleration(case) * mobility, spread, note, memory)
+    return Drift(setting.acceleration(case) * mobility, spread, note, memory)
 
 
 def flow_axis(case: Case) -> int:
     """Number of the axis along which a force drives the fluid, x unless there is one."""
-    axis = setting.driven_axis(case)
+    axis = setting.push_axis(case)
     return 0 if axis is None else axis
 
 
 def flow_sign(case: Case, axis: int) -> int:
     """-1 where a force drives the fluid backwards along an axis, else 1."""
-    return -1 if setting.uniform_acceleration(case)[axis] < 0 else 1
+    return -1 if setting.acceleration(case)[axis] < 0 else 1

@@ -289,7 +289,7 @@ def rouse_note(case: Case) -> str:
     if case.solutes is None and (turns := swing_of_flight(case)) > FAST:
         return f"approximate: Rouse; bonds turn by {turns:.2g} rad in one flight"
     if case.solutes is None and setting.mean_free_path(case) < 1:
-        return "approximate: Rouse; flow that a bead stirs up carries neighbours with it"
+        return "approximate: Rouse; flow that a bead stirs up moves its neighbours too"
     if case.solutes is not None:
         return "approximate: Rouse; beads that share a cell lose less momentum than apart"
     return "Rouse; beads with the friction of free particles"

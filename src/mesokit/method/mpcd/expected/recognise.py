@@ -79,7 +79,7 @@ def pipe(case: Case) -> Pipe | None:
     return Pipe(axis, wall.centre, wall.radius)
 
 
-def lone_post(case: Case) -> Pipe | None:
+def post(case: Case) -> Pipe | None:
     """The disk or cylinder along an axis of the box that is the only wall, fluid around it."""
     if len(case.walls) != 1:
         return None

@@ -275,7 +275,7 @@ class Nodes(NamedTuple):
 
 
 @scalar
-def table_interval(field, k, x):
+def interval(field, k, x):
     """Where in the table the interval along axis k begins in which x lies, and how far in it x is,
     from 0 to 1."""
     count = field.intervals[k]
@@ -289,7 +289,7 @@ def table_interval(field, k, x):
 
 
 @scalar
-def between_nodes(field, place, far, share):
+def between(field, place, far, share):
     """Between the number at a place of the table and the one so far beyond it."""
     low = real(field.table, place)
     return mul_add(share, real(field.table, place + far) - low, low)
@@ -300,28 +300,28 @@ def interpolated(field, r):
     """Linear along each axis between the nodes around r."""
 
     def in_square(field, r):
-        x, s = table_interval(field, 0, r[0])
-        y, t = table_interval(field, 1, r[1])
+        x, s = interval(field, 0, r[0])
+        y, t = interval(field, 1, r[1])
         right, up = field.strides
         a = r
         for j in range(2):
-            low = between_nodes(field, x + y + j, up, t)
-            high = between_nodes(field, x + y + right + j, up, t)
+            low = between(field, x + y + j, up, t)
+            high = between(field, x + y + right + j, up, t)
             a = with_item(a, j, mul_add(s, high - low, low))
         return a
 
     def in_cube(field, r):
-        x, s = table_interval(field, 0, r[0])
-        y, t = table_interval(field, 1, r[1])
-        z, u = table_interval(field, 2, r[2])
+        x, s = interval(field, 0, r[0])
+        y, t = interval(field, 1, r[1])
+        z, u = interval(field, 2, r[2])
         right, back, up = field.strides
         a = r
         for j in range(3):
             place = x + y + z + j
-            near = between_nodes(field, place, up, u)
-            near = mul_add(t, between_nodes(field, place + back, up, u) - near, near)
-            far = between_nodes(field, place + right, up, u)
-            far = mul_add(t, between_nodes(field, place + right + back, up, u) - far, far)
+            near = between(field, place, up, u)
+            near = mul_add(t, between(field, place + back, up, u) - near, near)
+            far = between(field, place + right, up, u)
+            far = mul_add(t, between(field, place + right + back, up, u) - far, far)
             a = with_item(a, j, mul_add(s, far - near, near))
         return a
 

@@ -63,9 +63,9 @@ class Varying(Force):
     def drives(self, component: int) -> bool:
         """Whether the force acts along this axis."""
         for dimension in (3, 2):
-            acceleration = self.of.uniform(dimension)
-            if acceleration is not None and component < len(acceleration):
-                return acceleration[component] != 0
+            push = self.of.uniform(dimension)
+            if push is not None and component < len(push):
+                return push[component] != 0
         return self.of.drives(component)
 
     @abstractmethod

@@ -65,14 +65,14 @@ class BondLengthAccumulator(MoleculeTensorAccumulator):
         self.note_sums(products.T * (self.molecules / bonds), self.molecules)
         self.note_squares(np.reshape(elements, (1, d, d)), np.array([traces]), bonds)
 
-    def products(self, numbers: NDArray[np.int64], separation: Array) -> Terms:
+    def products(self, numbers: NDArray[np.int64], way: Array) -> Terms:
         """Groups of molecules of some bonds; products of their components, their squares, and those
         of their square lengths."""
         molecule = numbers // ((self.bonds.stop - self.bonds.start) // self.molecules)
-        axes = separation.T
+        axes = way.T
         products = [one * other for one in axes for other in axes]
         squares = [product**2 for product in products]
-        return self.own.group_of(molecule), [*products, *squares, (separation**2).sum(axis=1) ** 2]
+        return self.own.group_of(molecule), [*products, *squares, (way**2).sum(axis=1) ** 2]
 
     def result(self) -> Result:
         """The products, and the mean square bond length beside that of Boltzmann."""

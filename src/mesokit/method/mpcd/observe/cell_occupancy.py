@@ -112,7 +112,7 @@ class CellOccupancyAccumulator(BlockAccumulator):
     def _even(self) -> bool:
         """Whether the fluid is an ideal gas of the same density everywhere."""
         case = self.case
-        pressed = setting.uniform_acceleration(case)[sorted(setting.closed_axes(case))]
+        pressed = setting.acceleration(case)[sorted(setting.closed_axes(case))]
         return case.fluid.molecule is None and not (setting.gathered(case) or pressed.any())
 
     def _comparisons(self, mean: Array, error: Array) -> list[Comparison]:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 LEAST_SAMPLES = 8  # in a period
-KINETIC_OFF = 0.3  # part of the kinetic stress that molecular chaos misses where flights are short
+SLOW = 0.2  # frequency times timestep: above it the memory of flights is seen in both moduli
 MODULI = {"G'": "storage", "G''": "loss"}
 
 
@@ -141,7 +141,7 @@ class DynamicModuliAccumulator:
         )
 
     def expected(self) -> Array:
-        """eta w for the loss modulus, with the memory of flights; and what springs add to that."""
+        """eta w for the loss modulus, nothing stored; and what springs add to that."""
         expected, case = np.zeros((len(self.parts) + 1, 2)), self.case
         expected[:, 1] = np.nan
         c, w = setting.transport(case), self.frequency
@@ -158,23 +158,22 @@ class DynamicModuliAccumulator:
         elif case.solutes is not None:
             expected[:, 0] = np.nan
         elif c is not None:
-            rho, n_kT = setting.mass_density(case), case.fluid.density * case.fluid.kT
-            if c.viscosity_kinetic > 0:
-                eta = c.viscosity_kinetic * rho
-                expected[0] = theory.flight_moduli(w, case.fluid.timestep, eta, n_kT)
-            expected[1, 1] = c.viscosity_collisional * rho * w
-            expected[2] = expected[0] + expected[1]
+            nu = np.array([c.viscosity_kinetic, c.viscosity_collisional, c.viscosity])
+            expected[:, 1] = nu * setting.mass_density(case) * w
         return expected
 
     def comparisons(self) -> list[Comparison]:
         """Totals, and the viscosity that the loss modulus is."""
         mean, error, expected = self.blocks.mean(), self.blocks.error(), self.expected()
         unit = UNIT[self.case.box.dimension]
-        notes = [self.note(k) for k in range(len(MODULI))]
+        turn = self.frequency * self.case.fluid.timestep
+        note = "" if self.case.fluid.molecule is None else rouse_note(self.case)
+        if self.case.fluid.molecule is None and turn > SLOW:
+            note = f"approximate: flights remember; w dt = {turn:.2g}"
         found = [
             Comparison(
                 f"{name} modulus", float(mean[-1, k]), float(error[-1, k]), float(expected[-1, k]),
-                unit, notes[k],
+                unit, note,
             )
             for k, name in enumerate(MODULI.values())
         ]  # fmt: skip
@@ -187,20 +186,7 @@ class DynamicModuliAccumulator:
                     float(error[-1, 1] / scale),
                     float(expected[-1, 1] / scale),
                     "a^2/tau",
-                    notes[1],
+                    "; ".join(filter(None, (note, setting.caveat(self.case)))),
                 )
             )
         return found
-
-    def note(self, k: int) -> str:
-        """Why theory is off for one of both moduli by more than its error bar, "" if it is not."""
-        if self.case.fluid.molecule is not None:
-            return rouse_note(self.case)
-        if setting.caveat(self.case):
-            return setting.caveat(self.case)
-        kinetic, _, total = np.abs(self.expected()[[0, 1, -1], k])
-        short = setting.mean_free_path(self.case) < 1
-        off = KINETIC_OFF * kinetic * short + setting.loop(self.case) * total * (k == 1)
-        if not off > self.blocks.error()[-1, k]:
-            return ""
-        return "approximate: molecular chaos"

@@ -9,15 +9,12 @@ import numpy as np
 from mesokit import theory
 from mesokit.case.box import AXES, Axis
 from mesokit.case.component import component, param, tag
+from mesokit.geometry.solids.solids import free_volume
 from mesokit.method.mpcd.expected import recognise, setting
-from mesokit.method.mpcd.observe.shared.flow_memory import (
-    FlowMemory,
-    build_up_of,
-    flow_memory,
-)
+from mesokit.method.mpcd.observe.shared.molecule_tensor import kept
+from mesokit.observe.velocity_profile import ENOUGH
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import Estimate, of_mean
-from mesokit.seam.method import BuildUp
 from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Comparison, Result
 from mesokit.statistics import Blocks, TimeSeries
@@ -51,9 +48,9 @@ class FlowRate(Observable):
         """Number of the axis in this case."""
         if self.axis is not None:
             return AXES.index(self.axis)
-        driven = setting.driven_axis(case)
-        if driven is not None:
-            return driven
+        pushed = setting.push_axis(case)
+        if pushed is not None:
+            return pushed
         flowing = setting.flowing_axes(case)
         return AXES.index(flowing[0]) if len(flowing) == 1 else 0
 
@@ -106,18 +103,40 @@ class FlowRateAccumulator(BlockAccumulator):
             },
         )
 
-    def flow_memory(self) -> FlowMemory:
-        """How long the run is beside the memory of the flow."""
-        momentum = float(self.blocks.mean()) * self.mass
-        return flow_memory(self.case, self.axis, momentum, self.blocks, self.observable.every)
+    def relaxation(self) -> float:
+        """The time in which the flow's momentum is forgotten; nan where no force tells it.
 
-    def build_up(self) -> BuildUp | None:
-        """How the flow came from rest."""
-        return build_up_of(self.flow_memory(), self.case)
+        A force drives the flow to the momentum that it gives in that time: exact in slow flow, for
+        the response to a force is the integral of the momentum's correlation (Kubo 1957).
+        """
+        case, push = self.case, float(setting.acceleration(self.case)[self.axis])
+        time = float(self.blocks.mean()) * self.mass / (self.moving_mass() * push) if push else -1.0
+        return time if case.walls and time > 0 else np.nan
+
+    def moving_mass(self) -> float:
+        """Of fluid and solutes in the box."""
+        return setting.mass_density(self.case) * free_volume(self.case)
+
+    def length(self) -> float:
+        """Of a run, in relaxation times."""
+        steps = self.blocks.count / self.blocks.series * self.observable.every
+        return steps * self.case.fluid.timestep / self.relaxation()
+
+    def short_run(self) -> str:
+        """Where blocking cannot see how slowly the flow changes: a note."""
+        times = self.length()
+        if not times < ENOUGH:
+            return ""
+        return f"error bar is a lower bound: the run has {times:.2g} relaxation times"
 
     def error(self) -> float:
-        """Standard error of the mean velocity."""
-        return max(float(self.blocks.error()), self.flow_memory().least / self.mass)
+        """Standard error of the mean velocity: in a short run at least that of a thermal momentum,
+        of variance M kT, whose correlation falls as an exponential."""
+        error, times = float(self.blocks.error()), self.length()
+        if not times < ENOUGH:
+            return error
+        variance = self.moving_mass() * self.case.fluid.kT / self.mass**2
+        return float(np.maximum(error, (variance * kept(times) / self.blocks.series) ** 0.5))
 
     def comparisons(self, known: float, name: str) -> list[Comparison]:
         """Mean velocity, flow rate, permeability."""
@@ -125,7 +144,7 @@ class FlowRateAccumulator(BlockAccumulator):
         speed, error = float(mean.value), self.error()
         size, letter = np.array(self.case.box.size, float), AXES[self.axis]
         area = float(np.prod(size) / size[self.axis])
-        short = self.flow_memory().note
+        short = self.short_run()
         note = "; ".join(filter(None, (setting.caveat(self.case) or name, short)))
         found = [
             Comparison(f"mean velocity along {letter}", speed, error, known, "a/tau", note),
@@ -138,12 +157,9 @@ class FlowRateAccumulator(BlockAccumulator):
                 note,
             ),
         ]
-        acceleration, coefficients = (
-            setting.uniform_acceleration(self.case),
-            setting.transport(self.case),
-        )
-        if setting.driven_axis(self.case) == self.axis and coefficients is not None:
-            scale = coefficients.viscosity / float(acceleration[self.axis])
+        push, coefficients = setting.acceleration(self.case), setting.transport(self.case)
+        if setting.push_axis(self.case) == self.axis and coefficients is not None:
+            scale = coefficients.viscosity / float(push[self.axis])
             found.append(
                 Comparison(
                     f"permeability along {letter}",
@@ -159,7 +175,7 @@ class FlowRateAccumulator(BlockAccumulator):
     def expected(self) -> tuple[float, str]:
         """The superficial velocity and what says so; nan where nothing is known."""
         case, coefficients = self.case, setting.transport(self.case)
-        acceleration = float(setting.uniform_acceleration(case)[self.axis])
+        push = float(setting.acceleration(case)[self.axis])
         if not setting.obstructed(case):
             flow = setting.flow(case, self.axis)
             edges = np.linspace(0.0, case.box.size[flow.across], 65)
@@ -167,7 +183,7 @@ class FlowRateAccumulator(BlockAccumulator):
             return (np.nan, "") if bins is None else (float(bins.mean()), flow.kind)
         if not setting.driven(case):
             return 0.0, "rest"
-        if coefficients is None or not acceleration or setting.driven_axis(case) != self.axis:
+        if coefficients is None or not push or setting.push_axis(case) != self.axis:
             return np.nan, ""
         viscosity, pipe, lattice = (
             coefficients.viscosity,
@@ -175,7 +191,7 @@ class FlowRateAccumulator(BlockAccumulator):
             recognise.lattice(case),
         )
         if pipe is not None and pipe.axis == self.axis:
-            rate = theory.hagen_poiseuille_flow_rate(pipe.radius, acceleration, viscosity)
+            rate = theory.hagen_poiseuille_flow_rate(pipe.radius, push, viscosity)
             area = np.prod(case.box.size) / case.box.size[self.axis]
             return float(rate / area), "hagen-poiseuille"
         if lattice is None or self.axis not in lattice.across:
@@ -183,8 +199,8 @@ class FlowRateAccumulator(BlockAccumulator):
         try:
             if len(lattice.across) == 2:
                 k = theory.square_array_permeability(lattice.concentration, lattice.pitch)
-                return k * acceleration / viscosity, "square array, slow flow"
+                return k * push / viscosity, "square array, slow flow"
             k = theory.cubic_array_permeability(lattice.concentration, lattice.pitch)
-            return k * acceleration / viscosity, "cubic array, slow flow"
+            return k * push / viscosity, "cubic array, slow flow"
         except ValueError:  # denser than the theory goes
             return np.nan, ""

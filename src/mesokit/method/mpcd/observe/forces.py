@@ -14,16 +14,10 @@ from mesokit.errors import CaseError
 from mesokit.geometry.shape.plates import Plates
 from mesokit.geometry.solids.solids import free_volume, slit_of, solids_of
 from mesokit.method.mpcd.expected import recognise, setting
-from mesokit.method.mpcd.observe.shared.flow_memory import (
-    FlowMemory,
-    build_up_of,
-    flow_memory,
-)
 from mesokit.method.mpcd.observe.shared.walls import SinceLast, require_counted
 from mesokit.method.mpcd.observe.wall_stress import PLATES, balance
 from mesokit.seam.engine import RunningFluid
-from mesokit.seam.estimate import SURE, Estimate, noted, of_mean
-from mesokit.seam.method import BuildUp
+from mesokit.seam.estimate import Estimate, noted, of_mean
 from mesokit.seam.observable import BlockAccumulator, Observable
 from mesokit.seam.result import Array, Comparison, Result, with_error
 from mesokit.statistics import Blocks, TimeSeries
@@ -79,7 +73,7 @@ class Forces(Observable):
             raise CaseError("area: only in 3D; leave it out")
         if self.flow is not None:
             case.box.index(self.flow, "flow")
-        elif setting.driven_axis(case) is None:
+        elif setting.push_axis(case) is None:
             raise CaseError("flow: missing; no force along one axis says which is that of the drag")
 
     def accumulator(self, case: Case) -> ForcesAccumulator:
@@ -194,7 +188,7 @@ class ForcesAccumulator(BlockAccumulator):
             rest[[case.fluid.force.drives(axis) for axis in range(self.dimension)]] = np.nan
             return rest
         mass = setting.mass_density(case) * free_volume(case)
-        total: Array = setting.uniform_acceleration(case) * mass
+        total: Array = setting.acceleration(case) * mass
         if all(isinstance(wall, Plates) and wall.slips for wall in case.walls):
             closed = np.isin(range(self.dimension), list(setting.closed_axes(case)))
             total[~closed & (total != 0)] = np.nan
@@ -244,7 +238,7 @@ class ForcesAccumulator(BlockAccumulator):
         force = np.arange(np.prod(self.shape)).reshape(self.shape)  # places of the components
         found = []
         few = len(self.bodies) <= NAMED
-        for axis in map(int, np.flatnonzero(setting.uniform_acceleration(self.case))):
+        for axis in map(int, np.flatnonzero(setting.acceleration(self.case))):
             every = np.zeros(mean.value.shape)
             every[force[:, axis]] = 1.0
             value, error = mean.scalar(every @ mean.value, every)
@@ -288,10 +282,12 @@ class ForcesAccumulator(BlockAccumulator):
         """What turns a force along the flow into its coefficient, nan without a length."""
         if self.observable.length is None or not self.blocks.count:
             return np.nan
-        if self.observable.speed is not None:
-            return self.scale(self.observable.speed)
-        speed, spread, _ = self.speed()
-        return self.scale(speed) if abs(speed) > SURE * spread else np.nan
+        slope, speed = self.slope(), self.observable.speed
+        if speed is not None:
+            return self.scale(speed)
+        mean = of_mean(self.blocks, falling=True)
+        speed = float(slope @ mean.value)
+        return mean.scalar(self.scale(speed), slope, over=(speed, slope))[0] if speed else np.nan
 
     def note_on_torque(self, body: int) -> str:
         """How well cells resolve one of two round surfaces: the inner one takes too little.
@@ -314,7 +310,7 @@ class ForcesAccumulator(BlockAccumulator):
     def along(self) -> int:
         """Number of the axis of the drag."""
         given = self.observable.flow
-        flow = setting.driven_axis(self.case) if given is None else AXES.index(given)
+        flow = setting.push_axis(self.case) if given is None else AXES.index(given)
         assert flow is not None  # as `check` has seen
         return flow
 
@@ -325,54 +321,34 @@ class ForcesAccumulator(BlockAccumulator):
         area = given.length if self.dimension == 2 else given.area or given.length**2
         return float(2.0 / (rho * speed**2 * area) * np.sign(speed))
 
-    def speed(self) -> tuple[float, float, str]:
-        """Mean superficial velocity along the flow, its standard error and its caveat.
-
-        The error is that of blocks of time, whatever the momentum of all solids together does.
-        """
-        slope = self.slope()
-        value, error = of_mean(self.blocks).scalar(slope @ self.blocks.mean(), slope)
-        memory = self.flow_memory(self.along())
-        return value, max(error, memory.least * float(slope.max())), memory.note
-
-    def flow_memory(self, axis: int) -> FlowMemory:
-        """How long the run is beside the memory of the flow along an axis."""
-        momentum = float(self.blocks.mean()[int(np.prod(self.shape)) + axis])
-        return flow_memory(self.case, axis, momentum, self.blocks, self.observable.every)
-
-    def build_up(self) -> BuildUp | None:
-        """How the flow came from rest, where a uniform force drives it along one axis."""
-        axis = setting.driven_axis(self.case)
-        return None if axis is None else build_up_of(self.flow_memory(axis), self.case)
-
     def coefficients(self, mean: Estimate, force: NDArray[np.intp], few: bool) -> list[Comparison]:
         """Reynolds number, drag and lift, with the error of the speed where that is measured."""
         given, flow = self.observable, self.along()
         assert given.length is not None
-        speed, spread, short = (given.speed, 0.0, "") if given.speed else self.speed()
-        note = f"U = {speed:g} a/tau"
+        slope: Array = np.zeros(mean.value.shape)  # of the speed
         if given.speed is None:
-            note = f"U = {with_error(abs(speed), spread)} a/tau, the mean superficial velocity"
-            note = "; ".join(filter(None, (note, short)))
+            slope = self.slope()
+            speed, error = mean.scalar(slope @ mean.value, slope)
+            note = f"U = {with_error(abs(speed), error)} a/tau, the mean superficial velocity"
+        else:
+            speed, note = given.speed, f"U = {given.speed:g} a/tau"
         if speed == 0:
             return []
         transport, found = setting.transport(self.case), []
         if transport is not None:
             inverse = given.length / transport.viscosity
-            found.append(
-                Comparison("Reynolds number", abs(speed) * inverse, spread * inverse, note=note)
-            )
-        scale, part = self.scale(speed), spread / abs(speed)
+            value, error = mean.scalar(abs(speed) * inverse, slope * inverse)
+            found.append(Comparison("Reynolds number", value, error, note=note))
+        scale = self.scale(speed)
         for body in self.obstacles() if few else ():
             for axis in (flow, *(k for k in range(self.dimension) if k != flow)):
-                one: Array = np.zeros(mean.value.shape)
-                one[force[body, axis]] = scale
-                value, error = mean.scalar(one @ mean.value, one)
-                error = float(np.hypot(error, 2 * part * value))  # the coefficient goes as 1/U^2
-                if part > 1 / SURE:  # U may be zero
-                    value = error = np.nan
+                place = force[body, axis]
+                value = scale * mean.value[place]
+                gradient = -2.0 * value / speed * slope
+                gradient[place] += scale
                 kind = "drag coefficient" if axis == flow else "lift coefficient"
                 where = f" along {AXES[axis]}" if self.dimension == 3 and axis != flow else ""
                 what = f"{kind} of {self.bodies[body]}{where}"
+                value, error = mean.scalar(value, gradient, over=(speed, slope))
                 found.append(Comparison(what, value, error, note=noted(value, note)))
         return found

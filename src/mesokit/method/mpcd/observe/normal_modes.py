@@ -23,7 +23,6 @@ from mesokit.method.mpcd.expected.molecules import (
 from mesokit.method.mpcd.observe.shared.decay import fit_curve, normalised
 from mesokit.method.mpcd.observe.shared.molecule_tensor import ENOUGH
 from mesokit.method.mpcd.observe.transverse_modes import FEWEST, LOWEST, decaying
-from mesokit.observe.shared.short_run import of_relaxations
 from mesokit.seam.engine import RunningFluid
 from mesokit.seam.estimate import noted
 from mesokit.seam.observable import Observable, State, pack, unpack
@@ -153,14 +152,9 @@ class NormalModesAccumulator:
         for p, correlator in enumerate(self.correlators[:SHOWN]):
             measured = self.relaxation_time(correlator)
             if measured is not None:
-                value, error = measured
                 expected = float(times.mode[p]) if times is not None else np.nan
-                what, run, short = f"normal-mode time {p + 1}", self.relaxations(correlator), ""
-                if 0 < run < ENOUGH:  # the rate of an exponential memory has this error at least
-                    seen = len(self.beads) * self.case.box.dimension * run
-                    error, short = max(error, value * (2 / seen) ** 0.5), of_relaxations(run)
-                note_of_time = noted(value, note, short)
-                found.append(Comparison(what, value, error, expected, "tau", note_of_time))
+                what = f"normal-mode time {p + 1}"
+                found.append(Comparison(what, *measured, expected, "tau", noted(measured[0], note)))
         for p, correlator in enumerate(self.correlators[:SHOWN]):
             square = correlator.correlation()
             if len(square.value):
@@ -170,7 +164,8 @@ class NormalModesAccumulator:
                 if 0 < times_of_run < ENOUGH:  # independent components tell what blocks do not
                     seen = len(self.beads) * d * (1 + times_of_run)
                     error = max(error, value * (2 / seen) ** 0.5)
-                    short = of_relaxations(times_of_run)
+                    run = f"the run has {times_of_run:.2g} relaxation times"
+                    short = f"error bar is a lower bound: {run}"
                 found.append(
                     Comparison(
                         f"mean square of mode {p + 1}",

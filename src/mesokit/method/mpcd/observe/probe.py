@@ -105,7 +105,7 @@ class Probe(Observable):
         """Number of the axis whose spectrum is taken."""
         if self.component is not None:
             return AXES.index(self.component)
-        flowing = setting.driven_axis(case)
+        flowing = setting.push_axis(case)
         return 1 if flowing in (None, 0) else 0
 
     def accumulator(self, case: Case) -> ProbeAccumulator:
@@ -195,12 +195,12 @@ class ProbeAccumulator(BlockAccumulator):
     def with_force(self) -> Iterator[Comparison]:
         """Amplitude and lag of the velocity along a force that oscillates."""
         swing = self.case.fluid.force.swing()
-        acceleration = swing.of.uniform(self.dimension) if swing else None
-        if swing is None or acceleration is None:
+        push = swing.of.uniform(self.dimension) if swing else None
+        if swing is None or push is None:
             return
         interval = self.observable.every * self.case.fluid.timestep
         low, high = self.centre - self.half, self.centre + self.half
-        for k in np.flatnonzero(acceleration):
+        for k in np.flatnonzero(push):
             series = [
                 Series(s.values()[:, k], float(s.time()[0]), interval * s.stride, s.stride)
                 for s in (self.series, *self.others)

@@ -21,7 +21,6 @@ from mesokit.method.mpcd.observe.shared.shells import (
     shell_edges,
     shell_volumes,
 )
-from mesokit.observe.shared.short_run import of_relaxations
 from mesokit.seam.estimate import Estimate, fit, noted
 from mesokit.seam.observable import Observable
 from mesokit.seam.result import Comparison, Result
@@ -221,7 +220,7 @@ class RadialProfileAccumulator(ShellAccumulator):
         time = self.blocks.count * self.observable.every * self.case.fluid.timestep
         if not 0 < time * rate < ENOUGH:
             return ""
-        return of_relaxations(time * rate)
+        return f"error bar is a lower bound: the run has {time * rate:.2g} relaxation times"
 
 
 class RoundFlow:
@@ -233,8 +232,8 @@ class RoundFlow:
 
     def __init__(self, case: Case) -> None:
         pipe, gap, drum = recognise.pipe(case), recognise.gap(case), recognise.drum(case)
-        post = recognise.lone_post(case)
-        acceleration, coefficients = setting.uniform_acceleration(case), setting.transport(case)
+        post = recognise.post(case)
+        push, coefficients = setting.acceleration(case), setting.transport(case)
         self.kind, self.component, self.round = "rest", "azimuthal", True
         self.profile: Callable[[Array], Array] | None = None
         self.surfaces: tuple[float, ...] = ()
@@ -242,8 +241,8 @@ class RoundFlow:
         if pipe is not None and forced:
             self.axis, self.centre, self.radii = pipe.axis, pipe.centre, (0.0, pipe.radius)
             self.kind, self.component = "hagen-poiseuille", "axial"
-            if coefficients and setting.driven_axis(case) == pipe.axis:
-                nu, g = coefficients.viscosity, float(acceleration[pipe.axis])
+            if coefficients and setting.push_axis(case) == pipe.axis:
+                nu, g = coefficients.viscosity, float(push[pipe.axis])
                 self.profile = lambda r: theory.hagen_poiseuille_velocity(r, pipe.radius, g, nu)
         elif gap is not None:
             self.axis, self.centre, self.radii = gap.axis, gap.centre, (gap.inner, gap.outer)
@@ -332,18 +331,14 @@ def _pipe(acc: RadialProfileAccumulator, velocity: Estimate) -> Fitted:
     basis, radius = acc.powers(0, 2), acc.flow.radii[1]
     parabola = fit(velocity, basis, acc.crowd * acc.inside())
     c0, c2 = parabola.value
-    acceleration, coefficients = (
-        setting.uniform_acceleration(acc.case)[acc.axis],
-        setting.transport(acc.case),
-    )
-    curved = np.array([0, acceleration / (4 * c2**2)])
-    nu, error = parabola.scalar(-acceleration / (4 * c2), curved, over=(c2, np.eye(2)[1]))
+    push, coefficients = setting.acceleration(acc.case)[acc.axis], setting.transport(acc.case)
+    curved = np.array([0, push / (4 * c2**2)])
+    nu, error = parabola.scalar(-push / (4 * c2), curved, over=(c2, np.eye(2)[1]))
     known = coefficients.viscosity if coefficients else np.nan
     slowest = known if np.isnan(nu) else nu
     short = acc.short_run(5.78 * slowest / radius**2)  # the first zero of J0, squared
-    off = setting.caveat(acc.case) or setting.chaos_is_off(acc.case, known, error)
-    note = noted(nu, off, short) or "independent of slip"
-    found = [Comparison("viscosity from curvature", nu, error, known, "a^2/tau", note, True)]
+    note = noted(nu, setting.caveat(acc.case), short) or "independent of slip"
+    found = [Comparison("viscosity from curvature", nu, error, known, "a^2/tau", note)]
     share = 1 + radius**2 * c2 / c0
     gradient = np.array([-(radius**2) * c2 / c0**2, radius**2 / c0])
     value, error = parabola.scalar(100 * share, 100 * gradient, over=(c0, np.eye(2)[0]))

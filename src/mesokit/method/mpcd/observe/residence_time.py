@@ -228,7 +228,7 @@ class ResidenceTimeAccumulator(EventAccumulator):
         if len(self.beads) < FEWEST:
             return in_parts(events.span, np.append(events.ends, np.full(len(going), end)), sums)
         found = np.zeros((min(GROUPS, len(self.beads)), 2))
-        np.add.at(found, np.append(events.ids, going) * len(found) // len(self.beads), sums)
+        np.add.at(found, np.append(events.who, going) * len(found) // len(self.beads), sums)
         return found
 
     def volume(self) -> float:

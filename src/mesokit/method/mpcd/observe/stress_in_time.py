@@ -292,9 +292,7 @@ class StressInTimeAccumulator:
             value, error = flat.scalar(flat.value @ weight.ravel(), weight.ravel())
             error *= student(len(flat.weights))
             error = max(error, self.of_factor(rows, flat, weight[:, k], name))
-            note = setting.chaos_is_off(self.case, 1.0, error)
-            if molecules:
-                note = shear_note(self.case)
+            note = shear_note(self.case) if molecules else ""
             if name == FIRST:
                 note = (
                     "approximate: of uniform shear, which takes "

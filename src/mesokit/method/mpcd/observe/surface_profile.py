@@ -64,7 +64,7 @@ class SurfaceProfile(Observable):
             case.box.index(self.flow, "flow")
             if self.of != "speed":
                 raise CaseError(f"flow: no effect with of = {self.of!r}; leave it out")
-        elif self.of == "speed" and case.box.dimension == 3 and setting.driven_axis(case) is None:
+        elif self.of == "speed" and case.box.dimension == 3 and setting.push_axis(case) is None:
             raise CaseError(
                 "flow: missing; no force drives the fluid along one axis, so say which is that of "
                 "the speed"
@@ -84,8 +84,8 @@ class SurfaceProfileAccumulator(ShellAccumulator):
         solids = solids_of(case)
         self.look = solids.depths(observable.depth)
         self.body = None if observable.solid is None else solids.names.index(observable.solid)
-        driven = setting.driven_axis(case)
-        self.flow = AXES.index(observable.flow) if observable.flow else driven
+        pushed = setting.push_axis(case)
+        self.flow = AXES.index(observable.flow) if observable.flow else pushed
         edges = shell_edges(0.0, observable.depth, observable.bins_per_cell)
         super().__init__(case, edges, case.box.dimension)
 

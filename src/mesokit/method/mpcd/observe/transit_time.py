@@ -102,16 +102,16 @@ class TransitTimeAccumulator(EventAccumulator):
         self.now |= {"time": np.array(time), "place": place}
 
     def arrive(
-        self, ids: NDArray[np.intp], before: Array, place: Array, times: tuple[float, float]
+        self, who: NDArray[np.intp], before: Array, place: Array, times: tuple[float, float]
     ) -> None:
         """Some are beyond their next plane: note when they were at it."""
         plane, since = self.now["plane"], self.now["since"]
-        arrived = crossing(before[ids], place[ids], plane[ids] * self.length, times)
-        lasted = arrived - since[ids]
+        arrived = crossing(before[who], place[who], plane[who] * self.length, times)
+        lasted = arrived - since[who]
         known = np.isfinite(lasted)
-        self.durations.add(arrived[known], lasted[known], ids[known])
-        since[ids] = arrived
-        plane[ids] += 1
+        self.durations.add(arrived[known], lasted[known], who[known])
+        since[who] = arrived
+        plane[who] += 1
 
     def state(self) -> State:
         """All it has to remember."""

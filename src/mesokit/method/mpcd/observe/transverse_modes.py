@@ -222,7 +222,6 @@ class TransverseModesAccumulator(ModesAccumulator):
                 continue
             nu, error = fitted.scalar(fitted.value[0] / k**2, np.array([1 / k**2, 0]))
             expected = coefficients.viscosity if coefficients else np.nan
-            what = f"viscosity at k = {k:.4g}/a"
-            note = setting.caveat(self.case) or setting.chaos_is_off(self.case, expected, error)
+            what, note = f"viscosity at k = {k:.4g}/a", setting.caveat(self.case)
             found.append(fitted_number(what, nu, error, expected, "a^2/tau", note))
         return found

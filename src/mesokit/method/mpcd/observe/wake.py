@@ -60,7 +60,7 @@ class Wake(Observable):
         number = self.body(case)
         if number is None:
             raise CaseError("wake needs a [[wall]] that stands in the flow")
-        if self.flow is None and setting.driven_axis(case) is None:
+        if self.flow is None and setting.push_axis(case) is None:
             raise CaseError(
                 "flow: missing; no force drives the fluid along one axis, so say which is that of "
                 "the flow"
@@ -88,10 +88,10 @@ class Standing:
 
     def __init__(self, observable: Wake, case: Case) -> None:
         solids, number = solids_of(case), observable.body(case)
-        axis = AXES.index(observable.flow) if observable.flow else setting.driven_axis(case)
+        axis = AXES.index(observable.flow) if observable.flow else setting.push_axis(case)
         assert number is not None and axis is not None  # as `check` has seen
         self.axis = axis
-        self.sign = -1.0 if setting.uniform_acceleration(case)[axis] < 0 else 1.0
+        self.sign = -1.0 if setting.acceleration(case)[axis] < 0 else 1.0
         wall: Any = case.walls[solids.walls[number]]
         wall = wall.of if isinstance(wall, array.Array) else wall
         along = int(np.argmax(np.abs(wall.direction))) if isinstance(wall, Cylinder) else None

@@ -126,7 +126,7 @@ class WallStressAccumulator(BlockAccumulator):
                             UNIT[self.case.box.dimension],
                         )
                     )
-            if axis != self.axis and setting.uniform_acceleration(self.case)[axis]:
+            if axis != self.axis and setting.acceleration(self.case)[axis]:
                 both = force.residuals[:, :, axis].sum(axis=1)
                 total = type(force)(force.value[:, axis].sum(), both, force.weights)
                 found.append(
@@ -146,7 +146,7 @@ def balance(case: Case) -> Array:
     """Force per area on both plates of a slit, (2, d): the force on the fluid, shared by the sticky
     plates, Couette drag, pressure."""
     wall: Any = case.walls[0]
-    acceleration, d = setting.uniform_acceleration(case), case.box.dimension
+    push, d = setting.acceleration(case), case.box.dimension
     across = AXES.index(wall.axis)
     height, rho = float(case.box.size[across]), setting.mass_density(case)
     sticky = np.array([1.0 * (s.rule == "no-slip") for s in (wall.lower, wall.upper)])
@@ -154,10 +154,10 @@ def balance(case: Case) -> Array:
     expected = np.zeros((2, d))
     for axis in range(d):
         if axis == across:
-            expected[:, axis] = _pressure(case, acceleration[axis], height)
+            expected[:, axis] = _pressure(case, push[axis], height)
             continue
         if sticky.any():
-            expected[:, axis] = rho * acceleration[axis] * height * sticky / sticky.sum()
+            expected[:, axis] = rho * push[axis] * height * sticky / sticky.sum()
         lower, upper = (setting.surface_velocity(s, axis) for s in (wall.lower, wall.upper))
         if sticky.all() and upper != lower:
             eta = coefficients.dynamic_viscosity if coefficients else np.nan

@@ -51,7 +51,7 @@ def problem(links: Links, length: int, columns: int) -> str | None:
     return None
 
 
-def linked_parts(bonds: Links, length: int) -> int:
+def pieces(bonds: Links, length: int) -> int:
     """Into how many parts beads and bonds fall.
 
     >>> pieces(((0, 1), (2, 3)), 5)

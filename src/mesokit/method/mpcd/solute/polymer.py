@@ -5,7 +5,7 @@ from __future__ import annotations
 from mesokit.case.component import FileName, component, param
 from mesokit.case.describe.hints import Many
 from mesokit.method.mpcd import topology as links
-from mesokit.method.mpcd.solute.free import linked_parts, problem, read_links
+from mesokit.method.mpcd.solute.free import pieces, problem, read_links
 from mesokit.potential import Angle, Bond, Pair
 
 
@@ -74,7 +74,7 @@ class Polymer:
             if wrong:
                 raise ValueError(f"{key}: {wrong}")
             object.__setattr__(self, key, rows)
-        parts = linked_parts(self.pairs_of_beads, self.length)
+        parts = pieces(self.pairs_of_beads, self.length)
         if parts > 1:
             raise ValueError(
                 f"bonds: they leave {parts} pieces; expected one molecule of {self.length} beads "

@@ -28,7 +28,7 @@ FIRST_AGAIN = 2**20  # draws of this number and on are of those that were put el
 TRIES = 1000
 
 
-def out_of_beads(numbers: Numbers, ids: NDArray[np.int64], places: Floats, beads: Floats) -> Floats:
+def out_of_beads(numbers: Numbers, who: NDArray[np.int64], places: Floats, beads: Floats) -> Floats:
     """Places (n, d) of particles with these numbers, those that beads push away drawn again.
 
     Raises RunError where beads leave no room.
@@ -36,16 +36,16 @@ def out_of_beads(numbers: Numbers, ids: NDArray[np.int64], places: Floats, beads
     solutes = numbers.case.solutes
     if solutes is None or solutes.solvent_pair is None or not len(places):
         return places
-    random = Draws(numbers.case.run.seed, INITIAL_POSITION, ids, FIRST_AGAIN)
+    random = Draws(numbers.case.run.seed, INITIAL_POSITION, who, FIRST_AGAIN)
     left, kT = np.arange(len(places)), numbers.case.fluid.kT
     for _ in range(TRIES):
         energy = _energy(numbers, places[left], beads, solutes.solvent_pair)
-        repelled = random.units(1)[:, 0] >= np.exp(-np.clip(energy / kT, 0.0, None))
+        pushed = random.units(1)[:, 0] >= np.exp(-np.clip(energy / kT, 0.0, None))
         if numbers.solids is not None and numbers.slit is None:
-            repelled |= numbers.solids.distance(places[left]) < MARGIN
-        if not repelled.any():
+            pushed |= numbers.solids.distance(places[left]) < MARGIN
+        if not pushed.any():
             return places
-        left, random = left[repelled], random.of(repelled)
+        left, random = left[pushed], random.of(pushed)
         places[left] = random.units(numbers.dimension) * numbers.box
     raise RunError("solutes.solvent_pair: the beads leave no room to the fluid; expected fewer")
 

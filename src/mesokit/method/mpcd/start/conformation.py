@@ -45,7 +45,7 @@ def drawn(
     as `octant` has them. Molecules that reach into a solid or have beads that repel one another
     strongly are drawn again. Raises RunError if that is in vain.
     """
-    d, number = len(box), len(random.ids)
+    d, number = len(box), len(random.who)
     places = np.empty((number, molecule.length, d))
     left = np.arange(number)
     for _ in range(TRIES):
@@ -62,11 +62,11 @@ def drawn(
 
 def _one_draw(molecule: Molecule, kT: float, box: Floats, random: Draws) -> Floats:
     d = len(box)
-    places = np.empty((len(random.ids), molecule.length, d))
+    places = np.empty((len(random.who), molecule.length, d))
     places[:, 0] = random.units(d) * box
     ring = molecule.topology == "ring"
     links = molecule.bonds[:-1] if ring else molecule.bonds
-    bonds = np.stack([first_bonds(molecule, kT, d, random) for _ in molecule.bonds])
+    bonds = np.stack([bonds_of(molecule, kT, d, random) for _ in molecule.bonds])
     if ring:
         bonds -= bonds.mean(axis=0)  # the last one leads back; Gaussian bonds stay Gaussian
     came: dict[int, int] = {}  # bond by which each bead was reached
@@ -78,7 +78,7 @@ def _one_draw(molecule: Molecule, kT: float, box: Floats, random: Draws) -> Floa
     return places
 
 
-def first_bonds(molecule: Molecule, kT: float, d: int, random: Draws) -> Floats:
+def bonds_of(molecule: Molecule, kT: float, d: int, random: Draws) -> Floats:
     """A bond vector (n, d) for each, as the conformation has them, thermal but for angles."""
     if molecule.conformation == "octant":
         square = mean_square(molecule.bond_potentials, d, kT, molecule.bond.longest)
@@ -107,8 +107,8 @@ def turned(molecule: Molecule, before: Floats, bond: Floats, kT: float, random: 
     across = _directions(d, random)
     across -= (across * along).sum(axis=1)[:, None] * along
     across /= np.linalg.norm(across, axis=1)[:, None]
-    direction = np.cos(angle)[:, None] * along + np.sin(angle)[:, None] * across
-    return np.linalg.norm(bond, axis=1)[:, None] * direction
+    way = np.cos(angle)[:, None] * along + np.sin(angle)[:, None] * across
+    return np.linalg.norm(bond, axis=1)[:, None] * way
 
 
 @functools.lru_cache(64, typed=True)  # potentials of other kinds may have the same numbers

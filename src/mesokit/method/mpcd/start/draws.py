@@ -14,23 +14,23 @@ Floats = NDArray[np.float64]
 
 
 @kernel
-def draw_units(seed, purpose, ids, draw, units):
+def draw_units(seed, purpose, who, draw, units):
     """Numbers (n, m) uniform in [0, 1) for those with these numbers (n,), from this draw on."""
     counter = Counter(np.uint64(seed), np.uint64(0))
-    for i in range(len(ids)):
+    for i in range(len(who)):
         for k in range(0, units.shape[1], 2):
-            a, b, c, d = words(counter, purpose, ids[i], draw + k // 2)
+            a, b, c, d = words(counter, purpose, who[i], draw + k // 2)
             units[i, k] = unit(a, b)
             if k + 1 < units.shape[1]:
                 units[i, k + 1] = unit(c, d)
 
 
 @kernel
-def draw_normals(seed, purpose, ids, draw, zero, vectors):
+def draw_normals(seed, purpose, who, draw, zero, vectors):
     """Vectors (n, d) of standard normal numbers for those with these numbers (n,), at this draw."""
     counter = Counter(np.uint64(seed), np.uint64(0))
-    for i in range(len(ids)):
-        a, b, c, d = words(counter, purpose, ids[i], draw)
+    for i in range(len(who)):
+        a, b, c, d = words(counter, purpose, who[i], draw)
         v = normals(zero, a, b, c, d)
         for k in range(len(zero)):
             vectors[i, k] = v[k]
@@ -45,7 +45,7 @@ class Draws:
         Of the run.
     purpose : uint64
         One of those in `mesokit.scalar.random`.
-    ids : array (n,) of int
+    who : array (n,) of int
         Numbers of the particles or molecules.
     draw : int, optional
         How many times these have drawn before.
@@ -58,24 +58,24 @@ class Draws:
     True
     """
 
-    def __init__(self, seed: int, purpose: np.uint64, ids: Any, draw: int = 0) -> None:
+    def __init__(self, seed: int, purpose: np.uint64, who: Any, draw: int = 0) -> None:
         self.seed, self.purpose, self.draw = seed, purpose, draw
-        self.ids = np.asarray(ids, np.int64)
+        self.who = np.asarray(who, np.int64)
 
     def of(self, rows: Any) -> Draws:
         """What comes next, of some of them."""
-        return Draws(self.seed, self.purpose, self.ids[rows], self.draw)
+        return Draws(self.seed, self.purpose, self.who[rows], self.draw)
 
     def units(self, columns: int) -> Floats:
         """So many numbers (n, columns) uniform in [0, 1) for each."""
-        found = np.empty((len(self.ids), columns))
-        draw_units(self.seed, self.purpose, self.ids, self.draw, found)
+        found = np.empty((len(self.who), columns))
+        draw_units(self.seed, self.purpose, self.who, self.draw, found)
         self.draw += (columns + 1) // 2
         return found
 
     def normals(self, d: int) -> Floats:
         """A vector (n, d) of standard normal numbers for each; d is 2 or 3."""
-        found = np.empty((len(self.ids), d))
-        draw_normals(self.seed, self.purpose, self.ids, self.draw, (0.0,) * d, found)
+        found = np.empty((len(self.who), d))
+        draw_normals(self.seed, self.purpose, self.who, self.draw, (0.0,) * d, found)
         self.draw += 1
         return found

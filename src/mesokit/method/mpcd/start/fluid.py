@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from mesokit.method.mpcd.engine.cpu.numbers import Numbers
 
 Floats = NDArray[np.float64]
-Ids = NDArray[np.int64]
+Who = NDArray[np.int64]
 
 
 def start(
@@ -57,40 +57,40 @@ def start(
         engine.solutes.begin(beads, bead_velocities)
         drifts.append(drift)
 
-    def made(first: int, last: int) -> tuple[Ids, Floats, Floats, NDArray[np.int32]]:
-        ids = np.arange(first, last)
-        r = first_positions(numbers, ids, positions, beads)
+    def made(first: int, last: int) -> tuple[Who, Floats, Floats, NDArray[np.int32]]:
+        who = np.arange(first, last)
+        r = first_positions(numbers, who, positions, beads)
         if not at_rest:
             v = np.asarray(velocities[first:last], float)
         else:
-            v = thermal_velocities(numbers, ids)
+            v = thermal_velocities(numbers, who)
             for drift in drifts:
                 v -= drift
             if case.box.sheared:
                 v[:, 0] += case.box.first_rate * (r[:, 1] - 0.5 * numbers.box[1])
-        return ids, r, v, np.zeros(r.shape, np.int32)
+        return who, r, v, np.zeros(r.shape, np.int32)
 
     engine.begin(made(*part) for part in parts)
 
 
-def first_positions(numbers: Numbers, ids: Ids, given: Any, beads: Any = None) -> Floats:
+def first_positions(numbers: Numbers, who: Who, given: Any, beads: Any = None) -> Floats:
     """Positions (n, d) of particles with these numbers, in a row and whole molecules: the given
     ones, or drawn where there is no solid, and where the beads that act on the fluid leave room."""
     case, molecule = numbers.case, numbers.case.fluid.molecule
     if given is not None:
-        places = np.asarray(given[ids[0] : ids[-1] + 1], float)
+        places = np.asarray(given[who[0] : who[-1] + 1], float)
         return places if molecule is None else connected(places, molecule, periods(numbers))
     if molecule is None:
-        places = _uniform(numbers, Draws(case.run.seed, INITIAL_POSITION, ids))
-        return places if beads is None else out_of_beads(numbers, ids, places, beads)
-    random = Draws(case.run.seed, INITIAL_POSITION, ids[:: molecule.length] // molecule.length)
+        places = _uniform(numbers, Draws(case.run.seed, INITIAL_POSITION, who))
+        return places if beads is None else out_of_beads(numbers, who, places, beads)
+    random = Draws(case.run.seed, INITIAL_POSITION, who[:: molecule.length] // molecule.length)
     return drawn(molecule, case.fluid.kT, numbers.box, random, stays_out(numbers))
 
 
-def thermal_velocities(numbers: Numbers, ids: Ids) -> Floats:
+def thermal_velocities(numbers: Numbers, who: Who) -> Floats:
     """Maxwellian velocities (n, d) of particles with these numbers."""
-    found = Draws(numbers.case.run.seed, INITIAL_VELOCITY, ids).normals(numbers.dimension)
-    return found * np.sqrt(numbers.case.fluid.kT / numbers.masses_of(ids))[:, None]
+    found = Draws(numbers.case.run.seed, INITIAL_VELOCITY, who).normals(numbers.dimension)
+    return found * np.sqrt(numbers.case.fluid.kT / numbers.masses_of(who))[:, None]
 
 
 def _drift(engine: Any) -> Floats:
@@ -99,8 +99,8 @@ def _drift(engine: Any) -> Floats:
     scale = numbers.units["momentum"]
     sums = np.zeros((2, numbers.dimension), np.int64)
     for first, last in engine.parts():
-        ids = np.arange(first, last)
-        terms = numbers.masses_of(ids)[:, None] * thermal_velocities(numbers, ids) * scale
+        who = np.arange(first, last)
+        terms = numbers.masses_of(who)[:, None] * thermal_velocities(numbers, who) * scale
         sums = added_halves(np.stack([sums, halves(np.rint(terms).astype(np.int64))]))
     momentum = engine.readings.joined(sums, scale)
     return np.asarray(momentum / max(numbers.total_mass, 1e-300))

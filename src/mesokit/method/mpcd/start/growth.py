@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from mesokit.errors import RunError
 from mesokit.method.mpcd.solute.free import FreeMolecule, phantom
-from mesokit.method.mpcd.start.conformation import first_bonds, nearest_of, turned
+from mesokit.method.mpcd.start.conformation import bonds_of, nearest_of, turned
 from mesokit.method.mpcd.start.draws import Draws
 from mesokit.scalar.random import INITIAL_SOLUTES
 
@@ -85,7 +85,7 @@ def _nearest(pair: Pair | None, kT: float) -> float:
 
 def _pool(molecule: Molecule, kT: float, d: int, random: Draws) -> Floats:
     """Bonds: in any direction or, of stiff molecules, that follow a bond along x."""
-    bonds = first_bonds(molecule, kT, d, random)
+    bonds = bonds_of(molecule, kT, d, random)
     if molecule.bending is None:
         return bonds
     return turned(molecule, np.tile(np.eye(d)[0], (POOL, 1)), bonds, kT, random)
@@ -244,10 +244,10 @@ class Placed:
         near = [i for cell in self._around(place) for i in self.inside.get(cell, ())]
         if not near:
             return True
-        separation = self.places[near] - place
-        separation -= np.rint(separation * self.inverse) * self.box
+        way = self.places[near] - place
+        way -= np.rint(way * self.inverse) * self.box
         limits = self.squares[self.kinds[self.number], self.kinds[near]]
-        return bool(((separation**2).sum(axis=1) > limits).all())
+        return bool(((way**2).sum(axis=1) > limits).all())
 
     def _cell(self, place: Floats) -> tuple[int, ...]:
         return tuple((np.floor(place / self.box * self.cells).astype(int) % self.cells).tolist())

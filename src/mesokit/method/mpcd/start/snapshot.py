@@ -157,21 +157,21 @@ def _whole(case: Case, there: Snapshot) -> Floats:
     if told:
         assert there.images is not None
         places = places + np.where(open_axes, there.images[:, :d] * size, 0.0)
-    separation = places[there.bonds[:, 1]] - places[there.bonds[:, 0]]
+    way = places[there.bonds[:, 1]] - places[there.bonds[:, 0]]
     if told:
-        far = (np.abs(separation) > 0.5 * size)[:, open_axes].any(axis=1)
+        far = (np.abs(way) > 0.5 * size)[:, open_axes].any(axis=1)
     else:
-        separation -= np.where(open_axes, np.rint(separation / size) * size, 0.0)
-        far = np.linalg.norm(separation, axis=1) > 0.5 * size.min()
+        way -= np.where(open_axes, np.rint(way / size) * size, 0.0)
+        far = np.linalg.norm(way, axis=1) > 0.5 * size.min()
     if far.any():
         one = int(np.argmax(far))
-        raise CaseError(_too_long(there, one, separation[one], size))
+        raise CaseError(_too_long(there, one, way[one], size))
     return np.asarray(places)
 
 
-def _too_long(there: Snapshot, bond: int, separation: Floats, size: Floats) -> str:
+def _too_long(there: Snapshot, bond: int, way: Floats, size: Floats) -> str:
     first, second = there.numbers[there.bonds[bond]]
     return (
-        f"the bond of particles {first} and {second} is {np.linalg.norm(separation):.4g} long, "
-        f"more than half of the box {show(size.tolist())}; expected shorter bonds or a larger box"
+        f"the bond of particles {first} and {second} is {np.linalg.norm(way):.4g} long, more than "
+        f"half of the box {show(size.tolist())}; expected shorter bonds or a larger box"
     )

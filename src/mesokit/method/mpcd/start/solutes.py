@@ -33,8 +33,8 @@ def first_beads(
         room = stays_out(numbers, clear)
         places = grown(solutes, kT, numbers.box, periods(numbers), case.run.seed, room)
     if velocities is None:
-        ids = np.arange(FIRST_BEAD, FIRST_BEAD + solutes.beads)
-        random = Draws(case.run.seed, INITIAL_VELOCITY, ids)
+        who = np.arange(FIRST_BEAD, FIRST_BEAD + solutes.beads)
+        random = Draws(case.run.seed, INITIAL_VELOCITY, who)
         mass = solutes.mass_per_bead()
         velocities = random.normals(numbers.dimension)
         velocities *= np.sqrt(kT / np.asarray(mass))[..., None]

@@ -20,22 +20,22 @@ class NoThermostat(Thermostat):
     canonical: ClassVar[bool] = True
     in_theory: ClassVar[Named | None] = "none"
 
-    def kernel(self, kT: float, floor: float) -> NoRescaling:
+    def kernel(self, kT: float, floor: float) -> Free:
         """Parameters for the scalar functions below; an energy below the floor is noise."""
-        return NoRescaling(kT)
+        return Free(kT)
 
 
-class NoRescaling(NamedTuple):
+class Free(NamedTuple):
     """No thermostat; kT only sets the temperature of the start."""
 
     kT: float
 
 
-@target.register(NoRescaling)
+@target.register(Free)
 def _(thermostat, variate, freedom, energy):
     return energy
 
 
-@stretch.register(NoRescaling)
+@stretch.register(Free)
 def _(thermostat, variate, freedom, energy):
     return ()

@@ -21,7 +21,7 @@ def _open_falls(case: Case) -> list[str]:
     return [axis for axis, g in pulls if g and axis not in shut]
 
 
-def check_floor(case: Case) -> None:
+def check(case: Case) -> None:
     """Raise CaseError where no wall is below: spheres would fall for ever, faster and faster."""
     gravity, falls = case.spheres.gravity, _open_falls(case)
     if falls and len(falls) == sum(1 for g in gravity if g):

@@ -27,7 +27,7 @@ def check(case: Case) -> None:
     for key, surface, _ in walls.surfaces(case):
         _contact(case, key, surface)
     wall_rows(case)
-    plates.check_plates(case)
+    plates.check(case)
     _friction(case)
     _spins(case)
     largest = section.largest(box)
@@ -38,7 +38,7 @@ def check(case: Case) -> None:
                 f"box.size = {show(list(box.size))}: expected at least two diameters "
                 f"({2 * largest:g}) along {axis}"
             )
-    falls.check_floor(case)
+    falls.check(case)
     section.start.check(case)
 
 

@@ -32,7 +32,7 @@ def check(case: Case) -> None:
     section.check(box)
     section.start.check(case)
     _walls(case)
-    plates.check_plates(case)
+    plates.check(case)
     _potential(case)
     reach = section.reach(box)
     shut = {axis for wall in case.walls for axis in wall.closed_axes}
@@ -47,7 +47,7 @@ def check(case: Case) -> None:
                 f"spheres.skin = {show(section.skin)}: expected less than "
                 f"{0.5 * length - reach:.3g}, half of the box along {axis} less the reach"
             )
-    falls.check_floor(case)
+    falls.check(case)
     _timestep(case)
     if section.spin_kT and not (section.turns or rubs(case)):
         raise CaseError(

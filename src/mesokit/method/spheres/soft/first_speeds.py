@@ -96,7 +96,7 @@ def _largest_overlap(case: Case, known: Placed) -> float:
     pairs = cKDTree(places, boxsize=around).query_pairs(
         float(diameters.max()), output_type="ndarray"
     )
-    separation = places[pairs[:, 0]] - places[pairs[:, 1]]
-    separation -= around * np.rint(separation / around)
+    way = places[pairs[:, 0]] - places[pairs[:, 1]]
+    way -= around * np.rint(way / around)
     apart = 0.5 * (diameters[pairs[:, 0]] + diameters[pairs[:, 1]])
-    return float(np.max(apart - np.linalg.norm(separation, axis=1), initial=0.0))
+    return float(np.max(apart - np.linalg.norm(way, axis=1), initial=0.0))

@@ -50,7 +50,7 @@ def given_of(case: Case, made: Made) -> Given:
         else central_of(case, law),
         touching,
         law.width(rubs(case)) if touching else 0,
-        0.0 if touching else least_distance(law),
+        0.0 if touching else nearest(law),
         _motion(case),
         rows,
         own,
@@ -80,8 +80,8 @@ def contact_of(law: ContactLaw, largest: float, ahead: float) -> Contact:
 
 def _ahead(case: Case) -> float:
     """How far spheres may come nearer in half a step."""
-    path = 0.5 * timestep_of(case) * speed_of_collision(case)
-    return min(path, 0.25 * case.spheres.skin_of(case.box, closed_axes(case.walls)))
+    way = 0.5 * timestep_of(case) * speed_of_collision(case)
+    return min(way, 0.25 * case.spheres.skin_of(case.box, closed_axes(case.walls)))
 
 
 def central_of(case: Case, law: Any) -> Central:
@@ -93,17 +93,17 @@ def central_of(case: Case, law: Any) -> Central:
 def usual_force(law: Any) -> float:
     """A force of the potential that is met everywhere: at 0.95 of the diameter."""
     square = (0.95 * law.diameter) ** 2
-    _, force_over_r = central(law.kernel(), square)
-    return abs(force_over_r) * law.diameter or 1.0
+    _, push = central(law.kernel(), square)
+    return abs(push) * law.diameter or 1.0
 
 
-def least_distance(law: Any) -> float:
+def nearest(law: Any) -> float:
     """The distance below which a force has no room in one term of a vector loop."""
     kernel, most = law.kernel(), usual_force(law) * ROOM / FINEST
     distances = np.linspace(1.0, 0.0, 1001)[:-1] * law.diameter
     for distance in distances:
-        _, force_over_r = central(kernel, float(distance) ** 2)
-        if not abs(force_over_r) * distance < most:
+        _, push = central(kernel, float(distance) ** 2)
+        if not abs(push) * distance < most:
             return float(distance)
     return 0.0
 
@@ -136,7 +136,7 @@ def others_of(case: Case, made: Made) -> Others | None:
     solids = Solids(case.walls, case.box, only=which)
     away = float(made.diameters.max()) / 2 + _ahead(case)
     own = np.array([_own(case, body.surface) for body in solids.bodies])
-    return Others(solids.reaching(away), solids.pattern, own, solids)
+    return Others(solids.reaching(away), solids.like, own, solids)
 
 
 class SurfacesTaken(NamedTuple):

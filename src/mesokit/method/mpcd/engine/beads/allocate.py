@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 ROOM = 1.5  # times as many neighbours as beads packed as densely as spheres can be
 
 
-def allocate_beads(given: Solutes, memory: Any) -> Beads:
+def beads_of(given: Solutes, memory: Any) -> Beads:
     """Beads at rest at 0, and room for all that their steps need."""
     numbers, threads, beads = memory.numbers, memory.threads, given.beads
     case, d = numbers.case, numbers.dimension
@@ -54,7 +54,7 @@ def allocate_beads(given: Solutes, memory: Any) -> Beads:
         tensor=np.zeros((3, -(-beads // GROUP), 2 * d * d), np.int64),
         embedded=(),
         external=external_of(given, d),
-        halo=() if memory.domain is None else memory.domain.halo(given, len(terms)),
+        roster=() if memory.domain is None else memory.domain.roster(given, len(terms)),
     )
 
 

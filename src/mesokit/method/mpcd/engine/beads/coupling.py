@@ -27,38 +27,36 @@ from mesokit.scalar.poisson import poisson_number
 from mesokit.scalar.random import CELL, CELL_VIRTUAL, FIRST_BEAD, VIRTUAL_NUMBER, normals, words
 from mesokit.scalar.vector import added, dot, scaled
 
-NO_BEAD = -1
+NOBODY = -1
 
 
 @by_type
-def join_beads(worker, now, physics, fluid, beads):
+def join_beads(team, now, physics, fluid, beads):
     """Answers for the cells with beads, from sums that `collide` is about to clear."""
     if not collides(beads):
-        return lambda worker, now, physics, fluid, beads: None
-    return lambda worker, now, physics, fluid, beads: _join(
-        worker, now, physics, fluid.cells, beads
-    )
+        return lambda team, now, physics, fluid, beads: None
+    return lambda team, now, physics, fluid, beads: _join(team, now, physics, fluid.cells, beads)
 
 
 @scalar
-def cells_of_thread(worker, number):
+def cells_of_thread(team, number):
     """First and last + 1 of the cells that `collide` leaves to a thread."""
-    first, last = share((number + LANES - 1) // LANES, worker.thread, worker.threads)
+    first, last = share((number + LANES - 1) // LANES, team.thread, team.threads)
     return first * LANES, min(last * LANES, number)
 
 
 @stage
-def _join(worker, now, physics, cells, beads):
-    first, last = cells_of_thread(worker, cells.number)
-    present = number_of(beads.halo, len(beads.cell), PRESENT)
+def _join(team, now, physics, cells, beads):
+    first, last = cells_of_thread(team, cells.number)
+    present = number_of(beads.roster, len(beads.cell), PRESENT)
     for n in range(present):
-        i = bead_of(beads.halo, PRESENT, n)
+        i = bead_of(beads.roster, PRESENT, n)
         cell = beads.cell[i]
         if first <= cell < last:
             beads.following[i] = beads.head[cell]
             beads.head[cell] = i
     for n in range(present):
-        i = bead_of(beads.halo, PRESENT, n)
+        i = bead_of(beads.roster, PRESENT, n)
         cell = beads.cell[i]
         if first <= cell < last:
             beads.leads[i] = beads.head[cell] == i
@@ -78,7 +76,7 @@ def answer_for(beads, leader, physics, counter, cells, cell):
         beads.solvent, beads, physics, counter, key, total
     )
     i = leader
-    while i != NO_BEAD:
+    while i != NOBODY:
         given = load_values(beads.given, np.uint64(i * len(beads.terms)), beads.terms)
         more, its_energy, its_own = parts_of(given, physics.zero)
         n, mass, momentum = n + 1.0, mass + mass_of(beads, i), added(momentum, more)
@@ -124,29 +122,29 @@ def _with_random_solvent(solvent, beads, physics, counter, cell, total):
         if asks(physics.energy):
             inner = gamma_number(float(d * (number - 1)), counter, VIRTUAL_NUMBER, cell)
             energy += m * dot(v, v) + 2.0 * physics.kT * inner
-        key = (FIRST_BEAD + len(beads.cell) + np.int64(cell), 0)
-        _, drawn = contribute(physics.rule, counter, key, m, v, scaled(0.0, zero))
+        who = (FIRST_BEAD + len(beads.cell) + np.int64(cell), 0)
+        _, drawn = contribute(physics.rule, counter, who, m, v, scaled(0.0, zero))
         own = added(own, drawn)
     return n, mass, momentum, energy, own
 
 
 @by_type
-def answer_beads(worker, now, physics, fluid, beads):
+def answer_beads(team, now, physics, fluid, beads):
     """Put these answers in the place of those that `collide` found without beads."""
     if not collides(beads):
-        return lambda worker, now, physics, fluid, beads: None
+        return lambda team, now, physics, fluid, beads: None
     return _put_answers
 
 
-def _put_answers(worker, now, physics, fluid, beads):
+def _put_answers(team, now, physics, fluid, beads):
     cells = fluid.cells
-    first, last = cells_of_thread(worker, cells.number)
+    first, last = cells_of_thread(team, cells.number)
     needed = physics.coefficients
-    for n in range(number_of(beads.halo, len(beads.cell), PRESENT)):
-        i = bead_of(beads.halo, PRESENT, n)
+    for n in range(number_of(beads.roster, len(beads.cell), PRESENT)):
+        i = bead_of(beads.roster, PRESENT, n)
         cell = beads.cell[i]
         if first <= cell < last and beads.leads[i]:
-            beads.head[cell] = NO_BEAD
+            beads.head[cell] = NOBODY
             start = np.uint64(cell) * np.uint64(record_length(len(needed)))
             store_values(
                 cells.coefficients,

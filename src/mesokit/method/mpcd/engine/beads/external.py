@@ -88,7 +88,7 @@ def turned_about(turns, time, v):
 
 
 @by_type
-def turned_by_field(external, time, i, v):
+def turned(external, time, i, v):
     """The velocity of bead i after a time in a magnetic field."""
     if len(external) == 0:
         return lambda external, time, i, v: v

@@ -10,9 +10,9 @@ import numpy as np
 from mesokit.case.box import at_time, fold, peculiar, unfold
 from mesokit.kernels.part import stage
 from mesokit.loops.layout import record_length, share
-from mesokit.loops.threads import Worker
+from mesokit.loops.threads import Team
 from mesokit.method.mpcd.collision.protocol import collide, contribute
-from mesokit.method.mpcd.engine.beads.moving import MovingBeads
+from mesokit.method.mpcd.engine.beads.moving import Moving
 from mesokit.method.mpcd.engine.beads.state import (
     GROUP,
     OWN,
@@ -27,7 +27,7 @@ from mesokit.method.mpcd.engine.cpu.grid import cell_index, in_cell
 from mesokit.method.mpcd.engine.cpu.groups import COLLIDE, MEASURE_STRESS, STREAM
 from mesokit.method.mpcd.engine.cpu.stress import flux
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
-from mesokit.method.mpcd.engine.domains.beads.halo import assign_beads
+from mesokit.method.mpcd.engine.domains.beads.roster import call_roll
 from mesokit.scalar.fixed_point import add_quanta
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.random import FIRST_BEAD
@@ -37,60 +37,58 @@ LEAST = 4  # groups for a thread: fewer do not pay for the gate
 
 
 @by_type
-def move_solutes(worker, now, physics, fluid, beads):
+def move_beads(team, now, physics, fluid, beads):
     """Do what the flags ask: the pending collision, the flight, the cells (see `stream`)."""
     if len(beads) == 0:
-        return lambda worker, now, physics, fluid, beads: None
-    return lambda worker, now, physics, fluid, beads: _move(worker, now, physics, fluid, beads)
+        return lambda team, now, physics, fluid, beads: None
+    return lambda team, now, physics, fluid, beads: _move(team, now, physics, fluid, beads)
 
 
 @stage
-def _move(worker, now, physics, fluid, beads):
-    together = threads_for(worker, beads)
-    first, last = beads_of_thread(worker, together, beads)
-    measured, halo = now.flags & MEASURE_STRESS, beads.halo
+def _move(team, now, physics, fluid, beads):
+    together = threads_for(team, beads)
+    first, last = beads_of_thread(team, together, beads)
+    measured, roster = now.flags & MEASURE_STRESS, beads.roster
     before = now.counter.step - (1 if now.flags & STREAM else 0)
     box = at_time(now.box, before * physics.timestep)
     if now.flags & COLLIDE:  # v: the collision at t
         for n in range(first, last):
-            i = bead_of(halo, OWN, n)
+            i = bead_of(roster, OWN, n)
             collide_bead(beads, i, physics, box, now.old, fluid.cells.coefficients)
         if measured and not now.flags & STREAM:
             for n in range(first, last):
                 add_bead_flux(beads, n, physics, now.box, now.old.shift, 1)
     if now.flags & STREAM:  # r, v: t -> t + dt; cells at t + dt
-        assign_beads(
-            worker, now, physics, box, fluid, beads
-        )  # ranks: whose they are, and who is near
-        together = threads_for(worker, beads)
-        first, last = beads_of_thread(worker, together, beads)
-        if worker.thread >= together:
+        call_roll(team, now, physics, box, fluid, beads)  # ranks: whose they are, and who is near
+        together = threads_for(team, beads)
+        first, last = beads_of_thread(team, together, beads)
+        if team.thread >= together:
             return
-        some = Worker(worker.thread, together, worker.gate, worker.clock)
-        moving = MovingBeads(some, beads, first, last, fluid.taken.impulse[worker.thread], measured)
+        some = Team(team.thread, together, team.gate, team.clock)
+        moving = Moving(some, beads, first, last, fluid.taken.impulse[team.thread], measured)
         verlet(moving, now, physics, beads.potentials.substeps)
         if measured:
             for n in range(first, last):
                 add_bead_flux(beads, n, physics, now.box, now.grid.shift, 0)
         for n in range(first, last):
-            bin_bead(beads, bead_of(halo, OWN, n), physics, now)
+            bin_bead(beads, bead_of(roster, OWN, n), physics, now)
 
 
 @scalar
-def threads_for(worker, beads):
+def threads_for(team, beads):
     """How many threads move the beads together: all, or one where they are few."""
-    number = number_of(beads.halo, len(beads.cell), OWN)
+    number = number_of(beads.roster, len(beads.cell), OWN)
     groups = (number + GROUP - 1) // GROUP
-    return worker.threads if groups >= LEAST * worker.threads else 1
+    return team.threads if groups >= LEAST * team.threads else 1
 
 
 @scalar
-def beads_of_thread(worker, together, beads):
+def beads_of_thread(team, together, beads):
     """First and last + 1 of the beads that a thread moves."""
-    number = number_of(beads.halo, len(beads.cell), OWN)
+    number = number_of(beads.roster, len(beads.cell), OWN)
     groups = (number + GROUP - 1) // GROUP
-    first, last = share(groups, min(worker.thread, together), together)
-    return first * GROUP, (min(last * GROUP, number) if worker.thread < together else first * GROUP)
+    first, last = share(groups, min(team.thread, together), together)
+    return first * GROUP, (min(last * GROUP, number) if team.thread < together else first * GROUP)
 
 
 @scalar
@@ -109,8 +107,8 @@ def bin_bead(beads, i, physics, now):
     """The cell of a bead, and what it adds to the sums of that cell."""
     r, v, boxes = load_folded(beads, i, now.box, now.grid.shift)
     beads.cell[i] = cell_index(r, now.grid)
-    key, m = (FIRST_BEAD + i, 0), mass_of(beads, i)
-    kept, own = contribute(physics.rule, now.counter, key, m, v, in_cell(r, now.grid))
+    who, m = (FIRST_BEAD + i, 0), mass_of(beads, i)
+    kept, own = contribute(physics.rule, now.counter, who, m, v, in_cell(r, now.grid))
     _, kept = unfold(now.box, r, kept, boxes)
     store_velocity(beads, i, kept)
     terms = scaled(m, v) + (m * dot(v, v),) + own
@@ -123,7 +121,7 @@ def add_bead_flux(beads, n, physics, box, shift, when):
 
     `when` is 0 before a collision, 1 after it.
     """
-    tensor, i = beads.tensor[when, n // GROUP], bead_of(beads.halo, OWN, n)
+    tensor, i = beads.tensor[when, n // GROUP], bead_of(beads.roster, OWN, n)
     r, v, _ = load_folded(beads, i, box, scaled(0.0, shift))
     place, u, _ = fold(box, r, v, shift)
     carried = flux(mass_of(beads, i), peculiar(box, r, v), u, added(place, shift))

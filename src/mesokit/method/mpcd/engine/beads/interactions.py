@@ -8,20 +8,20 @@ the virial none, as it goes to memory.
 from typing import Any, NamedTuple
 
 from mesokit.geometry.protocol import facing
-from mesokit.method.mpcd.engine.beads.broken_bonds import note_broken
-from mesokit.method.mpcd.engine.cpu.bounce import add_recoil
+from mesokit.method.mpcd.engine.beads.torn import note_torn
+from mesokit.method.mpcd.engine.cpu.bounce import take
 from mesokit.method.mpcd.engine.cpu.stress import add_product
 from mesokit.potential.angle import bend
-from mesokit.potential.protocol import breaks, central
+from mesokit.potential.protocol import central, torn
 from mesokit.scalar.jit import generic
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
 
 
-class BeadForce(NamedTuple):
+class Force(NamedTuple):
     """The force on a bead.
 
     It is kept for a `time`, in which walls take the opposite momentum: `impulse`, in units of
-    1 / scale. Broken bonds go to `faults` with the step and their beads, the first of which is 1.
+    1 / scale. Torn bonds go to `faults` with the step and their beads, the first of which is 1.
     """
 
     time: float
@@ -61,16 +61,16 @@ def of_wall(asked, total, potential, near_wall, r):
     """Of a bead at r and the nearest surface."""
 
 
-@of_two.register(BeadForce)
+@of_two.register(Force)
 def _(asked, total, potential, separation, i, j):
     square = dot(separation, separation)
-    _, force_over_r = central(potential, square)
-    if breaks(potential, square):
-        note_broken(asked.faults, asked.step, min(i, j) + 1, max(i, j) + 1)
-    return added_scaled(total, force_over_r if j != i else 0.0, separation)
+    _, push = central(potential, square)
+    if torn(potential, square):
+        note_torn(asked.faults, asked.step, min(i, j) + 1, max(i, j) + 1)
+    return added_scaled(total, push if j != i else 0.0, separation)
 
 
-@of_three.register(BeadForce)
+@of_three.register(Force)
 def _(asked, total, potential, before, after, role):
     _, first, last = bend(potential, before, after)
     middle = scaled(-1.0, added(first, last))
@@ -78,15 +78,15 @@ def _(asked, total, potential, before, after, role):
     return added(total, own)
 
 
-@of_wall.register(BeadForce)
+@of_wall.register(Force)
 def _(asked, total, potential, near_wall, r):
     solid, reach = near_wall
     distance, out, surface, lever = facing(solid, reach, r)
     if distance >= reach:
         return total
-    _, force_over_r = central(potential, distance * distance)
-    force = scaled(force_over_r * distance, out)
-    add_recoil(asked.impulse, surface, lever, scaled(-asked.time, force), asked.scale)
+    _, push = central(potential, distance * distance)
+    force = scaled(push * distance, out)
+    take(asked.impulse, surface, lever, scaled(-asked.time, force), asked.scale)
     return added(total, force)
 
 
@@ -113,8 +113,8 @@ def _(asked, total, potential, near_wall, r):
 @of_two.register(Virial)
 def _(asked, total, potential, separation, i, j):
     if j > i:
-        _, force_over_r = central(potential, dot(separation, separation))
-        add_product(asked.tensor, asked.scale, asked.time * force_over_r, separation, separation)
+        _, push = central(potential, dot(separation, separation))
+        add_product(asked.tensor, asked.scale, asked.time * push, separation, separation)
     return total
 
 

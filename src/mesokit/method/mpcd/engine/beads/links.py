@@ -8,7 +8,7 @@ from typing import NamedTuple
 from mesokit.method.mpcd.engine.beads.interactions import Virial, of_three, of_two
 from mesokit.method.mpcd.engine.beads.registers import WIDTH, bead_at, load_bead, store_bead
 from mesokit.potential.angle import bend
-from mesokit.potential.protocol import breaks, central
+from mesokit.potential.protocol import central, torn
 from mesokit.scalar.jit import by_type, generic, scalar
 from mesokit.scalar.pointer import word
 from mesokit.scalar.vector import added, added_scaled, dot, scaled
@@ -22,7 +22,7 @@ class Kick(NamedTuple):
 
 @scalar
 def each_link(asked, molecule, work, lanes, zero):
-    """Ask of all links, in the lanes that hold molecules; whether a bond is broken."""
+    """Ask of all links, in the lanes that hold molecules; whether a bond is torn."""
     bonds, angles, pairs = molecule.number
     broken, at = False, 0
     for _ in range(bonds):
@@ -84,11 +84,11 @@ def _(asked, potential, a, b, lanes, zero):
     for i in range(WIDTH):
         separation = added_scaled(load_bead(b, i, 0, zero), -1.0, load_bead(a, i, 0, zero))
         square = dot(separation, separation)
-        _, force_over_r = central(potential, square)
-        change = scaled(asked.factor * force_over_r, separation)
+        _, push = central(potential, square)
+        change = scaled(asked.factor * push, separation)
         store_bead(a, i, d, added_scaled(load_bead(a, i, d, zero), -1.0, change))
         store_bead(b, i, d, added(load_bead(b, i, d, zero), change))
-        broken |= breaks(potential, square)
+        broken |= torn(potential, square)
     return broken
 
 

@@ -11,13 +11,13 @@ import numpy as np
 from mesokit.geometry.protocol import touches
 from mesokit.geometry.solids.none import Nothing
 from mesokit.loops.layout import LANES, SCRATCH_ROW
-from mesokit.loops.threads import Worker
-from mesokit.method.mpcd.engine.beads.broken_bonds import note_broken
+from mesokit.loops.threads import Team
 from mesokit.method.mpcd.engine.beads.interactions import Virial
 from mesokit.method.mpcd.engine.beads.links import Kick, each_link
 from mesokit.method.mpcd.engine.beads.registers import WIDTH, bead_at, load_bead, store_bead
+from mesokit.method.mpcd.engine.beads.torn import note_torn
 from mesokit.method.mpcd.engine.beads.verlet import drift, flown, kick, verlet
-from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, FluidMemory
+from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, Fluid
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW, forget
 from mesokit.method.mpcd.engine.cpu.physics import field_of, kind_of_solid
 from mesokit.method.mpcd.engine.cpu.stages import clear_of
@@ -26,7 +26,7 @@ from mesokit.method.mpcd.field.none import Zero
 from mesokit.method.mpcd.field.protocol import acceleration
 from mesokit.method.mpcd.molecule import Dimers
 from mesokit.method.mpcd.streaming import fall, halfway
-from mesokit.potential.protocol import breaks
+from mesokit.potential.protocol import torn
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.pointer import word
 from mesokit.scalar.vector import added, added_scaled, chosen, dot, scaled
@@ -41,17 +41,17 @@ class Batch(NamedTuple):
     lanes: int  # so many of the WIDTH hold molecules
 
 
-class MovingMolecules(NamedTuple):
+class Moving(NamedTuple):
     """A batch of molecules of a fluid, and the thread that moves them."""
 
-    worker: Worker
-    fluid: FluidMemory
+    team: Team
+    fluid: Fluid
     batch: Batch
     flags: int
 
 
 @by_type
-def fly_molecules(worker, now, physics, fluid, batch):
+def fly_molecules(team, now, physics, fluid, batch):
     """Positions and velocities of beads a timestep later.
 
     The stress gets, if it is measured, the momentum that bonds hand over; bonds that tear are
@@ -61,45 +61,43 @@ def fly_molecules(worker, now, physics, fluid, batch):
     return _fly_dimers if molecule.instance_class is Dimers else _fly_springs
 
 
-def _fly_springs(worker, now, physics, fluid, batch):
+def _fly_springs(team, now, physics, fluid, batch):
     for k in range(physics.molecule.beads):
-        bead = fluid.scratch.beads[worker.thread][bead_at(k, physics.zero)]
+        bead = fluid.scratch.beads[team.thread][bead_at(k, physics.zero)]
         remember(physics.solid, bead, physics.zero)
-    verlet(
-        MovingMolecules(worker, fluid, batch, now.flags), now, physics, physics.molecule.substeps
-    )
+    verlet(Moving(team, fluid, batch, now.flags), now, physics, physics.molecule.substeps)
 
 
-@drift.register(MovingMolecules)
+@drift.register(Moving)
 def _(moving, counter, physics, time):
     for k in range(physics.molecule.beads):
-        if drift_molecule_bead(moving, counter, physics, time, k):
+        if drift_bead(moving, counter, physics, time, k):
             forget(moving.fluid.room, moving.batch.strip + k, 1 << (moving.batch.start // FEW))
 
 
-@kick.register(MovingMolecules)
+@kick.register(Moving)
 def _(moving, step, box, physics, time):
     molecule, zero, batch, fluid = physics.molecule, physics.zero, moving.batch, moving.fluid
-    work = fluid.scratch.beads[moving.worker.thread]
+    work = fluid.scratch.beads[moving.team.thread]
     if moving.flags & MEASURE_STRESS:
         virial = Virial(time, fluid.taken.tensor[2, batch.group], physics.stress_scale)
         each_link(virial, molecule, work, batch.lanes, zero)
     change = Kick(time * molecule.inverse_mass)
     if each_link(change, molecule, work, WIDTH, zero):
-        note_broken_bonds(moving, step, molecule, zero)
+        note_torn_bonds(moving, step, molecule, zero)
     for k in range(molecule.beads):
-        accelerate_bead(physics, time, work[bead_at(k, zero)])
+        push_bead(physics, time, work[bead_at(k, zero)])
 
 
 @by_type
-def accelerate_bead(physics, time, bead):
+def push_bead(physics, time, bead):
     """The body force, if there is one."""
     if field_of(physics, "field").instance_class is Zero:
         return lambda physics, time, bead: None
-    return _accelerate
+    return _push
 
 
-def _accelerate(physics, time, bead):
+def _push(physics, time, bead):
     zero = physics.zero
     for i in range(WIDTH):
         r, v = load_bead(bead, i, 0, zero), load_bead(bead, i, len(zero), zero)
@@ -107,8 +105,8 @@ def _accelerate(physics, time, bead):
         store_bead(bead, i, len(zero), v)
 
 
-def _fly_dimers(worker, now, physics, fluid, batch):
-    work, zero = fluid.scratch.beads[worker.thread], physics.zero
+def _fly_dimers(team, now, physics, fluid, batch):
+    work, zero = fluid.scratch.beads[team.thread], physics.zero
     d, exact, time = len(zero), physics.molecule, physics.timestep
     a, b = work[bead_at(0, zero)], work[bead_at(1, zero)]
     if now.flags & MEASURE_STRESS:
@@ -135,7 +133,7 @@ def _exact_virial(physics, a, b, lanes, tensor):
     for i in range(lanes):
         separation = added_scaled(load_bead(b, i, 0, zero), -1.0, load_bead(a, i, 0, zero))
         rate = added_scaled(load_bead(b, i, d, zero), -1.0, load_bead(a, i, d, zero))
-        add_product(tensor, scale, exact.separations, separation, separation)
+        add_product(tensor, scale, exact.ways, separation, separation)
         add_product(tensor, scale, exact.mixed, separation, rate)
         add_product(tensor, scale, exact.mixed, rate, separation)
         add_product(tensor, scale, exact.rates, rate, rate)
@@ -153,14 +151,14 @@ def _remember(solid, bead, zero):
 
 
 @by_type
-def drift_molecule_bead(moving, counter, physics, time, k):
+def drift_bead(moving, counter, physics, time, k):
     """Straight flight of bead k, with reflections; whether any of the batch came near a solid."""
     return _drift if kind_of_solid(physics) is Nothing else _drift_among_solids
 
 
 def _drift(moving, counter, physics, time, k):
     zero = physics.zero
-    d, bead = len(zero), moving.fluid.scratch.beads[moving.worker.thread][bead_at(k, zero)]
+    d, bead = len(zero), moving.fluid.scratch.beads[moving.team.thread][bead_at(k, zero)]
     for i in range(WIDTH):
         r, v = load_bead(bead, i, 0, zero), load_bead(bead, i, d, zero)
         store_bead(bead, i, 0, added_scaled(r, time, v))
@@ -170,7 +168,7 @@ def _drift(moving, counter, physics, time, k):
 def _drift_among_solids(moving, counter, physics, time, k):
     # Beads that may hit a surface stay behind in the first loop, as in `stages.fly`. How far they
     # may go is known from where the timestep started: so the whole way from there counts.
-    batch, fluid, thread, zero = moving.batch, moving.fluid, moving.worker.thread, physics.zero
+    batch, fluid, thread, zero = moving.batch, moving.fluid, moving.team.thread, physics.zero
     d, rest, bead = len(zero), scaled(0.0, zero), fluid.scratch.beads[thread][bead_at(k, zero)]
     clear = fluid.scratch.clear[thread, k * SCRATCH_ROW + batch.start : (k + 1) * SCRATCH_ROW]
     hits, impulse = fluid.scratch.marks[thread], fluid.taken.impulse[thread]
@@ -196,9 +194,9 @@ def _drift_among_solids(moving, counter, physics, time, k):
 
 
 @scalar
-def note_broken_bonds(moving, step, molecule, zero):
+def note_torn_bonds(moving, step, molecule, zero):
     """Look for the bonds that are longer than they can be (seldom called)."""
-    batch, ident, thread = moving.batch, moving.fluid.particles.ident, moving.worker.thread
+    batch, ident, thread = moving.batch, moving.fluid.particles.ident, moving.team.thread
     work, faults = moving.fluid.scratch.beads[thread], moving.fluid.taken.faults[thread]
     (bonds, _, _), base = molecule.number, batch.strip * LANES + batch.start
     for n in range(bonds):
@@ -206,6 +204,6 @@ def note_broken_bonds(moving, step, molecule, zero):
         a, b = work[bead_at(one, zero)], work[bead_at(other, zero)]
         for i in range(batch.lanes):
             separation = added_scaled(load_bead(b, i, 0, zero), -1.0, load_bead(a, i, 0, zero))
-            if breaks(molecule.bond, dot(separation, separation)):
+            if torn(molecule.bond, dot(separation, separation)):
                 first, second = ident[base + one * LANES + i], ident[base + other * LANES + i]
-                note_broken(faults, step, first, second)
+                note_torn(faults, step, first, second)

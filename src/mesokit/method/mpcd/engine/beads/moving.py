@@ -3,9 +3,9 @@
 from typing import Any, NamedTuple
 
 from mesokit.geometry.solids.none import Nothing
-from mesokit.loops.threads import Worker, barrier
-from mesokit.method.mpcd.engine.beads.external import from_outside, turned_by_field
-from mesokit.method.mpcd.engine.beads.interactions import BeadForce, Virial
+from mesokit.loops.threads import Team, meet
+from mesokit.method.mpcd.engine.beads.external import from_outside, turned
+from mesokit.method.mpcd.engine.beads.interactions import Force, Virial
 from mesokit.method.mpcd.engine.beads.neighbours import refresh
 from mesokit.method.mpcd.engine.beads.state import (
     GROUP,
@@ -22,7 +22,7 @@ from mesokit.method.mpcd.engine.beads.state import (
 from mesokit.method.mpcd.engine.beads.traverse import each_on_bead
 from mesokit.method.mpcd.engine.beads.verlet import drift, flown, kick
 from mesokit.method.mpcd.engine.cpu.physics import kind_of_solid, momentum_scale
-from mesokit.method.mpcd.engine.domains.beads.halo import tell_places
+from mesokit.method.mpcd.engine.domains.beads.roster import tell_places
 from mesokit.method.mpcd.field.none import Zero
 from mesokit.method.mpcd.field.protocol import acceleration
 from mesokit.scalar.jit import by_type
@@ -30,10 +30,10 @@ from mesokit.scalar.random import FIRST_BEAD
 from mesokit.scalar.vector import added_scaled, scaled
 
 
-class MovingBeads(NamedTuple):
+class Moving(NamedTuple):
     """The beads from the first to that before the last, and the thread that moves them."""
 
-    worker: Worker
+    team: Team
     beads: Beads
     first: int
     last: int
@@ -41,11 +41,11 @@ class MovingBeads(NamedTuple):
     measured: int
 
 
-@drift.register(MovingBeads)
+@drift.register(Moving)
 def _(moving, counter, physics, time):
-    barrier(moving.worker)  # nobody looks at the places before any more
+    meet(moving.team)  # nobody looks at the places before any more
     for n in range(moving.first, moving.last):
-        i = bead_of(moving.beads.halo, OWN, n)
+        i = bead_of(moving.beads.roster, OWN, n)
         drift_bead(moving.beads, i, counter, physics, time, moving.impulse)
 
 
@@ -67,21 +67,21 @@ def _drift_among_solids(beads, i, counter, physics, time, impulse):
     store_velocity(beads, i, v)
 
 
-@kick.register(MovingBeads)
+@kick.register(Moving)
 def _(moving, step, box, physics, time):
-    beads, worker, zero = moving.beads, moving.worker, physics.zero
-    barrier(worker)
-    tell_places(worker, beads)  # ranks: where they are now
-    refresh(worker, beads.neighbours, beads.halo, box, beads.r, zero)
+    beads, team, zero = moving.beads, moving.team, physics.zero
+    meet(team)
+    tell_places(team, beads)  # ranks: where they are now
+    refresh(team, beads.neighbours, beads.roster, box, beads.r, zero)
     if moving.measured:
         for n in range(moving.first, moving.last):
-            i = bead_of(beads.halo, OWN, n)
+            i = bead_of(beads.roster, OWN, n)
             virial = Virial(time, beads.tensor[2, n // GROUP], physics.stress_scale)
             each_on_bead(virial, (), beads, i, load_place(beads, i, zero), box)
-    scale, faults = momentum_scale(physics), beads.faults[worker.thread]
-    force = BeadForce(time, moving.impulse, scale, step, faults)
+    scale, faults = momentum_scale(physics), beads.faults[team.thread]
+    force = Force(time, moving.impulse, scale, step, faults)
     for n in range(moving.first, moving.last):
-        kick_bead(force, beads, bead_of(beads.halo, OWN, n), box, physics, time)
+        kick_bead(force, beads, bead_of(beads.roster, OWN, n), box, physics, time)
 
 
 @by_type
@@ -95,7 +95,7 @@ def _kick(asked, beads, i, box, physics, time):
     r, v = load_place(beads, i, physics.zero), load_velocity(beads, i, physics.zero)
     force = each_on_bead(asked, scaled(0.0, physics.zero), beads, i, r, box)
     v = added_scaled(v, time * inverse_mass_of(beads, i), force)
-    store_velocity(beads, i, accelerated(physics.field, time, r, v))
+    store_velocity(beads, i, pushed(physics.field, time, r, v))
 
 
 def _kick_from_outside(asked, beads, i, box, physics, time):
@@ -105,13 +105,13 @@ def _kick_from_outside(asked, beads, i, box, physics, time):
     force = from_outside(beads.external, force, i, r)
     half = 0.5 * time
     v = added_scaled(v, half * inverse_mass_of(beads, i), force)
-    v = turned_by_field(beads.external, time, i, accelerated(physics.field, half, r, v))
+    v = turned(beads.external, time, i, pushed(physics.field, half, r, v))
     v = added_scaled(v, half * inverse_mass_of(beads, i), force)
-    store_velocity(beads, i, accelerated(physics.field, half, r, v))
+    store_velocity(beads, i, pushed(physics.field, half, r, v))
 
 
 @by_type
-def accelerated(field, time, r, v):
+def pushed(field, time, r, v):
     """The velocity after the body force."""
     if field.instance_class is Zero:
         return lambda field, time, r, v: v

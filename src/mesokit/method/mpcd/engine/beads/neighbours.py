@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mesokit.case.box import SLIDING, fold
-from mesokit.loops.cells import cell_of, next_along, outdated
+from mesokit.loops.cells import cell_of, next_along, worn
 from mesokit.loops.layout import share
-from mesokit.loops.threads import barrier
+from mesokit.loops.threads import meet
 from mesokit.method.mpcd.engine.beads.state import AROUND, OWN, bead_of, number_of
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
 from mesokit.scalar.elementary import rint
@@ -92,11 +92,11 @@ def slipped(lists, box, thread):
 
 
 @scalar
-def note_moves(lists, halo, box, thread, places, share_of, zero):
+def note_moves(lists, roster, box, thread, places, share_of, zero):
     """Find how far the beads of this thread have gone against what is next to them."""
     (first, last), slip, farthest = share_of, slipped(lists, box, thread), 0.0
     for n in range(first, last):
-        i = bead_of(halo, AROUND, n)
+        i = bead_of(roster, AROUND, n)
         at = np.uint64(i * len(zero))
         moved = added_scaled(
             load_values(places, at, zero), -1.0, load_values(lists.made_at, at, zero)
@@ -108,46 +108,46 @@ def note_moves(lists, halo, box, thread, places, share_of, zero):
 
 
 @scalar
-def lists_outdated(lists, box, worker):
+def stale(lists, box, team):
     """Whether the lists must be made anew; the answer is the same in all threads."""
     farthest = 0.0
-    for t in range(worker.threads):
+    for t in range(team.threads):
         farthest = max(farthest, lists.noted[t, MOVED])
-    slip = abs(slipped(lists, box, worker.thread))
-    return lists.noted[worker.thread, MADE] == 0.0 or outdated(farthest, slip, lists.skin)
+    slip = abs(slipped(lists, box, team.thread))
+    return lists.noted[team.thread, MADE] == 0.0 or worn(farthest, slip, lists.skin)
 
 
 @by_type
-def refresh(worker, lists, halo, box, places, zero):
+def refresh(team, lists, roster, box, places, zero):
     """Make the lists anew if they may miss somebody; nothing without a pair potential."""
-    return _refresh if len(lists) else lambda worker, lists, halo, box, places, zero: None
+    return _refresh if len(lists) else lambda team, lists, roster, box, places, zero: None
 
 
-def _refresh(worker, lists, halo, box, places, zero):
+def _refresh(team, lists, roster, box, places, zero):
     (lists,) = lists
     everybody = len(lists.cell)
-    around = share(number_of(halo, everybody, AROUND), worker.thread, worker.threads)
-    note_moves(lists, halo, box, worker.thread, places, around, zero)
-    barrier(worker)
-    if lists_outdated(lists, box, worker):
-        find_cells(lists, halo, box, places, around, zero)
-        lists.noted[worker.thread, OFFSET] = offset_of_images(box)
-        lists.noted[worker.thread, MADE] = 1.0
-        barrier(worker)
-        link(lists, halo, share(len(lists.head), worker.thread, worker.threads))
-        barrier(worker)
-        first, last = share(number_of(halo, everybody, OWN), worker.thread, worker.threads)
+    around = share(number_of(roster, everybody, AROUND), team.thread, team.threads)
+    note_moves(lists, roster, box, team.thread, places, around, zero)
+    meet(team)
+    if stale(lists, box, team):
+        find_cells(lists, roster, box, places, around, zero)
+        lists.noted[team.thread, OFFSET] = offset_of_images(box)
+        lists.noted[team.thread, MADE] = 1.0
+        meet(team)
+        link(lists, roster, share(len(lists.head), team.thread, team.threads))
+        meet(team)
+        first, last = share(number_of(roster, everybody, OWN), team.thread, team.threads)
         for n in range(first, last):
-            make_list(lists, box, places, bead_of(halo, OWN, n), zero)
-        barrier(worker)
+            make_list(lists, box, places, bead_of(roster, OWN, n), zero)
+        meet(team)
 
 
 @seldom
-def find_cells(lists, halo, box, places, share_of, zero):
+def find_cells(lists, roster, box, places, share_of, zero):
     """Where these beads are, and in which cells."""
     still = scaled(0.0, zero)
     for n in range(share_of[0], share_of[1]):
-        i = bead_of(halo, AROUND, n)
+        i = bead_of(roster, AROUND, n)
         at = np.uint64(i * len(zero))
         r = load_values(places, at, zero)
         store_values(lists.made_at, at, r)
@@ -157,12 +157,12 @@ def find_cells(lists, halo, box, places, share_of, zero):
 
 
 @seldom
-def link(lists, halo, cells):
+def link(lists, roster, cells):
     """The beads of these cells, each thread's own, the last first."""
     first, last = cells
     lists.head[first:last] = -1
-    for n in range(number_of(halo, len(lists.following), AROUND)):
-        i = bead_of(halo, AROUND, n)
+    for n in range(number_of(roster, len(lists.following), AROUND)):
+        i = bead_of(roster, AROUND, n)
         cell = lists.cell[i]
         if first <= cell < last:
             lists.following[i] = lists.head[cell]

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from mesokit.case.box import fold
 from mesokit.errors import RunError
 from mesokit.kernels.kernel import kernel
-from mesokit.loops.threads import Worker
-from mesokit.method.mpcd.engine.beads.broken_bonds import first_broken, refuse_broken
+from mesokit.loops.threads import Team
 from mesokit.method.mpcd.engine.beads.external import external_energy
 from mesokit.method.mpcd.engine.beads.interactions import Energy
 from mesokit.method.mpcd.engine.beads.neighbours import MADE, refresh
 from mesokit.method.mpcd.engine.beads.state import load_place
+from mesokit.method.mpcd.engine.beads.torn import first_torn, refuse_torn
 from mesokit.method.mpcd.engine.beads.traverse import each_on_bead
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, store_values
 from mesokit.method.mpcd.engine.embedded.readings import energy_in_fluid, refuse_faults
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from mesokit.method.mpcd.engine.cpu.memory import Memory
 
 Floats = NDArray[np.float64]
-ALONE = Worker(0, 1, np.zeros(1, np.int64), np.zeros(1, np.int64))
+ALONE = Team(0, 1, np.zeros(1, np.int64), np.zeros(1, np.int64))
 
 
 class SoluteReadings:
@@ -123,14 +123,14 @@ class SoluteReadings:
             lists.noted[:, MADE] = 0.0
 
     def check(self) -> None:
-        """That no bond was broken, no bead lost or too fast in the last steps. Raises RunError."""
+        """That no bond was torn, no bead lost or too fast in the last steps. Raises RunError."""
         substeps = self.state_of.potentials.substeps
-        first = first_broken(self.state_of.faults)
+        first = first_torn(self.state_of.faults)
         if first is not None:
             advice = f"take more sub-steps than {substeps} (solutes.substeps), or a stiffer bond"
             bond = self.given.bond_of(int(self.given.kinds()[first - 1]))
             assert bond is not None
-            refuse_broken(self.state_of.faults, bond.longest, "beads", advice)
+            refuse_torn(self.state_of.faults, bond.longest, "beads", advice)
         for embedded in self.state_of.embedded:
             refuse_faults(embedded.faults, embedded.skin, substeps)
         sound = np.isfinite(self.state_of.r) & np.isfinite(self.state_of.v)
@@ -164,10 +164,10 @@ def fold_beads(box, r, v, boxes, zero):
 
 
 @kernel
-def energy_of(worker, beads, box, zero):
+def energy_of(team, beads, box, zero):
     """Potential energy of all beads."""
     number, total = len(beads.cell), (0.0,)
-    refresh(worker, beads.neighbours, (), box, beads.r, zero)
+    refresh(team, beads.neighbours, (), box, beads.r, zero)
     for i in range(number):
         total = each_on_bead(Energy(), total, beads, i, load_place(beads, i, zero), box)
     (energy,) = total

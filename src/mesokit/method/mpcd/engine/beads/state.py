@@ -31,7 +31,7 @@ class Beads(NamedTuple):
     and after the collision, and by forces; whole numbers.
     embedded: (Embedded,) for beads that do not collide but act by a potential, or ().
     external: (External,) for beads that are pulled, trapped or in a magnetic field, or ().
-    halo: which beads are whose where ranks share them (`domains.beads.halo.Halo`), or ().
+    roster: which beads are whose where ranks share them (`ranks.roster.Roster`), or ().
     """
 
     mass: Any
@@ -57,7 +57,7 @@ class Beads(NamedTuple):
     tensor: Any
     embedded: tuple
     external: tuple
-    halo: Any
+    roster: Any
 
 
 class KindsOfLinks(NamedTuple):
@@ -73,24 +73,24 @@ class KindsOfLinks(NamedTuple):
     number: int
 
 
-# Places in `Halo.count`: own beads, these and those heard of, those in own cells.
+# Places in `Roster.count`: own beads, these and those heard of, those in own cells.
 OWN, AROUND, PRESENT = 0, 1, 2
 
 
 @by_type
-def number_of(halo, everybody, which):
+def number_of(roster, everybody, which):
     """How many beads a rank has, knows of, or finds in its cells (`which`): all, without ranks."""
-    if len(halo) == 0:
-        return lambda halo, everybody, which: everybody
-    return lambda halo, everybody, which: halo.count[which]
+    if len(roster) == 0:
+        return lambda roster, everybody, which: everybody
+    return lambda roster, everybody, which: roster.count[which]
 
 
 @by_type
-def bead_of(halo, which, n):
+def bead_of(roster, which, n):
     """Number of the nth of these."""
-    if len(halo) == 0:
-        return lambda halo, which, n: n
-    return lambda halo, which, n: halo.numbers[which, n]
+    if len(roster) == 0:
+        return lambda roster, which, n: n
+    return lambda roster, which, n: roster.who[which, n]
 
 
 @by_type

@@ -76,9 +76,9 @@ def each_pair(pair, asked, total, beads, i, r, box):
 
 def _each_pair(pair, asked, total, beads, i, r, box):
     (potential,), (lists,), part = pair, beads.neighbours, nothing(total)
-    count, around = lists.count[i], number_of(beads.halo, len(lists.count), AROUND)
+    count, around = lists.count[i], number_of(beads.roster, len(lists.count), AROUND)
     for n in range(count if count != CROWDED else around):
-        j = lists.near[i, n] if count != CROWDED else bead_of(beads.halo, AROUND, n)
+        j = lists.near[i, n] if count != CROWDED else bead_of(beads.roster, AROUND, n)
         separation = apart(box, load_place(beads, j, r), r)
         kind = kind_of_pair(beads.kinds, i, j)
         part = of_chosen(potential, kind, asked, part, separation, i, j)

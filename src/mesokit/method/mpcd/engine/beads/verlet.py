@@ -41,7 +41,7 @@ def drift(moving, counter, physics, time):
 def kick(moving, step, box, physics, time):
     """Change of the velocities by the forces of where the beads are, kept for a time.
 
-    `box` is that of now, `step` the number by which broken bonds are noted.
+    `box` is that of now, `step` the number by which torn bonds are noted.
     """
 
 

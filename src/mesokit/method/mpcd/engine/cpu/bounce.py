@@ -23,7 +23,7 @@ MOST_HITS = 256  # within one timestep, pieces of a long flight included
 
 
 @scalar
-def add_recoil(impulse, surface, r, p, scale):
+def take(impulse, surface, r, p, scale):
     """Add the momentum p, taken at r relative to the pivot, to what a surface took."""
     take_sum(impulse, surface, p + outer(r, p), scale)
 

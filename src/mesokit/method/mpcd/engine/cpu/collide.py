@@ -11,7 +11,7 @@ from mesokit.method.mpcd.collision.protocol import Cell, freedom
 from mesokit.method.mpcd.collision.protocol import coefficients as coefficients_of
 from mesokit.method.mpcd.engine.cell_gradient import gradient_at
 from mesokit.method.mpcd.engine.cpu.physics import of_cells
-from mesokit.method.mpcd.engine.cpu.strips.records import gather_sums, spread
+from mesokit.method.mpcd.engine.cpu.strips.records import spread, take
 from mesokit.method.mpcd.engine.cpu.strips.rows import (
     load_scratch,
     load_values,
@@ -45,7 +45,7 @@ def total_block(sums, start, count, totals, terms):
             for j in range(QUAD):
                 found |= sums[t, np.uint64(start + i + j) * length]
             if found != 0:
-                gather_sums(sums[t], start + i, i, totals, terms)
+                take(sums[t], start + i, i, totals, terms)
         for i in range(together, count):
             cell = np.uint64(start + i) * length
             store_scratch(
@@ -137,11 +137,11 @@ def cell_at(which, i):
 
 
 @scalar
-def settle_batch(worker, counter, physics, fluid, which, count):
+def settle_batch(team, counter, physics, fluid, which, count):
     """What the cells of a batch need to collide: rows of coefficients from rows of sums."""
     cells, scratch = fluid.cells, fluid.scratch
-    rows, totals = scratch.coefficients[worker.thread], scratch.terms[worker.thread]
-    doubtful, none = scratch.marks[worker.thread], nothing_found(physics.terms)
+    rows, totals = scratch.coefficients[team.thread], scratch.terms[team.thread]
+    doubtful, none = scratch.marks[team.thread], nothing_found(physics.terms)
     in_doubt = np.int64(0)
     for i in range(LANES):
         found, cell = load_scratch(totals, i, none), cell_at(which, i)
@@ -158,34 +158,34 @@ def settle_batch(worker, counter, physics, fluid, which, count):
 
 
 @by_type
-def is_empty(fluid):
+def nobody(fluid):
     """Whether there is no fluid at all; a rank that has no particles may have cells of others."""
-    return (lambda fluid: False) if shares(fluid) else _is_empty
+    return (lambda fluid: False) if shares(fluid) else _nobody
 
 
-def _is_empty(fluid):
+def _nobody(fluid):
     return fluid.particles.filling.molecules == 0
 
 
 @inner
-def collide_cells(worker, now, physics, fluid):
+def collide(team, now, physics, fluid):
     """Coefficients of every cell from its sums, which are cleared for the next step."""
-    _collide(worker, now.counter, of_cells(physics), fluid)
+    _collide(team, now.counter, of_cells(physics), fluid)
 
 
 @stage
-def _collide(worker, counter, physics, fluid):
+def _collide(team, counter, physics, fluid):
     cells, scratch = fluid.cells, fluid.scratch
-    rows, totals = scratch.coefficients[worker.thread], scratch.terms[worker.thread]
+    rows, totals = scratch.coefficients[team.thread], scratch.terms[team.thread]
     batches = (cells.number + LANES - 1) // LANES
-    if is_empty(fluid):  # a random solvent is only where beads are
+    if nobody(fluid):  # a random solvent is only where beads are
         batches = 0
-    first, last = share(batches, worker.thread, worker.threads)
+    first, last = share(batches, team.thread, team.threads)
     for b in range(first, last):
         if not any_own(cells.shared, b):
             continue
         start = b * LANES
         count = min(LANES, cells.number - start)
         total_block(cells.sums, start, count, totals, physics.terms)
-        settle_batch(worker, counter, physics, fluid, InRow(start), count)
+        settle_batch(team, counter, physics, fluid, InRow(start), count)
         put_block(cells.coefficients, start, count, rows, physics.coefficients)

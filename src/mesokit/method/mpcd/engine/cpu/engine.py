@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mesokit.errors import RunError
 from mesokit.loops.clock import BEADS, CELLS, FINISH, FIRST, SORT, SWEEP
 from mesokit.loops.threads import Threads
-from mesokit.method.mpcd.engine.beads.broken_bonds import refuse_broken
+from mesokit.method.mpcd.engine.beads.torn import refuse_torn
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_STRESS, MEASURE_WALLS, Course
 from mesokit.method.mpcd.engine.cpu.memory import Memory
 from mesokit.method.mpcd.engine.cpu.numbers import Floats, Numbers
@@ -91,7 +91,7 @@ class CPU:
     def _take(self, particles: Iterable[Piece]) -> None:
         """Have these particles, in the order of their numbers."""
         for piece in particles:
-            self.memory.put(*piece, first=int(piece.ids[0]) // self.numbers.beads)
+            self.memory.put(*piece, first=int(piece.who[0]) // self.numbers.beads)
 
     def advance(self, steps: int, measure: Collection[str] = ()) -> None:
         """Run some steps; velocities are then those after the collision of the last."""
@@ -142,7 +142,7 @@ class CPU:
         )
 
     def _check_bonds(self) -> None:
-        """That no bond was broken in the last steps."""
+        """That no bond was torn in the last steps."""
         molecule, springs = self.case.fluid.molecule, self.memory.physics.molecule
         if molecule is not None and isinstance(springs, Springs):
             advice = (
@@ -150,7 +150,7 @@ class CPU:
                 "bond, or start from particles that are not so far apart"
             )
             faults = self.memory.fluid.taken.faults
-            refuse_broken(faults, molecule.bond.longest, "particles", advice)
+            refuse_torn(faults, molecule.bond.longest, "particles", advice)
 
     def sort(self) -> None:
         """Bring particles back into the box and those of one cell together in memory."""

@@ -46,7 +46,7 @@ class Particles(NamedTuple):
 
 
 class Cells(NamedTuple):
-    """The collision cells; one more than there are takes what must not act. Slots of ghosts follow
+    """The collision cells; one more than there are takes what must not act. Slots of guests follow
     where ranks share cells."""
 
     number: int
@@ -74,7 +74,7 @@ class Taken(NamedTuple):
     faults: Any  # (threads, 8) step and beads of the first bond that tore
 
 
-class FluidMemory(NamedTuple):
+class Fluid(NamedTuple):
     """A fluid in memory."""
 
     particles: Particles

@@ -23,18 +23,11 @@ from mesokit.loops.layout import (
     sums_length,
     zeros,
 )
-from mesokit.method.mpcd.engine.beads.allocate import allocate_beads
+from mesokit.method.mpcd.engine.beads.allocate import beads_of
 from mesokit.method.mpcd.engine.beads.registers import bead_size
 from mesokit.method.mpcd.engine.cell_gradient import Field
 from mesokit.method.mpcd.engine.cpu.grid import Grid
-from mesokit.method.mpcd.engine.cpu.groups import (
-    Cells,
-    FluidMemory,
-    Particles,
-    Scratch,
-    Taken,
-    Walls,
-)
+from mesokit.method.mpcd.engine.cpu.groups import Cells, Fluid, Particles, Scratch, Taken, Walls
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW
 from mesokit.method.mpcd.engine.cpu.physics import Physics
 from mesokit.method.mpcd.engine.cpu.sort import Order
@@ -76,7 +69,7 @@ class Memory:
         self.solutes: Any = ()
         if case.solutes is not None:
             embedded = embedded_of(case.solutes, numbers, threads)
-            self.solutes = allocate_beads(case.solutes, self)._replace(embedded=embedded)
+            self.solutes = beads_of(case.solutes, self)._replace(embedded=embedded)
         zero, cells = (0.0,) * d, tuple(float(n) for n in numbers.cells)
         self.grid: Any = Grid(zero, zero, cells, tuple(1.0 / n for n in cells))
         if domain is not None:
@@ -153,7 +146,7 @@ class Memory:
         lanes = blocks_for(self.strips * LANES) * BLOCK
         data, image = zeros(lanes // BLOCK * self.rows * ROW), zeros((d, lanes), np.int32)
         cell = zeros(lanes, np.int32)
-        self.fluid = FluidMemory(
+        self.fluid = Fluid(
             Particles(data, cell, np.arange(lanes), image, filling, self.rows),
             self._cells(),
             zeros((2, self.strips * (LANES // FEW))),
@@ -259,13 +252,13 @@ class Memory:
 
     def fill(self, positions: Floats, velocities: Floats, images: Any = 0) -> None:
         """Write what is known of each particle (n, d), by particle number, in the present order."""
-        ids = self.fluid.particles.ident[self.places]
+        who = self.fluid.particles.ident[self.places]
         images = np.broadcast_to(images, positions.shape)
-        self.put(ids, positions[ids], velocities[ids], images[ids])
+        self.put(who, positions[who], velocities[who], images[who])
 
     def put(
         self,
-        ids: NDArray[np.int64],
+        who: NDArray[np.int64],
         positions: Floats,
         velocities: Floats,
         images: NDArray[Any],
@@ -277,26 +270,26 @@ class Memory:
             self.numbers.dimension,
             first * self.numbers.beads,
         )
-        data, places = particles.data, self.places[start : start + len(ids)]
-        particles.ident[places] = ids
+        data, places = particles.data, self.places[start : start + len(who)]
+        particles.ident[places] = who
         for k in range(d):
             data[self.at(k, places)] = positions[:, k]
             data[self.at(d + k, places)] = velocities[:, k]
         particles.image[:, places] = images.T
         if self.rows > 2 * d:
-            data[self.at(2 * d, places)] = self.numbers.masses_of(ids)
+            data[self.at(2 * d, places)] = self.numbers.masses_of(who)
         self.fluid.room[:] = 0.0
 
     def read(self) -> tuple[Floats, Floats, NDArray[np.int32]]:
         """Positions and velocities as they lie in memory, and images (n, d), by particle number."""
-        ids, (positions, velocities, images) = (
+        who, (positions, velocities, images) = (
             self.fluid.particles.ident[self.places],
             self.rows_of(),
         )
-        out = np.empty((len(ids), 2 * self.numbers.dimension))
-        out[ids] = np.concatenate([positions, velocities], axis=1)
+        out = np.empty((len(who), 2 * self.numbers.dimension))
+        out[who] = np.concatenate([positions, velocities], axis=1)
         counts = np.empty(images.shape, np.int32)
-        counts[ids] = images
+        counts[who] = images
         return out[:, : positions.shape[1]], out[:, positions.shape[1] :], counts
 
     def rows_of(self) -> tuple[Floats, Floats, NDArray[np.int32]]:

@@ -21,7 +21,7 @@ ROUNDED_DOWN = 1.0 - 1e-6  # of numbers that float32 may have rounded up
 
 
 @by_type
-def look_around_strip(solid, strip, s, calm, clear, pattern):
+def look_around_strip(solid, strip, s, calm, clear, like):
     """How far each particle of strip s may fly, plates not counted, in as many lanes at a time as
     `lanes_together` says.
 
@@ -37,7 +37,7 @@ def lanes_together(solid):
     return lambda solid: number
 
 
-def _look_around(solid, strip, s, calm, clear, pattern):
+def _look_around(solid, strip, s, calm, clear, like):
     """At most a stride, which few go beyond.
 
     `calm` is the distance that is surely clear around every particle of a part of a strip, of
@@ -47,8 +47,8 @@ def _look_around(solid, strip, s, calm, clear, pattern):
     for part in range(LANES // FEW):
         n, start = s * (LANES // FEW) + part, part * FEW
         if calm[1, n] < solid.stride:
-            calm[1, n] = room_between_plates(solid, strip[start:], clear[start:], pattern)
-        look_up(solid, strip[start:], n, calm, clear[start:], pattern)
+            calm[1, n] = room_between_plates(solid, strip[start:], clear[start:], like)
+        look_up(solid, strip[start:], n, calm, clear[start:], like)
         if (calm[0, n] >= solid.stride) & (calm[1, n] >= solid.stride):
             quiet |= 1 << part
         calm[0, n] -= solid.stride
@@ -57,7 +57,7 @@ def _look_around(solid, strip, s, calm, clear, pattern):
 
 
 @by_type
-def look_up(solid, strip, n, calm, clear, pattern):
+def look_up(solid, strip, n, calm, clear, like):
     """The distance around each particle of the nth part, and the least of them if it is not known.
 
     `clear` holds the bits of float32 numbers: those of positive numbers are in the same order, and
@@ -66,11 +66,11 @@ def look_up(solid, strip, n, calm, clear, pattern):
     return _look_up
 
 
-def _look_up(solid, strip, n, calm, clear, pattern):
+def _look_up(solid, strip, n, calm, clear, like):
     stride = np.int32(np.float32(solid.stride * solid.stride).view(np.int32))
     if calm[0, n] < solid.stride:
         for i in range(FEW):
-            clear[i] = cube_of(solid, load_particle(strip, i, 0, pattern))
+            clear[i] = cube_of(solid, load_particle(strip, i, 0, like))
         for i in range(FEW):
             clear[i] = np.int32(whole(solid.clear, np.int64(clear[i])))
         least = np.int32(np.iinfo(np.int32).max)
@@ -84,14 +84,14 @@ def _look_up(solid, strip, n, calm, clear, pattern):
 
 
 @by_type
-def room_between_plates(solid, strip, clear, pattern):
+def room_between_plates(solid, strip, clear, like):
     """The least distance of the particles of the part from plates; `clear` is scratch memory."""
     return _room_between_plates
 
 
-def _room_between_plates(solid, strip, clear, pattern):
+def _room_between_plates(solid, strip, clear, like):
     least = np.int32(np.float32(MOST_ROOM).view(np.int32))
-    for k in range(len(pattern)):
+    for k in range(len(like)):
         if solid.lowest[k] > -np.inf:
             for i in range(FEW):
                 x = strip[k * ROW + i]

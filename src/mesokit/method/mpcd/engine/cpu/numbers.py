@@ -121,17 +121,17 @@ class Numbers:
         """Masses (n,) by particle number: kinds are numbered one after the other."""
         return np.repeat(self.masses_of_kinds, self.counts)
 
-    def masses_of(self, ids: NDArray[np.int64]) -> Floats:
+    def masses_of(self, who: NDArray[np.int64]) -> Floats:
         """Masses of some particles."""
-        return np.array(self.masses_of_kinds)[self.kinds_of(ids)]
+        return np.array(self.masses_of_kinds)[self.kinds_of(who)]
 
     def kinds(self) -> NDArray[np.int64]:
         """The place of each particle's kind in fluid.species, by particle number."""
         return np.repeat(np.arange(len(self.counts)), self.counts)
 
-    def kinds_of(self, ids: NDArray[np.int64]) -> NDArray[np.int64]:
+    def kinds_of(self, who: NDArray[np.int64]) -> NDArray[np.int64]:
         """The same of some particles."""
-        return np.searchsorted(np.cumsum(self.counts), ids, side="right")
+        return np.searchsorted(np.cumsum(self.counts), who, side="right")
 
 
 def units_of(case: Case) -> dict[str, float]:

@@ -21,7 +21,7 @@ from mesokit.loops.layout import (
     share,
     strip_at,
 )
-from mesokit.loops.threads import barrier
+from mesokit.loops.threads import meet
 from mesokit.method.mpcd.engine.cpu.grid import cell_index
 from mesokit.method.mpcd.engine.cpu.strips.rows import count_images, load_particle, store_particle
 from mesokit.scalar.jit import by_type
@@ -39,30 +39,30 @@ class Order(NamedTuple):
 
 
 @kernel
-def sort(worker, zero, box, grid, particles, memory):
+def sort(team, zero, box, grid, particles, memory):
     """Bring everybody back into the box, and those of one cell together."""
-    lap(worker, START)
-    wrap(worker, zero, box, grid, particles)
-    barrier(worker)
-    order_by_cell(worker, particles, memory)
+    lap(team, START)
+    wrap(team, zero, box, grid, particles)
+    meet(team)
+    order_by_cell(team, particles, memory)
     for bead in range(beads_of(particles.filling)):
         for row in range(particles.rows):
-            reorder_row(worker, particles, memory, row, bead)
-        reorder(worker, particles.ident, memory.long, particles.filling, memory.order, bead)
+            reorder_row(team, particles, memory, row, bead)
+        reorder(team, particles.ident, memory.long, particles.filling, memory.order, bead)
         for k in range(len(zero)):
-            reorder(worker, particles.image[k], memory.whole, particles.filling, memory.order, bead)
-    lap(worker, SORT)
+            reorder(team, particles.image[k], memory.whole, particles.filling, memory.order, bead)
+    lap(team, SORT)
 
 
 @inner
-def wrap(worker, zero, box, grid, particles):
+def wrap(team, zero, box, grid, particles):
     """Move every molecule to its image in the primary box, count the boxes crossed, find cells.
 
     Spare lanes go back to zero: nothing else keeps them from running away.
     """
     filling, rows = particles.filling, particles.rows
     d, beads = len(zero), beads_of(filling)
-    first, last = share(groups_in(filling), worker.thread, worker.threads)
+    first, last = share(groups_in(filling), team.thread, team.threads)
     for g in range(first, last):
         for bead in range(beads):
             b = g * beads + bead
@@ -103,55 +103,55 @@ def _with_leader(filling, box, r, v, leader):
 
 
 @inner
-def order_by_cell(worker, particles, memory):
+def order_by_cell(team, particles, memory):
     """`order[j]` becomes the present number of the molecule that belongs at number j."""
-    cell, filling, ends, thread = particles.cell, particles.filling, memory.ends, worker.thread
-    first, last = share(filling.molecules, thread, worker.threads)
+    cell, filling, ends, thread = particles.cell, particles.filling, memory.ends, team.thread
+    first, last = share(filling.molecules, thread, team.threads)
     ends[thread] = 0
     for i in range(first, last):
         ends[thread, cell[place_of_bead(filling, i, 0)]] += 1
-    barrier(worker)
+    meet(team)
     # from counts to the place of each thread's first molecule of each cell
-    first_cell, last_cell = share(ends.shape[1], thread, worker.threads)
+    first_cell, last_cell = share(ends.shape[1], thread, team.threads)
     total = 0
-    for t in range(worker.threads):
+    for t in range(team.threads):
         for c in range(first_cell):
             total += ends[t, c]
-    barrier(worker)
+    meet(team)
     for c in range(first_cell, last_cell):
-        for t in range(worker.threads):
+        for t in range(team.threads):
             here = ends[t, c]
             ends[t, c] = total
             total += here
-    barrier(worker)
+    meet(team)
     for i in range(first, last):
         c = cell[place_of_bead(filling, i, 0)]
         memory.order[ends[thread, c]] = i
         ends[thread, c] += 1
-    barrier(worker)
+    meet(team)
 
 
 @inner
-def reorder_row(worker, particles, memory, row, bead):
+def reorder_row(team, particles, memory, row, bead):
     """Put one row of the blocks in the new order, through a spare array, for one bead of each."""
     data, filling, rows, spare = particles.data, particles.filling, particles.rows, memory.spare
-    first, last = share(filling.molecules, worker.thread, worker.threads)
+    first, last = share(filling.molecules, team.thread, team.threads)
     for j in range(first, last):
         i = place_of_bead(filling, memory.order[j], bead)
         spare[j] = data[place(i, rows, row)]
-    barrier(worker)
+    meet(team)
     for j in range(first, last):
         data[place(place_of_bead(filling, j, bead), rows, row)] = spare[j]
-    barrier(worker)
+    meet(team)
 
 
 @inner
-def reorder(worker, values, spare, filling, order, bead):
+def reorder(team, values, spare, filling, order, bead):
     """Put a plain array in the new order, through a spare one, for one bead of each molecule."""
-    first, last = share(filling.molecules, worker.thread, worker.threads)
+    first, last = share(filling.molecules, team.thread, team.threads)
     for j in range(first, last):
         spare[j] = values[place_of_bead(filling, order[j], bead)]
-    barrier(worker)
+    meet(team)
     for j in range(first, last):
         values[place_of_bead(filling, j, bead)] = spare[j]
-    barrier(worker)
+    meet(team)

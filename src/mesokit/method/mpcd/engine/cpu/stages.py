@@ -17,9 +17,9 @@ from mesokit.method.mpcd.engine.cpu.strips.records import gather, scatter_add
 from mesokit.method.mpcd.engine.cpu.strips.rows import (
     add_values,
     count_images,
-    lane_mass,
     load_particle,
     load_scratch,
+    mass_of,
     store_particle,
     store_scratch,
 )
@@ -30,10 +30,10 @@ from mesokit.scalar.vector import added_scaled, chosen
 
 
 @scalar
-def gather_strip(cell, coefficients, gathered, pattern):
+def gather_strip(cell, coefficients, gathered, like):
     """Bring the coefficients of each particle's cell into rows."""
     for i in range(0, LANES, QUAD):
-        gather(coefficients, cell, i, gathered, pattern)
+        gather(coefficients, cell, i, gathered, like)
 
 
 @scalar
@@ -173,7 +173,7 @@ def _bounce_strip(physics, counter, strip, count, behind, ident, hits, impulse):
             if free(physics.solid, r, v, a, physics.timestep):
                 end, v = fall(r, v, a, physics.timestep)
             else:
-                m = lane_mass(physics.masses, strip, i, 2 * d)
+                m = mass_of(physics.masses, strip, i, 2 * d)
                 particle = ident[i], m
                 end, v = bounce(physics, physics.timestep, counter, particle, r, v, a, impulse)
             store_particle(strip, i, 0, end + v)
@@ -203,7 +203,7 @@ def bin_strip(physics, now, strip, cell, ident, terms_rows):
     d = len(zero)
     for i in range(LANES):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
-        m = lane_mass(physics.masses, strip, i, 2 * d)
+        m = mass_of(physics.masses, strip, i, 2 * d)
         kept, own = contribute(physics.rule, now.counter, (ident[i], 0), m, v, in_cell(r, now.grid))
         cell[i] = cell_index(r, now.grid)
         store_particle(strip, i, 0, r + kept)

@@ -34,8 +34,8 @@ from mesokit.method.mpcd.engine.cpu.stages import (
 )
 from mesokit.method.mpcd.engine.cpu.stress import flux
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
-from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle
-from mesokit.method.mpcd.engine.domains.messages.ghosts import note_ghosts
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle, mass_of
+from mesokit.method.mpcd.engine.domains.messages.guests import note_guests
 from mesokit.method.mpcd.engine.domains.messages.migrate import note_strays
 from mesokit.scalar.fixed_point import add_fixed, added_fixed, integers
 from mesokit.scalar.jit import by_type, seldom
@@ -43,33 +43,33 @@ from mesokit.scalar.vector import added, products
 
 
 @by_type
-def stream_fluid(worker, now, physics, fluid):
+def stream(team, now, physics, fluid):
     """Do what the flags ask, in this order, for each strip in turn.
 
     Time levels: velocities of step n before COLLIDE, after it; positions and velocities of
     step n + 1 after STREAM, with their cells and cell sums.
     """
     if len(field_of(physics, "molecule")) == 0:
-        return lambda worker, now, physics, fluid: _stream_singles(
-            worker, now, of_particles(physics), fluid
+        return lambda team, now, physics, fluid: _stream_singles(
+            team, now, of_particles(physics), fluid
         )
-    return lambda worker, now, physics, fluid: _stream_molecules(
-        worker, now, of_particles(physics), fluid
+    return lambda team, now, physics, fluid: _stream_molecules(
+        team, now, of_particles(physics), fluid
     )
 
 
 @stage  # two places call it
-def _stream_singles(worker, now, physics, fluid):
+def _stream_singles(team, now, physics, fluid):
     particles, scratch, zero = fluid.particles, fluid.scratch, physics.zero
-    gathered, terms = scratch.coefficients[worker.thread], scratch.terms[worker.thread]
-    clear, hits = scratch.clear[worker.thread], scratch.marks[worker.thread]
-    impulse, tensor = fluid.taken.impulse[worker.thread], fluid.taken.tensor
-    sums, measured = fluid.cells.sums[worker.thread], now.flags & MEASURE_STRESS
-    first, last = share(strips_in(particles.filling), worker.thread, worker.threads)
+    gathered, terms = scratch.coefficients[team.thread], scratch.terms[team.thread]
+    clear, hits = scratch.clear[team.thread], scratch.marks[team.thread]
+    impulse, tensor = fluid.taken.impulse[team.thread], fluid.taken.tensor
+    sums, measured = fluid.cells.sums[team.thread], now.flags & MEASURE_STRESS
+    first, last = share(strips_in(particles.filling), team.thread, team.threads)
     for s in range(first, last):
         lanes, places = lanes_in(particles.filling, s), slice(s * LANES, (s + 1) * LANES)
         strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
-        ids, image = particles.ident[places], particles.image[:, places]
+        who, image = particles.ident[places], particles.image[:, places]
         quiet, behind = 0, np.int64(0)
         if now.flags & STREAM:
             quiet = look_around_strip(physics.solid, strip, s, fluid.room, clear, zero)
@@ -85,29 +85,29 @@ def _stream_singles(worker, now, physics, fluid):
             if now.flags & STREAM:
                 behind = stream_strip(physics, strip, clear, hits)
         if behind != 0:
-            far = bounce_strip(physics, now.counter, strip, lanes, behind, ids, hits, impulse)
+            far = bounce_strip(physics, now.counter, strip, lanes, behind, who, hits, impulse)
             forget(fluid.room, s, far)
         if now.flags & STREAM:
             slide_strip(now.box, now.grid, strip, image, zero)
             if measured:
                 add_strip_flux(physics, now.box, now.grid, strip, lanes, tensor[0, s])
-            bin_strip(physics, now, strip, cell, ids, terms)
+            bin_strip(physics, now, strip, cell, who, terms)
             tallied = tally(physics.energy, 0.0, zero)
             add_strip(cell, terms, sums, lanes, physics.terms, tallied)
-            note_ghosts(worker, s, fluid, cell, terms, lanes, physics.terms, tallied)
-            note_strays(worker, now, physics, fluid, strip, s)
+            note_guests(team, s, fluid, cell, terms, lanes, physics.terms, tallied)
+            note_strays(team, now, physics, fluid, strip, s)
 
 
 @stage
-def _stream_molecules(worker, now, physics, fluid):
+def _stream_molecules(team, now, physics, fluid):
     particles, scratch, zero = fluid.particles, fluid.scratch, physics.zero
-    gathered, terms = scratch.coefficients[worker.thread], scratch.terms[worker.thread]
-    clear, work = scratch.clear[worker.thread], scratch.beads[worker.thread]
-    tensor, sums = fluid.taken.tensor, fluid.cells.sums[worker.thread]
+    gathered, terms = scratch.coefficients[team.thread], scratch.terms[team.thread]
+    clear, work = scratch.clear[team.thread], scratch.beads[team.thread]
+    tensor, sums = fluid.taken.tensor, fluid.cells.sums[team.thread]
     beads, measured = physics.molecule.beads, now.flags & MEASURE_STRESS
     # the box in which images were counted
     before = at_time(now.box, (now.counter.step - 1) * physics.timestep)
-    first, last = share(groups_in(particles.filling), worker.thread, worker.threads)
+    first, last = share(groups_in(particles.filling), team.thread, team.threads)
     for g in range(first, last):
         lanes = lanes_in(particles.filling, g * beads)
         for k in range(beads):  # velocities of step n, after the collision
@@ -132,7 +132,7 @@ def _stream_molecules(worker, now, physics, fluid):
                 image = particles.image[:, s * LANES + start : (s + 1) * LANES]
                 strip = particles.data[strip_at(s, particles.rows)][start:]
                 strip_to_bead(before, strip, image, leader, work[bead_at(k, zero)], zero)
-            fly_molecules(worker, now, physics, fluid, batch)
+            fly_molecules(team, now, physics, fluid, batch)
             for k in range(beads):
                 strip = particles.data[strip_at(g * beads + k, particles.rows)][start:]
                 bead_to_strip(strip, work[bead_at(k, zero)], zero)
@@ -146,9 +146,9 @@ def _stream_molecules(worker, now, physics, fluid):
             bin_strip(physics, now, strip, cell, particles.ident[places], terms)
             tallied = tally(physics.energy, 0.0, zero)
             add_strip(cell, terms, sums, lanes, physics.terms, tallied)
-            note_ghosts(worker, s, fluid, cell, terms, lanes, physics.terms, tallied)
+            note_guests(team, s, fluid, cell, terms, lanes, physics.terms, tallied)
             if k == 0:
-                note_strays(worker, now, physics, fluid, strip, s)
+                note_strays(team, now, physics, fluid, strip, s)
 
 
 @seldom
@@ -158,7 +158,7 @@ def add_strip_flux(physics, box, grid, strip, count, tensor):
     d, sums = len(zero), integers(products(zero, zero) + products(zero, zero))
     for i in range(count):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
-        m = lane_mass(physics.masses, strip, i, 2 * d)
+        m = mass_of(physics.masses, strip, i, 2 * d)
         carried = flux(m, peculiar(box, r, v), v, added(r, grid.shift))
         sums = added_fixed(carried, physics.stress_scale, sums)
     add_fixed(tensor, count, sums)

@@ -66,7 +66,7 @@ def _sent(comm: Any, rows: NDArray[np.int64], to: NDArray[np.int64]) -> NDArray[
 def _packed(piece: Piece) -> NDArray[np.int64]:
     """All numbers of each particle in a row, as whole numbers."""
     reals = np.concatenate([piece.positions, piece.velocities], axis=1, dtype=float)
-    columns = piece.ids[:, None], reals.view(np.int64), piece.images
+    columns = piece.who[:, None], reals.view(np.int64), piece.images
     return np.concatenate(columns, axis=1, dtype=np.int64)
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from mesokit.geometry.solids.clearance import Held
 from mesokit.loops.layout import LANES, record_length, sums_length, zeros
 from mesokit.method.mpcd.engine.cpu.grid import Part
-from mesokit.method.mpcd.engine.domains.beads.halo_memory import halo_of, reach_of_beads
+from mesokit.method.mpcd.engine.domains.beads.muster import reach_of_beads, roster_of
 from mesokit.method.mpcd.engine.domains.blocks.region import (
     Region,
     Space,
@@ -26,7 +26,7 @@ from mesokit.method.mpcd.engine.domains.blocks.tree import Block, Tree
 from mesokit.method.mpcd.engine.domains.messages.mpi import post
 from mesokit.method.mpcd.engine.domains.messages.shared import METER_SIZE, Shared
 from mesokit.method.mpcd.engine.virtual.gradient import PROBES
-from mesokit.method.mpcd.engine.virtual.particles import FlowAtSurface
+from mesokit.method.mpcd.engine.virtual.particles import Seen
 from mesokit.potential.thermal import mean_square
 
 if TYPE_CHECKING:
@@ -94,13 +94,13 @@ class Domain:
         if solutes is not None:
             self.reach = max(self.reach, 1 + math.ceil(reach_of_beads(numbers, solutes)))
         self.partners = partners(self.rank, tree.blocks, self.space, self.reach)
-        self.ghosts = [self._ghosts_of(p) for p in self.partners]
+        self.guests = [self._guests_of(p) for p in self.partners]
         self.movers = [FEW // 2 + int(0.25 * self._crowd(p)) for p in self.partners]
         beads = numbers.beads
-        each = 16 + -(-sum(self.ghosts) // threads)
-        self.ghosts_of_thread = each
-        self.ghost_slots = each * threads
-        self.slots = self.ghost_slots + beads * sum(1 + n for n in self.movers) + self.beads
+        each = 16 + -(-sum(self.guests) // threads)
+        self.guests_of_thread = each
+        self.guest_slots = each * threads
+        self.slots = self.guest_slots + beads * sum(1 + n for n in self.movers) + self.beads
         self.room = int(SPARE * molecules) + 64 + sum(1 + n for n in self.movers)
         self._known = _Lookup(self.region, self.space)
 
@@ -110,8 +110,8 @@ class Domain:
         theirs, _ = shared(self.regions[other], self.region, self.space, self.block)
         return self.numbers.density * max(len(mine), len(theirs)) / HALO
 
-    def _ghosts_of(self, other: int) -> int:
-        """Room for rows of ghosts between this rank and another, of either the same."""
+    def _guests_of(self, other: int) -> int:
+        """Room for rows of guests between this rank and another, of either the same."""
         crowd, numbers = self._crowd(other), self.numbers
         number = FEW + 0.05 * crowd
         if numbers.beads > 1:
@@ -161,7 +161,7 @@ class Domain:
             theirs.append(there)
             given.append(shared(self.regions[p], self.region, self.space, self.block)[1])
         twice = 2 if numbers.virtual == "extrapolate" else 1  # what is seen of the flow, too
-        more = [1 + ghosts + self.beads for ghosts in self.ghosts]
+        more = [1 + guests + self.beads for guests in self.guests]
         out_at = _starts(twice * len(m) + n for m, n in zip(mine, more, strict=True))
         in_at = _starts(twice * len(m) + n for m, n in zip(given, more, strict=True))
         moved_at = _starts(1 + n for n in self.movers)
@@ -196,11 +196,11 @@ class Domain:
             sent=zeros(max(q, 1), np.int64),
             field_out=zeros(sum(map(len, given)) if asked else 0),
             field_in=zeros(sum(map(len, mine)) if asked else 0),
-            ghost_place=zeros((threads, self.ghosts_of_thread), np.int64),
-            ghost_cell=zeros((threads, self.ghosts_of_thread), np.int64),
-            ghost_owner=zeros((threads, self.ghosts_of_thread), np.int64),
-            ghost_terms=zeros((threads, self.ghosts_of_thread, width), np.int64),
-            ghosts=zeros((threads, 8), np.int64),
+            guest_place=zeros((threads, self.guests_of_thread), np.int64),
+            guest_cell=zeros((threads, self.guests_of_thread), np.int64),
+            guest_owner=zeros((threads, self.guests_of_thread), np.int64),
+            guest_terms=zeros((threads, self.guests_of_thread, width), np.int64),
+            guests=zeros((threads, 8), np.int64),
             leaving=zeros((threads, 1 + int(moved_at[-1])), np.int64),
             owner=zeros((threads, 1 + int(moved_at[-1])), np.int64),
             left=zeros((threads, 8), np.int64),
@@ -210,7 +210,7 @@ class Domain:
             noted=zeros(8, np.int64),
             meter=zeros(METER_SIZE, np.int64),
             every=self.every,
-            slots=self.ghost_slots,
+            slots=self.guest_slots,
             room=self.room,
         )
 
@@ -224,14 +224,14 @@ class Domain:
         """The first cell of the block, and the first beyond it, along each axis."""
         return tuple(tuple(float(n) for n in side) for side in self.block)
 
-    def halo(self, given: Solutes, terms: int) -> Any:
+    def roster(self, given: Solutes, terms: int) -> Any:
         """Which beads of solutes are whose."""
-        return halo_of(self, given, terms)
+        return roster_of(self, given, terms)
 
-    def seen(self, probes: NDArray[np.float64]) -> FlowAtSurface:
+    def seen(self, probes: NDArray[np.float64]) -> Seen:
         """Which pieces of surface this rank keeps, and which the others do."""
         given = [self._pieces(probes, p) for p in self.partners]
-        return FlowAtSurface(
+        return Seen(
             limits=self._limits,
             here=self._pieces(probes, self.rank),
             step=np.full((len(probes), PROBES), -1, np.int64),

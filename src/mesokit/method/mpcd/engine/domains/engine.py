@@ -41,11 +41,11 @@ if TYPE_CHECKING:
 
 def pieces_of(memory: Memory) -> Iterator[Piece]:
     """The particles in a rank's memory, whole molecules."""
-    ids = memory.fluid.particles.ident
+    who = memory.fluid.particles.ident
     for first, last in pieces(0, len(memory.places), memory.numbers.beads):
         places = memory.places[first:last]
         columns = (memory.columns(name, places) for name in SPREAD)
-        yield Piece(ids[places], *columns)
+        yield Piece(who[places], *columns)
 
 
 GROWTH = 1.1  # times as many molecules as there are, when arrays become too small
@@ -104,21 +104,21 @@ class Ranks(CPU):
         self._count(0)
         come = dealt(self.comm, particles, self.domain.owners, beads, self.dimension)
         for piece in come:
-            first, held = held, held + len(piece.ids) // beads
+            first, held = held, held + len(piece.who) // beads
             if held > self.domain.room:
                 self._make_room(held)
             self._count(held)
             self.memory.put(*piece, first=first)
 
     def _hold(
-        self, ids: NDArray[np.int64], positions: Floats, velocities: Floats, images: NDArray
+        self, who: NDArray[np.int64], positions: Floats, velocities: Floats, images: NDArray
     ) -> None:
         """Have these particles, and no others."""
-        molecules = len(ids) // self.numbers.beads
+        molecules = len(who) // self.numbers.beads
         if molecules > self.domain.room:
             self._live_in(self.domain.tree, molecules)
         self._count(molecules)
-        self.memory.put(ids, positions, velocities, images)
+        self.memory.put(who, positions, velocities, images)
 
     def _count(self, molecules: int) -> None:
         """Have so many molecules in memory."""
@@ -131,11 +131,11 @@ class Ranks(CPU):
     def _make_room(self, least: int = 0) -> None:
         """Larger arrays for what this rank has, and for as many molecules at least."""
         memory, rows = self.memory, self.memory.rows_of()
-        ids = memory.fluid.particles.ident[memory.places]
-        molecules = int(GROWTH * len(ids) / self.numbers.beads) + 1
+        who = memory.fluid.particles.ident[memory.places]
+        molecules = int(GROWTH * len(who) / self.numbers.beads) + 1
         self._live_in(self.domain.tree, max(molecules, least))
         self._go_on_from(memory)
-        self._hold(ids, *rows)
+        self._hold(who, *rows)
 
     def _go_on_from(self, memory: Memory) -> None:
         """Take over what is not of particles."""
@@ -147,7 +147,7 @@ class Ranks(CPU):
         if memory.solutes:
             beads, before = new.solutes, memory.solutes
             beads.r[:], beads.v[:] = before.r, before.v
-            beads.halo.numbers[:], beads.halo.count[:] = before.halo.numbers, before.halo.count
+            beads.roster.who[:], beads.roster.count[:] = before.roster.who, before.roster.count
 
     def _steps(self, steps: int, what: int) -> None:
         left = steps

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from mesokit.method.mpcd.engine.domains.readings import SharedReadings
 from mesokit.method.mpcd.engine.domains.state import ROOT, Spread
-from mesokit.method.mpcd.engine.measure.readings import Observed
+from mesokit.method.mpcd.engine.measure.readings import Seen
 from mesokit.method.mpcd.engine.pieces import pieces
 
 
@@ -50,7 +50,7 @@ class Here:
             places = readings.memory.places[which[first:last]]
             out[first:last] = getattr(readings.seen_at(places, False), name)
         if readings.solutes is not None:
-            beads = Observed(*readings.solutes.folded())
+            beads = Seen(*readings.solutes.folded())
             out[own:] = getattr(beads, name)[ids[own:] - readings.n]
         return out
 

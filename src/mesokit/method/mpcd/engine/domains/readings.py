@@ -12,7 +12,7 @@ from mesokit.method.mpcd.engine.beads.readings import SoluteReadings, energy_in
 from mesokit.method.mpcd.engine.beads.state import OWN
 from mesokit.method.mpcd.engine.cpu.memory import Floats, Memory
 from mesokit.method.mpcd.engine.domains.state import ROOT
-from mesokit.method.mpcd.engine.measure.readings import Observed, Readings
+from mesokit.method.mpcd.engine.measure.readings import Readings, Seen
 
 
 class SharedReadings(Readings):
@@ -46,17 +46,17 @@ class SharedReadings(Readings):
 
     def own_rows(self, ids: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Which of the particles asked for are here: their places in `ids`, and among all here."""
-        own_ids, order = self._by_number()
-        at = np.minimum(np.searchsorted(own_ids, ids), max(len(own_ids) - 1, 0))
-        here = np.flatnonzero(own_ids[at] == ids) if len(own_ids) else np.zeros(0, np.int64)
+        who, order = self._by_number()
+        at = np.minimum(np.searchsorted(who, ids), max(len(who) - 1, 0))
+        here = np.flatnonzero(who[at] == ids) if len(who) else np.zeros(0, np.int64)
         return here, order[at[here]]
 
     def _by_number(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """The numbers of all that are here, rising, and their places among all here."""
         if self._sorted is None:
-            own_ids = self.memory.fluid.particles.ident[self.memory.places]
-            order = np.argsort(own_ids)
-            self._sorted = own_ids[order], order
+            who = self.memory.fluid.particles.ident[self.memory.places]
+            order = np.argsort(who)
+            self._sorted = who[order], order
         return self._sorted
 
     def together(self, here: NDArray[np.int64], rows: Floats, number: int) -> Floats:
@@ -72,19 +72,19 @@ class SharedReadings(Readings):
 
     def numbers_here(self, first: int, last: int) -> NDArray[np.int64]:
         """Who is here of the particles from one number to before another, rising."""
-        own_ids, _ = self._by_number()
-        return own_ids[slice(*np.searchsorted(own_ids, (first, last)))].copy()
+        who, _ = self._by_number()
+        return who[slice(*np.searchsorted(who, (first, last)))].copy()
 
     def rows_in_memory(self, name: str, first: int, last: int) -> tuple[NDArray, NDArray]:
         """Of the particles from one number to before another, who is here, and their positions,
         velocities or images as they lie in memory."""
-        own_ids, order = self._by_number()
-        part = slice(*np.searchsorted(own_ids, (first, last)))
-        return own_ids[part], self.memory.columns(name, self.memory.places[order[part]])
+        who, order = self._by_number()
+        part = slice(*np.searchsorted(who, (first, last)))
+        return who[part], self.memory.columns(name, self.memory.places[order[part]])
 
-    def _seen_of(self, rows: Floats) -> Observed:
+    def _seen_of(self, rows: Floats) -> Seen:
         d = self.dimension
-        return Observed(rows[:, :d], rows[:, d : 2 * d], rows[:, 2 * d :].astype(np.int32))
+        return Seen(rows[:, :d], rows[:, d : 2 * d], rows[:, 2 * d :].astype(np.int32))
 
     def wall_rates(self) -> Floats:
         """How the flow rises from all pieces of surface, each as the rank nearby has it."""
@@ -95,7 +95,7 @@ class SharedReadings(Readings):
         bits = np.where(mine[:, None], virtual.rates.view(np.int64), 0)
         return self.reduced(bits).view(float)
 
-    def _gather_fluid(self, ids: NDArray | None, unwrapped: bool) -> Observed:
+    def _gather_fluid(self, ids: NDArray | None, unwrapped: bool) -> Seen:
         asked = np.arange(self.n) if ids is None else np.asarray(ids, np.int64)
         here, which = self.own_rows(asked)
         rows = self.rows_at(self.memory.places[which], unwrapped)
@@ -127,7 +127,7 @@ class SharedSolutes(SoluteReadings):
     def own_places(self) -> Floats:
         """Places of this rank's own beads, in the box."""
         beads = self.state_of
-        own = beads.halo.numbers[OWN, : beads.halo.count[OWN]]
+        own = beads.roster.who[OWN, : beads.roster.count[OWN]]
         return self.folded_of(beads.r.reshape(self.shape), beads.v.reshape(self.shape))[0][own]
 
     def fetch(self) -> None:
@@ -136,19 +136,19 @@ class SharedSolutes(SoluteReadings):
             return
         beads, d = self.state_of, self.shape[1]
         r, v = beads.r.reshape(self.shape), beads.v.reshape(self.shape)
-        own = beads.halo.numbers[OWN, : beads.halo.count[OWN]]
+        own = beads.roster.who[OWN, : beads.roster.count[OWN]]
         sent = np.concatenate([own[:, None].astype(float), r[own], v[own]], axis=1)
         counts = np.array(self.comm.allgather(len(own))) * (1 + 2 * d)
         whole = np.empty((counts.sum() // (1 + 2 * d), 1 + 2 * d))
         self.comm.Allgatherv(np.ascontiguousarray(sent), [whole, counts])
-        own_ids = whole[:, 0].astype(np.int64)
-        r[own_ids], v[own_ids] = whole[:, 1 : 1 + d], whole[:, 1 + d :]
+        who = whole[:, 0].astype(np.int64)
+        r[who], v[who] = whole[:, 1 : 1 + d], whole[:, 1 + d :]
         self.known = True
 
     def potential_energy(self) -> float:
         self.fetch()
         self.forget_lists()  # those of this rank know of beads around its block alone
-        energy = energy_in(self.memory, self.state_of._replace(halo=()), self.places)
+        energy = energy_in(self.memory, self.state_of._replace(roster=()), self.places)
         self.forget_lists()
         return energy
 
@@ -169,6 +169,6 @@ class SharedSolutes(SoluteReadings):
     def share_out(self) -> None:
         """Each rank takes the beads in its block."""
         owner = self.memory.domain.owners(self.folded()[0])
-        own, halo = np.flatnonzero(owner == self.comm.rank), self.state_of.halo
-        halo.numbers[OWN, : len(own)], halo.count[OWN] = own, len(own)
-        halo.seen[:] = -9
+        own, roster = np.flatnonzero(owner == self.comm.rank), self.state_of.roster
+        roster.who[OWN, : len(own)], roster.count[OWN] = own, len(own)
+        roster.seen[:] = -9

@@ -36,13 +36,13 @@ class Spread:
         counts = np.array(comm.gather(len(here), ROOT) or [0])
         width = int(np.prod(self.shape[1:], dtype=np.int64)) * self.dtype.itemsize
         sent = np.ascontiguousarray(rows, self.dtype).view(np.uint8).reshape(len(here), width)
-        ids = np.empty(counts.sum(), np.int64)
+        who = np.empty(counts.sum(), np.int64)
         come = np.empty((counts.sum(), width), np.uint8)
         root = comm.rank == ROOT
-        comm.Gatherv(np.ascontiguousarray(here, np.int64), [ids, counts] if root else None, ROOT)
+        comm.Gatherv(np.ascontiguousarray(here, np.int64), [who, counts] if root else None, ROOT)
         comm.Gatherv(sent, [come, counts * width] if root else None, ROOT)
         block = np.empty((last - first if root else 0, width), np.uint8)
-        block[ids - first] = come
+        block[who - first] = come
         return block.view(self.dtype).reshape(-1, *self.shape[1:])
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:

@@ -12,8 +12,8 @@ import numpy as np
 from mesokit.geometry.solids.none import Nothing
 from mesokit.kernels.part import stage
 from mesokit.loops.layout import LANES, share, strip_at
-from mesokit.loops.threads import barrier
-from mesokit.method.mpcd.engine.beads.moving import MovingBeads, accelerated
+from mesokit.loops.threads import meet
+from mesokit.method.mpcd.engine.beads.moving import Moving, pushed
 from mesokit.method.mpcd.engine.beads.neighbours import apart
 from mesokit.method.mpcd.engine.beads.state import (
     inverse_mass_of,
@@ -24,7 +24,7 @@ from mesokit.method.mpcd.engine.beads.state import (
 from mesokit.method.mpcd.engine.beads.verlet import drift, flown, kick, verlet
 from mesokit.method.mpcd.engine.cpu.groups import STREAM
 from mesokit.method.mpcd.engine.cpu.physics import kind_of_solid, momentum_scale
-from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_values, store_values
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_values, mass_of, store_values
 from mesokit.method.mpcd.engine.embedded.near import has_left, note
 from mesokit.method.mpcd.engine.embedded.state import (
     COUNT,
@@ -45,19 +45,19 @@ MOST_UNITS = 2.0**52  # that a particle may hand over at once: a thousand therma
 class Together(NamedTuple):
     """Beads and the particles near them, as one thread moves its share of both."""
 
-    solutes: MovingBeads
+    solutes: Moving
     embedded: Embedded
     particles: Any
 
 
 @stage
-def move_in_fluid(worker, now, physics, fluid, beads):
+def move_in_fluid(team, now, physics, fluid, beads):
     """r, v of beads and of the particles near them: t -> t + dt."""
     if now.flags & STREAM:
         (embedded,) = beads.embedded
-        first, last = share(len(beads.cell), worker.thread, worker.threads)
-        impulse = fluid.taken.impulse[worker.thread]
-        solutes = MovingBeads(worker, beads, first, last, impulse, 0)
+        first, last = share(len(beads.cell), team.thread, team.threads)
+        impulse = fluid.taken.impulse[team.thread]
+        solutes = Moving(team, beads, first, last, impulse, 0)
         moving = Together(solutes, embedded, fluid.particles)
         verlet(moving, now, physics, beads.potentials.substeps)
 
@@ -65,7 +65,7 @@ def move_in_fluid(worker, now, physics, fluid, beads):
 @drift.register(Together)
 def _(moving, counter, physics, time):
     drift(moving.solutes, counter, physics, time)
-    solutes, embedded, thread = moving.solutes, moving.embedded, moving.solutes.worker.thread
+    solutes, embedded, thread = moving.solutes, moving.embedded, moving.solutes.team.thread
     for i in range(solutes.first, solutes.last):
         start = load_values(embedded.lists.made_at, np.uint64(i * len(physics.zero)), physics.zero)
         if has_left(start, load_place(solutes.beads, i, physics.zero), embedded.skin):
@@ -83,7 +83,7 @@ def step_of(counter):
 @scalar
 def drift_particle(moving, n, counter, physics, time):
     """Straight flight of one particle, with reflections."""
-    embedded, thread, zero = moving.embedded, moving.solutes.worker.thread, physics.zero
+    embedded, thread, zero = moving.embedded, moving.solutes.team.thread, physics.zero
     at = np.uint64(n * len(zero))
     r, v = load_values(embedded.r[thread], at, zero), load_values(embedded.v[thread], at, zero)
     r, v = moved(physics, time, counter, moving, embedded.lane[thread, n], r, v)
@@ -104,8 +104,8 @@ def moved(physics, time, counter, moving, lane, r, v):
         )
 
     def among_solids(physics, time, counter, moving, lane, r, v):
-        m, number = mass_in_lane(physics, moving.particles, lane), moving.particles.ident[lane]
-        return flown(physics, time, counter, number, m, r, v, moving.solutes.impulse)
+        m, who = mass_in_lane(physics, moving.particles, lane), moving.particles.ident[lane]
+        return flown(physics, time, counter, who, m, r, v, moving.solutes.impulse)
 
     return among_solids
 
@@ -114,22 +114,22 @@ def moved(physics, time, counter, moving, lane, r, v):
 def mass_in_lane(physics, particles, lane):
     """Mass of the particle in a lane, counted through the strips."""
     strip = particles.data[strip_at(lane // LANES, particles.rows)]
-    return lane_mass(physics.masses, strip, lane % LANES, 2 * len(physics.zero))
+    return mass_of(physics.masses, strip, lane % LANES, 2 * len(physics.zero))
 
 
 @kick.register(Together)
 def _(moving, step, box, physics, time):
     kick(moving.solutes, step, box, physics, time)  # threads meet: all places are known
     solutes, embedded, zero = moving.solutes, moving.embedded, physics.zero
-    worker, beads = solutes.worker, solutes.beads
-    embedded.taken[worker.thread] = 0
-    for n in range(embedded.number[worker.thread, COUNT]):
+    team, beads = solutes.team, solutes.beads
+    embedded.taken[team.thread] = 0
+    for n in range(embedded.number[team.thread, COUNT]):
         kick_particle(moving, n, step, box, physics, time)
-    barrier(worker)
+    meet(team)
     unit = 1.0 / momentum_scale(physics)
     for i in range(solutes.first, solutes.last):
         total = integers(zero)
-        for t in range(worker.threads):
+        for t in range(team.threads):
             total = plus(embedded.taken[t], i * len(zero), total)
         v = added_scaled(
             load_velocity(beads, i, zero),
@@ -142,7 +142,7 @@ def _(moving, step, box, physics, time):
 @scalar
 def kick_particle(moving, n, step, box, physics, time):
     """Change of the velocity of one particle by the beads near it, which take the opposite."""
-    embedded, thread, zero = moving.embedded, moving.solutes.worker.thread, physics.zero
+    embedded, thread, zero = moving.embedded, moving.solutes.team.thread, physics.zero
     beads, at, d = moving.solutes.beads, np.uint64(n * len(zero)), len(zero)
     r, v = load_values(embedded.r[thread], at, zero), load_values(embedded.v[thread], at, zero)
     count, given, scale = embedded.partners[thread, n], integers(zero), momentum_scale(physics)
@@ -150,17 +150,17 @@ def kick_particle(moving, n, step, box, physics, time):
         j = embedded.beads[thread, n * PARTNERS + k] if count != EVERYBODY else k
         separation = apart(box, load_place(beads, j, r), r)
         square = dot(separation, separation)
-        _, force_over_r = central(embedded.potential, square)
-        if force_over_r != 0.0:
-            if not abs(force_over_r) * time * scale * square**0.5 < MOST_UNITS:
+        _, push = central(embedded.potential, square)
+        if push != 0.0:
+            if not abs(push) * time * scale * square**0.5 < MOST_UNITS:
                 note(embedded.faults[thread], step, TOO_HARD, j + 1)
             else:
-                units = added_quanta(scaled(time * force_over_r, separation), scale, integers(zero))
+                units = added_quanta(scaled(time * push, separation), scale, integers(zero))
                 given = all_added(given, units)
                 add_integers(embedded.taken[thread, j * d : (j + 1) * d], opposite(units))
     m = mass_in_lane(physics, moving.particles, embedded.lane[thread, n])
     v = added_scaled(v, 1.0 / (scale * m), floats(given))
-    store_values(embedded.v[thread], at, accelerated(physics.field, time, r, v))
+    store_values(embedded.v[thread], at, pushed(physics.field, time, r, v))
 
 
 @elementwise

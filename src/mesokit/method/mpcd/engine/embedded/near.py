@@ -14,7 +14,7 @@ from mesokit.case.box import fold
 from mesokit.kernels.kernel import inner
 from mesokit.loops.cells import next_along
 from mesokit.loops.layout import share
-from mesokit.loops.threads import barrier
+from mesokit.loops.threads import meet
 from mesokit.method.mpcd.engine.beads.neighbours import apart, find_cells, link
 from mesokit.method.mpcd.engine.beads.state import load_place
 from mesokit.method.mpcd.engine.cpu.grid import cell_index
@@ -35,16 +35,16 @@ from mesokit.scalar.vector import added_scaled, dot, scaled
 
 
 @inner
-def find_beads(worker, stamp, box, beads, zero):
+def find_beads(team, stamp, box, beads, zero):
     """Put beads into their cells, and mark the cells of the fluid around them with a stamp."""
     (embedded,), number = beads.embedded, len(beads.cell)
-    first, last = share(number, worker.thread, worker.threads)
-    find_cells(embedded.lists, beads.halo, box, beads.r, (first, last), zero)
+    first, last = share(number, team.thread, team.threads)
+    find_cells(embedded.lists, beads.roster, box, beads.r, (first, last), zero)
     for i in range(first, last):
         mark_around(embedded, load_place(beads, i, zero), stamp)
-    barrier(worker)
-    link(embedded.lists, beads.halo, share(len(embedded.lists.head), worker.thread, worker.threads))
-    barrier(worker)
+    meet(team)
+    link(embedded.lists, beads.roster, share(len(embedded.lists.head), team.thread, team.threads))
+    meet(team)
 
 
 @seldom
@@ -74,14 +74,14 @@ def mark_around(embedded, r, stamp):
 
 @scalar
 def path_of(embedded, physics, r, v):
-    """The longest path that a particle can fly in a timestep, far from beads."""
+    """The longest way that a particle can fly in a timestep, far from beads."""
     a, time = vector(halfway(physics.field, r, v, physics.timestep), r), physics.timestep
-    path = time * math.sqrt(dot(v, v)) + 0.5 * time * time * math.sqrt(dot(a, a))
-    return path + embedded.further
+    way = time * math.sqrt(dot(v, v)) + 0.5 * time * time * math.sqrt(dot(a, a))
+    return way + embedded.further
 
 
 @scalar
-def choose_near(worker, now, physics, beads, strip, s, count, marks):
+def choose_near(team, now, physics, beads, strip, s, count, marks):
     """Put the particles of strip s that may come near a bead on the list of this thread.
 
     Their lanes come to stand in the first places of `marks`; the answer is their number.
@@ -100,20 +100,20 @@ def choose_near(worker, now, physics, beads, strip, s, count, marks):
     for j in range(candidates):
         i = marks[j]
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
-        path, n = path_of(embedded, physics, r, v), embedded.number[worker.thread, COUNT]
+        path, n = path_of(embedded, physics, r, v), embedded.number[team.thread, COUNT]
         if n == embedded.lane.shape[1]:
-            note(embedded.faults[worker.thread], step, TOO_MANY, 0)
+            note(embedded.faults[team.thread], step, TOO_MANY, 0)
             break
-        partners = find_partners(embedded, beads, now.box, r, path, (worker.thread, n))
+        partners = find_partners(embedded, beads, now.box, r, path, (team.thread, n))
         if partners != 0:
             at = np.uint64(n * d)
-            embedded.lane[worker.thread, n] = s * len(marks) + i
-            embedded.partners[worker.thread, n] = partners
-            embedded.bound[worker.thread, n] = max(path, embedded.travel)
-            store_values(embedded.r[worker.thread], at, r)
-            store_values(embedded.start[worker.thread], at, r)
-            store_values(embedded.v[worker.thread], at, v)
-            embedded.number[worker.thread, COUNT] = n + 1
+            embedded.lane[team.thread, n] = s * len(marks) + i
+            embedded.partners[team.thread, n] = partners
+            embedded.bound[team.thread, n] = max(path, embedded.travel)
+            store_values(embedded.r[team.thread], at, r)
+            store_values(embedded.start[team.thread], at, r)
+            store_values(embedded.v[team.thread], at, v)
+            embedded.number[team.thread, COUNT] = n + 1
             marks[chosen] = i
             chosen += 1
     return chosen
@@ -174,5 +174,5 @@ def note(faults, step, what, which):
 @scalar
 def has_left(start, r, bound):
     """Whether a place is farther from where it was than it was said to be."""
-    displacement = added_scaled(r, -1.0, start)
-    return not dot(displacement, displacement) <= bound * bound
+    way = added_scaled(r, -1.0, start)
+    return not dot(way, way) <= bound * bound

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from mesokit.errors import RunError
 from mesokit.kernels.kernel import kernel
 from mesokit.loops.layout import lanes_in, share, strip_at, strips_in
-from mesokit.loops.threads import Worker
+from mesokit.loops.threads import Team
 from mesokit.method.mpcd.engine.beads.neighbours import apart
 from mesokit.method.mpcd.engine.beads.state import load_place
 from mesokit.method.mpcd.engine.cpu.grid import cell_index
@@ -32,7 +32,7 @@ def energy_in_fluid(memory: Memory) -> float:
     """Potential energy of all beads and particles of the fluid."""
     scale, particles = memory.numbers.units["energy"], memory.fluid.particles
     sums = np.zeros((memory.strips, 1), np.int64)
-    alone = Worker(0, 1, np.zeros(1, np.int64), np.zeros(1, np.int64))
+    alone = Team(0, 1, np.zeros(1, np.int64), np.zeros(1, np.int64))
     stamp = np.int64(-1 - memory.step)
     place = stamp, memory.box, memory.solutes, particles
     sum_energies(alone, *place, memory.physics.zero, scale, sums)
@@ -40,11 +40,11 @@ def energy_in_fluid(memory: Memory) -> float:
 
 
 @kernel
-def sum_energies(worker, stamp, box, beads, particles, zero, scale, sums):
+def sum_energies(team, stamp, box, beads, particles, zero, scale, sums):
     """Energy of the particles of each strip, as whole numbers: sums (strips, 1)."""
     (embedded,) = beads.embedded
-    find_beads(worker, stamp, box, beads, zero)
-    first, last = share(strips_in(particles.filling), worker.thread, worker.threads)
+    find_beads(team, stamp, box, beads, zero)
+    first, last = share(strips_in(particles.filling), team.thread, team.threads)
     for s in range(first, last):
         strip = particles.data[strip_at(s, particles.rows)]
         for i in range(lanes_in(particles.filling, s)):

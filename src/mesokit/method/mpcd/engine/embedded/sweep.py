@@ -32,8 +32,8 @@ from mesokit.method.mpcd.engine.cpu.stages import (
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.rows import (
     add_values,
-    lane_mass,
     load_values,
+    mass_of,
     store_particle,
 )
 from mesokit.method.mpcd.engine.cpu.strips.terms import terms_of
@@ -44,77 +44,77 @@ from mesokit.scalar.vector import added_scaled
 
 
 @stage
-def stream_around(worker, now, physics, fluid, beads):
+def stream_around(team, now, physics, fluid, beads):
     """Do what the flags ask (see `cpu.sweep.stream`) for all that cannot come near a bead.
 
     Of the others velocities are those after the collision; they are on the list of this thread.
     """
     particles, scratch, zero = fluid.particles, fluid.scratch, physics.zero
-    gathered, terms = scratch.coefficients[worker.thread], scratch.terms[worker.thread]
-    clear, marks = scratch.clear[worker.thread], scratch.marks[worker.thread]
+    gathered, terms = scratch.coefficients[team.thread], scratch.terms[team.thread]
+    clear, marks = scratch.clear[team.thread], scratch.marks[team.thread]
     (embedded,) = beads.embedded
-    chosen, impulse = embedded.chosen[worker.thread], fluid.taken.impulse[worker.thread]
-    sums = fluid.cells.sums[worker.thread]
+    chosen, impulse = embedded.chosen[team.thread], fluid.taken.impulse[team.thread]
+    sums = fluid.cells.sums[team.thread]
     if now.flags & STREAM:
-        find_beads(worker, now.counter.step, now.box, beads, zero)
-        embedded.number[worker.thread, COUNT] = 0
-    first, last = share(strips_in(particles.filling), worker.thread, worker.threads)
+        find_beads(team, now.counter.step, now.box, beads, zero)
+        embedded.number[team.thread, COUNT] = 0
+    first, last = share(strips_in(particles.filling), team.thread, team.threads)
     for s in range(first, last):
         lanes, places = lanes_in(particles.filling, s), slice(s * LANES, (s + 1) * LANES)
         strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
-        ids = particles.ident[places]
+        who = particles.ident[places]
         if now.flags & COLLIDE:
             gather_strip(cell, fluid.cells.coefficients, gathered, physics.coefficients)
             collide_strip(physics, now.old, strip, gathered)
         if now.flags & STREAM:
-            near = choose_near(worker, now, physics, beads, strip, s, lanes, chosen)
+            near = choose_near(team, now, physics, beads, strip, s, lanes, chosen)
             look_around_strip(physics.solid, strip, s, fluid.room, clear, zero)
             behind = stream_strip(physics, strip, clear, marks)
             if behind != 0:
                 for j in range(near):  # they meet walls in sub-steps
                     marks[chosen[j]] = 0
-                far = bounce_strip(physics, now.counter, strip, lanes, behind, ids, marks, impulse)
+                far = bounce_strip(physics, now.counter, strip, lanes, behind, who, marks, impulse)
                 forget(fluid.room, s, far)
-            bin_strip(physics, now, strip, cell, ids, terms)
+            bin_strip(physics, now, strip, cell, who, terms)
             for j in range(near):
                 cell[chosen[j]] = fluid.cells.number  # which takes what must not act
             add_strip(cell, terms, sums, lanes, physics.terms, tally(physics.energy, 0.0, zero))
 
 
 @stage
-def put_back(worker, now, physics, fluid, beads):
+def put_back(team, now, physics, fluid, beads):
     """Bring the particles that were near beads back to their strips, and into their cells."""
     if now.flags & STREAM:
         (embedded,) = beads.embedded
-        for n in range(embedded.number[worker.thread, COUNT]):
-            put_one_back(worker, now, physics, fluid, embedded, n)
+        for n in range(embedded.number[team.thread, COUNT]):
+            put_one_back(team, now, physics, fluid, embedded, n)
 
 
 @by_type
-def forget_leap(physics, room, lane, displacement):
+def forget_leap(physics, room, lane, way):
     """Look around anew where a particle went farther than a stride."""
     if kind_of_solid(physics) is Nothing:
-        return lambda physics, room, lane, displacement: None
+        return lambda physics, room, lane, way: None
 
-    def among_solids(physics, room, lane, displacement):
-        if leaps(physics.solid, displacement):
+    def among_solids(physics, room, lane, way):
+        if leaps(physics.solid, way):
             forget(room, lane // LANES, 1 << (lane % LANES // FEW))
 
     return among_solids
 
 
 @scalar
-def put_one_back(worker, now, physics, fluid, embedded, n):
+def put_one_back(team, now, physics, fluid, embedded, n):
     """What `bin_strip` and `add_strip` do, for one particle."""
-    particles, zero, lane = fluid.particles, physics.zero, embedded.lane[worker.thread, n]
+    particles, zero, lane = fluid.particles, physics.zero, embedded.lane[team.thread, n]
     s, i, d, at = lane // LANES, lane % LANES, len(zero), np.uint64(n * len(zero))
-    r = load_values(embedded.r[worker.thread], at, zero)
-    v = load_values(embedded.v[worker.thread], at, zero)
-    strip, sums = particles.data[strip_at(s, particles.rows)], fluid.cells.sums[worker.thread]
-    start = load_values(embedded.start[worker.thread], at, zero)
+    r = load_values(embedded.r[team.thread], at, zero)
+    v = load_values(embedded.v[team.thread], at, zero)
+    strip, sums = particles.data[strip_at(s, particles.rows)], fluid.cells.sums[team.thread]
+    start = load_values(embedded.start[team.thread], at, zero)
     forget_leap(physics, fluid.room, lane, added_scaled(r, -1.0, start))
-    m, key = lane_mass(physics.masses, strip, i, 2 * d), (particles.ident[lane], 0)
-    kept, own = contribute(physics.rule, now.counter, key, m, v, in_cell(r, now.grid))
+    m, who = mass_of(physics.masses, strip, i, 2 * d), (particles.ident[lane], 0)
+    kept, own = contribute(physics.rule, now.counter, who, m, v, in_cell(r, now.grid))
     particles.cell[lane] = cell_index(r, now.grid)
     store_particle(strip, i, 0, r + kept)
     place = np.uint64(np.uint32(particles.cell[lane])) * np.uint64(sums_length(len(physics.terms)))

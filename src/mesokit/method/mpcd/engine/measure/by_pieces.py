@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from mesokit.method.mpcd import topology
 from mesokit.method.mpcd.engine.cpu.memory import Floats
 from mesokit.method.mpcd.engine.measure import sums as measure
-from mesokit.method.mpcd.engine.measure.readings import Observed, Readings
+from mesokit.method.mpcd.engine.measure.readings import Readings, Seen
 from mesokit.method.mpcd.engine.pieces import pieces
 from mesokit.scalar.bin_sums import BinSums
 
@@ -71,8 +71,8 @@ class ByPieces:
     ) -> Floats:
         """The same of bonds of a kind, counted from 0, and the vectors (n, d) along them."""
         sums = BinSums(bins, units)
-        for numbers, separations in self._bonds(kind):
-            sums.add(*of(numbers, separations))
+        for numbers, ways in self._bonds(kind):
+            sums.add(*of(numbers, ways))
         return sums.values(self.readings.reduced)
 
     def potential_energy(self) -> float:
@@ -109,22 +109,20 @@ class ByPieces:
         own = len(links) * (self.n // self.beads)
         for molecules in self._molecules(max(self.beads, len(links))) if kind.start < own else ():
             numbers = self.memory.fluid.particles.ident[molecules[:, 0]] // self.beads * len(links)
-            separations = self._between(self._seen(molecules), links)
-            yield (numbers[:, None] + np.arange(len(links))).ravel(), separations
+            ways = self._between(self._seen(molecules), links)
+            yield (numbers[:, None] + np.arange(len(links))).ravel(), ways
         if kind.stop > own and solutes is not None:
-            separations = solutes.bond_vectors()[kind.start - own : kind.stop - own]
-            number = len(separations) if self.readings.tells_solutes else 0
-            yield np.arange(number), separations[:number]
+            ways = solutes.bond_vectors()[kind.start - own : kind.stop - own]
+            number = len(ways) if self.readings.tells_solutes else 0
+            yield np.arange(number), ways[:number]
 
-    def _seen(self, molecules: Integers) -> Observed:
+    def _seen(self, molecules: Integers) -> Seen:
         return self.readings.seen_at(molecules.ravel(), False)
 
-    def _between(self, seen: Observed, links: Integers) -> Floats:
+    def _between(self, seen: Seen, links: Integers) -> Floats:
         """Vectors along links (n, 2) of the beads of each molecule."""
         first = np.arange(0, len(seen.positions), self.beads)[:, None, None]
-        return self.readings.separation(
-            seen.positions, seen.images, *(first + links).reshape(-1, 2).T
-        )
+        return self.readings.way(seen.positions, seen.images, *(first + links).reshape(-1, 2).T)
 
     def _energy_of(self, molecule: Molecule) -> float:
         """Potential energy of the molecules of the fluid."""
@@ -148,8 +146,8 @@ class ByPieces:
                 yield out
 
 
-def _central(potential: Bond | Pair, separations: Floats) -> Floats:
+def _central(potential: Bond | Pair, ways: Floats) -> Floats:
     """Energies (n,) of pairs that are so far apart (n, d)."""
-    out = np.asarray((separations**2).sum(axis=1))
+    out = np.asarray((ways**2).sum(axis=1))
     measure.central_energies(potential.kernel(), out)
     return out

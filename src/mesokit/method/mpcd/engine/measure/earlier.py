@@ -40,8 +40,8 @@ class EarlierRows:
         found = {"positions": r, "velocities": v}[self.name]
         if self.name == "positions" and beads > 1:
             leader = np.repeat(np.arange(0, len(r), beads), beads)
-            separation = between(r, image, leader, np.arange(len(r)), self.numbers.box, self.box)
-            found = r[leader] + separation
+            way = between(r, image, leader, np.arange(len(r)), self.numbers.box, self.box)
+            found = r[leader] + way
         return found[first - start : last - start]
 
     def _folded(self, first: int, last: int) -> tuple[Floats, Floats, NDArray[np.int32]]:

@@ -28,7 +28,7 @@ Moments = tuple[Floats, Floats, Floats, Floats]
 AT_ONCE = 2**10  # strips of a thread: sums of the terms of more particles may overflow
 
 
-class Observed(NamedTuple):
+class Seen(NamedTuple):
     """Particles that were looked at, a row for each."""
 
     positions: Floats
@@ -229,18 +229,18 @@ class Readings:
         if self.beads == 1:
             return r
         first = np.repeat(np.arange(0, len(r), self.beads), self.beads)
-        return r[first] + self.separation(r, image, first, np.arange(len(r)))
+        return r[first] + self.way(r, image, first, np.arange(len(r)))
 
     def _between(self, pairs: NDArray[np.int64]) -> Floats:
         """Vectors (n, d) between beads of one molecule."""
         r, _, image = self._gather(None, False)
-        return self.separation(r, image, *pairs.T)
+        return self.way(r, image, *pairs.T)
 
-    def separation(self, r: Floats, image: NDArray, first: NDArray, second: NDArray) -> Floats:
+    def way(self, r: Floats, image: NDArray, first: NDArray, second: NDArray) -> Floats:
         """From one bead to another, whatever images they lie in."""
         return between(r, image, first, second, self.numbers.box, self.memory.box)
 
-    def _gather(self, ids: NDArray | None, unwrapped: bool) -> Observed:
+    def _gather(self, ids: NDArray | None, unwrapped: bool) -> Seen:
         """Places, velocities, images by particle id; those of beads of solutes follow the fluid."""
         ids = self._all_beads(ids)
         if self.solutes is None or ids is None or (ids < self.n).all():
@@ -253,7 +253,7 @@ class Readings:
         r, v, image = r[beads], v[beads], image[beads]
         if own.any():
             r[own], v[own], image[own] = self._gather_fluid(ids[own], unwrapped)
-        return Observed(r, v, image)
+        return Seen(r, v, image)
 
     def _all_beads(self, ids: NDArray | None) -> NDArray | None:
         """The same ids; in a random solvent, which has no particles, None stands for all beads."""
@@ -261,20 +261,20 @@ class Readings:
             return ids
         return np.arange(len(self.solutes.kinds()))
 
-    def _gather_fluid(self, ids: NDArray | None, unwrapped: bool) -> Observed:
+    def _gather_fluid(self, ids: NDArray | None, unwrapped: bool) -> Seen:
         slots = np.arange(self.n, dtype=np.int32) if ids is None else self._slots(ids)
         shape = self.n if ids is None else len(ids), self.dimension
-        out = Observed(np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32))
+        out = Seen(np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32))
         looked = measure.Looked(slots, *out)
         zero, _ = self._vectors
         where = self.memory.box, self.memory.fluid.particles
         self.threads.run(measure.gather_by_id, zero, *where, unwrapped, looked)
         return out
 
-    def seen_at(self, places: NDArray[np.int64], unwrapped: bool) -> Observed:
+    def seen_at(self, places: NDArray[np.int64], unwrapped: bool) -> Seen:
         """Position, velocity and images of the particles at these places in memory."""
         shape, zero = (len(places), self.dimension), self.memory.physics.zero
-        out = Observed(np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32))
+        out = Seen(np.zeros(shape), np.zeros(shape), np.zeros(shape, np.int32))
         looked = measure.Looked(places, *out)
         where = self.memory.box, self.memory.fluid.particles
         self.threads.run(measure.gather_at, zero, *where, unwrapped, looked)
@@ -347,7 +347,7 @@ def between(
 ) -> Floats:
     """From some particles to others, whatever images of a box of this size they lie in."""
     boxes = image[second] - image[first]
-    separation: Floats = r[second] - r[first] + boxes * size
+    way: Floats = r[second] - r[first] + boxes * size
     if isinstance(box, SLIDING):
-        separation[:, 0] += boxes[:, 1] * box.offset
-    return separation
+        way[:, 0] += boxes[:, 1] * box.offset
+    return way

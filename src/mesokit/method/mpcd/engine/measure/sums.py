@@ -12,7 +12,7 @@ from mesokit.case.box import fold
 from mesokit.kernels.kernel import kernel
 from mesokit.loops.layout import LANES, lanes_in, share, strip_at, strips_in
 from mesokit.method.mpcd.engine.cpu.stages import add_strip
-from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle, store_scratch
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle, mass_of, store_scratch
 from mesokit.potential.angle import bend
 from mesokit.potential.protocol import central
 from mesokit.scalar.elementary import sincos_turn
@@ -33,20 +33,20 @@ from mesokit.scalar.vector import dot, row, scaled
 
 
 @kernel
-def totals(worker, masses, particles, scales, out, fastest):
+def totals(team, masses, particles, scales, out, fastest):
     """Momentum and sum of m v^2 of each strip, as whole numbers: out (strips, d + 1).
 
     `scales` (d + 1) of them are one unit; `fastest` (strips,) is the largest component of |v|.
     """
     data, rows = particles.data, particles.rows
     filling, d, zero = particles.filling, len(scales) - 1, scales[1:]
-    first, last = share(strips_in(filling), worker.thread, worker.threads)
+    first, last = share(strips_in(filling), team.thread, team.threads)
     for b in range(first, last):
         strip, momentum, energy = data[strip_at(b, rows)], integers(zero), np.int64(0)
         top = np.int64(0)  # bits of numbers without a sign have their order, with nan above all
         for i in range(lanes_in(filling, b)):
             v = load_particle(strip, i, d, zero)
-            m = lane_mass(masses, strip, i, 2 * d)
+            m = mass_of(masses, strip, i, 2 * d)
             momentum = added_quanta(scaled(m, v), scales[0], momentum)
             energy += quanta(m * dot(v, v), scales[d])
             for k in range(d):
@@ -69,22 +69,22 @@ class Bins(NamedTuple):
 
 
 @kernel
-def bin_sums(worker, zero, masses, box, particles, bins, sums):
+def bin_sums(team, zero, masses, box, particles, bins, sums):
     """Number, momentum, mass and m v^2 in bins, as fixed-point sums.
 
     `sums` is (threads, bins * (d + 3)), to be zero.
     """
     data, rows = particles.data, particles.rows
     filling, scales, d = particles.filling, bins.scales, len(zero)
-    place, quanta, out = bins.place[worker.thread], bins.terms[worker.thread], sums[worker.thread]
+    place, quanta, out = bins.place[team.thread], bins.terms[team.thread], sums[team.thread]
     terms = integers(scales)
-    first, last = share(bins.last - bins.first, worker.thread, worker.threads)
+    first, last = share(bins.last - bins.first, team.thread, team.threads)
     for b in range(bins.first + first, bins.first + last):
         strip = data[strip_at(b, rows)]
         for i in range(LANES):
             r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
             r, v, _ = fold(box, r, v, scaled(0.0, zero))
-            m = lane_mass(masses, strip, i, 2 * d)
+            m = mass_of(masses, strip, i, 2 * d)
             index = 0.0
             for k in range(2):
                 axis, number = bins.axes[k], bins.number[k]
@@ -107,7 +107,7 @@ class Waves(NamedTuple):
 
 
 @kernel
-def modes(worker, zero, masses, box, particles, waves, out):
+def modes(team, zero, masses, box, particles, waves, out):
     """Fourier sums of mass and momentum as fixed-point sums: out (threads, waves, 2 (1 + d)).
 
     Each row holds mass times cosine and minus sine, then the same of each component of the
@@ -116,7 +116,7 @@ def modes(worker, zero, masses, box, particles, waves, out):
     """
     data, rows = particles.data, particles.rows
     filling, d = particles.filling, len(zero)
-    first, last = share(strips_in(filling), worker.thread, worker.threads)
+    first, last = share(strips_in(filling), team.thread, team.threads)
     for b in range(first, last):
         strip = data[strip_at(b, rows)]
         lanes = lanes_in(filling, b)
@@ -126,15 +126,15 @@ def modes(worker, zero, masses, box, particles, waves, out):
             for i in range(LANES):
                 r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
                 r, v, _ = fold(box, r, v, scaled(0.0, zero))
-                m = lane_mass(masses, strip, i, 2 * d)
-                number = particles.ident[b * LANES + i]
-                m = m if i < lanes and waves.first <= number < waves.last else 0.0
+                m = mass_of(masses, strip, i, 2 * d)
+                who = particles.ident[b * LANES + i]
+                m = m if i < lanes and waves.first <= who < waves.last else 0.0
                 phase = dot(wave, r)
                 s, c = sincos_turn(phase - floor(phase))
                 c, s = m * c, -m * s
                 values = (c, s) + scaled(c, v) + scaled(s, v)
                 sums = added_fixed(values, waves.scale, sums)
-            add_fixed(out[worker.thread, w], LANES, sums)
+            add_fixed(out[team.thread, w], LANES, sums)
 
 
 class Looked(NamedTuple):
@@ -147,9 +147,9 @@ class Looked(NamedTuple):
 
 
 @kernel
-def gather_by_id(worker, zero, box, particles, unwrapped, looked):
+def gather_by_id(team, zero, box, particles, unwrapped, looked):
     """Positions, velocities and images of those that have a slot, by their numbers."""
-    first, last = share(strips_in(particles.filling), worker.thread, worker.threads)
+    first, last = share(strips_in(particles.filling), team.thread, team.threads)
     for b in range(first, last):
         for i in range(lanes_in(particles.filling, b)):
             slot = looked.slots[particles.ident[b * LANES + i]]
@@ -158,9 +158,9 @@ def gather_by_id(worker, zero, box, particles, unwrapped, looked):
 
 
 @kernel
-def gather_at(worker, zero, box, particles, unwrapped, looked):
+def gather_at(team, zero, box, particles, unwrapped, looked):
     """The same of those that `slots` lists, by their places in memory."""
-    first, last = share(len(looked.slots), worker.thread, worker.threads)
+    first, last = share(len(looked.slots), team.thread, team.threads)
     for slot in range(first, last):
         i = looked.slots[slot]
         look_at(i // LANES, i % LANES, zero, box, particles, unwrapped, looked, slot)

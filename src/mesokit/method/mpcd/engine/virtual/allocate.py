@@ -19,7 +19,7 @@ from mesokit.geometry.solids.contact import MARGIN
 from mesokit.geometry.solids.cut_cells import cut_cells, cut_planes
 from mesokit.loops.layout import BLOCK, LANES, ROW, SCRATCH_ROW, blocks_for, zeros
 from mesokit.method.mpcd.engine.virtual import plates
-from mesokit.method.mpcd.engine.virtual.gradient import numbers_of_piece
+from mesokit.method.mpcd.engine.virtual.gradient import columns
 from mesokit.method.mpcd.engine.virtual.particles import KINDS, CellParticles, VirtualParticles
 from mesokit.method.mpcd.engine.virtual.per_cell import ROWS
 from mesokit.scalar.pointer import address
@@ -98,7 +98,7 @@ def virtual_particles(
         outward=outward,
         probes=probes,
         terms=terms,
-        rates=np.zeros((len(terms), numbers_of_piece(d))),
+        rates=np.zeros((len(terms), columns(d))),
         masses=numbers.masses_of((np.arange(KINDS) * 7919) % max(numbers.n, 1)),
         data=zeros((threads, blocks * rows * ROW)),
         cell=zeros((threads, blocks * BLOCK), np.int32),

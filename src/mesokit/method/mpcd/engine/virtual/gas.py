@@ -3,7 +3,7 @@
 import math
 
 from mesokit.geometry.cut import grip
-from mesokit.method.mpcd.engine.cpu.bounce import add_recoil
+from mesokit.method.mpcd.engine.cpu.bounce import take
 from mesokit.scalar.jit import scalar
 from mesokit.scalar.random import normals, words
 from mesokit.scalar.vector import scaled
@@ -20,4 +20,4 @@ def thermal(physics, m, counter, purpose, number, draw):
 def body_takes(impulse, solid, term, r, p, scale):
     """Add the momentum p, taken at r, to what the surface of a term took."""
     surface, lever = grip(solid, term, r)
-    add_recoil(impulse, surface, lever, p, scale)
+    take(impulse, surface, lever, p, scale)

@@ -13,7 +13,7 @@ import numpy as np
 
 from mesokit.geometry.cut import height, roomy, surface_flow
 from mesokit.loops.layout import share
-from mesokit.loops.threads import barrier
+from mesokit.loops.threads import meet
 from mesokit.method.mpcd.engine.cpu.grid import cell_in_box, cell_index, in_block
 from mesokit.method.mpcd.engine.cpu.physics import field_of
 from mesokit.method.mpcd.engine.cpu.strips.terms import read_sums, sums_of_cell
@@ -29,7 +29,7 @@ LEAST_APART = 0.5  # of the first mean height: nearer to one another, two tell n
 
 
 @scalar
-def numbers_of_piece(d):
+def columns(d):
     """Numbers kept for each piece: slope s (d), bend q (d), and of each probe the mean of u / h (d)
     and of h."""
     return 2 * d + PROBES * (d + 1)
@@ -45,40 +45,38 @@ def flow_at(rates, piece, above, zero):
     return zero
 
 
-def follow_pieces(worker, now, physics, fluid, walls):
+def follow_pieces(team, now, physics, fluid, walls):
     """Update what is known at every EVERYth piece of surface, from this step's cells."""
-    _follow(worker, now, physics, fluid.cells.sums, walls.virtual)
-    barrier(worker)
+    _follow(team, now, physics, fluid.cells.sums, walls.virtual)
+    meet(team)
 
 
 @by_type
-def _follow(worker, now, physics, sums, virtual):
+def _follow(team, now, physics, sums, virtual):
     """All pieces; a rank of several only notes what it sees, which `ranks.flow` takes up."""
     if len(field_of(virtual, "seen")) == 0:
-        return lambda worker, now, physics, sums, virtual: _follow_all(
-            worker, now, physics, sums, virtual
+        return lambda team, now, physics, sums, virtual: _follow_all(
+            team, now, physics, sums, virtual
         )
-    return lambda worker, now, physics, sums, virtual: _see(worker, now, physics, sums, virtual)
+    return lambda team, now, physics, sums, virtual: _see(team, now, physics, sums, virtual)
 
 
 @seldom
-def _follow_all(worker, now, physics, sums, virtual):
+def _follow_all(team, now, physics, sums, virtual):
     turn = np.int64(now.counter.step) % EVERY
-    begin, end = share(
-        (len(virtual.terms) + EVERY - 1 - turn) // EVERY, worker.thread, worker.threads
-    )
+    begin, end = share((len(virtual.terms) + EVERY - 1 - turn) // EVERY, team.thread, team.threads)
     for e in range(turn + EVERY * begin, turn + EVERY * end, EVERY):
         for p in range(PROBES):
             good, seen = look(virtual, e, p, physics, now.grid, sums)
             if good:
-                average_probe(virtual.rates, e, p, seen, physics.zero)
+                remember(virtual.rates, e, p, seen, physics.zero)
         straighten(virtual.rates, e, physics.zero)
 
 
 @seldom
-def _see(worker, now, physics, sums, virtual):
+def _see(team, now, physics, sums, virtual):
     turn, pieces = np.int64(now.counter.step) % EVERY, virtual.seen.here
-    begin, end = share(len(pieces), worker.thread, worker.threads)
+    begin, end = share(len(pieces), team.thread, team.threads)
     for j in range(begin, end):
         e = pieces[j]
         for p in range(PROBES if e % EVERY == turn else 0):
@@ -123,7 +121,7 @@ def look(virtual, e, p, physics, grid, sums):
 
 
 @scalar
-def average_probe(rates, e, p, seen, zero):
+def remember(rates, e, p, seen, zero):
     """Take what was seen at a probe into its means."""
     d = len(zero)
     place = 2 * d + p * (d + 1)

@@ -14,12 +14,12 @@ from mesokit.geometry.cut import behind, home, surface_flow
 from mesokit.geometry.protocol import homed
 from mesokit.geometry.solids.clearance import offset_of
 from mesokit.loops.layout import LANES, ROW, share, strip_at
-from mesokit.loops.threads import barrier
+from mesokit.loops.threads import meet
 from mesokit.method.mpcd.engine.cpu.groups import MEASURE_WALLS
 from mesokit.method.mpcd.engine.cpu.physics import momentum_scale
 from mesokit.method.mpcd.engine.cpu.stages import add_strip, bin_strip, collide_strip, gather_strip
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
-from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle, store_particle
+from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle, mass_of, store_particle
 from mesokit.method.mpcd.engine.cpu.strips.terms import number_in_cell
 from mesokit.method.mpcd.engine.virtual.gas import body_takes, thermal
 from mesokit.method.mpcd.engine.virtual.gradient import flow_at
@@ -40,20 +40,20 @@ from mesokit.scalar.vector import added, first, scaled
 TRIES = 32  # to find a place in the solid part of a cell that is to be topped up
 
 
-def fill_one_by_one(worker, now, physics, fluid, walls):
+def fill_one_by_one(team, now, physics, fluid, walls):
     """Fill all cut cells, whose number of particles is that of an ideal gas."""
     virtual, solid, counter = walls.virtual, physics.solid, now.counter
     offset = offset_of(solid, now.grid)
     start = virtual.starts[offset]
-    begin, end = share(virtual.starts[offset + 1] - start, worker.thread, worker.threads)
+    begin, end = share(virtual.starts[offset + 1] - start, team.thread, team.threads)
     count = 0
     for entry in range(start + begin, start + end):
         key = virtual.keys[entry]
         for j in range(poisson_number(virtual.density, counter, VIRTUAL_NUMBER, key)):
             drawn = words(counter, VIRTUAL_POSITION, key, j)
-            at = Candidate(worker.thread, count, entry, FIRST_VIRTUAL + key * MOST + j)
+            at = Candidate(team.thread, count, entry, FIRST_VIRTUAL + key * MOST + j)
             count += place_one(virtual, at, physics, now.grid, drawn, fluid.particles.rows)
-    draw_velocities(virtual, count, worker, now, physics, fluid)
+    draw_velocities(virtual, count, team, now, physics, fluid)
 
 
 class Candidate(NamedTuple):
@@ -100,42 +100,42 @@ def place_one(virtual, at, physics, grid, drawn, rows):
 
 
 @scalar
-def draw_velocities(virtual, count, worker, now, physics, fluid):
+def draw_velocities(virtual, count, team, now, physics, fluid):
     """Thermal velocities about the mean, cells, and what the particles add to the sums."""
-    thread, zero, rows = worker.thread, physics.zero, fluid.particles.rows
+    thread, zero, rows = team.thread, physics.zero, fluid.particles.rows
     terms, sums = fluid.scratch.terms[thread], fluid.cells.sums[thread]
     d = len(zero)
     virtual.filled[thread] = count
     for s in range((count + LANES - 1) // LANES):
         strip, lanes = virtual.data[thread][strip_at(s, rows)], min(LANES, count - s * LANES)
         here = virtual.cell[thread, s * LANES : (s + 1) * LANES]
-        numbers = virtual.number[thread, s * LANES : (s + 1) * LANES]
+        who = virtual.number[thread, s * LANES : (s + 1) * LANES]
         for i in range(LANES):
             r, u = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
-            m = max(lane_mass(physics.masses, strip, i, 2 * d), 1e-300)
-            v = added(u, thermal(physics, m, now.counter, VIRTUAL_VELOCITY, numbers[i], 0))
+            m = max(mass_of(physics.masses, strip, i, 2 * d), 1e-300)
+            v = added(u, thermal(physics, m, now.counter, VIRTUAL_VELOCITY, who[i], 0))
             store_particle(strip, i, 0, r + v)
         if now.flags & MEASURE_WALLS:
-            take_momentum(virtual, worker, physics, s, strip, fluid.taken.impulse[thread], -1.0)
-        bin_strip(physics, now, strip, here, numbers, terms)
+            take_momentum(virtual, team, physics, s, strip, fluid.taken.impulse[thread], -1.0)
+        bin_strip(physics, now, strip, here, who, terms)
         add_strip(here, terms, sums, lanes, physics.terms, tally(physics.energy, 0.0, zero))
 
 
 @scalar
-def take_momentum(virtual, worker, physics, s, strip, impulse, sign):
+def take_momentum(virtual, team, physics, s, strip, impulse, sign):
     """Add the momentum of virtual particles, as part of the wall in which they lie."""
-    solid, zero, thread = physics.solid, physics.zero, worker.thread
+    solid, zero, thread = physics.solid, physics.zero, team.thread
     d, scale = len(zero), momentum_scale(physics)
     for i in range(min(LANES, virtual.filled[thread] - s * LANES)):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         term = virtual.term[thread, s * LANES + i]
-        m = lane_mass(physics.masses, strip, i, 2 * d)
+        m = mass_of(physics.masses, strip, i, 2 * d)
         body_takes(impulse, solid, term, homed(solid, r), scaled(sign * m, v), scale)
 
 
-def recoil_one_by_one(worker, now, physics, fluid, walls):
+def recoil_one_by_one(team, now, physics, fluid, walls):
     """What walls take by the collision of the virtual particles in them."""
-    virtual, thread = walls.virtual, worker.thread
+    virtual, thread = walls.virtual, team.thread
     gathered, impulse = fluid.scratch.coefficients[thread], fluid.taken.impulse[thread]
     if now.flags & MEASURE_WALLS:
         for s in range((virtual.filled[thread] + LANES - 1) // LANES):
@@ -143,10 +143,10 @@ def recoil_one_by_one(worker, now, physics, fluid, walls):
             here = virtual.cell[thread, s * LANES : (s + 1) * LANES]
             gather_strip(here, fluid.cells.coefficients, gathered, physics.coefficients)
             collide_strip(physics, now.grid, strip, gathered)
-            take_momentum(virtual, worker, physics, s, strip, impulse, 1.0)
+            take_momentum(virtual, team, physics, s, strip, impulse, 1.0)
 
 
-def top_up(worker, now, physics, fluid, walls):
+def top_up(team, now, physics, fluid, walls):
     """Top up each cut cell to the mean density.
 
     A fractional density is met on average. Places are uniform in the solid part of the cell.
@@ -154,18 +154,18 @@ def top_up(worker, now, physics, fluid, walls):
     virtual, counter = walls.virtual, now.counter
     offset = offset_of(physics.solid, now.grid)
     start = virtual.starts[offset]
-    begin, end = share(virtual.starts[offset + 1] - start, worker.thread, worker.threads)
+    begin, end = share(virtual.starts[offset + 1] - start, team.thread, team.threads)
     count = 0
     for entry in range(start + begin, start + end):
         key = virtual.keys[entry]
         present = number_in_cell(physics, fluid.cells.sums, virtual.cells[entry])
         a, _, _, _ = words(counter, VIRTUAL_NUMBER, key, 0)
         for j in range(int(virtual.density + unit_open(a)) - present):
-            at = Candidate(worker.thread, count, entry, FIRST_VIRTUAL + key * MOST + j)
+            at = Candidate(team.thread, count, entry, FIRST_VIRTUAL + key * MOST + j)
             for attempt in range(TRIES):
                 drawn = words(counter, VIRTUAL_POSITION, key, j * TRIES + attempt)
                 if place_one(virtual, at, physics, now.grid, drawn, fluid.particles.rows) == 1:
                     count += 1
                     break
-    draw_velocities(virtual, count, worker, now, physics, fluid)
-    barrier(worker)
+    draw_velocities(virtual, count, team, now, physics, fluid)
+    meet(team)

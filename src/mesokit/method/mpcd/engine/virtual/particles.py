@@ -44,7 +44,7 @@ class VirtualParticles(NamedTuple):
     seen: Any
 
 
-class FlowAtSurface(NamedTuple):
+class Seen(NamedTuple):
     """What a rank of several sees of the flow at pieces of surface, and whom it tells.
 
     limits: its block of cells, as two tuples of floats. here (pieces here,): pieces near it.

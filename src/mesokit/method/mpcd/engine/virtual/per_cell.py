@@ -132,17 +132,17 @@ def draw_batch(physics, numbers, counter, work):
         work[INNER * SCRATCH_ROW + i] = value if sure else -1.0
 
 
-def fill_cells(worker, now, physics, fluid, walls):
+def fill_cells(team, now, physics, fluid, walls):
     """Virtual particles in every cut cell, from batches of cells."""
-    _fill(worker, now, of_walls(physics), fluid.cells.sums[worker.thread], walls.virtual)
+    _fill(team, now, of_walls(physics), fluid.cells.sums[team.thread], walls.virtual)
 
 
 @stage
-def _fill(worker, now, physics, sums, virtual):
+def _fill(team, now, physics, sums, virtual):
     cells, offset = virtual.per_cell, offset_of(physics.solid, now.grid)
-    work, zero = cells.work[worker.thread], physics.zero
+    work, zero = cells.work[team.thread], physics.zero
     first = virtual.starts[offset]
-    begin, end = share(virtual.starts[offset + 1] - first, worker.thread, worker.threads)
+    begin, end = share(virtual.starts[offset + 1] - first, team.thread, team.threads)
     filled = 0
     for start in range(begin, end, LANES):
         count = min(LANES, end - start)
@@ -154,10 +154,10 @@ def _fill(worker, now, physics, sums, virtual):
         draw_batch(physics, numbers, now.counter, work)
         for i in range(count):
             if work[NUMBER * SCRATCH_ROW + i] > 0.5:
-                at = Place(worker.thread, filled, first + start + i, numbers[i], i)
+                at = Place(team.thread, filled, first + start + i, numbers[i], i)
                 place_particles(virtual, at, physics, now, sums)
                 filled += 1
-    cells.filled[worker.thread] = filled
+    cells.filled[team.thread] = filled
 
 
 class Place(NamedTuple):
@@ -191,8 +191,8 @@ def place_particles(virtual, at, physics, now, sums):
         if inner < 0.0:
             inner = gamma_number(float(d * (number - 1)), now.counter, VIRTUAL_NUMBER, at.key)
         inner *= 2.0 * physics.kT
-    key = (FIRST_VIRTUAL + at.key * MOST, 0)
-    kept, own = contribute(physics.rule, now.counter, key, mass, v, in_cell(r, now.grid))
+    who = (FIRST_VIRTUAL + at.key * MOST, 0)
+    kept, own = contribute(physics.rule, now.counter, who, mass, v, in_cell(r, now.grid))
     width = sums_length(len(physics.terms))
     m_v_squared = inner
     for k in range(d):
@@ -218,16 +218,16 @@ def add_many(sums, start, number, tallied, terms):
         sums[place] += terms[k] + np.int64(number - 1) * np.int64(ROUNDER_BITS)
 
 
-def recoil_per_cell(worker, now, physics, fluid, walls):
+def recoil_per_cell(team, now, physics, fluid, walls):
     """What walls take by the collision of the cells that they cut."""
     if now.flags & MEASURE_WALLS:
-        _recoil(worker, now, of_walls(physics), fluid, walls.virtual)
+        _recoil(team, now, of_walls(physics), fluid, walls.virtual)
 
 
 @stage
-def _recoil(worker, now, physics, fluid, virtual):
+def _recoil(team, now, physics, fluid, virtual):
     solid, cells, zero = physics.solid, virtual.per_cell, physics.zero
-    d, thread, scale = len(zero), worker.thread, momentum_scale(physics)
+    d, thread, scale = len(zero), team.thread, momentum_scale(physics)
     coefficients, impulse = fluid.cells.coefficients, fluid.taken.impulse[thread]
     for i in range(cells.filled[thread]):
         v, kept, r = zero, zero, zero

@@ -15,12 +15,12 @@ from mesokit.method.mpcd.engine.virtual.particles import drawn_per_cell
 from mesokit.scalar.jit import by_type
 
 
-def _nothing(worker, now, physics, fluid, walls):
+def _nothing(team, now, physics, fluid, walls):
     return None
 
 
 @by_type
-def fill_walls(worker, now, physics, fluid, walls):
+def fill_walls(team, now, physics, fluid, walls):
     """Virtual particles at t + dt, their cells, and what they add to the sums of these."""
     if not _has(walls, "virtual") or _has(walls, "top_up"):
         return _nothing
@@ -28,19 +28,19 @@ def fill_walls(worker, now, physics, fluid, walls):
 
 
 @by_type
-def follow_flow(worker, now, physics, fluid, walls):
+def follow_flow(team, now, physics, fluid, walls):
     """How the fluid's velocity rises with the distance from surfaces, where that is asked."""
     return follow_pieces if _has(walls, "gradient") else _nothing
 
 
 @by_type
-def top_up_walls(worker, now, physics, fluid, walls):
+def top_up_walls(team, now, physics, fluid, walls):
     """Virtual particles for the cells that hold fewer particles than the fluid's mean, if asked."""
     return one_by_one.top_up if _has(walls, "top_up") else _nothing
 
 
 @by_type
-def recoil(worker, now, physics, fluid, walls):
+def recoil(team, now, physics, fluid, walls):
     """What walls take by the collision of the virtual particles in them."""
     if not _has(walls, "virtual"):
         return _nothing

@@ -34,7 +34,7 @@ class Events(NamedTuple):
     ends: Array
     lasted: Array
     whole: NDArray[np.bool_]
-    ids: NDArray[np.int64]
+    who: NDArray[np.int64]
     span: Array
     number: int
 
@@ -50,7 +50,7 @@ class Durations:
     >>> events = Durations()
     >>> for time in range(64):
     ...     events.look(time)
-    ...     events.add(time, np.array([1.0, 3.0]), ids=np.arange(2))
+    ...     events.add(time, np.array([1.0, 3.0]), who=np.arange(2))
     >>> events.number, [round(x, 9) for x in events.mean()]
     (128, [2.0, 0.0])
     """
@@ -67,9 +67,9 @@ class Durations:
             self._span[0] = time
         self._span[1] = time
 
-    def add(self, ends: Any, lasted: Array, ids: NDArray[Any], whole: Any = True) -> None:
+    def add(self, ends: Any, lasted: Array, who: NDArray[Any], whole: Any = True) -> None:
         """Take in events, in the order of their ends but for those of one sample."""
-        for row in np.stack(np.broadcast_arrays(ends, lasted, whole, ids), axis=1).astype(float):
+        for row in np.stack(np.broadcast_arrays(ends, lasted, whole, who), axis=1).astype(float):
             kept, stride, number, complete = self._counts
             if number % stride == 0 and kept == MOST:
                 self._rows[: MOST // 2] = self._rows[::2]
@@ -96,9 +96,9 @@ class Durations:
     @property
     def every(self) -> list[Events]:
         """The events of each run."""
-        ends, lasted, whole, ids = self._rows[: self._counts[0]].T
+        ends, lasted, whole, who = self._rows[: self._counts[0]].T
         own = Events(
-            ends, lasted, whole > 0, ids.astype(np.int64), self._span, int(self._counts[3])
+            ends, lasted, whole > 0, who.astype(np.int64), self._span, int(self._counts[3])
         )
         return [own, *self._others]
 
@@ -128,7 +128,7 @@ class Durations:
         firsts = np.cumsum(groups) - groups
         runs = zip(self.every, groups, firsts, strict=True)
         sums = np.zeros((groups.sum(), of.shape[1]))
-        np.add.at(sums, np.concatenate([r.ids[r.whole] % n + first for r, n, first in runs]), of)
+        np.add.at(sums, np.concatenate([r.who[r.whole] % n + first for r, n, first in runs]), of)
         return sums
 
     def mean(self) -> tuple[float, float]:

@@ -83,8 +83,8 @@ class EventAccumulator:
             return ""
         number, molecules = self.durations.number, self.followed
         events = self.words.events if number != 1 else self.words.events.removesuffix("s")
-        noun = "molecules" if molecules != 1 else "molecule"
-        return f"few: {number} {events} of {molecules} {noun}; long ones may not have ended"
+        who = "molecules" if molecules != 1 else "molecule"
+        return f"few: {number} {events} of {molecules} {who}; long ones may not have ended"
 
     def made(
         self, comparisons: Iterable[Comparison], expected: Any = None, theory: str = ""

@@ -89,10 +89,7 @@ def in_slit(case: Case, swing: Swing, component: int, low: Array, high: Array) -
     flow, known = setting.flow(steady, component), setting.transport(case)
     if flow.kind != "poiseuille" or known is None or flow.profile is None:
         return None
-    height, acceleration = (
-        float(case.box.size[flow.across]),
-        setting.uniform_acceleration(steady)[component],
-    )
+    height, push = float(case.box.size[flow.across]), setting.acceleration(steady)[component]
     places = np.linspace(low[flow.across], high[flow.across], 2 * DRAWN + 1)[1::2]
     chi = theory.oscillating_slit_response(places, height, known.viscosity, swing.frequency)
-    return complex(acceleration * chi.mean())
+    return complex(push * chi.mean())

@@ -109,10 +109,10 @@ def cluster_sizes(
         float(diameters.max()) + gap, output_type="ndarray"
     )
     one, other = pairs.T
-    separation = places[one] - places[other]
+    way = places[one] - places[other]
     repeats = period > 0
-    separation[:, repeats] -= period[repeats] * np.rint(separation[:, repeats] / period[repeats])
-    near = np.linalg.norm(separation, axis=1) < 0.5 * (diameters[one] + diameters[other]) + gap
+    way[:, repeats] -= period[repeats] * np.rint(way[:, repeats] / period[repeats])
+    near = np.linalg.norm(way, axis=1) < 0.5 * (diameters[one] + diameters[other]) + gap
     ends = (one[near], other[near])
     graph = coo_array((np.ones(len(ends[0]), bool), ends), shape=(n, n))
     _, label = connected_components(graph, directed=False)

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 MANY = 25  # collisions, of which blocks know the error
 ENOUGH = 5  # to be expected, where none has been seen, for something to be compared
 KINDS = ("pairs", "walls", "elastic by contact time")
-MEET_AGAIN = "approximate: spheres that meet again, measured for disks at phi = 0.25"
 
 
 @component
@@ -88,7 +87,7 @@ class CollisionRateAccumulator(BlockAccumulator):
         shown = [0, 1] if self.case.walls else [0, 2] if contact_time else [0]
         drawn = 2 if self.case.walls else 1
         note = "approximate: molecular chaos" if not self.case.spheres.collision.elastic else ""
-        share = "" if math.isnan(known[2]) else MEET_AGAIN
+        share = note or ("" if math.isnan(known[2]) else "approximate: neighbours meet again")
         notes = [note, note, "; ".join(filter(None, (share, few.note)))]
         listed = [
             Comparison(

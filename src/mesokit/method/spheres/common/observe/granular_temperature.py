@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 PARTS, UNIT = ("translation", "rotation"), "m a^2/tau^2"
 
 
-class CoolingTheory(Protocol):
+class Cooling(Protocol):
     """What is known: see `spheres.expected.cooling`."""
 
     turns: bool
@@ -34,7 +34,7 @@ class CoolingTheory(Protocol):
 class CoolingInTime(Protocol):
     """What a method says of it: what is known, and the time of Haff's law from a temperature."""
 
-    known: CoolingTheory
+    known: Cooling
 
     def haff_time(self, kT: float) -> float: ...
 

@@ -37,9 +37,9 @@ def among_solids(case: Case, diameters: Array, closed: tuple[bool, ...]) -> Arra
             float(diameters.max()), output_type="ndarray"
         )
         one, two = order[pairs.min(axis=1)], order[pairs.max(axis=1)]
-        separation = places[one] - places[two]
-        separation -= around * np.rint(separation / around)
-        meets = np.linalg.norm(separation, axis=1) < 0.5 * (diameters[one] + diameters[two])
+        way = places[one] - places[two]
+        way -= around * np.rint(way / around)
+        meets = np.linalg.norm(way, axis=1) < 0.5 * (diameters[one] + diameters[two])
         placed = np.setdiff1d(order, two[meets])
         left = np.setdiff1d(left, placed)
         if not len(left):

@@ -70,11 +70,9 @@ def require_apart(places: Array, diameters: Array, size: Array, closed: NDArray[
     around = np.where(closed, 3 * size, size)
     tree = cKDTree(np.where(closed, places, np.mod(places, size)), boxsize=around)
     pairs = tree.query_pairs(largest, output_type="ndarray")
-    separation = places[pairs[:, 0]] - places[pairs[:, 1]]
-    separation -= around * np.rint(separation / around)
-    gaps = np.linalg.norm(separation, axis=1) - 0.5 * (
-        diameters[pairs[:, 0]] + diameters[pairs[:, 1]]
-    )
+    way = places[pairs[:, 0]] - places[pairs[:, 1]]
+    way -= around * np.rint(way / around)
+    gaps = np.linalg.norm(way, axis=1) - 0.5 * (diameters[pairs[:, 0]] + diameters[pairs[:, 1]])
     if len(gaps) and gaps.min() < -ROUNDING * largest:
         i, j = pairs[gaps.argmin()]
         raise CaseError(f"positions: spheres {i} and {j} overlap by {-gaps.min():.3g}")

@@ -62,7 +62,7 @@ class LatticeStart(SphereStart):
         if self.spacing(number, free) >= largest:
             return
         sites = self.sites(number, free, shut(case))  # of which some may be left empty
-        gap = shortest_distance(sites, free, shut(case)) - largest if len(sites) > 1 else 0.0
+        gap = nearest(sites, free, shut(case)) - largest if len(sites) > 1 else 0.0
         if gap < 0:
             raise CaseError(
                 f"spheres.start.rule = {show(self.rule)}: neighbours on this lattice would overlap "
@@ -83,8 +83,8 @@ class LatticeStart(SphereStart):
         """The shortest distance of two sites of the lattice on which so many find room."""
         within = np.array(CELLS[self.lattice, len(size)][0])
         cells = np.array(list(itertools.product((-1, 0, 1), repeat=len(size))))
-        separations = (within[:, None, None] - within[None, :, None] + cells).reshape(-1, len(size))
-        found = np.linalg.norm(separations * (size / unit_cells(self.lattice, size, n)), axis=1)
+        ways = (within[:, None, None] - within[None, :, None] + cells).reshape(-1, len(size))
+        found = np.linalg.norm(ways * (size / unit_cells(self.lattice, size, n)), axis=1)
         return float(found[found > 0].min())
 
     def sites(self, n: int, size: Array, shut: NDArray[np.bool_]) -> Array:
@@ -118,7 +118,7 @@ def mixed(seed: int, n: int, kinds: int) -> Integers:
     return np.arange(n) if kinds == 1 else np.random.default_rng(seed).permutation(n)
 
 
-def shortest_distance(places: Array, size: Array, shut: NDArray[np.bool_]) -> float:
+def nearest(places: Array, size: Array, shut: NDArray[np.bool_]) -> float:
     """The shortest distance of two places, in a box that is periodic but along shut axes."""
     from scipy.spatial import cKDTree
 

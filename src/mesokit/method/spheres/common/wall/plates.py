@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from mesokit.case.case import Case
 
 
-def check_plates(case: Case) -> None:
+def check(case: Case) -> None:
     """Raise CaseError for plates that move where spheres stay."""
     box, largest = case.box, case.spheres.largest(case.box)
     for i, wall in enumerate(case.walls):

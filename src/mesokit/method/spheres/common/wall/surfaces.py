@@ -123,24 +123,24 @@ def _alone(term: Term, room: Room) -> Part | None:
     if part is None or part.sign > 0 or part.kind not in (*ROUND, "brick"):
         return None
     for other in term:  # images that do not overlap
-        offset = [a - b for a, b in zip(other.numbers[:3], part.numbers[:3], strict=True)]
-        if any(x % length for x, length in zip(offset, room.size, strict=False)):
+        way = [a - b for a, b in zip(other.numbers[:3], part.numbers[:3], strict=True)]
+        if any(x % length for x, length in zip(way, room.size, strict=False)):
             return None
-        if any(offset) and not _apart(part, offset):
+        if any(way) and not _apart(part, way):
             return None
         if other.numbers[3:] != part.numbers[3:] or other.kind != part.kind:
             return None
     return part
 
 
-def _apart(part: Part, offset: Sequence[float]) -> bool:
+def _apart(part: Part, way: Sequence[float]) -> bool:
     """Whether a part and its image so far away do not overlap."""
     half = part.numbers[3:6]
     if part.kind != "brick":
-        return math.hypot(*offset) >= 2 * part.numbers[6]
+        return math.hypot(*way) >= 2 * part.numbers[6]
     upright = part.numbers[7] == 0.0
-    beside = upright and any(abs(x) >= 2 * h for x, h in zip(offset, half, strict=True) if x)
-    return beside or math.hypot(*offset) >= 2 * math.hypot(*half)
+    beside = upright and any(abs(x) >= 2 * h for x, h in zip(way, half, strict=True) if x)
+    return beside or math.hypot(*way) >= 2 * math.hypot(*half)
 
 
 def _in_box(part: Part, room: Room) -> bool:

@@ -51,11 +51,11 @@ class Contact(NamedTuple):
 
 
 @by_type
-def spin_of(body, i, pattern):
+def spin_of(body, i, like):
     """Angular velocity: of one number in 2D, of three in 3D."""
-    if len(pattern) == 2:
-        return lambda body, i, pattern: (body[i, SPIN],)
-    return lambda body, i, pattern: (body[i, SPIN], body[i, SPIN + 1], body[i, SPIN + 2])
+    if len(like) == 2:
+        return lambda body, i, like: (body[i, SPIN],)
+    return lambda body, i, like: (body[i, SPIN], body[i, SPIN + 1], body[i, SPIN + 2])
 
 
 @by_type
@@ -85,7 +85,7 @@ def impulse_of(masses, levers, u, n, e, tangential, friction):
 
 
 @scalar
-def add_impulse(spheres, i, v, impulse, turned):
+def push(spheres, i, v, impulse, turned):
     """Give sphere i an impulse, and an angular one."""
     body = spheres.body
     put_entries(spheres.state, i, VELOCITY, added_scaled(v, 1.0 / body[i, MASS], impulse))
@@ -142,8 +142,8 @@ def collide_pair(world, rules, spheres, tally, i, j, time):
     growing = (state[i, RADIUS] + state[j, RADIUS]) * world.growth / masses
     total = added_scaled(total, 2.0 * growing, n)
     # only what is along the surface turns: rounding must not
-    add_impulse(spheres, i, v_i, total, outer(lever_i, along))
-    add_impulse(spheres, j, v_j, scaled(-1.0, total), outer(lever_j, scaled(-1.0, along)))
+    push(spheres, i, v_i, total, outer(lever_i, along))
+    push(spheres, j, v_j, scaled(-1.0, total), outer(lever_j, scaled(-1.0, along)))
     note_flight(tally.flights, time - body[i, LAST])
     note_flight(tally.flights, time - body[j, LAST])
     body[i, LAST] = body[j, LAST] = time
@@ -203,7 +203,7 @@ def collide_wall(world, rules, spheres, tally, i, w, time):
         )
         total = added_scaled(along, normal, n)
         total = added_scaled(total, body[i, MASS] * state[i, RADIUS] * world.growth, n)
-        add_impulse(spheres, i, v, total, outer(lever, along))
+        push(spheres, i, v, total, outer(lever, along))
     note_flight(tally.flights, time - body[i, LAST])
     body[i, LAST] = time
     for k in range(len(n)):

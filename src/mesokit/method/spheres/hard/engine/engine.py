@@ -194,10 +194,10 @@ class EventDriven:
         near = cKDTree(inside, boxsize=around).query_pairs(
             pair.reach * float(diameters.max()), output_type="ndarray"
         )
-        separation = inside[near[:, 0]] - inside[near[:, 1]]
-        separation -= around * np.rint(separation / around)
+        way = inside[near[:, 0]] - inside[near[:, 1]]
+        way -= around * np.rint(way / around)
         within = 0.5 * pair.reach * (diameters[near[:, 0]] + diameters[near[:, 1]])
-        return pair.energy_within * int((np.linalg.norm(separation, axis=1) < within).sum())
+        return pair.energy_within * int((np.linalg.norm(way, axis=1) < within).sum())
 
     def moments(
         self, axes: tuple[int, ...], bins: tuple[int, ...], ids: Integers | None = None

@@ -37,7 +37,7 @@ class World(NamedTuple):
     instant: float
 
 
-class SphereMemory(NamedTuple):
+class Spheres(NamedTuple):
     """state (n, 8): place, own time, velocity, radius; body (n, 6): mass, moment of inertia, time
     of the last collision, spin; boxes (n, d) away; number (n,); hits (n,): collisions so far."""
 

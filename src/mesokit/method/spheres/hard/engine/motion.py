@@ -13,8 +13,8 @@ from mesokit.scalar.vector import added_scaled
 
 
 @elementwise
-def entries(rows, i, start, pattern):
-    """Consecutive entries of row i, as a tuple as long as `pattern`."""
+def entries(rows, i, start, like):
+    """Consecutive entries of row i, as a tuple as long as `like`."""
     return "rows[i, start + {k}]"
 
 
@@ -78,22 +78,22 @@ class Mover(NamedTuple):
 
 
 @elementwise
-def in_column(columns, a, start, pattern):
-    """Consecutive entries of column a, as a tuple as long as `pattern`."""
+def in_column(columns, a, start, like):
+    """Consecutive entries of column a, as a tuple as long as `like`."""
     return "columns[start + {k}, a]"
 
 
 @scalar
-def of_column(columns, a, pattern):
+def of_column(columns, a, like):
     """A sphere whose state is a column."""
-    r, v = in_column(columns, a, 0, pattern), in_column(columns, a, VELOCITY, pattern)
+    r, v = in_column(columns, a, 0, like), in_column(columns, a, VELOCITY, like)
     return Mover(r, v, columns[TIME, a], columns[RADIUS, a])
 
 
 @scalar
-def of_row(state, i, pattern):
+def of_row(state, i, like):
     """Sphere i as it is in memory."""
-    r, v = entries(state, i, 0, pattern), entries(state, i, VELOCITY, pattern)
+    r, v = entries(state, i, 0, like), entries(state, i, VELOCITY, like)
     return Mover(r, v, state[i, TIME], state[i, RADIUS])
 
 

@@ -39,9 +39,9 @@ def predict(world, rules, spheres, lists, queue, i, now):
     one = of_row(state, i, r)
     near, times = lists.count[i], lists.times
     if world.growth != 0.0:
-        collide_all(world, rules, state, lists, i, one, now, world.growth)
+        meet_all(world, rules, state, lists, i, one, now, world.growth)
     else:
-        collide_all(world, rules, state, lists, i, one, now, 0.0)
+        meet_all(world, rules, state, lists, i, one, now, 0.0)
     for a in range(near):
         if times[a] <= best:
             j = lists.near[i, a]
@@ -59,7 +59,7 @@ def predict(world, rules, spheres, lists, queue, i, now):
 
 
 @scalar
-def collide_all(world, rules, state, lists, i, one, now, growth):
+def meet_all(world, rules, state, lists, i, one, now, growth):
     """When sphere i meets each of those on its list; growth 0 is to be said as that number.
 
     They are gathered by columns first: the times then follow for eight of them at once, as vectors.

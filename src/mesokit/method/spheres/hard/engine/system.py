@@ -15,7 +15,7 @@ from mesokit.method.spheres.common.wall.rows import FREQUENCY, PHASE
 from mesokit.method.spheres.hard.engine import groups
 from mesokit.method.spheres.hard.engine.collide import Rules
 from mesokit.method.spheres.hard.engine.flights import no_flights
-from mesokit.method.spheres.hard.engine.groups import Lists, Queue, SphereMemory, Tally, World
+from mesokit.method.spheres.hard.engine.groups import Lists, Queue, Spheres, Tally, World
 from mesokit.method.spheres.hard.engine.run import AT_ONCE, advance, read, rebuild, synchronise
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ class System:
         self.window, self.windows = given.window, 0
         self.now = 0.0  # since the start of the window
         n, d = self.n, self.d
-        self.spheres = SphereMemory(
+        self.spheres = Spheres(
             aligned(n, groups.WIDTH),
             np.zeros((n, groups.BODY_WIDTH)),
             np.zeros((n, d), np.int32),
@@ -272,9 +272,9 @@ class System:
         i = int(self.queue.heap[0])
         now = self.windows * self.window + float(self.queue.time[i])
         many = np.argsort(-self.spheres.hits, kind="stable")[:2]
-        numbers = " and ".join(str(number) for number in sorted(self.spheres.number[many]))
+        who = " and ".join(str(number) for number in sorted(self.spheres.number[many]))
         return (
-            f"inelastic collapse at t = {now:.9g}: spheres {numbers} collide without end; set "
+            f"inelastic collapse at t = {now:.9g}: spheres {who} collide without end; set "
             "spheres.collision.contact_time"
         )
 

@@ -47,14 +47,12 @@ def _(law):
 def _(law, mine, time, step, world, noted, room):
     low = FAR
     for i in range(mine[0], mine[1]):
-        low = min(
-            low, forces_from_list(law, i, world), forces_from_walls(law, i, time, world, room)
-        )
+        low = min(low, push_from_list(law, i, world), push_from_walls(law, i, time, world, room))
     noted[NEAREST] = min(noted[NEAREST], low)
 
 
 @scalar
-def forces_from_list(law, i, world):
+def push_from_list(law, i, world):
     """The force on sphere i from others; bits of the square of the least distance."""
     bodies, box, lists = world.bodies, world.box, world.lists
     r = row(bodies.place, i)
@@ -62,10 +60,10 @@ def forces_from_list(law, i, world):
     for s in range(lists.count[i]):
         dx, dy, dz = from_to(box, bodies.place, lists.near[i, s], r)
         square = dx * dx + dy * dy + dz * dz
-        _, force_over_r = central(law.potential, square)
-        a += fixed(force_over_r * dx, law.scale)
-        b += fixed(force_over_r * dy, law.scale)
-        c += fixed(force_over_r * dz, law.scale)
+        _, push = central(law.potential, square)
+        a += fixed(push * dx, law.scale)
+        b += fixed(push * dy, law.scale)
+        c += fixed(push * dz, law.scale)
         low = min(low, apart(square))
     rounders = np.int64(lists.count[i]) * np.int64(ROUNDER_BITS)
     bodies.force[i, 0], bodies.force[i, 1], bodies.force[i, 2] = (
@@ -77,20 +75,20 @@ def forces_from_list(law, i, world):
 
 
 @scalar
-def forces_from_walls(law, i, time, world, room):
+def push_from_walls(law, i, time, world, room):
     """Add the force of walls on sphere i; bits of the square of the least distance."""
     bodies, box, walls = world.bodies, world.box, world.walls
     low, r = FAR, row(bodies.place, i)
     for w in range(len(walls.rows)):
         distance, out, _ = from_wall(walls.rows, w, box, r, time)
         if distance < 2.0 * reach(bodies, i):
-            _, force_over_r = central(law.potential, distance * distance)
+            _, push = central(law.potential, distance * distance)
             low = min(low, bits(distance * distance) if distance > 0.0 else np.int64(0))
-            force = scaled(force_over_r * distance, out)
+            pull = scaled(push * distance, out)
             counts = (
-                quanta(force[0], law.scale),
-                quanta(force[1], law.scale),
-                quanta(force[2], law.scale),
+                quanta(pull[0], law.scale),
+                quanta(pull[1], law.scale),
+                quanta(pull[2], law.scale),
             )
             for k in range(3):
                 bodies.force[i, k] += counts[k]
@@ -111,10 +109,10 @@ def _(law, i, time, world, told):
     for s in range(lists.count[i]):
         j = lists.near[i, s]
         if j != i:
-            separation = from_to(box, bodies.place, j, r)
-            energy, force_over_r = central(law.potential, dot(separation, separation))
+            way = from_to(box, bodies.place, j, r)
+            energy, push = central(law.potential, dot(way, way))
             told[ENERGY] += quanta(energy, law.scale)
-            add_product(told, law.scale, scaled(force_over_r, separation), separation)
+            add_product(told, law.scale, scaled(push, way), way)
     for w in range(len(walls.rows)):
         distance, _, _ = from_wall(walls.rows, w, box, r, time)
         if distance < 2.0 * reach(bodies, i):
@@ -123,11 +121,11 @@ def _(law, i, time, world, told):
 
 
 @scalar
-def add_product(told, scale, force, separation):
+def add_product(told, scale, force, way):
     """Add the products of a force and a vector to the virial of a sphere."""
-    told[VIRIAL] += quanta(force[0] * separation[0], scale)
-    told[VIRIAL + 1] += quanta(force[1] * separation[1], scale)
-    told[VIRIAL + 2] += quanta(force[2] * separation[2], scale)
-    told[VIRIAL + 3] += quanta(force[0] * separation[1], scale)
-    told[VIRIAL + 4] += quanta(force[0] * separation[2], scale)
-    told[VIRIAL + 5] += quanta(force[1] * separation[2], scale)
+    told[VIRIAL] += quanta(force[0] * way[0], scale)
+    told[VIRIAL + 1] += quanta(force[1] * way[1], scale)
+    told[VIRIAL + 2] += quanta(force[2] * way[2], scale)
+    told[VIRIAL + 3] += quanta(force[0] * way[1], scale)
+    told[VIRIAL + 4] += quanta(force[0] * way[2], scale)
+    told[VIRIAL + 5] += quanta(force[1] * way[2], scale)

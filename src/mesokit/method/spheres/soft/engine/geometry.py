@@ -24,12 +24,12 @@ def row(array, i):
 
 
 @scalar
-def nearest(box, separation):
+def nearest(box, way):
     """A vector to the nearest image."""
     return (
-        separation[0] - box.size[0] * rint(separation[0] * box.inverse[0]),
-        separation[1] - box.size[1] * rint(separation[1] * box.inverse[1]),
-        separation[2] - box.size[2] * rint(separation[2] * box.inverse[2]),
+        way[0] - box.size[0] * rint(way[0] * box.inverse[0]),
+        way[1] - box.size[1] * rint(way[1] * box.inverse[1]),
+        way[2] - box.size[2] * rint(way[2] * box.inverse[2]),
     )
 
 
@@ -48,13 +48,13 @@ def three(rows, w, column):
 @scalar
 def from_wall(rows, w, box, r, time):
     """Distance of a place from a wall, the normal out of it, and the velocity of its surface."""
-    separation, axis = added_scaled(r, -1.0, three(rows, w, PLACE)), three(rows, w, AXIS)
+    way, axis = added_scaled(r, -1.0, three(rows, w, PLACE)), three(rows, w, AXIS)
     moves = three(rows, w, MOVES)
     if rows[w, KIND] == PLANE:
         shift, speed, _ = vibration(rows, w, time)
-        return dot(separation, axis) - shift, axis, added_scaled(moves, speed, axis)
-    separation = nearest(box, separation)
-    across = added_scaled(separation, -dot(separation, axis), axis)
+        return dot(way, axis) - shift, axis, added_scaled(moves, speed, axis)
+    way = nearest(box, way)
+    across = added_scaled(way, -dot(way, axis), axis)
     length = math.sqrt(dot(across, across))
     normal = scaled(rows[w, KIND] / length, across) if length > 0.0 else axis
     return rows[w, KIND] * (length - rows[w, ROUND]), normal, moves

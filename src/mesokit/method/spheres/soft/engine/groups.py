@@ -70,12 +70,12 @@ class Walls(NamedTuple):
 
 
 class Solid(NamedTuple):
-    """Walls of any shape: tables of `geometry.solids`, pattern: a place in the box; own
-    (bodies, 2): damping ratio and friction of each; terms (n, 3): which terms a sphere touches, -1
-    where it touches none; springs (n * 3, width): of these contacts."""
+    """Walls of any shape: tables of `geometry.solids`, like: a place in the box; own (bodies, 2):
+    damping ratio and friction of each; terms (n, 3): which terms a sphere touches, -1: none;
+    springs (n * 3, width): of these contacts."""
 
     bodies: Any
-    pattern: Any
+    like: Any
     own: Any
     terms: Any
     springs: Any

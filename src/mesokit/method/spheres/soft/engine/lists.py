@@ -30,12 +30,12 @@ def sort(grid, place, cell, begins, order):
 
 
 @kernel
-def make_lists(worker, grid, begins, columns, bodies, box, lists, scratch):
+def make_lists(team, grid, begins, columns, bodies, box, lists, scratch):
     """All within reach and skin of each sphere. A list that has too little room is cut off, and
     tells its length. `columns` (4, n) are places once more, each coordinate together; `scratch`
     (threads, n) is for the loops here alone."""
-    first, last = share(len(bodies.number), worker.thread, worker.threads)
-    beside = scratch[worker.thread]
+    first, last = share(len(bodies.number), team.thread, team.threads)
+    beside = scratch[team.thread]
     for i in range(first, last):
         found = 0
         y, z = bodies.place[i, 1], bodies.place[i, 2]
@@ -93,9 +93,9 @@ def list_span(columns, box, lists, i, span, found, beside):
     xs, ys, zs = columns[0, begin:whole], columns[1, begin:whole], columns[2, begin:whole]
     beyond, reaches = columns[3, i] + lists.skin, columns[3, begin:whole]
     for k in range(np.uint64(whole - begin)):
-        separation = nearest(box, (x - xs[k], y - ys[k], z - zs[k]))
+        way = nearest(box, (x - xs[k], y - ys[k], z - zs[k]))
         far = beyond + reaches[k]
-        beside[k] = 1 if dot(separation, separation) <= far * far else 0
+        beside[k] = 1 if dot(way, way) <= far * far else 0
     if begin <= i < end:
         beside[i - begin] = 0
     last_place = lists.near.shape[1] - 1

@@ -6,8 +6,8 @@ from mesokit.method.spheres.soft.engine.acting import tell
 
 
 @kernel
-def tell_all(worker, time, law, world, told):
+def tell_all(team, time, law, world, told):
     """What the law tells of every sphere, (n, 8)."""
-    first, last = share(len(world.bodies.number), worker.thread, worker.threads)
+    first, last = share(len(world.bodies.number), team.thread, team.threads)
     for i in range(first, last):
         tell(law, i, time, world, told[i])

@@ -14,7 +14,7 @@ from mesokit.geometry.solids.bodies import (
     BODY,
     KINDS,
     NEAR,
-    NO_TERM,
+    NOBODY,
     STARTS,
     home_cell,
     part_clearance,
@@ -43,7 +43,7 @@ class Place(NamedTuple):
 
 
 @elementwise
-def shortened(r, pattern):
+def shortened(r, like):
     """As many numbers of r as there are axes."""
     return "r[{k}]"
 
@@ -59,7 +59,7 @@ def lengthened(x):
 @seldom
 def nearest_place(tables, x, within, one, other):
     """The nearest term whose surface faces another way than these two normals do."""
-    least, normal, term = within, scaled(0.0, x), NO_TERM
+    least, normal, term = within, scaled(0.0, x), NOBODY
     cell = home_cell(tables, x)
     for j in range(whole(word(tables, STARTS), cell), whole(word(tables, STARTS), cell + 1)):
         candidate = whole(word(tables, NEAR), j)
@@ -81,28 +81,24 @@ def part_place(tables, part, x, bound):
     n = part_normal(tables, part, x)
     if whole(word(tables, KINDS), part) < BENT:
         return bound, n
-    distance = bound
+    way = bound
     for _ in range(FEET):
-        distance = 0.0
+        way = 0.0
         for _ in range(NEARER):
-            c = part_clearance(tables, part, added_scaled(x, -distance, n))
-            distance += c
+            c = part_clearance(tables, part, added_scaled(x, -way, n))
+            way += c
             if abs(c) < 1e-13:
                 break
-        n = part_normal(tables, part, added_scaled(x, -distance, n))
-    return distance, n
+        n = part_normal(tables, part, added_scaled(x, -way, n))
+    return way, n
 
 
 @scalar
 def place_at_solid(solid, r, within, one, other):
     """The nearest term whose surface faces another way than these two normals do."""
-    x = shortened(r, solid.pattern)
+    x = shortened(r, solid.like)
     distance, normal, term = nearest_place(
-        solid.bodies.tables,
-        x,
-        within,
-        shortened(one, solid.pattern),
-        shortened(other, solid.pattern),
+        solid.bodies.tables, x, within, shortened(one, solid.like), shortened(other, solid.like)
     )
     return Place(distance, lengthened(normal), term)
 
@@ -110,7 +106,7 @@ def place_at_solid(solid, r, within, one, other):
 @scalar
 def solid_moves(solid, term, r):
     """Velocity of the surface of a term at r."""
-    return lengthened(surface_velocity(solid.bodies.tables, term, shortened(r, solid.pattern)))
+    return lengthened(surface_velocity(solid.bodies.tables, term, shortened(r, solid.like)))
 
 
 @scalar
@@ -120,13 +116,13 @@ def body_of(solid, term):
 
 
 @scalar
-def contact_with(solid, i, term):
+def contact_of(solid, i, term):
     """Which contact sphere i has with a term: one that is free if it is new."""
     free = 0
     for s in range(MOST):
         if solid.terms[i, s] == term:
             return i * MOST + s
-        if solid.terms[i, s] == NO_TERM:
+        if solid.terms[i, s] == NOBODY:
             free = s
     keep(solid.springs, i * MOST + free, NO_SPRINGS)
     solid.terms[i, free] = np.int64(term)
@@ -139,4 +135,4 @@ def forget_others(solid, i, one, two, three):
     for s in range(MOST):
         term = solid.terms[i, s]
         if term != one and term != two and term != three:
-            solid.terms[i, s] = NO_TERM
+            solid.terms[i, s] = NOBODY

@@ -1,4 +1,4 @@
-"""Velocity Verlet, by all threads, until the lists are stale.
+"""Velocity Verlet, by the threads of a team, until the lists are stale.
 
 Half a kick and the drift, the forces at the new places, half a kick. Dashpots along
 the normal see the velocities at the end of the step, others those of the half step. Forces are
@@ -11,9 +11,9 @@ import math
 import numpy as np
 
 from mesokit.kernels.kernel import kernel
-from mesokit.loops.cells import outdated
+from mesokit.loops.cells import worn
 from mesokit.loops.layout import share
-from mesokit.loops.threads import barrier
+from mesokit.loops.threads import meet
 from mesokit.method.spheres.soft.engine.acting import act, ahead, quantum, turns
 from mesokit.method.spheres.soft.engine.contact.room import Room
 from mesokit.method.spheres.soft.engine.groups import DONE, FARTHEST, INVERSE, PENDING
@@ -25,18 +25,16 @@ BATH, BATH_OF_SPINS = METHOD + np.uint64(1), METHOD + np.uint64(2)
 
 
 @kernel
-def advance(worker, counter, steps, law, motion, world, noted, rooms):
+def advance(team, counter, steps, law, motion, world, noted, rooms):
     """So many steps, or fewer where lists must be made anew.
 
     `noted` says whether forces are due first, and then how many steps are done and whether forces
     are due, with new lists.
     """
-    first, last = share(len(world.bodies.number), worker.thread, worker.threads)
-    mine = noted[worker.thread]
-    thread = worker.thread
-    room = Room(
-        rooms.numbers[thread], rooms.counts[thread], rooms.pairs[thread], rooms.taken[thread]
-    )
+    first, last = share(len(world.bodies.number), team.thread, team.threads)
+    mine = noted[team.thread]
+    thread = team.thread
+    room = Room(rooms.numbers[thread], rooms.counts[thread], rooms.who[thread], rooms.taken[thread])
     done, pending = 0, mine[PENDING] != 0.0
     while done < steps:
         now = Counter(counter.seed, counter.step + np.uint64(done))
@@ -48,16 +46,16 @@ def advance(worker, counter, steps, law, motion, world, noted, rooms):
                 foresee(law, motion, world.bodies, i)
                 farthest = max(farthest, moved(world.bodies, world.box, world.lists, i))
             mine[FARTHEST] = farthest
-            barrier(worker)
-            for t in range(worker.threads):
+            meet(team)
+            for t in range(team.threads):
                 farthest = max(farthest, noted[t, FARTHEST])
-            if outdated(farthest, 0.0, world.lists.skin - ahead(law)):
+            if worn(farthest, 0.0, world.lists.skin - ahead(law)):
                 pending = True
                 break
         time = motion.step * float(now.step + np.uint64(1))
         clear(law, world.bodies, first, last)
         act(law, (first, last), time, motion.step, world, mine, room)
-        barrier(worker)
+        meet(team)
         for i in range(first, last):
             kick(law, motion, world.bodies, i)
         pending = False
@@ -66,18 +64,16 @@ def advance(worker, counter, steps, law, motion, world, noted, rooms):
 
 
 @kernel
-def find_forces(worker, time, law, world, noted, rooms):
+def find_forces(team, time, law, world, noted, rooms):
     """The forces on spheres where they start from. No contact grows meanwhile."""
-    first, last = share(len(world.bodies.number), worker.thread, worker.threads)
+    first, last = share(len(world.bodies.number), team.thread, team.threads)
     clear(law, world.bodies, first, last)
     for i in range(len(world.bodies.number)):
         for k in range(3):
             world.bodies.seen[i, k] = world.bodies.velocity[i, k]
-    thread = worker.thread
-    room = Room(
-        rooms.numbers[thread], rooms.counts[thread], rooms.pairs[thread], rooms.taken[thread]
-    )
-    act(law, (first, last), time, 0.0, world, noted[worker.thread], room)
+    thread = team.thread
+    room = Room(rooms.numbers[thread], rooms.counts[thread], rooms.who[thread], rooms.taken[thread])
+    act(law, (first, last), time, 0.0, world, noted[team.thread], room)
 
 
 @scalar
@@ -166,7 +162,7 @@ def moved(bodies, box, lists, i):
     """Square of the way since the lists were made; infinite for what is no number any more."""
     square = 0.0
     for k in range(3):
-        displacement = bodies.place[i, k] - lists.made_at[i, k]
-        displacement -= box.size[k] * rint(displacement * box.inverse[k])
-        square += displacement * displacement
+        way = bodies.place[i, k] - lists.made_at[i, k]
+        way -= box.size[k] * rint(way * box.inverse[k])
+        square += way * way
     return square if square >= 0.0 else np.inf

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.errors import RunError
-from mesokit.geometry.solids.bodies import NO_TERM
+from mesokit.geometry.solids.bodies import NOBODY
 from mesokit.geometry.solids.none import Nothing
 from mesokit.kernels.group import Packing
 from mesokit.loops.threads import Threads
@@ -54,7 +54,7 @@ class Others(NamedTuple):
     and what keeps their tables in memory."""
 
     bodies: Any
-    pattern: tuple[float, ...]
+    like: tuple[float, ...]
     own: Array
     kept: Any
 
@@ -90,7 +90,7 @@ class System:
     """The spheres, their lists, and the threads that move them."""
 
     def __init__(self, given: Given, threads: int) -> None:
-        n, self.given, self.worker = len(given.reach), given, Threads(threads)
+        n, self.given, self.team = len(given.reach), given, Threads(threads)
         self.n, self.dimension = n, len(given.size)
         self.box, self._packing = _box(given), Packing()
         self.grid = _grid(given, self.box)
@@ -106,7 +106,7 @@ class System:
         surfaces = len(given.rows) + (0 if given.others is None else len(given.others.own))
         self.rooms = rooms(threads, surfaces)
         self.noted_forces()
-        self.worker.compile_ahead(advance, *self._arguments(0, 0))
+        self.team.compile_ahead(advance, *self._arguments(0, 0))
 
     def noted_forces(self) -> None:
         """Forget how near spheres came."""
@@ -117,12 +117,12 @@ class System:
         given = self.given
         solid: Any = Nothing()
         if (others := given.others) is not None:
-            solid = Solid(others.bodies, others.pattern, others.own, solid_terms, solid_springs)
+            solid = Solid(others.bodies, others.like, others.own, solid_terms, solid_springs)
         return Walls(given.rows, given.own, springs, solid)
 
     def _no_contacts(self) -> Walls:
         n, width = self.n, self.given.width
-        terms, solid_springs = np.full((n, MOST), NO_TERM, np.int32), np.zeros((n * MOST, width))
+        terms, solid_springs = np.full((n, MOST), NOBODY, np.int32), np.zeros((n * MOST, width))
         return self._walls(np.zeros((n * len(self.given.rows), width)), terms, solid_springs)
 
     def _lists(self, most: int) -> Lists:
@@ -171,7 +171,7 @@ class System:
 
     def find_forces(self, time: float) -> None:
         """The forces at the start."""
-        self.worker.run(find_forces, time, self.given.law, self.world, self.noted, self.rooms)
+        self.team.run(find_forces, time, self.given.law, self.world, self.noted, self.rooms)
         self.forget_taken()
         self._look()
 
@@ -189,7 +189,7 @@ class System:
         done = 0
         self.noted[:, groups.PENDING] = 0.0
         while done < steps or steps == 0:
-            self.worker.run(advance, *self._arguments(step + done, steps - done))
+            self.team.run(advance, *self._arguments(step + done, steps - done))
             done += int(self.noted[0, groups.DONE])
             self._look()
             if self.noted[0, groups.PENDING]:
@@ -235,7 +235,7 @@ class System:
         columns = np.zeros((4, self.n + GROUP))
         columns[:, : self.n] = self.bodies.place.T
         while True:
-            self.worker.run(
+            self.team.run(
                 make_lists,
                 self.grid,
                 self.begins,
@@ -285,7 +285,7 @@ class System:
         if len(lists.springs) < contacts:
             springs = np.zeros((contacts + contacts // 8, self.given.width))
             self.lists = lists._replace(springs=springs)
-        self.worker.run(carry_springs, self.order, self.old, self.lists)
+        self.team.run(carry_springs, self.order, self.old, self.lists)
 
     def _sort_walls(self) -> None:
         """Contacts with walls, in the order of memory."""
@@ -313,7 +313,7 @@ class System:
     def told(self, time: float) -> NDArray[np.int64]:
         """What `acting.tell` says of every sphere, by number, in quanta."""
         told = np.zeros((self.n, groups.TOLD), np.int64)
-        self.worker.run(tell_all, time, self.given.law, self.world, told)
+        self.team.run(tell_all, time, self.given.law, self.world, told)
         return self.by_number(told)
 
     def state(self) -> dict[str, NDArray[Any]]:

@@ -67,7 +67,7 @@ class SpringDashpot(ContactLaw):
     pulls: bool = param(True, doc="whether the dashpot may pull at the end of a contact")
 
     @model_validator(mode="after")
-    def _one_choice(self) -> SpringDashpot:
+    def _one_way(self) -> SpringDashpot:
         if self.stiffness is None and self.damping is not None:
             raise ValueError("expected a stiffness with the damping")
         if self.stiffness is not None and self.contact_time is not None:
@@ -138,9 +138,9 @@ def _(law, overlap, closing, reduced, ratio):
         rate = rate_of_now(overlap, closing, spring, stiffness, damping, reduced)
     # the dashpot's force begins and ends at once: of a step in which spheres touch or part it acts
     # for as long as they overlap
-    change = closing.half * abs(rate)
-    if abs(overlap) < change:
-        rate *= 0.5 + 0.5 * overlap / change
+    way = closing.half * abs(rate)
+    if abs(overlap) < way:
+        rate *= 0.5 + 0.5 * overlap / way
     elif overlap <= 0.0:
         rate = 0.0
     force = spring + damping * rate

@@ -17,12 +17,12 @@ _I32, _I64 = ir.IntType(32), ir.IntType(64)
 
 
 @intrinsic
-def gather(typing_context: Any, records: Any, cell: Any, i: Any, rows: Any, pattern: Any) -> Any:
+def gather(typing_context: Any, records: Any, cell: Any, i: Any, rows: Any, like: Any) -> Any:
     """Copy the records of the cells of lanes i to i + 3 into rows, one for each of their numbers.
 
-    A record is `record_length(len(pattern))` long.
+    A record is `record_length(len(like))` long.
     """
-    count = len(pattern)
+    count = len(like)
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         source = _start(context, builder, signature, arguments, 0)
@@ -38,13 +38,13 @@ def gather(typing_context: Any, records: Any, cell: Any, i: Any, rows: Any, patt
                 _store(builder, target, place, values)
         return context.get_dummy_value()
 
-    return types.void(records, cell, i, rows, pattern), generate
+    return types.void(records, cell, i, rows, like), generate
 
 
 @intrinsic
-def spread(typing_context: Any, records: Any, start: Any, i: Any, rows: Any, pattern: Any) -> Any:
+def spread(typing_context: Any, records: Any, start: Any, i: Any, rows: Any, like: Any) -> Any:
     """Write lanes i to i + 3 of the rows into the four records from `start`."""
-    count = len(pattern)
+    count = len(like)
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         target = _start(context, builder, signature, arguments, 0)
@@ -59,7 +59,7 @@ def spread(typing_context: Any, records: Any, start: Any, i: Any, rows: Any, pat
                 _store(builder, target, _plus(builder, first, j * record_length(count) + k), pair)
         return context.get_dummy_value()
 
-    return types.void(records, types.int64, types.int64, rows, pattern), generate
+    return types.void(records, types.int64, types.int64, rows, like), generate
 
 
 @intrinsic
@@ -100,7 +100,7 @@ def scatter_add(
 
 
 @intrinsic
-def gather_sums(typing_context: Any, sums: Any, start: Any, i: Any, rows: Any, terms: Any) -> Any:
+def take(typing_context: Any, sums: Any, start: Any, i: Any, rows: Any, terms: Any) -> Any:
     """Add the sums of the four cells from `start` to lanes i to i + 3 of the rows; clear them."""
     count = len(terms)
 

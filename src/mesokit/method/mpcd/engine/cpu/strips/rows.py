@@ -9,8 +9,8 @@ from mesokit.scalar.jit import by_type, elementwise, for_each
 
 
 @elementwise
-def load_particle(strip, i, row, pattern):
-    """Lane i of consecutive rows of particles, as a tuple as long as `pattern`."""
+def load_particle(strip, i, row, like):
+    """Lane i of consecutive rows of particles, as a tuple as long as `like`."""
     return "strip[(row + {k}) * ROW + i]"
 
 
@@ -21,8 +21,8 @@ def store_particle(strip, i, row, values):
 
 
 @elementwise
-def load_scratch(scratch, i, pattern):
-    """Lane i of a strip's scratch rows, as a tuple as long as `pattern`."""
+def load_scratch(scratch, i, like):
+    """Lane i of a strip's scratch rows, as a tuple as long as `like`."""
     return "scratch[{k} * SCRATCH_ROW + i]"
 
 
@@ -33,8 +33,8 @@ def store_scratch(scratch, i, values):
 
 
 @elementwise
-def load_values(values, start, pattern):
-    """Consecutive values of an array from `start` (unsigned), as a tuple as long as `pattern`."""
+def load_values(values, start, like):
+    """Consecutive values of an array from `start` (unsigned), as a tuple as long as `like`."""
     return "values[start + np.uint64({k})]"
 
 
@@ -57,7 +57,7 @@ def count_images(image, i, crossed):
 
 
 @by_type
-def lane_mass(masses, strip, i, row):
+def mass_of(masses, strip, i, row):
     """Mass of the particle in lane i: `masses` is (mass,) for all, or () for a row of masses."""
     if len(masses) == 1:
         return lambda masses, strip, i, row: masses[0]

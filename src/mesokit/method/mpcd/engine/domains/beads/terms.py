@@ -7,8 +7,8 @@ import numpy as np
 from mesokit.method.mpcd.engine.beads.state import OWN, PRESENT, load_folded, load_place
 from mesokit.method.mpcd.engine.cpu.grid import cell_in_box, in_block
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_values
-from mesokit.method.mpcd.engine.domains.beads.halo import insert
-from mesokit.method.mpcd.engine.domains.messages.ghosts import NO_OWNER, owner_of
+from mesokit.method.mpcd.engine.domains.beads.roster import insert
+from mesokit.method.mpcd.engine.domains.messages.guests import NOBODY, owner_of
 from mesokit.method.mpcd.engine.domains.messages.mpi import receive, send
 from mesokit.method.mpcd.engine.domains.messages.shared import (
     BEAD_WORDS,
@@ -24,92 +24,92 @@ TERMS = 7  # tag of messages
 
 
 @by_type
-def find_bead_owners(worker, now, physics, fluid, beads):
+def find_bead_owners(team, now, physics, fluid, beads):
     """Which own beads are in own cells and in those of others: how many ask each partner."""
-    if not has_halo(beads):
-        return lambda worker, now, physics, fluid, beads: None
+    if not has_roster(beads):
+        return lambda team, now, physics, fluid, beads: None
     return _find_owners
 
 
-def has_halo(beads: Any) -> bool:
+def has_roster(beads: Any) -> bool:
     """Whether beads are shared, from the numba type of `Beads` or of ()."""
-    return len(beads) > 0 and len(beads.types[beads.fields.index("halo")]) > 0
+    return len(beads) > 0 and len(beads.types[beads.fields.index("roster")]) > 0
 
 
-def _find_owners(worker, now, physics, fluid, beads):
-    if worker.thread == 0:
-        halo, shared, present, zero = beads.halo, fluid.cells.shared, 0, physics.zero
-        for p in range(len(halo.ranks)):
-            halo.asked[p] = 0
-        for n in range(halo.count[OWN]):
-            i = halo.numbers[OWN, n]
+def _find_owners(team, now, physics, fluid, beads):
+    if team.thread == 0:
+        roster, shared, present, zero = beads.roster, fluid.cells.shared, 0, physics.zero
+        for p in range(len(roster.ranks)):
+            roster.asked[p] = 0
+        for n in range(roster.count[OWN]):
+            i = roster.who[OWN, n]
             moved = added_scaled(
                 load_place(beads, i, zero),
                 -1.0,
-                load_values(halo.began, np.uint64(i * len(zero)), zero),
+                load_values(roster.began, np.uint64(i * len(zero)), zero),
             )
-            if dot(moved, moved) > halo.most:
+            if dot(moved, moved) > roster.most:
                 shared.noted[FAULTS] |= STRETCHED
             r, _, _ = load_folded(beads, i, now.box, now.grid.shift)
             place = cell_in_box(r, now.grid)
             if in_block(shared.limits, place):
-                halo.numbers[PRESENT, present] = i
+                roster.who[PRESENT, present] = i
                 present += 1
             else:
                 p, cell = owner_of(shared, place)
-                if p == NO_OWNER:
+                if p == NOBODY:
                     shared.noted[FAULTS] |= FAR
                 else:
-                    halo.ask[p, halo.asked[p]], halo.cell[p, halo.asked[p]] = i, cell
-                    halo.asked[p] += 1
-                    beads.cell[i] = halo.slot + n
-        halo.count[PRESENT] = present
+                    roster.ask[p, roster.asked[p]], roster.cell[p, roster.asked[p]] = i, cell
+                    roster.asked[p] += 1
+                    beads.cell[i] = roster.slot + n
+        roster.count[PRESENT] = present
 
 
 @by_type
-def beads_that_ask(worker, beads, p):
+def beads_that_ask(team, beads, p):
     """How many beads of this rank are in cells of a partner; the first thread alone writes them."""
-    if not has_halo(beads):
-        return lambda worker, beads, p: 0
-    return lambda worker, beads, p: beads.halo.asked[p] if worker.thread == 0 else 0
+    if not has_roster(beads):
+        return lambda team, beads, p: 0
+    return lambda team, beads, p: beads.roster.asked[p] if team.thread == 0 else 0
 
 
 @by_type
 def bead_row(beads, p, j):
     """The slot and the cell there of the jth of them."""
-    if not has_halo(beads):
+    if not has_roster(beads):
         return lambda beads, p, j: (np.int64(0), np.int64(0))
     return lambda beads, p, j: (
-        np.int64(beads.cell[beads.halo.ask[p, j]]),
-        beads.halo.cell[p, j],
+        np.int64(beads.cell[beads.roster.ask[p, j]]),
+        beads.roster.cell[p, j],
     )
 
 
 @by_type
 def send_terms(beads, shared, n):
     """What beads add to cells of partners, on its way; messages in hand."""
-    return _send_terms if has_halo(beads) else lambda beads, shared, n: n
+    return _send_terms if has_roster(beads) else lambda beads, shared, n: n
 
 
 def _send_terms(beads, shared, n):
-    halo = beads.halo
-    terms, words = len(beads.terms), halo.terms_out.shape[2]
-    most = halo.terms_out.shape[1] * words
+    roster = beads.roster
+    terms, words = len(beads.terms), roster.terms_out.shape[2]
+    most = roster.terms_out.shape[1] * words
     size = np.uint64(8 * most)
-    for p in range(len(halo.ranks)):
-        at = np.uint64(halo.terms_in.ctypes.data) + np.uint64(p) * size
-        n = receive(shared.post, n, at, most, halo.ranks[p], TERMS)
-    for p in range(len(halo.ranks)):
-        halo.terms_out[p, 0, 0] = float(halo.asked[p])
-        for j in range(halo.asked[p]):
-            i = halo.ask[p, j]
-            halo.terms_out[p, 1 + j, 0] = float(i)
-            halo.terms_out[p, 1 + j, 1] = float(halo.cell[p, j])
+    for p in range(len(roster.ranks)):
+        at = np.uint64(roster.terms_in.ctypes.data) + np.uint64(p) * size
+        n = receive(shared.post, n, at, most, roster.ranks[p], TERMS)
+    for p in range(len(roster.ranks)):
+        roster.terms_out[p, 0, 0] = float(roster.asked[p])
+        for j in range(roster.asked[p]):
+            i = roster.ask[p, j]
+            roster.terms_out[p, 1 + j, 0] = float(i)
+            roster.terms_out[p, 1 + j, 1] = float(roster.cell[p, j])
             for k in range(terms):
-                halo.terms_out[p, 1 + j, 2 + k] = beads.given[i * terms + k]
-        at = np.uint64(halo.terms_out.ctypes.data) + np.uint64(p) * size
-        sent = (1 + halo.asked[p]) * words
-        n = send(shared.post, n, at, sent, halo.ranks[p], TERMS)
+                roster.terms_out[p, 1 + j, 2 + k] = beads.given[i * terms + k]
+        at = np.uint64(roster.terms_out.ctypes.data) + np.uint64(p) * size
+        sent = (1 + roster.asked[p]) * words
+        n = send(shared.post, n, at, sent, roster.ranks[p], TERMS)
         shared.meter[MESSAGES] += 1
         shared.meter[BEAD_WORDS] += sent
     return n
@@ -118,26 +118,26 @@ def _send_terms(beads, shared, n):
 @by_type
 def take_terms(beads):
     """What beads of others add to cells of this rank."""
-    return _take_terms if has_halo(beads) else lambda beads: None
+    return _take_terms if has_roster(beads) else lambda beads: None
 
 
 def _take_terms(beads):
-    halo, terms = beads.halo, len(beads.terms)
-    present = halo.count[PRESENT]
-    for p in range(len(halo.ranks)):
-        for row in range(1, 1 + int(halo.terms_in[p, 0, 0])):
-            i = int(halo.terms_in[p, row, 0])
-            beads.cell[i] = np.int32(halo.terms_in[p, row, 1])
+    roster, terms = beads.roster, len(beads.terms)
+    present = roster.count[PRESENT]
+    for p in range(len(roster.ranks)):
+        for row in range(1, 1 + int(roster.terms_in[p, 0, 0])):
+            i = int(roster.terms_in[p, row, 0])
+            beads.cell[i] = np.int32(roster.terms_in[p, row, 1])
             for k in range(terms):
-                beads.given[i * terms + k] = halo.terms_in[p, row, 2 + k]
-            present = insert(halo.numbers, PRESENT, present, i)
-    halo.count[PRESENT] = present
+                beads.given[i * terms + k] = roster.terms_in[p, row, 2 + k]
+            present = insert(roster.who, PRESENT, present, i)
+    roster.count[PRESENT] = present
 
 
 @by_type
 def joint_answer(beads, cell, answer):
     """The answer for a cell: that of its fluid, or of fluid and beads together."""
-    return _joint if has_halo(beads) else lambda beads, cell, answer: answer
+    return _joint if has_roster(beads) else lambda beads, cell, answer: answer
 
 
 def _joint(beads, cell, answer):

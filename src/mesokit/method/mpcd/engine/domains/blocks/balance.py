@@ -48,7 +48,7 @@ class Balance:
         self.first = self.last = np.nan  # imbalance of the first and the last window
         self._times, self._earlier = np.zeros(comm.size), np.zeros(0)
         self._pending: list[Any] = []
-        weakref.finalize(self, finish_agreement, self._pending)
+        weakref.finalize(self, finish, self._pending)
         self._wait = 1  # windows to let pass: the first has the compiling in it
 
     def tell(self, seconds: float) -> None:
@@ -59,7 +59,7 @@ class Balance:
     def heard(self) -> list[NDArray[np.float64]]:
         """Times (ranks,) of the two windows before, the same on all ranks; nothing if there were
         none: what is seen twice is no accident."""
-        if not finish_agreement(self._pending):
+        if not finish(self._pending):
             return []
         if self._wait > 0:
             self._wait -= 1
@@ -76,11 +76,11 @@ class Balance:
     def moved(self, step: int, blocks: tuple[Block, ...]) -> None:
         """Borders have moved: the window in hand tells nothing of the new ones."""
         self.moves.append(Move(step, float(self.last), blocks))
-        finish_agreement(self._pending)
+        finish(self._pending)
         self._wait, self._earlier = PATIENCE, np.zeros(0)
 
 
-def finish_agreement(pending: list[Any]) -> bool:
+def finish(pending: list[Any]) -> bool:
     """Wait for a message that all ranks have sent, if there is one; also where a run ends."""
     if not pending:
         return False
@@ -93,7 +93,7 @@ def imbalance(times: NDArray[np.float64]) -> float:
     return float(times.max() / times.mean()) if times.mean() > 0 else 1.0
 
 
-def relative_spread(node: Node, windows: Sequence[NDArray[np.float64]]) -> float:
+def spread(node: Node, windows: Sequence[NDArray[np.float64]]) -> float:
     """sigma_T of the two branches of a node, from the mean times of their ranks: the least of some
     windows, 0 if these do not agree on which side has more to do."""
     few, found = node.ranks // 2, []
@@ -114,7 +114,7 @@ def still_good(tree: Tree, windows: Sequence[NDArray[np.float64]], limit: float)
         stay = []
         for node in level:
             inside = any(a <= node.first < b for a, b in bad)
-            if inside or relative_spread(node, windows) > min(limit * (1.0 + HIGHER * above), 1.0):
+            if inside or spread(node, windows) > min(limit * (1.0 + HIGHER * above), 1.0):
                 bad.append((node.first, node.first + node.ranks))
             else:
                 stay.append(node)

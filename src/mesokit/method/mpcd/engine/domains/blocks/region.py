@@ -112,11 +112,11 @@ def partners(rank: int, blocks: Sequence[Block], space: Space, reach: int) -> li
     return [
         other
         for other, block in enumerate(blocks)
-        if other != rank and any(_overlap(blocks[rank], block, space, reach))
+        if other != rank and any(_meet(blocks[rank], block, space, reach))
     ]
 
 
-def _overlap(one: Block, two: Block, space: Space, reach: int) -> Iterator[bool]:
+def _meet(one: Block, two: Block, space: Space, reach: int) -> Iterator[bool]:
     """Whether two blocks come near one another: as they lie, and across images that slide."""
     inside = [_near(one, two, space, k, reach, space.repeats(k)) for k in range(len(space.cells))]
     yield all(inside)

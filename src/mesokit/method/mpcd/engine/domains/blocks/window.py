@@ -46,4 +46,4 @@ class Window:
 def waiting(memory: Any) -> list[Any]:
     """Where the ticks of waiting are counted: for cells, and for beads."""
     found = [memory.fluid.cells.shared.post.waited]
-    return found + ([memory.solutes.halo.post.waited] if memory.solutes else [])
+    return found + ([memory.solutes.roster.post.waited] if memory.solutes else [])

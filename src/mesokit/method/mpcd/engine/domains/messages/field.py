@@ -3,7 +3,7 @@
 import numpy as np
 
 from mesokit.kernels.part import stage
-from mesokit.loops.threads import barrier
+from mesokit.loops.threads import meet
 from mesokit.method.mpcd.engine.domains.messages.mpi import finish, receive, send
 from mesokit.method.mpcd.engine.domains.messages.shared import FIELD_WORDS, MESSAGES, shares
 from mesokit.scalar.jit import by_type
@@ -12,17 +12,17 @@ FIELDS = 3  # tag of messages
 
 
 @by_type
-def share_field(worker, fluid):
+def share_field(team, fluid):
     """The sums of cells at the borders, of which neighbours there take the gradient."""
     if not shares(fluid):
-        return lambda worker, fluid: None
-    return lambda worker, fluid: _share_field(worker, fluid)
+        return lambda team, fluid: None
+    return lambda team, fluid: _share_field(team, fluid)
 
 
 @stage
-def _share_field(worker, fluid):
-    barrier(worker)
-    if worker.thread == 0:
+def _share_field(team, fluid):
+    meet(team)
+    if team.thread == 0:
         shared, values = fluid.cells.shared, fluid.cells.field.values
         post, n = shared.post, 0
         for j in range(len(shared.given)):
@@ -40,4 +40,4 @@ def _share_field(worker, fluid):
         finish(post, n)
         for j in range(len(shared.mine)):
             values[shared.mine[j]] = shared.field_in[j]
-    barrier(worker)
+    meet(team)

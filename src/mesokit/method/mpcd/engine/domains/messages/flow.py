@@ -8,13 +8,13 @@ import numpy as np
 
 from mesokit.method.mpcd.engine.cpu.physics import field_of
 from mesokit.method.mpcd.engine.domains.messages.shared import FAULTS, FULL, HEADER
-from mesokit.method.mpcd.engine.virtual.gradient import PROBES, average_probe, straighten
+from mesokit.method.mpcd.engine.virtual.gradient import PROBES, remember, straighten
 from mesokit.scalar.jit import by_type, elementwise, for_each
 
 
 @elementwise
-def seen_at(values, e, p, pattern):
-    """What was seen at a probe, as a tuple as long as `pattern`."""
+def seen_at(values, e, p, like):
+    """What was seen at a probe, as a tuple as long as `like`."""
     return "values[e, p, {k}]"
 
 
@@ -34,12 +34,12 @@ def write_seen(walls, now, physics, shared, partner, row):
 
 def _write(walls, now, physics, shared, partner, row):
     seen, rows, first = walls.virtual.seen, shared.answers_out, row
-    pattern = physics.zero + (0.0,)
+    like = physics.zero + (0.0,)
     for j in range(seen.given_starts[partner], seen.given_starts[partner + 1]):
         e = seen.given[j]
         for p in range(PROBES):
             if seen.step[e, p] == np.int64(now.counter.step):
-                values = seen_at(seen.values, e, p, pattern)
+                values = seen_at(seen.values, e, p, like)
                 if row == shared.in_at[partner + 1]:
                     shared.noted[FAULTS] |= FULL
                     return row - first
@@ -75,7 +75,7 @@ def _take(walls, now, physics, shared):
         for p in range(PROBES):
             if seen.step[e, p] == np.int64(now.counter.step):
                 values = seen_at(seen.values, e, p, physics.zero + (0.0,))
-                average_probe(virtual.rates, e, p, values, physics.zero)
+                remember(virtual.rates, e, p, values, physics.zero)
                 new = True
         if new:
             straighten(virtual.rates, e, physics.zero)

@@ -20,11 +20,11 @@ from mesokit.loops.layout import (
     place_of_bead,
     record_length,
 )
-from mesokit.loops.threads import barrier
+from mesokit.loops.threads import meet
 from mesokit.method.mpcd.engine.cpu.grid import cell_in_box, in_block, moved_grid
 from mesokit.method.mpcd.engine.cpu.near_solids import FEW
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle
-from mesokit.method.mpcd.engine.domains.messages.ghosts import NO_OWNER, owner_of
+from mesokit.method.mpcd.engine.domains.messages.guests import NOBODY, owner_of
 from mesokit.method.mpcd.engine.domains.messages.mpi import finish
 from mesokit.method.mpcd.engine.domains.messages.rows import receive_rows, send_rows
 from mesokit.method.mpcd.engine.domains.messages.shared import (
@@ -44,11 +44,11 @@ PARTICLES = 4  # tag of messages
 
 
 @by_type
-def migrate(worker, now, physics, fluid):
+def migrate(team, now, physics, fluid):
     """Those that strayed go to others, if it is time; whether there still are the same."""
     if not shares(fluid):
-        return lambda worker, now, physics, fluid: True
-    return lambda worker, now, physics, fluid: _migrate(worker, now, physics, fluid)
+        return lambda team, now, physics, fluid: True
+    return lambda team, now, physics, fluid: _migrate(team, now, physics, fluid)
 
 
 @by_type
@@ -65,41 +65,41 @@ def _room_left(fluid):
 
 
 @by_type
-def note_done(worker, fluid, steps):
+def note_done(team, fluid, steps):
     """Tell how many steps were done: fewer than asked for where there was no room."""
     if not shares(fluid):
-        return lambda worker, fluid, steps: None
+        return lambda team, fluid, steps: None
     return _note_done
 
 
-def _note_done(worker, fluid, steps):
-    if worker.thread == 0:
+def _note_done(team, fluid, steps):
+    if team.thread == 0:
         fluid.cells.shared.noted[DONE] = steps
 
 
 @stage
-def _migrate(worker, now, physics, fluid):
+def _migrate(team, now, physics, fluid):
     shared = fluid.cells.shared
     if np.int64(now.counter.step) % shared.every != 0:
         return True
-    barrier(worker)
-    if worker.thread == 0:
+    meet(team)
+    if team.thread == 0:
         for p in range(len(shared.ranks)):
             shared.moved_out[shared.moved_at[p] + HEADER, 0] = 0
         n = fluid.particles.filling.molecules
-        for t in range(worker.threads - 1, -1, -1):  # the last first: they leave no holes
+        for t in range(team.threads - 1, -1, -1):  # the last first: they leave no holes
             for j in range(shared.left[t, 0] - 1, -1, -1):
                 n = leave(fluid, physics, shared.leaving[t, j], shared.owner[t, j], n)
             shared.left[t, 0] = 0
-        exchange_particles(shared)
+        exchange(shared)
         shared.noted[ARRIVED] = 0
         for p in range(len(shared.ranks)):
             begin = shared.moved_at[p] + HEADER + 1
             for row in range(begin, begin + shared.moved_in[begin - 1, 0]):
                 n = arrive(fluid, physics, shared.moved_in[row], n)
         shared.noted[MOLECULES] = n
-    barrier(worker)
-    lap(worker, MOVE)
+    meet(team)
+    lap(team, MOVE)
     return False
 
 
@@ -113,23 +113,23 @@ def home(box, grid, closed):
 
 
 @by_type
-def note_strays(worker, now, physics, fluid, strip, s):
+def note_strays(team, now, physics, fluid, strip, s):
     """Note the leaders in strip s, which is in the cache, that are to go to other ranks now."""
     if not shares(fluid):
-        return lambda worker, now, physics, fluid, strip, s: None
+        return lambda team, now, physics, fluid, strip, s: None
     return _note_strays
 
 
-def _note_strays(worker, now, physics, fluid, strip, s):
+def _note_strays(team, now, physics, fluid, strip, s):
     shared, away = fluid.cells.shared, np.int64(0)
     if np.int64(now.counter.step) % shared.every == 0:
-        marks, grid = fluid.scratch.marks[worker.thread], home(now.box, now.grid, shared.closed)
+        marks, grid = fluid.scratch.marks[team.thread], home(now.box, now.grid, shared.closed)
         for i in range(LANES):
             r = load_particle(strip, i, 0, physics.zero)
             marks[i] = is_away(shared.limits, r, grid)
             away |= marks[i]
         if away != 0:
-            note_leaving(worker.thread, fluid, strip, s, grid, physics.zero)
+            note_leaving(team.thread, fluid, strip, s, grid, physics.zero)
 
 
 @seldom
@@ -145,7 +145,7 @@ def note_leaving(thread, fluid, strip, s, grid, zero):
         if marks[i] != 0 and found < shared.leaving.shape[1]:
             r = load_particle(strip, i, 0, zero)
             owner, _ = owner_of(shared, cell_in_box(r, grid))
-            if owner != NO_OWNER:
+            if owner != NOBODY:
                 shared.leaving[thread, found], shared.owner[thread, found] = first + i, owner
                 found += 1
     shared.left[thread, 0] = found
@@ -200,7 +200,7 @@ def forget_part(fluid, i):
 
 
 @scalar
-def exchange_particles(shared):
+def exchange(shared):
     """Messages to all partners, and from them."""
     n = receive_rows(shared, 0, shared.moved_in, shared.moved_at, PARTICLES)
     for p in range(len(shared.ranks)):

@@ -8,12 +8,12 @@ from mesokit.scalar.jit import by_type
 
 # Places in `Shared.noted`: molecules held, steps done by the last call, faults, newcomers in hand.
 MOLECULES, DONE, FAULTS, ARRIVED = 0, 1, 2, 3
-# Faults: more ghosts than there is room for; a cell of nobody in reach; a bead that went too far.
+# Faults: more guests than there is room for; a cell of nobody in reach; a bead that went too far.
 FULL, FAR, STRETCHED = 1, 2, 4
 # Places in `Shared.meter`, numbers since the run began: messages, words and rows sent for sums,
-# answers, particles and fields, most ghosts of a thread at once, molecules moved,
+# answers, particles and fields, most guests of a thread at once, molecules moved,
 # words for beads.
-MESSAGES, SUM_WORDS, ANSWER_WORDS, MOVED_WORDS, FIELD_WORDS, GHOSTS, MOVED, BEAD_WORDS = range(8)
+MESSAGES, SUM_WORDS, ANSWER_WORDS, MOVED_WORDS, FIELD_WORDS, GUESTS, MOVED, BEAD_WORDS = range(8)
 METER_SIZE = 8
 HEADER = 0  # the row in front of a message: how many follow
 
@@ -22,7 +22,7 @@ class Shared(NamedTuple):
     """The cells around a block and the messages about them; q partners, T threads.
 
     A cell of another rank is known by a number of its own here. Rows of sums go to the rank whose
-    cell it is, which answers with what particles need in order to collide. Ghosts are particles in
+    cell it is, which answers with what particles need in order to collide. Guests are particles in
     cells that are not known: their rows go to whoever has the cell, their answers into a slot
     behind all known cells.
 
@@ -38,11 +38,11 @@ class Shared(NamedTuple):
     counting (T, q): rows of each thread; sent (q,): of all.
     field_out, field_in: numbers of cells whose neighbours are asked for, in the order of `given`
     and of `mine`.
-    ghost_place, ghost_cell, ghost_owner (T, ghosts), ghost_terms (T, ghosts, width), ghosts (T, 8).
+    guest_place, guest_cell, guest_owner (T, guests), guest_terms (T, guests, width), guests (T, 8).
     leaving, owner (T, most), left (T, 8): molecules that go to others, and to whom; moved_at
     (q + 1,), moved_out, moved_in (rows, record): where those of each partner begin, and their
     numbers.
-    every: steps from one move to the next; slots: ghosts of all threads; room: molecules that the
+    every: steps from one move to the next; slots: guests of all threads; room: molecules that the
     arrays hold.
     """
 
@@ -71,11 +71,11 @@ class Shared(NamedTuple):
     sent: Any
     field_out: Any
     field_in: Any
-    ghost_place: Any
-    ghost_cell: Any
-    ghost_owner: Any
-    ghost_terms: Any
-    ghosts: Any
+    guest_place: Any
+    guest_cell: Any
+    guest_owner: Any
+    guest_terms: Any
+    guests: Any
     leaving: Any
     owner: Any
     left: Any

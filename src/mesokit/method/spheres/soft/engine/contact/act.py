@@ -2,16 +2,16 @@
 
 from mesokit.method.spheres.soft.engine.acting import act, tell
 from mesokit.method.spheres.soft.engine.contact.force import Contact
-from mesokit.method.spheres.soft.engine.contact.pairs import add_contact_forces, tell_pairs
-from mesokit.method.spheres.soft.engine.contact.walls import contact_forces_from_walls, tell_walls
+from mesokit.method.spheres.soft.engine.contact.pairs import push_pairs, tell_pairs
+from mesokit.method.spheres.soft.engine.contact.walls import push_from_walls, tell_walls
 from mesokit.method.spheres.soft.engine.groups import LARGEST
 
 
 @act.register(Contact)
 def _(law, mine, time, step, world, noted, room):
-    largest = add_contact_forces(law, mine, step, world, room)
+    largest = push_pairs(law, mine, step, world, room)
     for i in range(mine[0], mine[1]):
-        largest = max(largest, contact_forces_from_walls(law, i, time, step, world, room))
+        largest = max(largest, push_from_walls(law, i, time, step, world, room))
     noted[LARGEST] = max(noted[LARGEST], largest * law.scale)
 
 

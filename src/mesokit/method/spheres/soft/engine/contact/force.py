@@ -125,10 +125,10 @@ def meeting(one, other):
 
 
 @scalar
-def between(law, half, separation, met):
-    """The contact of one sphere with another, which is `separation` off, half a step long."""
-    distance = math.sqrt(dot(separation, separation))
-    normal, both = scaled(1.0 / distance, separation), met.reach + met.other
+def between(law, half, way, met):
+    """The contact of one sphere with another, which is `way` off, half a step long."""
+    distance = math.sqrt(dot(way, way))
+    normal, both = scaled(1.0 / distance, way), met.reach + met.other
     closing = Closing(-dot(met.foreseen, normal), -dot(met.velocity, normal), half)
     velocity = added_scaled(met.velocity, -1.0, outer(met.rolled, normal))
     return Touch(
@@ -198,24 +198,24 @@ class Answer(NamedTuple):
 @scalar
 def answer(law, touch, springs, step, rolls):
     """What a contact does, and its springs after a step; `rolls`: whether rolling is resisted."""
-    normal_part, stiffness = normal_force(
+    push, stiffness = normal_force(
         law.normal, touch.overlap, touch.closing, touch.reduced, touch.ratio
     )
-    force, along, against = scaled(normal_part, touch.normal), NONE, NONE
+    force, along, against = scaled(push, touch.normal), NONE, NONE
     slid, rolled = NONE, NONE
     if touch.overlap > 0.0:
         damping = law.damping * math.sqrt(stiffness * touch.reduced)
         if touch.friction > 0.0:
             sliding = added_scaled(touch.velocity, -dot(touch.velocity, touch.normal), touch.normal)
             slider = Slider(
-                law.memory * law.stiffness * stiffness, damping, touch.friction * abs(normal_part)
+                law.memory * law.stiffness * stiffness, damping, touch.friction * abs(push)
             )
             drag, slid = stretched(slider, springs.sliding, sliding, touch.normal, step)
             force, along = added(force, drag), outer(touch.normal, drag)
         if rolls:
             # how fast surfaces would slip if they did not roll (Luding 2008, eq. 22)
             rolling = scaled(-touch.roller, outer(touch.turning, touch.normal))
-            slider = Slider(law.stiffness * stiffness, damping, law.rolling * abs(normal_part))
+            slider = Slider(law.stiffness * stiffness, damping, law.rolling * abs(push))
             drag, rolled = stretched(slider, springs.rolling, rolling, touch.normal, step)
             against = outer(touch.normal, drag)
     return Answer(force, along, against, Springs(slid, rolled))
@@ -241,16 +241,16 @@ def torque_on_other(touch, found, arm, rolls):
 def at_rest(law, touch, springs):
     """Energy of the springs of a contact, and its force; dashpots along the surface count as they
     are, and nothing changes."""
-    normal_part, stiffness = normal_force(
+    push, stiffness = normal_force(
         law.normal, touch.overlap, touch.closing, touch.reduced, touch.ratio
     )
     energy = normal_energy(law.normal, touch.overlap, touch.reduced)
-    force = scaled(normal_part, touch.normal)
+    force = scaled(push, touch.normal)
     if touch.friction > 0.0:
         slider = Slider(
             law.memory * law.stiffness * stiffness,
             law.damping * math.sqrt(stiffness * touch.reduced),
-            touch.friction * abs(normal_part),
+            touch.friction * abs(push),
         )
         sliding = added_scaled(touch.velocity, -dot(touch.velocity, touch.normal), touch.normal)
         along, _ = stretched(slider, springs.sliding, sliding, touch.normal, 0.0)

@@ -35,9 +35,9 @@ from mesokit.method.spheres.soft.engine.contact.room import (
     PLACE,
     ROW,
     SECOND,
-    SEPARATION,
     TORQUE,
     VECTOR,
+    WAY,
     load,
     load_meeting,
     load_springs,
@@ -56,7 +56,7 @@ PART = 16  # of a list at a time
 
 
 @scalar
-def add_contact_forces(law, mine, step, world, room):
+def push_pairs(law, mine, step, world, room):
     """Forces and torques of all pairs that this thread finds; a bound of them."""
     lists, largest = world.lists, 0.0
     i, last, begin, next_contact = mine[0], mine[1], 0, lists.begin[mine[0]]
@@ -87,13 +87,13 @@ def find_near(law, i, begin, end, world, room, n):
     r, far, kept_at = row(bodies.place, i), reach(bodies, i), lists.begin[i]
     for s in range(begin, end):
         j = np.uint64(lists.near[i, s])
-        separation = from_to(box, bodies.place, j, r)
+        way = from_to(box, bodies.place, j, r)
         apart = far + reach(bodies, j) + law.ahead
-        near = 1 if dot(separation, separation) < apart * apart else 0
+        near = 1 if dot(way, way) < apart * apart else 0
         c = np.uint64(n)
         at = np.uint64(kept_at + s)
-        room.pairs[FIRST + c], room.pairs[SECOND + c], room.pairs[PLACE + c] = np.uint64(i), j, at
-        store(room.numbers, SEPARATION, c, separation)
+        room.who[FIRST + c], room.who[SECOND + c], room.who[PLACE + c] = np.uint64(i), j, at
+        store(room.numbers, WAY, c, way)
         n += near
     return n
 
@@ -103,10 +103,10 @@ def bring(world, room, n):
     """What the spheres of a batch have, side by side."""
     bodies = world.bodies
     for c in range(np.uint64(n)):
-        i, j = room.pairs[FIRST + c], room.pairs[SECOND + c]
+        i, j = room.who[FIRST + c], room.who[SECOND + c]
         met = meeting(body(bodies, bodies.seen, i), body(bodies, bodies.seen, j))
         store_meeting(room.numbers, c, met)
-        store_springs(room.numbers, c, kept(world.lists.springs, room.pairs[PLACE + c]))
+        store_springs(room.numbers, c, kept(world.lists.springs, room.who[PLACE + c]))
 
 
 @scalar
@@ -115,7 +115,7 @@ def follow(law, step, room, n, rolls):
     numbers = room.numbers
     for c in range(np.uint64((n + GROUP - 1) & -GROUP)):
         met = load_meeting(numbers, c)
-        touch = between(law, 0.5 * step, load(numbers, SEPARATION, c, VECTOR), met)
+        touch = between(law, 0.5 * step, load(numbers, WAY, c, VECTOR), met)
         found = answer(law, touch, load_springs(numbers, c), step, rolls)
         torque = torque_of(touch, found, met.reach, rolls)
         back = torque_on_other(touch, found, met.other, rolls)
@@ -131,7 +131,7 @@ def add_up(law, mine, world, room, n):
     """Add a batch to the sums of its spheres; a bound of its forces and torques."""
     bodies, largest = world.bodies, 0.0
     for c in range(np.uint64(n)):
-        i, j = room.pairs[FIRST + c], room.pairs[SECOND + c]
+        i, j = room.who[FIRST + c], room.who[SECOND + c]
         force = load(room.counts, FORCE, c, COUNT)
         add(bodies.force, i, force)
         add(bodies.torque, i, load(room.counts, TORQUE, c, COUNT))
@@ -139,7 +139,7 @@ def add_up(law, mine, world, room, n):
             subtract(bodies.force, j, force)
             add(bodies.torque, j, load(room.counts, BACK, c, COUNT))
         largest = max(largest, room.numbers[np.uint64(BOUND) * ROW + c])
-        keep(world.lists.springs, room.pairs[PLACE + c], load_springs(room.numbers, c))
+        keep(world.lists.springs, room.who[PLACE + c], load_springs(room.numbers, c))
     return largest
 
 
@@ -150,11 +150,11 @@ def tell_pairs(law, i, world, told):
     r, one = row(bodies.place, i), body(bodies, bodies.velocity, i)
     for s in range(lists.count[i]):
         j = lists.near[i, s]
-        separation = from_to(box, bodies.place, j, r)
-        square, sum_of_radii = dot(separation, separation), reach(bodies, i) + reach(bodies, j)
+        way = from_to(box, bodies.place, j, r)
+        square, sum_of_radii = dot(way, way), reach(bodies, i) + reach(bodies, j)
         if square < sum_of_radii * sum_of_radii and j != i:
-            touch = between(law, 0.0, separation, meeting(one, body(bodies, bodies.velocity, j)))
+            touch = between(law, 0.0, way, meeting(one, body(bodies, bodies.velocity, j)))
             energy, force = at_rest(law, touch, kept_between(lists, i, j))
             told[ENERGY] += quanta(energy, law.scale)
             told[TOUCHING] += 1
-            add_product(told, law.scale, force, separation)
+            add_product(told, law.scale, force, way)

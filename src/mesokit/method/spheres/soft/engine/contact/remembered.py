@@ -45,9 +45,9 @@ def kept_between(lists, i, j):
 
 
 @kernel
-def carry_springs(worker, order, old, new):
+def carry_springs(team, order, old, new):
     """Bring what contacts remember from old lists to new ones; `order`: where a sphere was."""
-    first, last = share(len(order), worker.thread, worker.threads)
+    first, last = share(len(order), team.thread, team.threads)
     for i in range(first, last):
         for s in range(new.own[i]):
             found = kept_between(old, order[i], order[new.near[i, s]])

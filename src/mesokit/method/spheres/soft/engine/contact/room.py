@@ -19,7 +19,7 @@ ROW = np.uint64(BATCH + 8)
 # how much there is of each
 COUNT, VECTOR, MEETING, SPRINGS = (0,) * 3, (0.0,) * 3, (0.0,) * 15, (0.0,) * 6
 # rows of numbers: where the vector, what the two have and springs begin, and the bound of forces
-SEPARATION, MET, KEPT, BOUND, NUMBERS = 0, 3, 18, 24, 25
+WAY, MET, KEPT, BOUND, NUMBERS = 0, 3, 18, 24, 25
 FORCE, TORQUE, BACK, COUNTS = 0, 3, 6, 9  # rows of counts: on the one, and the torque on the other
 FIRST, SECOND, PLACE = np.uint64(0), ROW, np.uint64(2) * ROW  # who, with whom, which contact
 
@@ -30,7 +30,7 @@ class Room(NamedTuple):
 
     numbers: Any
     counts: Any
-    pairs: Any
+    who: Any
     taken: Any
 
 
@@ -46,8 +46,8 @@ def rooms(threads: int, surfaces: int) -> Room:
 
 
 @elementwise
-def load(numbers, start, c, pattern):
-    """Contact c of consecutive rows, as a tuple as long as `pattern`."""
+def load(numbers, start, c, like):
+    """Contact c of consecutive rows, as a tuple as long as `like`."""
     return "numbers[np.uint64(start + {k}) * ROW + c]"
 
 

@@ -1,17 +1,17 @@
 """Forces of walls of any shape on spheres that touch them."""
 
-from mesokit.geometry.solids.bodies import NO_TERM
+from mesokit.geometry.solids.bodies import NOBODY
 from mesokit.geometry.solids.none import Nothing
 from mesokit.method.spheres.soft.engine.acting import ahead, beside, tell_beside
 from mesokit.method.spheres.soft.engine.contact.force import at_wall, body, surface
 from mesokit.method.spheres.soft.engine.contact.remembered import kept
-from mesokit.method.spheres.soft.engine.contact.walls import add_force, tell_wall
+from mesokit.method.spheres.soft.engine.contact.walls import push, tell_wall
 from mesokit.method.spheres.soft.engine.geometry import reach, row
 from mesokit.method.spheres.soft.engine.groups import Solid
 from mesokit.method.spheres.soft.engine.solid import (
     Place,
     body_of,
-    contact_with,
+    contact_of,
     forget_others,
     place_at_solid,
     solid_moves,
@@ -36,12 +36,12 @@ def _(solid, law, i, world, told):
 def touched(law, solid, bodies, i):
     """The surfaces that sphere i touches, or is about to: three at most."""
     r, within = row(bodies.place, i), reach(bodies, i) + ahead(law)
-    nowhere = Place(within, FACELESS, NO_TERM)
+    nowhere = Place(within, FACELESS, NOBODY)
     first = place_at_solid(solid, r, within, FACELESS, FACELESS)
     second, third = nowhere, nowhere
-    if first.term != NO_TERM:
+    if first.term != NOBODY:
         second = place_at_solid(solid, r, within, first.normal, FACELESS)
-    if second.term != NO_TERM:
+    if second.term != NOBODY:
         third = place_at_solid(solid, r, within, first.normal, second.normal)
     return first, second, third
 
@@ -60,9 +60,9 @@ def _(solid, law, i, step, world, room):
     places = touched(law, solid, bodies, i)
     forget_others(solid, i, places[0].term, places[1].term, places[2].term)
     for place in places:
-        if place.term != NO_TERM:
-            there, c = surface_at(solid, bodies, i, place), contact_with(solid, i, place.term)
-            bound, counts = add_force(law, i, there, solid.springs, c, step, bodies)
+        if place.term != NOBODY:
+            there, c = surface_at(solid, bodies, i, place), contact_of(solid, i, place.term)
+            bound, counts = push(law, i, there, solid.springs, c, step, bodies)
             take(room.taken, len(world.walls.rows) + body_of(solid, place.term), counts)
             largest = max(largest, bound)
     return largest
@@ -71,8 +71,8 @@ def _(solid, law, i, step, world, room):
 @tell_beside.register(Solid)
 def _(solid, law, i, world, told):
     for place in touched(law, solid, world.bodies, i):
-        if place.term != NO_TERM and place.distance < reach(world.bodies, i):
+        if place.term != NOBODY and place.distance < reach(world.bodies, i):
             there = surface_at(solid, world.bodies, i, place)
             touch = at_wall(0.0, body(world.bodies, world.bodies.velocity, i), there)
-            springs = kept(solid.springs, contact_with(solid, i, place.term))
+            springs = kept(solid.springs, contact_of(solid, i, place.term))
             tell_wall(law, touch, springs, told)

@@ -19,7 +19,7 @@ from mesokit.scalar.jit import scalar
 
 
 @scalar
-def contact_forces_from_walls(law, i, time, step, world, room):
+def push_from_walls(law, i, time, step, world, room):
     """Add what walls do to sphere i; a bound of it."""
     bodies, box, walls = world.bodies, world.box, world.walls
     r, largest = row(bodies.place, i), 0.0
@@ -28,7 +28,7 @@ def contact_forces_from_walls(law, i, time, step, world, room):
         if distance < reach(bodies, i) + law.ahead:
             there = surface(distance, out, moves, walls.own, w)
             c = i * len(walls.rows) + w
-            bound, counts = add_force(law, i, there, walls.springs, c, step, bodies)
+            bound, counts = push(law, i, there, walls.springs, c, step, bodies)
             take(room.taken, w, counts)
             largest = max(largest, bound)
         else:
@@ -37,7 +37,7 @@ def contact_forces_from_walls(law, i, time, step, world, room):
 
 
 @scalar
-def add_force(law, i, there, springs, c, step, bodies):
+def push(law, i, there, springs, c, step, bodies):
     """Add the force and the torque of a contact with a wall to those of sphere i, and bring its
     springs, row c, up to date; a bound of both, and the force in quanta."""
     rolls = law.rolling > 0.0

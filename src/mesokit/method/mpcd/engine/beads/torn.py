@@ -12,7 +12,7 @@ STEP, FIRST, SECOND = 0, 1, 2  # what is noted, of each thread: its step, or 0, 
 
 
 @scalar
-def note_broken(faults, step, one, other):
+def note_torn(faults, step, one, other):
     """Note step and beads of the first bond that is longer than it can be (seldom called)."""
     step, one = np.int64(step), np.int64(one)
     earlier = faults[STEP] == 0 or step < faults[STEP]
@@ -20,16 +20,16 @@ def note_broken(faults, step, one, other):
         faults[STEP], faults[FIRST], faults[SECOND] = step, one, np.int64(other)
 
 
-def first_broken(faults: NDArray[np.int64]) -> int | None:
-    """The first bead of the first bond that was broken in the last steps; None if none was."""
+def first_torn(faults: NDArray[np.int64]) -> int | None:
+    """The first bead of the first bond that was torn in the last steps; None if none was."""
     noted = faults[faults[:, STEP] > 0]
     if not len(noted):
         return None
     return int(min(map(tuple, noted[:, [STEP, FIRST, SECOND]].tolist()))[1])
 
 
-def refuse_broken(faults: NDArray[np.int64], longest: float, name: str, advice: str) -> None:
-    """Raise RunError if a bond of those, as they are called, was broken in the last steps.
+def refuse_torn(faults: NDArray[np.int64], longest: float, name: str, advice: str) -> None:
+    """Raise RunError if a bond of those, as they are called, was torn in the last steps.
 
     `faults` has a row for each thread, `longest` is what no bond can reach.
     """

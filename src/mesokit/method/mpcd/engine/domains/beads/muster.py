@@ -1,4 +1,4 @@
-"""The memory of a halo of beads, and how far beads of solutes matter beyond a block."""
+"""The memory of a roster, and how far beads of solutes matter beyond a block."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesokit.method.mpcd.engine.domains.beads.halo import Halo
+from mesokit.method.mpcd.engine.domains.beads.roster import Roster
 from mesokit.method.mpcd.engine.domains.messages.mpi import post
 from mesokit.potential.thermal import mean_square
 
@@ -20,7 +20,7 @@ WIDE = 3.5  # root-mean-square lengths: no bond that has no longest one is longe
 LEAST = 0.5  # cells that a bead may always go in a step
 
 
-def path_in_a_step(numbers: Numbers, given: Solutes) -> float:
+def way_in_a_step(numbers: Numbers, given: Solutes) -> float:
     """How far a bead goes in a timestep at most."""
     fluid = numbers.case.fluid
     lightest = min(given.mass_of(kind) for kind in range(len(given.polymers)))
@@ -38,10 +38,10 @@ def reach_of_beads(numbers: Numbers, given: Solutes) -> float:
             size = math.sqrt(mean_square(kernels, d, numbers.case.fluid.kT, longest))
             bonds = 2.0 if molecule.bending is not None else 1.0
             reach = max(reach, bonds * min(longest, WIDE * size))
-    return reach + 2.0 * path_in_a_step(numbers, given)
+    return reach + 2.0 * way_in_a_step(numbers, given)
 
 
-def halo_of(domain: Any, given: Solutes, terms: int) -> Halo:
+def roster_of(domain: Any, given: Solutes, terms: int) -> Roster:
     """Nobody's beads yet, and room for all; `domain` is the rank's `Domain`."""
     numbers, q, beads = domain.numbers, max(len(domain.partners), 1), given.beads
     d = numbers.dimension
@@ -49,15 +49,15 @@ def halo_of(domain: Any, given: Solutes, terms: int) -> Halo:
     def whole(*shape: int) -> Any:
         return np.zeros(shape, np.int64)
 
-    return Halo(
+    return Roster(
         post=post(domain.comm, 2 * q, domain.crowded),
         ranks=np.array(domain.partners, np.int64),
         count=whole(8),
-        numbers=whole(3, beads),
+        who=whole(3, beads),
         seen=np.full(beads, -9, np.int64),
         began=np.zeros(beads * d),
         reach=reach_of_beads(numbers, given),
-        most=path_in_a_step(numbers, given) ** 2,
+        most=way_in_a_step(numbers, given) ** 2,
         told=whole(q),
         heard=whole(q),
         tell=whole(q, beads),

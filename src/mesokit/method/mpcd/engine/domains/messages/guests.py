@@ -12,43 +12,43 @@ from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle, load_scrat
 from mesokit.method.mpcd.engine.domains.messages.shared import FAR, FAULTS, FULL, shares
 from mesokit.scalar.jit import by_type, optional, scalar, seldom
 
-NO_OWNER = -1
+NOBODY = -1
 
 
 @by_type
-def note_ghosts(worker, s, fluid, cell, terms_rows, lanes, terms, tallied):
+def note_guests(team, s, fluid, cell, terms_rows, lanes, terms, tallied):
     """Note the particles of strip s, which has just been added up, whose cells are not known."""
     if not shares(fluid):
-        return lambda worker, s, fluid, cell, terms_rows, lanes, terms, tallied: None
+        return lambda team, s, fluid, cell, terms_rows, lanes, terms, tallied: None
     return _note
 
 
-def _note(worker, s, fluid, cell, terms_rows, lanes, terms, tallied):
+def _note(team, s, fluid, cell, terms_rows, lanes, terms, tallied):
     cells = fluid.cells
-    width = cells.shared.ghost_terms.shape[2]
-    sums, spare = cells.sums[worker.thread], np.uint64(cells.number) * np.uint64(width)
+    width = cells.shared.guest_terms.shape[2]
+    sums, spare = cells.sums[team.thread], np.uint64(cells.number) * np.uint64(width)
     if sums[spare] != 0:
-        _note_lanes(worker, s, cells, cell, terms_rows, lanes, terms, tallied)
+        _note_lanes(team, s, cells, cell, terms_rows, lanes, terms, tallied)
         for k in range(width):
             sums[spare + np.uint64(k)] = 0
 
 
 @seldom
-def _note_lanes(worker, s, cells, cell, terms_rows, lanes, terms, tallied):
-    shared, thread = cells.shared, worker.thread
+def _note_lanes(team, s, cells, cell, terms_rows, lanes, terms, tallied):
+    shared, thread = cells.shared, team.thread
     rows = len(terms)
     for i in range(lanes):
         if cell[i] == cells.number:
-            n = shared.ghosts[thread, 0]
-            if n == shared.ghost_place.shape[1]:
+            n = shared.guests[thread, 0]
+            if n == shared.guest_place.shape[1]:
                 shared.noted[FAULTS] |= FULL
                 return
-            shared.ghosts[thread, 0] = n + 1
-            shared.ghost_place[thread, n] = s * LANES + i
+            shared.guests[thread, 0] = n + 1
+            shared.guest_place[thread, n] = s * LANES + i
             row = terms_rows[rows * SCRATCH_ROW :]
-            shared.ghost_terms[thread, n, 0] = optional(load_scratch(row, i, tallied), 1)
+            shared.guest_terms[thread, n, 0] = optional(load_scratch(row, i, tallied), 1)
             for k in range(rows):
-                shared.ghost_terms[thread, n, 1 + k] = terms_rows[k * SCRATCH_ROW + i]
+                shared.guest_terms[thread, n, 1 + k] = terms_rows[k * SCRATCH_ROW + i]
 
 
 @scalar
@@ -65,18 +65,18 @@ def owner_of(shared, place):
             stride *= shared.regions[p, 1, k]
         if inside:
             return p, number
-    return NO_OWNER, np.int64(0)
+    return NOBODY, np.int64(0)
 
 
 @scalar
-def find_owners(worker, now, physics, fluid):
-    """Whose cells the ghosts of this thread are in."""
-    shared, particles, t = fluid.cells.shared, fluid.particles, worker.thread
-    for n in range(shared.ghosts[t, 0]):
-        place = shared.ghost_place[t, n]
+def find_owners(team, now, physics, fluid):
+    """Whose cells the guests of this thread are in."""
+    shared, particles, t = fluid.cells.shared, fluid.particles, team.thread
+    for n in range(shared.guests[t, 0]):
+        place = shared.guest_place[t, n]
         strip = particles.data[strip_at(place // LANES, particles.rows)]
         r = load_particle(strip, place % LANES, 0, physics.zero)
         owner, number = owner_of(shared, cell_in_box(r, now.grid))
-        shared.ghost_owner[t, n], shared.ghost_cell[t, n] = owner, number
-        if owner == NO_OWNER:
+        shared.guest_owner[t, n], shared.guest_cell[t, n] = owner, number
+        if owner == NOBODY:
             shared.noted[FAULTS] |= FAR

@@ -11,7 +11,7 @@ import numpy as np
 
 from mesokit.case.box import fold
 from mesokit.kernels.part import stage
-from mesokit.loops.threads import barrier
+from mesokit.loops.threads import meet
 from mesokit.method.mpcd.engine.beads.neighbours import MADE
 from mesokit.method.mpcd.engine.beads.state import (
     AROUND,
@@ -21,7 +21,7 @@ from mesokit.method.mpcd.engine.beads.state import (
 )
 from mesokit.method.mpcd.engine.cpu.grid import cell_in_box, in_block, moved_grid
 from mesokit.method.mpcd.engine.cpu.strips.rows import store_values
-from mesokit.method.mpcd.engine.domains.messages.ghosts import NO_OWNER, owner_of
+from mesokit.method.mpcd.engine.domains.messages.guests import NOBODY, owner_of
 from mesokit.method.mpcd.engine.domains.messages.mpi import Post, finish, receive, send
 from mesokit.method.mpcd.engine.domains.messages.shared import (
     BEAD_WORDS,
@@ -32,16 +32,16 @@ from mesokit.method.mpcd.engine.domains.messages.shared import (
 from mesokit.scalar.jit import by_type, scalar
 from mesokit.scalar.vector import scaled
 
-NUMBERS, PLACES = 5, 6  # tags of messages
+ROLL, PLACES = 5, 6  # tags of messages
 
 
-class Halo(NamedTuple):
-    """Which rank has which bead; q partners, B beads.
+class Roster(NamedTuple):
+    """Who is where; q partners, B beads.
 
-    ranks (q,): the partners. count (3,), numbers (3, B): of own beads, of these and those
-    received from partners, of those in own cells, whichever rank moves them; see `state.OWN`.
+    ranks (q,): the partners. count (3,), who (3, B): numbers of own beads, of these and those that
+    are heard of, of those in own cells, whoever moves them; see `state.OWN`.
     seen (B,): step at which each was last around; began (B * d,): where own beads were when it did.
-    reach: how far from a block beads matter there; most: square of the longest path in a step.
+    reach: how far from a block beads matter there; most: square of the longest way in a step.
     told, heard (q,), tell, hear (q, B): which beads the partners are told of, and tell of.
     asked (q,), ask, cell (q, B): own beads in cells of partners, and their cells there.
     out, into (q, 1 + B, 1 + 2 d); terms_out, terms_in (q, 1 + B, 2 + terms): messages.
@@ -51,7 +51,7 @@ class Halo(NamedTuple):
     post: Post
     ranks: Any
     count: Any
-    numbers: Any
+    who: Any
     seen: Any
     began: Any
     reach: float
@@ -73,25 +73,25 @@ class Halo(NamedTuple):
 
 
 @by_type
-def assign_beads(worker, now, physics, box, fluid, beads):
+def call_roll(team, now, physics, box, fluid, beads):
     """At the begin of a step: beads go to whose block they are in, and all hear of those near."""
-    if len(beads.types[beads.fields.index("halo")]) == 0:
-        return lambda worker, now, physics, box, fluid, beads: None
-    return lambda worker, now, physics, box, fluid, beads: _call(
-        worker, now, physics, box, fluid, beads
+    if len(beads.types[beads.fields.index("roster")]) == 0:
+        return lambda team, now, physics, box, fluid, beads: None
+    return lambda team, now, physics, box, fluid, beads: _call(
+        team, now, physics, box, fluid, beads
     )
 
 
 @stage
-def _call(worker, now, physics, box, fluid, beads):
-    barrier(worker)
-    if worker.thread == 0:
+def _call(team, now, physics, box, fluid, beads):
+    meet(team)
+    if team.thread == 0:
         changed = hand_over(now, physics, box, fluid.cells.shared, beads)
         changed |= hear_of_others(now, physics, box, fluid.cells.shared, beads)
         if changed:
             forget_lists(beads.neighbours)
         require_partners(now, fluid.cells.shared, beads)
-    barrier(worker)
+    meet(team)
 
 
 @by_type
@@ -109,58 +109,58 @@ def _forget(neighbours):
 @scalar
 def hand_over(now, physics, box, shared, beads):
     """Beads in blocks of others go there; whether any came or went."""
-    halo, zero, kept = beads.halo, physics.zero, 0
+    roster, zero, kept = beads.roster, physics.zero, 0
     grid = moved_grid(now.grid, scaled(0.0, zero), shared.closed)
-    for p in range(len(halo.ranks)):
-        halo.out[p, 0, 0] = 0.0
-    number = halo.count[OWN]
+    for p in range(len(roster.ranks)):
+        roster.out[p, 0, 0] = 0.0
+    number = roster.count[OWN]
     for n in range(number):
-        i = halo.numbers[OWN, n]
+        i = roster.who[OWN, n]
         r, _, _ = fold(
             box, load_place(beads, i, zero), load_velocity(beads, i, zero), zero_of(zero)
         )
         owner = owner_or_own(shared, cell_in_box(r, grid))
-        if owner == NO_OWNER:
-            halo.numbers[OWN, kept] = i
+        if owner == NOBODY:
+            roster.who[OWN, kept] = i
             kept += 1
         else:
-            append(halo.out, owner, i, load_place(beads, i, zero), load_velocity(beads, i, zero))
+            append(roster.out, owner, i, load_place(beads, i, zero), load_velocity(beads, i, zero))
     gone = number - kept
-    exchange_bead_rows(halo, shared, NUMBERS)
-    for p in range(len(halo.ranks)):
-        for row in range(1, 1 + int(halo.into[p, 0, 0])):
-            i = take_place(halo.into, p, row, beads, zero)
-            put_velocity(halo.into, p, row, beads, i, zero)
-            kept = insert(halo.numbers, OWN, kept, i)
+    exchange(roster, shared, ROLL)
+    for p in range(len(roster.ranks)):
+        for row in range(1, 1 + int(roster.into[p, 0, 0])):
+            i = take_place(roster.into, p, row, beads, zero)
+            put_velocity(roster.into, p, row, beads, i, zero)
+            kept = insert(roster.who, OWN, kept, i)
             gone += 1
-    halo.count[OWN] = kept
+    roster.count[OWN] = kept
     for n in range(kept):
-        i = halo.numbers[OWN, n]
-        store_values(halo.began, np.uint64(i * len(zero)), load_place(beads, i, zero))
+        i = roster.who[OWN, n]
+        store_values(roster.began, np.uint64(i * len(zero)), load_place(beads, i, zero))
     return gone != 0
 
 
 @scalar
-def zero_of(pattern):
+def zero_of(like):
     """The zero vector."""
-    return scaled(0.0, pattern)
+    return scaled(0.0, like)
 
 
 @scalar
 def owner_or_own(shared, place):
     """The partner whose cell that is; NOBODY if it is this rank's own, or nobody's in reach."""
     owner, _ = owner_of(shared, place)
-    return NO_OWNER if in_block(shared.limits, place) else owner
+    return NOBODY if in_block(shared.limits, place) else owner
 
 
 @scalar
-def insert(numbers, which, number, i):
+def insert(who, which, number, i):
     """Put a number into an ordered list; how many there are then."""
     place = number
-    while place > 0 and numbers[which, place - 1] > i:
-        numbers[which, place] = numbers[which, place - 1]
+    while place > 0 and who[which, place - 1] > i:
+        who[which, place] = who[which, place - 1]
         place -= 1
-    numbers[which, place] = i
+    who[which, place] = i
     return number + 1
 
 
@@ -192,18 +192,18 @@ def put_velocity(rows, p, row, beads, i, zero):
 
 
 @scalar
-def exchange_bead_rows(halo, shared, tag):
+def exchange(roster, shared, tag):
     """Messages of whole rows to all partners, and from them."""
-    post, n, words = halo.post, 0, halo.out.shape[2]
-    most = halo.out.shape[1] * words
+    post, n, words = roster.post, 0, roster.out.shape[2]
+    most = roster.out.shape[1] * words
     size = np.uint64(8 * most)
-    for p in range(len(halo.ranks)):
-        at = np.uint64(halo.into.ctypes.data) + np.uint64(p) * size
-        n = receive(post, n, at, most, halo.ranks[p], tag)
-    for p in range(len(halo.ranks)):
-        at = np.uint64(halo.out.ctypes.data) + np.uint64(p) * size
-        sent = (1 + int(halo.out[p, 0, 0])) * words
-        n = send(post, n, at, sent, halo.ranks[p], tag)
+    for p in range(len(roster.ranks)):
+        at = np.uint64(roster.into.ctypes.data) + np.uint64(p) * size
+        n = receive(post, n, at, most, roster.ranks[p], tag)
+    for p in range(len(roster.ranks)):
+        at = np.uint64(roster.out.ctypes.data) + np.uint64(p) * size
+        sent = (1 + int(roster.out[p, 0, 0])) * words
+        n = send(post, n, at, sent, roster.ranks[p], tag)
         shared.meter[MESSAGES] += 1
         shared.meter[BEAD_WORDS] += sent
     finish(post, n)
@@ -212,37 +212,37 @@ def exchange_bead_rows(halo, shared, tag):
 @scalar
 def hear_of_others(now, physics, box, shared, beads):
     """Tell all of beads near their blocks, hear of theirs; whether somebody is new here."""
-    halo, zero, step = beads.halo, physics.zero, np.int64(now.counter.step)
-    number, new = halo.count[OWN], False
-    for p in range(len(halo.ranks)):
-        halo.out[p, 0, 0], halo.told[p] = 0.0, 0
+    roster, zero, step = beads.roster, physics.zero, np.int64(now.counter.step)
+    number, new = roster.count[OWN], False
+    for p in range(len(roster.ranks)):
+        roster.out[p, 0, 0], roster.told[p] = 0.0, 0
     for n in range(number):
-        i = halo.numbers[OWN, n]
-        halo.numbers[AROUND, n] = i
+        i = roster.who[OWN, n]
+        roster.who[AROUND, n] = i
         mine, v = load_place(beads, i, zero), load_velocity(beads, i, zero)
         r, _, _ = fold(box, mine, v, zero_of(zero))
-        for p in range(len(halo.ranks)):
-            if near_block(halo, shared, p, r):
-                append(halo.out, p, i, mine, v)
-                halo.tell[p, halo.told[p]] = i
-                halo.told[p] += 1
-        halo.seen[i] = step
-    exchange_bead_rows(halo, shared, NUMBERS)
-    for p in range(len(halo.ranks)):
-        halo.heard[p] = int(halo.into[p, 0, 0])
-        for row in range(1, 1 + halo.heard[p]):
-            i = take_place(halo.into, p, row, beads, zero)
-            halo.hear[p, row - 1] = i
-            halo.numbers[AROUND, number] = i
-            new |= halo.seen[i] != step - 1
-            halo.seen[i] = step
+        for p in range(len(roster.ranks)):
+            if near_block(roster, shared, p, r):
+                append(roster.out, p, i, mine, v)
+                roster.tell[p, roster.told[p]] = i
+                roster.told[p] += 1
+        roster.seen[i] = step
+    exchange(roster, shared, ROLL)
+    for p in range(len(roster.ranks)):
+        roster.heard[p] = int(roster.into[p, 0, 0])
+        for row in range(1, 1 + roster.heard[p]):
+            i = take_place(roster.into, p, row, beads, zero)
+            roster.hear[p, row - 1] = i
+            roster.who[AROUND, number] = i
+            new |= roster.seen[i] != step - 1
+            roster.seen[i] = step
             number += 1
-    halo.count[AROUND] = number
+    roster.count[AROUND] = number
     return new
 
 
 @scalar
-def near_block(halo, shared, p, r):
+def near_block(roster, shared, p, r):
     """Whether a place in the box is so near to the block of a partner that beads there matter."""
     near, across = True, False
     for j in range(len(r)):
@@ -250,61 +250,61 @@ def near_block(halo, shared, p, r):
         low, high = float(shared.blocks[p, 0, k]), float(shared.blocks[p, 1, k])
         whole = float(shared.cells[k])
         away = max(low - r[k], r[k] - high, 0.0)
-        if halo.wraps[k] > 0.5:
+        if roster.wraps[k] > 0.5:
             x, y = r[k] - whole, r[k] + whole
             other = min(max(low - x, x - high, 0.0), max(low - y, y - high, 0.0))
-            if k == 1 and halo.slides > 0.5 and other <= halo.reach:
+            if k == 1 and roster.slides > 0.5 and other <= roster.reach:
                 across = True
             away = min(away, other)
-        near &= (away <= halo.reach) | (across & (k == 0))
+        near &= (away <= roster.reach) | (across & (k == 0))
     return near
 
 
 @scalar
 def require_partners(now, shared, beads):
     """Note a fault if a bead is bonded to one that nobody told of."""
-    halo, step = beads.halo, np.int64(now.counter.step)
-    for n in range(halo.count[OWN]):
-        i = halo.numbers[OWN, n]
+    roster, step = beads.roster, np.int64(now.counter.step)
+    for n in range(roster.count[OWN]):
+        i = roster.who[OWN, n]
         for m in range(beads.bond_starts[i], beads.bond_starts[i + 1]):
-            if halo.seen[beads.bonds[m]] != step:
+            if roster.seen[beads.bonds[m]] != step:
                 shared.noted[FAULTS] |= STRETCHED
         for m in range(beads.angle_starts[i], beads.angle_starts[i + 1]):
             for role in range(3):
-                if halo.seen[beads.angles[m, role]] != step:
+                if roster.seen[beads.angles[m, role]] != step:
                     shared.noted[FAULTS] |= STRETCHED
 
 
 @by_type
-def tell_places(worker, beads):
+def tell_places(team, beads):
     """Where beads are now, to all that must know."""
-    if len(beads.types[beads.fields.index("halo")]) == 0:
-        return lambda worker, beads: None
-    return lambda worker, beads: _tell(worker, beads)
+    if len(beads.types[beads.fields.index("roster")]) == 0:
+        return lambda team, beads: None
+    return lambda team, beads: _tell(team, beads)
 
 
 @stage
-def _tell(worker, beads):
-    if worker.thread == 0:
-        halo = beads.halo
-        post, n, d = halo.post, 0, len(beads.r) // len(beads.cell)
-        size = np.uint64(8 * halo.out.shape[1] * halo.out.shape[2])
-        for p in range(len(halo.ranks)):
-            if halo.heard[p] > 0:
-                at = np.uint64(halo.into.ctypes.data) + np.uint64(p) * size
-                n = receive(post, n, at, halo.heard[p] * d, halo.ranks[p], PLACES)
-        for p in range(len(halo.ranks)):
-            if halo.told[p] > 0:
-                rows = halo.out[p].reshape(-1)
-                for j in range(halo.told[p]):
+def _tell(team, beads):
+    if team.thread == 0:
+        roster = beads.roster
+        post, n, d = roster.post, 0, len(beads.r) // len(beads.cell)
+        size = np.uint64(8 * roster.out.shape[1] * roster.out.shape[2])
+        for p in range(len(roster.ranks)):
+            if roster.heard[p] > 0:
+                at = np.uint64(roster.into.ctypes.data) + np.uint64(p) * size
+                n = receive(post, n, at, roster.heard[p] * d, roster.ranks[p], PLACES)
+        for p in range(len(roster.ranks)):
+            if roster.told[p] > 0:
+                rows = roster.out[p].reshape(-1)
+                for j in range(roster.told[p]):
                     for k in range(d):
-                        rows[j * d + k] = beads.r[halo.tell[p, j] * d + k]
-                at = np.uint64(halo.out.ctypes.data) + np.uint64(p) * size
-                n = send(post, n, at, halo.told[p] * d, halo.ranks[p], PLACES)
+                        rows[j * d + k] = beads.r[roster.tell[p, j] * d + k]
+                at = np.uint64(roster.out.ctypes.data) + np.uint64(p) * size
+                n = send(post, n, at, roster.told[p] * d, roster.ranks[p], PLACES)
         finish(post, n)
-        for p in range(len(halo.ranks)):
-            rows = halo.into[p].reshape(-1)
-            for j in range(halo.heard[p]):
+        for p in range(len(roster.ranks)):
+            rows = roster.into[p].reshape(-1)
+            for j in range(roster.heard[p]):
                 for k in range(d):
-                    beads.r[halo.hear[p, j] * d + k] = rows[j * d + k]
-    barrier(worker)
+                    beads.r[roster.hear[p, j] * d + k] = rows[j * d + k]
+    meet(team)
