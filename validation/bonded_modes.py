@@ -102,7 +102,7 @@ def background(page: Page, kind: Kind, tau: float) -> Comparison:
     return Comparison(
         f"{kind.name}: background viscosity", sum(c.measured for c in parts),
         math.hypot(*(c.error for c in parts)), NU, "a^2/tau",
-        "approximate: of free particles; bonds hold beads in one cell",
+        "approximate: of free particles",
     )  # fmt: skip
 
 

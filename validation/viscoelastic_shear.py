@@ -97,7 +97,7 @@ def background(page: Page, case: Case, tau: float) -> Comparison:
     return Comparison(
         "background viscosity", sum(c.measured for c in parts),
         math.hypot(*(c.error for c in parts)), without_bonds(case).viscosity, "a^2/tau",
-        "approximate: of free particles; bonds hold beads in one cell",
+        "approximate: of free particles",
     )  # fmt: skip
 
 

@@ -283,11 +283,13 @@ from mesokit.kernels import ahead
 ahead._has_a_core = lambda: True
 values, physics = np.ones(3), law.Physics((1.0,), 2.0, (5.0,))
 done = threading.Event()
-other = threading.Thread(target=done.wait, daemon=True)
+other = threading.Thread(target=done.wait)
 other.start()
-law.advance.compile_ahead(physics, values, 1)
-begun = len(ahead._in_progress)
-done.set()
+try:
+    law.advance.compile_ahead(physics, values, 1)
+    begun = len(ahead._in_progress)
+finally:
+    done.set()  # else this process would wait for the other thread
 other.join()
 law.advance.compile_ahead(physics, values, 1)
 print(begun, len(ahead._in_progress))

@@ -248,7 +248,7 @@ class Study(Shown):
         require_one_process()
         reporter = reporter_for(progress)
         made = [self.path / FILE, *(run.path / CASE for run in self.runs)]
-        if not all(file.exists() for file in made):  # not written yet, or somebody removed them
+        if not all(file.exists() for file in made):  # not written yet, or removed
             self._make()
         workers = self._workers(jobs, threads, cluster, options)
         failed = drive(self.runs, workers, reporter)
