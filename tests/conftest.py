@@ -18,7 +18,7 @@ if worker and hasattr(os, "sched_setaffinity"):  # not on every system
     cores = sorted(os.sched_getaffinity(0))
     os.sched_setaffinity(0, {cores[int(worker[2:]) % len(cores)]})
 
-settings.register_profile("same every time", derandomize=True)
+settings.register_profile("same every time", derandomize=True, deadline=None)
 settings.load_profile("same every time")
 
 pytest.register_assert_rewrite("tests.helpers")

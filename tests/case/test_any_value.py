@@ -42,7 +42,7 @@ values = st.recursive(
 )
 
 
-@settings(deadline=None, max_examples=300)
+@settings(max_examples=300)
 @given(st.sampled_from(PATHS), st.sampled_from(["", ".extra"]), values)
 def test_any_value_anywhere(place: tuple[Path, str], more: str, value: Any) -> None:
     path, key = place

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from mesokit import (
@@ -111,7 +111,6 @@ def cases(draw: st.DrawFn) -> Case:
     )  # fmt: skip
 
 
-@settings(deadline=None)
 @given(cases())
 def test_written_and_read_a_case_is_the_same(tmp_path_factory: typing.Any, case: Case) -> None:
     path = tmp_path_factory.getbasetemp() / "round-trip.toml"

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import h5py
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import mesokit
@@ -78,7 +78,6 @@ def cases(draw: st.DrawFn) -> Case:
     )
 
 
-@settings(deadline=None)
 @given(cases())
 def test_numbers_by_hand(case: Case) -> None:
     """Reynolds, Mach, Schmidt and Peclet from the flow, once in reduced and once in SI units."""
@@ -100,7 +99,6 @@ def test_numbers_by_hand(case: Case) -> None:
         assert si[name].factor == pytest.approx(there / simulated)
 
 
-@settings(deadline=None)
 @given(cases())
 def test_what_is_matched_is_the_same(case: Case) -> None:
     si = convert(case)
@@ -110,7 +108,6 @@ def test_what_is_matched_is_the_same(case: Case) -> None:
     assert number.simulated == pytest.approx(number.real)
 
 
-@settings(deadline=None)
 @given(cases())
 def test_matched_properties_are_those_of_the_real_fluid(case: Case) -> None:
     si, theory = convert(case), setting.transport(case)
@@ -126,7 +123,6 @@ def test_matched_properties_are_those_of_the_real_fluid(case: Case) -> None:
         assert simulated[name] == pytest.approx(getattr(real, name))
 
 
-@settings(deadline=None)
 @given(cases())
 def test_units_hang_together(case: Case) -> None:
     """Laws of physics hold in SI: the fall in a time, Stokes' force, the ideal gas."""
@@ -145,7 +141,6 @@ def test_units_hang_together(case: Case) -> None:
     )  # the warm-up included
 
 
-@settings(deadline=None)
 @given(cases(), st.floats(0.2, 5))
 def test_other_reduced_units_are_the_same_in_si(case: Case, unit: float) -> None:
     """Masses and energies that are all larger by one factor change nothing but the numbers."""
@@ -264,7 +259,6 @@ def test_refuses_a_depth_in_3d_fluids_without_theory_and_cases_without_units() -
 KEYS = ["cell", "match", "depth", "fluid", "fluid.substance", "fluid.temperature", "fluid.density"]
 
 
-@settings(deadline=None)
 @given(
     st.sampled_from(KEYS),
     st.floats() | st.integers() | st.booleans() | st.text(max_size=5) | st.sampled_from(

@@ -1,7 +1,7 @@
 """Energy and number of particles in one integer come apart again."""
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numba import njit
 
@@ -26,7 +26,6 @@ def summed(energy, m, v):
 
 
 @given(v=st.lists(st.floats(0, FASTEST), max_size=200), m=st.floats(0.01, 1.0))
-@settings(deadline=None, derandomize=True)
 def test_number_is_exact_and_energy_rounded(v, m):
     number, energy = summed(WithCount(SCALE), m, np.array(v))
     assert number == len(v)

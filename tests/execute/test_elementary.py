@@ -38,7 +38,7 @@ def exact_sine(turns):
 
 
 @given(u=st.floats(0, 1))
-@settings(deadline=None, derandomize=True, max_examples=300)
+@settings(max_examples=300)
 def test_sine_and_cosine_of_a_turn(u):
     with localcontext(prec=50):
         s, c = sincos_turn(u)
@@ -54,7 +54,7 @@ def test_sine_and_cosine_at_eighths(eighths):
 
 
 @given(x=st.floats(1e-300, 1e300) | st.floats(0.5, 2.0))
-@settings(deadline=None, derandomize=True, max_examples=500)
+@settings(max_examples=500)
 def test_logarithm(x):
     with localcontext(prec=40):
         exact = Decimal(x).ln()
@@ -92,7 +92,7 @@ LARGE = st.floats(-(2.0**62), 2.0**62)
 
 
 @given(x=st.floats(-1e6, 1e6) | HALVES | LARGE, bits=st.integers(-10, 0))
-@settings(deadline=None, derandomize=True, max_examples=500)
+@settings(max_examples=500)
 def test_quanta_are_the_nearest_whole_numbers(x, bits):
     """Halves go to the even one."""
     assert quanta(x, 2.0**bits) == round(Fraction(x) * Fraction(2) ** bits)

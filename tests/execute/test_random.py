@@ -59,7 +59,7 @@ def drawn(use):
 
 
 @given(use, st.data())
-@settings(deadline=None, derandomize=True, max_examples=200)
+@settings(max_examples=200)
 def test_every_part_of_the_key_counts(first, data):
     second = list(first)
     place = data.draw(st.integers(0, 4))

@@ -84,7 +84,7 @@ def exact_hit(h, v, a, time):
 @example(h=0.0, v=1.0, a=-1.0, time=2.0)  # leaves the plate and falls back on it
 @example(h=1.0, v=-1.0, a=1e-12, time=2.0)  # nearly straight: a cancelling formula fails
 @example(h=0.5, v=-1.0, a=0.0, time=1.0)
-@settings(deadline=None, derandomize=True, max_examples=500)
+@settings(max_examples=500)
 def test_time_of_a_hit_is_the_root(h, v, a, time):
     expected = exact_hit(h, v, a, time)
     got, plate = finds(slit(), (1.0, h), (0.3, v), (0.0, a), time)
@@ -105,7 +105,7 @@ def test_time_of_a_hit_is_the_root(h, v, a, time):
     h=height, along=speed, v=speed, a=pull, b=pull, time=timestep, lower=walls, upper=walls,
     u=st.floats(-1, 1),
 )  # fmt: skip
-@settings(deadline=None, derandomize=True, max_examples=500)
+@settings(max_examples=500)
 def test_flights_stay_inside_and_momentum_is_accounted_for(
     h, along, v, a, b, time, lower, upper, u
 ):
@@ -124,7 +124,7 @@ def test_flights_stay_inside_and_momentum_is_accounted_for(
 
 
 @given(h=height, along=speed, v=speed, a=pull, b=pull, time=timestep, lower=walls, upper=walls)
-@settings(deadline=None, derandomize=True, max_examples=500)
+@settings(max_examples=500)
 def test_a_flight_can_be_reversed(h, along, v, a, b, time, lower, upper):
     solid = slit(lower, upper)
     path = exact_hit(h, v, a, time)
@@ -152,7 +152,7 @@ def test_bounce_back_and_mirror():
     x=st.floats(-30, 30), y=st.floats(-7, 7), v=st.tuples(speed, speed), time=st.floats(0, 100),
     shift=st.tuples(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5)), rate=st.floats(-1, 1),
 )  # fmt: skip
-@settings(deadline=None, derandomize=True, max_examples=500)
+@settings(max_examples=500)
 def test_fold_under_shear(x, y, v, time, shift, rate):
     """Each image has the same velocity relative to the flow, and is displaced as the images are."""
     assume(rate != 0)

@@ -17,7 +17,7 @@ from tests.geometry.test_flights import KINDS, flight
 from tests.helpers.shapes import ROUND, bounced, meets, on_surface, solids_of, with_surface
 
 flights = given(kind=st.sampled_from(KINDS), seed=st.integers(0, 2**32 - 1))
-thorough = settings(deadline=None, derandomize=True, max_examples=50)
+thorough = settings(max_examples=50)
 REST = {2: (0.0, 0.0), 3: (0.0, 0.0, 0.0)}
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from mesokit.geometry.solids.cut_cube import share_and_depth, share_beyond
@@ -18,7 +18,6 @@ def grid(d):
     return np.stack(np.meshgrid(*[along] * d, indexing="ij"), -1).reshape(-1, d)
 
 
-@settings(deadline=None)
 @given(
     st.sampled_from([2, 3]),
     st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=3),

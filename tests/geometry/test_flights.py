@@ -15,7 +15,7 @@ SLIVER = 2e-7  # cells: so deep a chord may go that is shorter than the march da
 KINDS = ("free", "aimed", "grazing", "tangential", "corner", "long")
 
 flights = given(kind=st.sampled_from(KINDS), seed=st.integers(0, 2**32 - 1))
-thorough = settings(deadline=None, derandomize=True, max_examples=80)
+thorough = settings(max_examples=80)
 
 
 def clearance(solids, r, v, a, t):

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numba import njit, typeof
 
@@ -60,7 +60,6 @@ def everything(whole):
     )
 
 
-@settings(deadline=None)  # the first compiles
 @given(NUMBERS, NUMBERS, st.booleans(), st.integers(-(2**31), 2**31 - 1), FLOATS, NUMBERS)
 def test_fields_are_what_python_packed(
     number: int, count: int, flag: bool, small: int, first: float, second: int

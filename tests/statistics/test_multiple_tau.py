@@ -124,7 +124,7 @@ def test_long_lags_without_four_blocks_have_no_error():
     assert np.isnan(error[lag >= 144]).all()
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(0, 400), st.integers(0, 400), st.sampled_from([float, complex]))
 def test_same_bits_across_a_round_trip(before, after, kind):
     samples = np.random.default_rng(before + 1000 * after).normal(size=(before + after, 3))

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import erfc
 
@@ -33,7 +33,6 @@ def test_diffusion_without_hydrodynamics_is_that_of_rouse():
 
 
 @given(n=st.integers(2, 30), b=st.floats(0.5, 4), zeta=st.floats(1, 100))
-@settings(deadline=None)
 def test_kirkwood_is_the_mean_of_the_mobility_over_gaussian_distances(n, b, zeta):
     inverse = 0.0  # sum of <1/r>, sqrt(6/(pi n)) b^-1 of a Gaussian of mean square n b^2
     for i in range(n):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 from scipy.integrate import quad
@@ -21,7 +21,6 @@ scale = st.floats(0.1, 10)
 
 
 @given(v=st.floats(-5, 5), kT=scale, mass=scale)
-@settings(deadline=None)
 def test_velocity_component_is_normal(v, kT, mass):
     normal = stats.norm(scale=np.sqrt(kT / mass))
     assert maxwell_component_pdf(v, kT, mass) == pytest.approx(normal.pdf(v), rel=1e-9)
@@ -29,7 +28,6 @@ def test_velocity_component_is_normal(v, kT, mass):
 
 
 @given(v=st.floats(-1, 5), kT=scale, mass=scale, d=st.sampled_from([1, 2, 3]))
-@settings(deadline=None)
 def test_speed_is_chi(v, kT, mass, d):
     chi = stats.chi(d, scale=np.sqrt(kT / mass))
     if v != 0:  # the density jumps there in 1D
@@ -38,7 +36,6 @@ def test_speed_is_chi(v, kT, mass, d):
 
 
 @given(e=st.floats(-1, 40), n=st.integers(2, 20), d=st.sampled_from([2, 3]), kT=scale)
-@settings(deadline=None)
 def test_cell_energy_is_gamma(e, n, d, kT):
     gamma = stats.gamma(d * (n - 1) / 2, scale=kT)
     if e != 0:

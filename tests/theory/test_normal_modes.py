@@ -68,14 +68,13 @@ def test_star_has_the_eigenvalues_of_zimm_and_kilb(arms, n):
 
 
 @given(n=st.integers(3, 60))
-@settings(deadline=None)
 def test_gyration_in_closed_form(n):
     assert mean_square_gyration(linear_modes(n), 2.0) == pytest.approx((n**2 - 1) / (3 * n))
     assert mean_square_gyration(ring_modes(n), 2.0) == pytest.approx((n**2 - 1) / (6 * n))
 
 
 @given(arms=st.integers(1, 8), n=st.integers(1, 10))
-@settings(deadline=None, max_examples=30)
+@settings(max_examples=30)
 def test_gyration_of_stars_is_the_theorem_of_kramers(arms, n):
     beads = 1 + arms * n
     cut = arms * sum(i * (beads - i) for i in range(1, n + 1))
@@ -103,7 +102,7 @@ def test_end_to_end_from_the_modes():
     d=st.sampled_from([1, 2, 3]),
     kT=st.floats(0.2, 3),
 )
-@settings(deadline=None, max_examples=50)
+@settings(max_examples=50)
 def test_bond_is_the_mean_of_the_boltzmann_weight(k, rest, d, kT):
     def moment(n):
         width = np.sqrt(kT / k)

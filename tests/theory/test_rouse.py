@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.linalg import expm, solve_continuous_lyapunov
@@ -36,7 +36,6 @@ TAU = [20.0, 6.0, 1.5]
 
 
 @given(bonds=st.integers(1, 99), zeta=st.floats(0.5, 50), K=st.floats(0.1, 10))
-@settings(deadline=None)
 def test_stress_times_are_those_of_the_thesis(bonds, zeta, K):
     times = rouse_times(linear_modes(bonds + 1), zeta, K=K)
     p = np.arange(1, bonds + 1)
@@ -91,7 +90,6 @@ def test_moduli_are_the_transform_of_the_relaxation_modulus(w):
 
 
 @given(w=st.floats(1e-3, 1e3))
-@settings(deadline=None)
 def test_complex_viscosity_is_the_complex_modulus_over_iw(w):
     g = storage_modulus(w, 3.0, TAU) + 1j * loss_modulus(w, 3.0, TAU, 8.0)
     assert complex_viscosity(w, 3.0, TAU, 8.0) == pytest.approx(complex(g / (1j * w)))
@@ -171,7 +169,6 @@ def test_size_at_rest_is_that_of_equilibrium():
 
 
 @given(rate=st.floats(0, 1e4), tau=st.floats(0.1, 100), d=st.sampled_from([2, 3]))
-@settings(deadline=None)
 def test_stiffened_dumbbells_keep_their_length(rate, tau, d):
     share = dumbbell_thinning(rate, tau, d)
     assert 0 < share <= 1
@@ -205,7 +202,6 @@ def test_fene_dumbbells_at_rest():
 
 
 @given(rate=st.floats(0, 1e3), b=st.floats(1, 1e3), d=st.sampled_from([2, 3]))
-@settings(deadline=None)
 def test_fene_p_springs_are_as_stiff_as_their_mean_square_makes_them(rate, b, d):
     tau, k = 10.0, 0.5
     factor = (1 + d / b) / fene_p_thinning(rate, tau, b, d)

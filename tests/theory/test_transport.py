@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from mesokit.theory import transport
@@ -104,7 +104,6 @@ def test_srd_closed_form_to_round_off(dimension, angle, density):
     kT=st.floats(0.1, 10),
     mass=st.floats(0.1, 10),
 )
-@settings(deadline=None)
 def test_srd_closed_form(dimension, density, timestep, angle, kT, mass):
     t = transport("srd", dimension, density, timestep, angle, kT=kT, mass=mass)
     kinetic, collisional, diffusion = srd_table(dimension, density, timestep, angle)
@@ -146,7 +145,6 @@ def test_thermal_diffusivity_closed_form(dimension, angle):
 
 
 @given(dimension=dimensions, density=densities, timestep=timesteps)
-@settings(deadline=None)
 def test_andersen_closed_form(dimension, density, timestep):
     f = (density - 1 + np.exp(-density)) / density
     t = transport("at", dimension, density, timestep)
@@ -156,7 +154,6 @@ def test_andersen_closed_form(dimension, density, timestep):
 
 
 @given(density=densities, timestep=timesteps, suffix=st.sampled_from(["", "+a"]))
-@settings(deadline=None)
 def test_uniform_angle_is_andersen(density, timestep, suffix):
     one = transport("srd" + suffix, 2, density, timestep, angle="uniform")
     two = transport("at" + suffix, 2, density, timestep)
@@ -165,7 +162,6 @@ def test_uniform_angle_is_andersen(density, timestep, suffix):
 
 
 @given(dimension=dimensions, timestep=timesteps, rule=st.sampled_from(["srd", "at"]))
-@settings(deadline=None)
 def test_dense_limit(dimension, timestep, rule):
     """At infinite density angular momentum costs half the collisional viscosity, nothing else."""
     angle = 90 if rule == "srd" else None
@@ -190,7 +186,6 @@ def test_andersen_angular_limit_of_large_density(dimension):
 
 
 @given(dimension=dimensions, density=st.floats(2, 50), suffix=st.sampled_from(["", "+a"]))
-@settings(deadline=None)
 def test_small_angle(dimension, density, suffix):
     """nu_kin and D grow as 1/angle^2, nu_col falls as angle^2."""
     small = transport("srd" + suffix, dimension, density, 0.1, 0.2)
@@ -201,7 +196,6 @@ def test_small_angle(dimension, density, suffix):
 
 
 @given(dimension=dimensions, density=densities, kT=st.floats(0.1, 10), mass=st.floats(0.1, 10))
-@settings(deadline=None)
 def test_units(dimension, density, kT, mass):
     """Only the mean free path matters: time in units of sqrt(m/kT)."""
     unit = np.sqrt(kT / mass)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
@@ -59,7 +59,6 @@ def test_reference_values():
     elasticity=st.floats(1e-3, 2),
     tau=st.floats(0.1, 300),
 )
-@settings(deadline=None)
 def test_dimer_is_the_exponential_of_its_matrix(k, nu, elasticity, tau):
     """In both branches: the ranges of k, nu and tau reach across both ends of the oscillation."""
     times = np.array([0, 0.3, 2, 15, 100])
@@ -102,7 +101,6 @@ def test_chain_is_the_exponential_of_its_matrix(springs, k):
     k=st.floats(0.01, 3),
     elasticity=st.floats(1e-3, 3),
 )
-@settings(deadline=None)
 def test_at_most_one_pair_of_poles_is_complex(tau, k, elasticity):
     tau = np.sort(tau)
     assume(np.all(np.diff(tau) > 1e-4 * tau[1:]))

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import solve_continuous_lyapunov
 
@@ -80,7 +80,6 @@ def test_against_the_thesis(rate):
     radius=st.floats(0.02, 0.35),
     eta=st.floats(0.5, 30),
 )
-@settings(deadline=None)
 def test_one_is_the_inverse_of_the_other(K, rate, radius, eta):
     length = trimer_bond_length(K, rate, eta, radius, kT=1.5)
     assert trimer_spring_constant(length, rate, eta, radius, kT=1.5) == pytest.approx(K, rel=1e-8)
