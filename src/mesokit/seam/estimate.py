@@ -13,7 +13,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.statistics import Blocks, independent_error, plateau, plateau_error
+from mesokit.statistics import (
+    FEWEST_PIECES,
+    Blocks,
+    correlated,
+    correlated_error,
+    falling_error,
+    independent_error,
+)
 
 Array = NDArray[np.floating[Any]]
 SURE = 2.0  # standard errors from zero, within which nothing is divided by a number
@@ -23,7 +30,7 @@ DIVISOR = "its divisor is within two standard errors of zero"
 
 class Estimate(NamedTuple):
     """`value` (*shape), what each block adds to its deviation (blocks, *shape), block weights, and
-    whether one block may take back what another has added (see `plateau_error`).
+    whether one block may take back what another has added (see `falling_error`).
 
     Blocks are of time, or groups of particles. With groups, `in_time` is the same value in blocks
     of time: those see what all particles do together, groups see what outlasts the run. `spans`
@@ -40,12 +47,14 @@ class Estimate(NamedTuple):
     def error(self) -> Array:
         """Standard error, (*shape): of blocks, or the one of groups and time that counts."""
         if self.in_time is None:
-            return plateau_error(self.residuals, self.weights, self.falling)
+            error = falling_error if self.falling else correlated_error
+            return error(self.residuals, self.weights)
         groups = independent_error(self.residuals, self.weights)
-        times, reached = plateau(self.in_time.residuals, self.in_time.weights)
+        times, pieces = correlated(self.in_time.residuals, self.in_time.weights)
+        known = pieces >= FEWEST_PIECES
         if self.in_time.spans is not None:
-            reached = reached & (self.in_time.spans <= SEEN)
-        return of_both(groups, times, reached)
+            known &= self.in_time.spans <= SEEN
+        return of_both(groups, times, known)
 
     def part(self, use: slice) -> Estimate:
         """Some of the values (n,), of blocks alone."""
@@ -95,16 +104,16 @@ class Estimate(NamedTuple):
         return float(value), float(error)
 
 
-def of_both(groups: Array, times: Array, reached: NDArray[np.bool_]) -> Array:
+def of_both(groups: Array, times: Array, known: NDArray[np.bool_]) -> Array:
     """Standard error, given that of groups of particles and that of blocks of time.
 
-    The larger counts. Where blocks of time have reached a plateau at less than half of the error of
-    groups, groups are anticorrelated by what is conserved, and blocks of time count.
+    The larger counts. Where that of blocks of time is known and less than half of that of groups,
+    groups are anticorrelated by what is conserved, and blocks of time count.
 
     >>> of_both(np.array([1.0, 1.0, 1.0]), np.array([2.0, 0.1, 0.1]), np.array([True, True, False]))
     array([2. , 0.1, 1. ])
     """
-    return np.where(reached & (times < groups / 2), times, np.fmax(groups, times))
+    return np.where(known & (times < groups / 2), times, np.fmax(groups, times))
 
 
 def of_mean(blocks: Blocks, falling: bool = False) -> Estimate:

@@ -1,6 +1,13 @@
 """Running averages, correlations and fits, each with an honest error bar, in bounded memory."""
 
-from mesokit.statistics.blocking import blocking_error, independent_error, plateau, plateau_error
+from mesokit.statistics.blocking import (
+    FEWEST_PIECES,
+    blocking_error,
+    correlated,
+    correlated_error,
+    falling_error,
+    independent_error,
+)
 from mesokit.statistics.blocks import Blocks
 from mesokit.statistics.fit import (
     ChiSquare,
@@ -26,6 +33,7 @@ from mesokit.statistics.tally import Tally
 from mesokit.statistics.time_series import TimeSeries
 
 __all__ = [
+    "FEWEST_PIECES",
     "Blocks",
     "ChiSquare",
     "Correlation",
@@ -37,13 +45,14 @@ __all__ = [
     "TimeSeries",
     "blocking_error",
     "chi_square",
+    "correlated",
+    "correlated_error",
     "deviation",
     "dominant_frequency",
+    "falling_error",
     "independent_error",
     "mean_frequency",
     "mean_spectrum",
-    "plateau",
-    "plateau_error",
     "ratio",
     "spectrum",
     "spread_ids",

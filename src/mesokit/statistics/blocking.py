@@ -1,13 +1,14 @@
-"""Error bars of correlated series by blocking.
-
-Source: H. Flyvbjerg and H. G. Petersen, J. Chem. Phys. 91, 461 (1989).
-"""
+"""Error bars of correlated series, from blocks of time."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 FEWEST_BLOCKS = 4  # fewer give no error bar
 FEWEST_MERGED = 8  # merging further than this says more about luck than about correlations
+MOST_BLOCKS = 64  # of a series that is given whole
+FEWEST_PIECES = 8  # independent ones, of fewer the error is itself uncertain and too small
+FEWEST_WINDOWS = 4  # that fit into the blocks: correlations at longer lags are not seen
+DECAY = 1.5  # decay time of a correlation over its integral, at most (Wolff: S between 1 and 2)
 _SLACK = 0.5  # a ragged block counts for less than one
 
 
@@ -24,52 +25,98 @@ def merge_pairs(blocks: NDArray[np.float64]) -> NDArray[np.float64]:
     return merged
 
 
-def plateau_error(
-    residuals: ArrayLike, weights: ArrayLike, falling: bool = False
-) -> NDArray[np.float64]:
+def correlated_error(residuals: ArrayLike, weights: ArrayLike) -> NDArray[np.float64]:
     """Standard error of an estimate from what each block of time contributes to its deviation.
 
-    Neighbouring blocks are merged level by level, element by element, until the first level
-    whose successor does not rise by more than its own statistical uncertainty,
-    SE / sqrt(2 (n - 1)), which is also one standard deviation of that rise in an uncorrelated
-    series; about 8 blocks are always left. Where no plateau is reached, the last level is
-    returned: a lower bound. Unequal blocks count as n = (sum w)^2 / sum w^2 equal ones.
+    It is the error of `correlated`, which has the same parameters and raises the same errors.
+
+    >>> alternating = np.tile([1.0, -1.0], 8) / 16
+    >>> round(float(correlated_error(alternating, np.ones(16))), 4)  # 1 / sqrt(15)
+    0.2582
+    """
+    return correlated(residuals, weights)[0]
+
+
+def correlated(
+    residuals: ArrayLike, weights: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Standard error from blocks of time that may be correlated, and how many pieces they are.
+
+    The variance of the sum of residuals is the sum of their autocorrelation over all lags. The sum
+    ends, element by element, where noise adds more than an exponential decay has left. Deviations
+    are from the mean of the same blocks, so that the sum is too small by what it ends at, and is
+    corrected for that. Blocks are independent where the first correlation is within its noise, and
+    anticorrelated ones count as independent.
 
     Parameters
     ----------
     residuals: (n, *shape) contributions of the blocks to (estimate - truth), linearised, so that
         they add up to zero over the blocks; for a mean, (block sum - mean * samples) / all samples.
-    weights: (n,) or (n, *shape), how much data each block holds, empty blocks 0.
-    falling: merge also as long as the error falls by more than its uncertainty, as it does where
-        what one moment adds the next takes back, such as momentum that a wall has taken.
+    weights: (n,) or (n, *shape), how much data each block holds, empty blocks 0. Unequal blocks
+        count as (sum w)^2 / sum w^2 equal ones.
 
-    Returns (*shape), nan where the data amount to fewer than 4 blocks.
+    Returns two arrays (*shape): the error, nan where the data amount to fewer than 4 blocks, and
+    the number of independent pieces that the blocks amount to.
     Raises ValueError if the number of blocks differs.
-    Source: Flyvbjerg and Petersen (1989).
+    Source: U. Wolff, Comput. Phys. Commun. 156, 143 (2004), the automatic window and its bias.
 
-    >>> alternating = np.tile([1.0, -1.0], 8) / 16
-    >>> error = plateau_error(alternating, np.ones(16))
-    >>> round(float(error), 4)  # 1 / sqrt(15): merging gives no rise
-    0.2582
+    >>> error, pieces = correlated(np.repeat([1.0, -1.0, -1.0, 1.0], 8) / 32, np.ones(32))
+    >>> round(float(error / independent_error(np.tile([1.0, -1.0], 16) / 32, np.ones(32))), 1)
+    3.2
+    """
+    residuals, weights, number = _prepared(residuals, weights)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        variance, of_blocks = (residuals**2).sum(axis=0), (weights**2).sum(axis=0)
+        times = np.full(variance.shape, 0.5)  # integrated correlation, in blocks
+        window, growing = np.zeros(variance.shape), variance > 0
+        for lag in range(1, len(residuals) // FEWEST_WINDOWS + 1):
+            pairs = (weights[lag:] * weights[:-lag]).sum(axis=0)
+            products = (residuals[lag:] * residuals[:-lag]).sum(axis=0)
+            share = np.where(pairs > 0, products * of_blocks / pairs, 0.0) / variance
+            if lag == 1:
+                growing &= share > 1 / np.sqrt(number)
+            times, window = np.where(growing, times + share, times), window + growing
+            decay = DECAY / np.log((2 * times + 1) / (2 * times - 1))
+            growing &= np.exp(-lag / decay) > decay / np.sqrt(lag * number)
+            if not growing.any():
+                break
+        pieces = (number - 1 - 2 * window) / np.fmax(2 * times, 1.0)
+        error = np.sqrt(variance * number / pieces)
+    return np.where(number > FEWEST_BLOCKS - _SLACK, error, np.nan), pieces
+
+
+def falling_error(residuals: ArrayLike, weights: ArrayLike) -> NDArray[np.float64]:
+    """Standard error where one block may take back what another has added.
+
+    Such is momentum that a wall has taken. Neighbouring blocks are merged level by level, element
+    by element, until the first level whose successor neither rises nor falls by more than its own
+    uncertainty, SE / sqrt(2 (n - 1)). About 8 blocks are always left. Parameters, result and
+    errors raised: those of `correlated_error`.
+    Source: H. Flyvbjerg and H. G. Petersen, J. Chem. Phys. 91, 461 (1989).
+
     >>> back_and_forth = np.tile([1.0, -1.0], 128) / 256
-    >>> [round(float(plateau_error(back_and_forth, np.ones(256), way)), 4) for way in (False, True)]
+    >>> [round(float(of(back_and_forth, np.ones(256))), 4)
+    ...  for of in (independent_error, falling_error)]
     [0.0626, 0.0]
     """
-    return plateau(residuals, weights, falling)[0]
+    residuals, weights, _ = _prepared(residuals, weights)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        number, error = _level(residuals, weights)
+        error = np.where(number > FEWEST_BLOCKS - _SLACK, error, np.nan)
+        moving = np.isfinite(error)
+        while len(residuals) > FEWEST_MERGED and moving.any():
+            residuals, weights = merge_pairs(residuals), merge_pairs(weights)
+            slack = 1 / np.sqrt(2 * (number - 1))
+            number, merged = _level(residuals, weights)
+            moving &= (number > FEWEST_MERGED - _SLACK) & (abs(merged - error) > error * slack)
+            error = np.where(moving, merged, error)
+    return np.asarray(error)
 
 
-def plateau(
-    residuals: ArrayLike, weights: ArrayLike, falling: bool = False
-) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Standard error as `plateau_error` gives it, and whether merging blocks changed it no more.
-
-    Parameters and errors: those of `plateau_error`. Returns two arrays (*shape).
-    Source: Flyvbjerg and Petersen (1989).
-
-    >>> drift = np.linspace(-1, 1, 64) / 64
-    >>> [bool(plateau(series, np.ones(64))[1]) for series in (drift, np.tile([1.0, -1.0], 32))]
-    [False, True]
-    """
+def _prepared(
+    residuals: ArrayLike, weights: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Both with the same number of axes, and the number (*shape) of equal blocks that they are."""
     residuals, weights = np.asarray(residuals, float), np.asarray(weights, float)
     if residuals.ndim == 0 or weights.ndim == 0 or len(residuals) != len(weights):
         raise ValueError(
@@ -78,34 +125,20 @@ def plateau(
         )
     weights = weights.reshape(weights.shape + (1,) * (residuals.ndim - weights.ndim))
     with np.errstate(divide="ignore", invalid="ignore"):
-        number, error = _level(residuals, weights)
-        error = np.where(number > FEWEST_BLOCKS - _SLACK, error, np.nan)
-        climbing = np.isfinite(error)
-        reached = np.zeros_like(climbing)
-        while len(residuals) > FEWEST_MERGED and climbing.any():
-            residuals, weights = merge_pairs(residuals), merge_pairs(weights)
-            slack = 1 / np.sqrt(2 * (number - 1))
-            number, merged = _level(residuals, weights)
-            moves = merged > error * (1 + slack)
-            if falling:
-                moves |= merged < error * (1 - slack)
-            reached |= climbing & ~moves
-            climbing &= (number > FEWEST_MERGED - _SLACK) & moves
-            error = np.where(climbing, merged, error)
-    return np.asarray(error), np.asarray(reached)
+        number = weights.sum(axis=0) ** 2 / (weights**2).sum(axis=0)
+    return residuals, weights, np.broadcast_to(number, residuals.shape[1:])
 
 
 def independent_error(residuals: ArrayLike, weights: ArrayLike) -> NDArray[np.float64]:
     """Standard error of an estimate from what independent parts contribute to its deviation.
 
-    Such parts are groups of particles: they have no order, so that merging neighbours would only
-    let chance raise the error. Parameters and result: those of `plateau_error`.
+    Such parts are groups of particles, which have no order. Parameters, result and errors raised:
+    those of `correlated_error`.
 
     >>> round(float(independent_error(np.repeat([1.0, -1.0], 8) / 16, np.ones(16))), 4)
     0.2582
     """
-    residuals, weights = np.asarray(residuals, float), np.asarray(weights, float)
-    weights = weights.reshape(weights.shape + (1,) * (residuals.ndim - weights.ndim))
+    residuals, weights, _ = _prepared(residuals, weights)
     with np.errstate(divide="ignore", invalid="ignore"):
         number, error = _level(residuals, weights)
     return np.where(number > FEWEST_BLOCKS - _SLACK, error, np.nan)
@@ -120,14 +153,13 @@ def _level(
 
 
 def blocking_error(series: ArrayLike) -> float:
-    """Standard error of the mean of a correlated series.
+    """Standard error of the mean of a correlated series, whose samples are merged to 64 blocks.
 
     Parameters: `series` (n,), a stationary time series. Returns nan for fewer than 4 samples.
     Raises ValueError unless the series is one-dimensional.
-    Source: Flyvbjerg and Petersen (1989).
 
     >>> repeated = np.repeat(np.random.default_rng(1).normal(size=1000), 4)
-    >>> 0.028 < blocking_error(repeated) < 0.036  # 1 / sqrt(1000), not 1 / sqrt(4000)
+    >>> 0.026 < blocking_error(repeated) < 0.036  # 1 / sqrt(1000), not 1 / sqrt(4000)
     True
     """
     values = np.asarray(series, float)
@@ -135,4 +167,7 @@ def blocking_error(series: ArrayLike) -> float:
         raise ValueError(f"series must be one-dimensional, got shape {values.shape}")
     if len(values) < FEWEST_BLOCKS:
         return float("nan")
-    return float(plateau_error((values - values.mean()) / len(values), np.ones(len(values))))
+    residuals, weights = (values - values.mean()) / len(values), np.ones(len(values))
+    while len(residuals) > MOST_BLOCKS:
+        residuals, weights = merge_pairs(residuals), merge_pairs(weights)
+    return float(correlated_error(residuals, weights))

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from mesokit.statistics.blocking import merge_pairs, plateau_error
+from mesokit.statistics.blocking import correlated_error, merge_pairs
 
 
 class Correlation(NamedTuple):
@@ -209,7 +209,7 @@ class MultipleTau:
         normalised: divide by the (averaged) value at lag 0, with the error of the ratio.
 
         Returns lag (n,), value and error (n, *shape without the averaged axes). The error is
-        nan where fewer than 4 blocks of time hold the lag; see `plateau_error`.
+        nan where fewer than 4 blocks of time hold the lag; see `correlated_error`.
         Raises AxisError for an axis that `shape` has not.
 
         >>> correlator = MultipleTau(max_lag=1)
@@ -236,7 +236,7 @@ class MultipleTau:
                     residuals = (residuals - mean * zero_residuals) / zero
             lag.append(lags)
             value.append(mean)
-            error.append(plateau_error(residuals, counts))
+            error.append(correlated_error(residuals, counts))
         if not lag:
             kept = [n for axis, n in enumerate(self.kept) if axis + 2 not in axes]
             return Correlation(np.zeros(0, np.int64), np.zeros((0, *kept)), np.zeros((0, *kept)))

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.statistics.blocking import plateau_error
+from mesokit.statistics.blocking import correlated_error
 from mesokit.statistics.blocks import Blocks
 
 
@@ -11,8 +11,8 @@ def ratio(numerator: Blocks, weight: Blocks) -> tuple[NDArray[np.float64], NDArr
     """Ratio of the means of two series and its standard error, fluctuating weights included.
 
     R = sum N / sum W over all samples; the error is that of the mean of the linearised residual
-    N_b - R W_b over the blocks, divided by the mean weight (delta method), with the plateau
-    taken as in `Blocks.error`.
+    N_b - R W_b over the blocks, divided by the mean weight (delta method), of
+    correlated blocks as in `Blocks.error`.
 
     Parameters
     ----------
@@ -45,4 +45,4 @@ def ratio(numerator: Blocks, weight: Blocks) -> tuple[NDArray[np.float64], NDArr
     total = below.sum(axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         value = np.where(total == 0, np.nan, above.sum(axis=0) / total)
-        return value, plateau_error((above - value * below) / total, below)
+        return value, correlated_error((above - value * below) / total, below)

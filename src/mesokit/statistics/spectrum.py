@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mesokit.statistics.blocking import plateau_error
+from mesokit.statistics.blocking import correlated_error
 
 SEGMENTS = 8  # non-overlapping lengths into which a series is cut
 FEWEST_SAMPLES = 64
@@ -108,7 +108,7 @@ def dominant_frequency(series: ArrayLike, interval: float) -> Frequency | None:
     turn = np.angle(steps.sum())
     aligned = steps * np.exp(-1j * turn)
     scale = 2 * np.pi * length * interval
-    error = plateau_error(aligned.imag / aligned.real.sum(), np.ones(len(steps))) / scale
+    error = correlated_error(aligned.imag / aligned.real.sum(), np.ones(len(steps))) / scale
     return Frequency(first + float(turn) / scale, float(error), contrast)
 
 

@@ -9,19 +9,18 @@ import numpy as np
 
 from mesokit.observe.shared.caveats import FEW_SAMPLES, LOWER_BOUND
 from mesokit.seam.result import Comparison, Result
-from mesokit.statistics import Blocks, plateau
+from mesokit.statistics import FEWEST_PIECES, Blocks, correlated
 
-FEWEST = 32  # blocks: of fewer chance alone may make errors grow to the end
-MOST = 0.5  # of the means of an observable that may have no plateau
-NOTE = f"{LOWER_BOUND}: it still grows with the length of blocks of time"
+MOST = 0.5  # of the means of an observable that may have few independent pieces
+NOTE = f"{LOWER_BOUND}: samples amount to less than {FEWEST_PIECES} independent ones"
 CHI_SQUARE = "chi-square"  # in the name of a number that is one
 SAMPLES = 128  # of fewer in a row, blocks of time hardly tell how long they are correlated
 VERY_FEW = 8  # samples: of fewer no error bar is known to within its half
 
 
 def bounded(result: Result, accumulator: Any) -> Result:
-    """A result whose comparisons say where blocks of time are shorter than what they average
-    remembers, or samples are few, unless their notes have a lower bound already."""
+    """A result whose comparisons say where its samples amount to few independent ones, unless
+    their notes have a lower bound already."""
     blocks = getattr(accumulator, "blocks", None)
     if not isinstance(blocks, Blocks):
         return result
@@ -59,7 +58,7 @@ def _few(blocks: Blocks) -> str:
 
 
 def unresolved(blocks: Blocks) -> bool:
-    """Whether the errors of most means rise each time that blocks are joined in pairs.
+    """Whether most of its means have few independent pieces.
 
     >>> noise = np.random.default_rng(1).normal(size=1024)
     >>> series = Blocks(), Blocks()
@@ -69,9 +68,9 @@ def unresolved(blocks: Blocks) -> bool:
     [False, True]
     """
     sums, samples = blocks.sums()
-    if len(samples) < FEWEST:
+    if len(samples) < 2 * FEWEST_PIECES:
         return False
     residuals = (sums - np.multiply.outer(samples, blocks.mean())) / blocks.count
-    error, reached = plateau(residuals, samples)
+    error, pieces = correlated(residuals, samples)
     known = error > 0
-    return bool(known.any()) and float((~reached[known]).mean()) > MOST
+    return bool(known.any()) and float((pieces[known] < FEWEST_PIECES).mean()) > MOST
