@@ -190,7 +190,9 @@ class TestShaded:
         ball = self.balls((1, 1, depth, 1), colours=[colour], room=(0, 4))
         image = shaded(ball, (0, 0), (2, 2), 50)
         seen = image[image[..., 3] == 255][:, :3] / 255
-        np.testing.assert_allclose(seen / seen[:, :1], np.tile(colour / 0.9, (len(seen), 1)), atol=0.02)
+        np.testing.assert_allclose(
+            seen / seen[:, :1], np.tile(colour / 0.9, (len(seen), 1)), atol=0.02
+        )
         brightest = seen[seen[:, 0].argmax()]
         np.testing.assert_allclose(brightest, colour * (1 if depth else 1 - DARK), atol=0.01)
 

@@ -1,4 +1,4 @@
-"""A signal within one long step of event-driven dynamics stops the run there, and no bit changes."""
+"""A signal within one long step of event-driven dynamics stops the run, and changes no bit."""
 
 from __future__ import annotations
 

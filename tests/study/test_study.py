@@ -253,7 +253,7 @@ def test_several_numbers_in_one_picture(study):
     picture = study.save_picture("acceleration", both)
     assert picture.name.startswith("-and-".join(names))
     other = next(row.name for row in study.table() if row.number.unit == "a^2/tau")
-    with pytest.raises(CaseError, match="is in 'a/tau' and .* in 'a.2/tau'; expected numbers of"):
+    with pytest.raises(CaseError, match=r"is in 'a/tau' and .* in 'a\^2/tau'; expected numbers of"):
         study.plot("acceleration", f"{names[0]},{other}")
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from time import perf_counter
 from collections.abc import Mapping, Sequence
+from time import perf_counter
 from typing import Any
 
 import numpy as np

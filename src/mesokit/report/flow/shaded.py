@@ -1,7 +1,7 @@
 """An image of spheres: each pixel shows the one that is nearest there, lit from the upper left.
 
-Parallel rays, so that lengths can be read off the axes; what lies farther back is darker. Light only
-darkens a colour, which keeps its hue: so it can be compared with a colour bar.
+Parallel rays, so that lengths can be read off the axes; what lies farther back is darker. Light
+only darkens a colour, which keeps its hue: so it can be compared with a colour bar.
 """
 
 from __future__ import annotations
