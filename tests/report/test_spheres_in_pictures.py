@@ -218,7 +218,7 @@ class TestShaded:
         image = figure.axes[0].images[0].get_array()
         middle = image[image.shape[0] // 2, image.shape[1] // 2]
         assert middle[0] < middle[2]
-        assert r"spheres at $z<4\,a$" in " ".join(text.get_text() for text in figure.texts)
+        assert r"spheres at $z<4$" in " ".join(text.get_text() for text in figure.texts)
 
 
 class TestColours:
