@@ -64,6 +64,7 @@ ROWS = {
     "method/mpcd/engine/domains/messages/mpi.py": (*ENGINE, "processes.cores"),
     "method/mpcd/observe/": (*MPCD, "observe"),
     "method/spheres/": SPHERES,
+    "method/spheres/hard/engine/system.py": (*SPHERES, "processes.signals"),
     "method/spheres/common/start/from_file.py": (*SPHERES, "io.snapshot_file"),
     "method/spheres/common/start/from_run.py": (*SPHERES, "io.earlier_spheres"),
     "method/flock/": (

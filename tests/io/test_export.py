@@ -465,8 +465,26 @@ def test_plates_close_an_axis(tmp_path):
         force=Uniform((0.01, 0.0)),
     )  # fmt: skip
     files = mesokit.open(tmp_path / "run")
-    assert "ITEM: BOX BOUNDS pp ff pp" in files.export(tmp_path / "a.lammpstrj").read_text()
-    assert 'pbc="T F T"' in files.export(tmp_path / "a.xyz").read_text()
+    assert "ITEM: BOX BOUNDS pp ff ff" in files.export(tmp_path / "a.lammpstrj").read_text()
+    assert 'pbc="T F F"' in files.export(tmp_path / "a.xyz").read_text()
+
+
+def test_a_box_in_2d_does_not_repeat_along_z(tmp_path):
+    run_of(tmp_path / "run", (6, 5), 0, molecule=None, fields=("position",))
+    files = mesokit.open(tmp_path / "run")
+    dump, xyz = files.export(tmp_path / "a.lammpstrj"), files.export(tmp_path / "a.xyz")
+    assert "ITEM: BOX BOUNDS pp pp ff\n0 6\n0 5\n0 1\n" in dump.read_text()
+    assert 'pbc="T T F"' in xyz.read_text()
+    with h5py.File(files.export(tmp_path / "a.h5md")) as file:
+        boundary = file["particles/trajectory/box"].attrs["boundary"]
+        assert list(boundary) == ["periodic", "periodic", "none"]
+    import MDAnalysis
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        read_back = MDAnalysis.Universe(str(dump), format="LAMMPSDUMP")
+    np.testing.assert_allclose(read_back.dimensions[:3], [6, 5, 1])
+    assert (read_back.atoms.positions[:, 2] == 0).all()
 
 
 def test_a_sheared_dump_leans(tmp_path):

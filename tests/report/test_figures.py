@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import io
 import itertools
 
@@ -379,7 +380,7 @@ def energies(time):
         "conserved quantities",
         units | {"value": "", "time": "tau", "number": "", "temperature": "m a^2/tau^2"},
         expected=still, samples=len(time),
-        extra={"conserves_momentum": 1}, drawing="series",
+        extra={"conserves_momentum": 1, "conserves_energy": 1}, drawing="series",
     )  # fmt: skip
 
 
@@ -395,7 +396,16 @@ def test_conserved_quantities_with_a_potential_have_their_total():
     parts, total = figure.axes[1:3]
     assert [text.get_text() for text in parts.get_legend().get_texts()] == ["kinetic", "potential"]
     assert "total" in total.get_ylabel() and r"m\,a/\tau" in figure.axes[0].get_ylabel()
-    np.testing.assert_allclose(total.lines[0].get_ydata(), 0, atol=1e-12)
+    np.testing.assert_allclose(total.lines[-1].get_ydata(), 0, atol=1e-12)
+    assert list(total.lines[0].get_ydata()) == [0, 0] and len(total.lines[-1].get_ydata()) == 60
+
+
+def test_energy_that_is_not_conserved_has_no_change_since_a_chance_sample():
+    time = np.linspace(0, 20, 60)
+    driven = dataclasses.replace(energies(time), extra={"conserves_momentum": 0})
+    total = plot(driven).axes[2]
+    np.testing.assert_allclose(total.lines[-1].get_ydata(), 1.0)
+    assert "of a particle" in total.get_ylabel()
 
 
 def test_a_legend_above_is_no_wider_than_its_axes():

@@ -19,7 +19,7 @@ from mesokit.method.spheres.common.section import Spheres
 from mesokit.report.flow import KINDS, animate, disks, picture
 from mesokit.report.flow.colouring import COLOURS, MOST, in_film
 from mesokit.report.flow.moving_plates import plates_at
-from mesokit.report.flow.shaded import PALE, SHADE, Balls, shaded
+from mesokit.report.flow.shaded import DARK, SHADE, Balls, shaded
 from mesokit.report.flow.solids import Section
 from mesokit.seam.method import Enclosure
 from tests.helpers.flying_spheres import METHOD
@@ -173,15 +173,28 @@ class TestShaded:
         assert (red > green)[:, :75][both[:, :75]].all()
         assert (red < green)[:, 75:][both[:, 75:]].all()
 
-    def test_light_comes_from_the_upper_left_and_what_is_far_is_pale(self):
+    def test_light_comes_from_the_upper_left_and_what_is_far_is_dark(self):
         grey = [[0.5] * 3] * 2
         near = shaded(self.balls((1, 1, 4, 1), colours=grey[:1], room=(0, 4)), (0, 0), (2, 2), 50)
         far = shaded(self.balls((1, 1, 0, 1), colours=grey[:1], room=(0, 4)), (0, 0), (2, 2), 50)
         inside = near[..., 3] == 255
         assert near[70, 30, 0] > near[30, 70, 0]
         assert near[inside][:, 0].min() >= 0.5 * 255 * SHADE - 1
-        paler = near[inside].astype(float)[:, 0] * (1 - PALE) + 255 * PALE
-        np.testing.assert_allclose(far[inside][:, 0], paler, atol=1.5)
+        darker = near[inside].astype(float)[:, 0] * (1 - DARK)
+        np.testing.assert_allclose(far[inside][:, 0], darker, atol=1.5)
+
+    @pytest.mark.parametrize("depth", [0, 4])
+    def test_a_colour_keeps_its_hue_and_is_seen_in_full_where_light_falls(self, depth):
+        """So that a number can be read off the colour bar."""
+        colour = np.array([0.9, 0.45, 0.3])
+        ball = self.balls((1, 1, depth, 1), colours=[colour], room=(0, 4))
+        image = shaded(ball, (0, 0), (2, 2), 50)
+        seen = image[image[..., 3] == 255][:, :3] / 255
+        np.testing.assert_allclose(
+            seen / seen[:, :1], np.tile(colour / 0.9, (len(seen), 1)), atol=0.02
+        )
+        brightest = seen[seen[:, 0].argmax()]
+        np.testing.assert_allclose(brightest, colour * (1 if depth else 1 - DARK), atol=0.01)
 
     @pytest.mark.parametrize(
         "axes, front", [(("x", "y"), 1), (("x", "z"), 0), (("y", "z"), 1), (("z", "y"), 0)]
@@ -205,7 +218,7 @@ class TestShaded:
         image = figure.axes[0].images[0].get_array()
         middle = image[image.shape[0] // 2, image.shape[1] // 2]
         assert middle[0] < middle[2]
-        assert r"spheres at $z<4\,a$" in " ".join(text.get_text() for text in figure.texts)
+        assert r"spheres at $z<4$" in " ".join(text.get_text() for text in figure.texts)
 
 
 class TestColours:

@@ -217,7 +217,10 @@ def test_wild_and_undetermined_points_do_not_set_the_axis():
     assert calm.get_ylim()[1] > 2e4  # a number that is known well is shown
 
 
-def test_theory_is_evaluated_between_points(case_file, tmp_path, here):
+@pytest.mark.parametrize("seconds, inside", [(0.0, 7), (1e9, 40)])
+def test_theory_is_evaluated_between_points(
+    case_file, tmp_path, here, monkeypatch, seconds, inside
+):
     """That of cases which were not run, also where keys change together."""
     case = tmp_path / "c.toml"
     case.write_text(f'{case_file.read_text()}\n[[observe]]\nquantity = "conservation"\n')
@@ -225,14 +228,33 @@ def test_theory_is_evaluated_between_points(case_file, tmp_path, here):
     study = Study(case, linked, seeds=2, output=tmp_path / "s")
     study.run()
     rows = [row for row in study.table() if row.key == "viscosity-from-curvature"]
+    monkeypatch.setattr("mesokit.study.between.SECONDS", seconds)
     theory = study.theory_between(rows, study.axes[0].keys, True)
-    assert len(theory.x) == 3 + 2 * 7 and theory.x[4] == pytest.approx(0.2)
+    assert len(theory.x) == 3 + 2 * inside
+    assert theory.x[1] == pytest.approx(0.1 * 4 ** (1 / (inside + 1)))
     for timestep, expected in zip(theory.x, theory.expected, strict=True):
         made = study.base.case({"fluid.timestep": float(timestep)}, 1)
         assert expected == pytest.approx(setting.transport(made).viscosity)
     figure = study.plot("timestep", "velocity-profile.viscosity")
     [line] = [line for line in figure.axes[0].lines if len(line.get_xdata()) == len(theory.x)]
     assert line.get_label().startswith("theory")
+
+
+def test_several_numbers_in_one_picture(study):
+    """Each has points and a name of its own; two units have no common axis."""
+    names = [row.name for row in study.table() if row.number.unit == "a/tau"][:2]
+    both = ",".join(names)
+    ax = study.plot("acceleration", both).axes[0]
+    labels = [text.get_text() for text in ax.get_legend().get_texts()]
+    whats = [next(row.number.what for row in study.table() if row.name == n) for n in names]
+    for what in whats:
+        assert any(label.startswith(what) for label in labels), labels
+    assert ax.get_ylabel().startswith(" and ".join(whats)[:20])
+    picture = study.save_picture("acceleration", both)
+    assert picture.name.startswith("-and-".join(names))
+    other = next(row.name for row in study.table() if row.number.unit == "a^2/tau")
+    with pytest.raises(CaseError, match=r"is in 'a/tau' and .* in 'a\^2/tau'; expected numbers of"):
+        study.plot("acceleration", f"{names[0]},{other}")
 
 
 def test_another_case_in_its_place_is_refused(study, case_file, tmp_path):

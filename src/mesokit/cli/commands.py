@@ -178,7 +178,11 @@ FITS = click.Choice(["line", "power"])
 LOGS = click.Choice(["x", "y", "x,y"])
 OF_DEPENDENCE = (
     click.option("--x", metavar="KEY", help="Draw against this key (the first unless said)."),
-    click.option("--y", metavar="NUMBER", help="Draw this number, such as flow-rate.permeability."),
+    click.option(
+        "--y",
+        metavar="NUMBER[,NUMBER]",
+        help="Draw this number, such as flow-rate.permeability, or several of one unit.",
+    ),
     click.option("--fit", type=FITS, help="Fit a straight line or a power law to it."),
     click.option("--log", type=LOGS, help="Logarithmic axes of it."),
     click.option("--linear", is_flag=True, help="Linear axes of it."),

@@ -124,6 +124,8 @@ def _particles(
     size = np.ones(3)
     size[: case.box.dimension] = case.box.size
     shut = method_of(case).enclosure.closed_axes(case)
+    if case.box.dimension == 2:
+        shut = shut | {2}  # nothing repeats where there is no z
     names, drawn = names_and_diameters(case.groups)
     return Particles(
         number=number,

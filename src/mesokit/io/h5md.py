@@ -37,6 +37,7 @@ from mesokit.case.component import name_of
 from mesokit.case.trajectory import kinds_of, names_and_diameters
 from mesokit.errors import RunError
 from mesokit.io.atomic import replacing
+from mesokit.seam.in_units import units_of
 from mesokit.seam.method import method_of
 from mesokit.seam.result import Comparison, Result
 
@@ -283,13 +284,15 @@ def _particles(
     _identities(group, case, trajectory, own)
     if "diameter" in own:
         group["radius"] = 0.5 * own["diameter"]
-        group["radius"].attrs["reduced_unit"] = UNITS["radius"]
+        group["radius"].attrs["reduced_unit"] = units_of(case).of(UNITS["radius"])
     group["species"].attrs["names"] = names_and_diameters(case.groups)[0]
     bonds = method_of(case).bonds(case)
     if len(bonds):
         _bonds(file, group, bonds, trajectory.first, n)
     group["step"] = steps
-    group.create_dataset("time", (frames,), float).attrs["reduced_unit"] = UNITS["time"]
+    group.create_dataset("time", (frames,), float).attrs["reduced_unit"] = units_of(case).of(
+        UNITS["time"]
+    )
     sets = {}
     for name in trajectory.trajectory.fields:
         if name != "id":
@@ -303,7 +306,7 @@ def _particles(
                 shuffle=bool(trajectory.trajectory.compression) if frames and n else None,
             )
             if name in UNITS:
-                sets[name].attrs["reduced_unit"] = UNITS[name]
+                sets[name].attrs["reduced_unit"] = units_of(case).of(UNITS[name])
     edges = _box(group, case, frames)
     for index, frame in enumerate(trajectory.frames()):
         check()
@@ -372,7 +375,7 @@ def _box(group: Any, case: Case, frames: int) -> Any:
         else:
             box.attrs["lees_edwards_shear"] = name_of(case.box.history)
     edges = _element(box, "edges", group).create_dataset("value", shape, float)
-    edges.attrs["reduced_unit"] = "a"
+    edges.attrs["reduced_unit"] = units_of(case).length
     return edges
 
 

@@ -13,8 +13,9 @@ from mesokit.case.component import component, tag
 from mesokit.method.mpcd.columns import forgets, temperature
 from mesokit.method.mpcd.expected import setting
 from mesokit.seam.engine import RunningFluid
+from mesokit.seam.method import method_of
 from mesokit.seam.observable import Observable, State, pack, unpack
-from mesokit.seam.result import Array, Comparison, Result
+from mesokit.seam.result import NOT_STEADY, Array, Comparison, Result
 from mesokit.statistics import Blocks
 
 if TYPE_CHECKING:
@@ -142,7 +143,9 @@ class ConservationAccumulator:
                 "mean": self.blocks.mean(),
                 "mean_error": self.blocks.error(),
                 "conserves_momentum": int(self.conserves_momentum()),
+                "conserves_energy": int(self.conserves_energy()),
                 "driven": int(setting.driven(self.case)),
+                "not_steady": self._not_steady(),
             },
         )
 
@@ -168,9 +171,36 @@ class ConservationAccumulator:
                 expected[:, 1 + axis] = self._driven_momentum(axis, time - time[0])
         if self.conserves_energy() and not self.bonded:
             expected[:, -2:] = self.first[-2:]
-        elif self._at_rest():
-            expected[:, -1] = self.case.fluid.kT
+        elif setting.isothermal(self.case) or self.forgets():
+            energy, momentum = self._held_energy()
+            expected[:, -2] = energy
+            number = int(self.first[0])
+            expected[:, -1] = temperature(self.case, number, momentum, energy)
         return expected
+
+    def _held_energy(self) -> tuple[float, Array]:
+        """Kinetic energy and momentum of the steady flow of a fluid at kT, nan without theory."""
+        case, d = self.case, self.dimension
+        mass, free = setting.superficial_mass(case), not (case.walls or self.forgets())
+        squares, momentum = 0.0, np.zeros(d)
+        for axis in range(d):
+            flow = setting.flow(case, axis)
+            if flow.profile is None or (setting.driven(case) and setting.obstructed(case)):
+                return np.nan, momentum
+            edges = np.linspace(0.0, case.box.size[flow.across], 65)
+            speeds = setting.bin_average(flow.profile, edges)
+            squares += float((speeds**2).mean())
+            momentum[axis] = mass * float(speeds.mean())
+        thermal = d * (self.first[0] - free) * case.fluid.kT
+        return 0.5 * float(thermal + mass * squares), momentum
+
+    def _not_steady(self) -> str:
+        """That samples began before the flow had built up, nothing where they did not."""
+        method = method_of(self.case)
+        found = method.build_up(self.case) if method.build_up is not None else None
+        if found is None or found.had >= found.need:
+            return ""
+        return f"{NOT_STEADY}: the flow needs {found.need} steps before samples, had {found.had}"
 
     def _driven_momentum(self, axis: int, since: Array) -> Array | float:
         """Of the steady flow, or of a fluid that nothing holds; nan where there is no theory."""

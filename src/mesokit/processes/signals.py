@@ -24,6 +24,14 @@ class Stopped(KeyboardInterrupt):
         self.status = 128 + by
 
 
+_caught: list[int] = []  # signals since `catching` began
+
+
+def heard() -> bool:
+    """True if a signal has asked this thread to end, which only the main thread is asked to."""
+    return bool(_caught) and threading.current_thread() is threading.main_thread()
+
+
 @contextlib.contextmanager
 def catching(stop: Callable[[signal.Signals], None]) -> Iterator[None]:
     """Call `stop` when a signal asks to end; what happened before, happens again afterwards.
@@ -33,14 +41,21 @@ def catching(stop: Callable[[signal.Signals], None]) -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
+
+    def catch(number: int, frame: object) -> None:
+        _caught.append(number)
+        stop(signal.Signals(number))
+
     known = [getattr(signal, name) for name in NAMES if hasattr(signal, name)]
+    _caught.clear()
     before = {
-        number: signal.signal(number, lambda number, frame: stop(signal.Signals(number)))
+        number: signal.signal(number, catch)
         for number in known
         if not (number.name == "SIGHUP" and signal.getsignal(number) is signal.SIG_IGN)
     }
     try:
         yield
     finally:
+        _caught.clear()
         for number, handler in before.items():
             signal.signal(number, handler)

@@ -9,7 +9,9 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from mesokit.case.describe.digits import two_digits
+from mesokit.seam.in_units import shown
 from mesokit.seam.result import Comparison, with_error
+from mesokit.seam.units import CELLS
 
 MOST = 8  # comparisons below a figure; the table of the run has all
 LETTERS = 16.0  # in an inch
@@ -27,6 +29,8 @@ _SYMBOLS = {
     "N kT": r"N\,k_BT",
     "N m kT": r"N\,m\,k_BT", "N sqrt(m kT)": r"N\sqrt{m\,k_BT}", "m/a^2": "m/a^2", "m/a^3": "m/a^3",
 }  # fmt: skip
+_WORD = re.compile(r"\b(length|time|mass)\b( ?)")  # as `seam.units` names units
+_NAMED = re.compile(r"(?=.*[a-z])(?:\b(?:length|time|mass)\b|[\d ()/^-])+")
 _FORMULAS = (
     (r"\bexp\(-t/tau_p\)", r"$e^{-t/\\tau_p}$"),
     (r"\bexp\(-nu k\^2 t\)", r"$e^{-\\nu k^2 t}$"),
@@ -49,10 +53,20 @@ _FORMULAS = (
 def symbols(unit: str) -> str:
     """A unit as Matplotlib writes it, without the brackets; texts stay texts.
 
-    >>> symbols("a^2/tau"), symbols("% of the flow")
-    ('$a^2/\\\\tau$', '% of the flow')
+    >>> symbols("a^2/tau"), symbols("% of the flow"), symbols("length^2")
+    ('$a^2/\\\\tau$', '% of the flow', '$\\\\mathrm{length}^2$')
     """
-    return f"${_SYMBOLS[unit]}$" if unit in _SYMBOLS else mathematics(unit)
+    unit = shown().of(unit)
+    if unit in _SYMBOLS:
+        return f"${_SYMBOLS[unit]}$"
+    if _NAMED.fullmatch(unit):
+        return f"${_WORD.sub(_upright, unit)}$"
+    return mathematics(unit)
+
+
+def _upright(word: re.Match[str]) -> str:
+    """A word of a unit, and the space after it, in a formula."""
+    return rf"\mathrm{{{word[1]}}}" + r"\," * bool(word[2])
 
 
 def rounded(value: float, digits: int = 4) -> str:
@@ -67,6 +81,21 @@ def rounded(value: float, digits: int = 4) -> str:
     if 0 < int(exponent) < 6:
         return f"{float(f'{value:.{digits}g}'):.0f}"
     return rf"{mantissa}\times 10^{{{int(exponent)}}}"
+
+
+def at(time: float, digits: int = 4, name: str = "t = ") -> str:
+    """A time in a formula, with its unit where that has a symbol.
+
+    >>> at(7.0), at(7.0, 4, "")
+    ('$t = 7\\\\,\\\\tau$', '$7\\\\,\\\\tau$')
+    """
+    unit = r"\,\tau" * (shown() == CELLS)
+    return f"${name}{rounded(time, digits)}{unit}$"
+
+
+def in_cells() -> str:
+    """What stands after a length in a formula: the side of a cell, or nothing without cells."""
+    return r"\,a" * (shown() == CELLS)
 
 
 def mathematics(text: str) -> str:

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesokit.report.caption import mathematics
+from mesokit.report.caption import mathematics, symbols
 from mesokit.report.style import COLOURS, MARKERS, labelled, legend_above, sparse_logarithm
 from mesokit.seam.result import Result
+from mesokit.seam.units import Units
 
 SHOWN = 6  # curves in one figure
 ALIKE = 0.01  # how near a line is to a curve that tells the same
@@ -66,16 +67,16 @@ def draw_displacement(result: Result, figure: Any, ax: Any) -> None:
 
 def _better(result: Result, ax: Any, below: Any) -> None:
     """Late lags of a diffusion coefficient that theory knows better than the curve."""
-    known = [c.expected for c in result.comparisons if c.what == "diffusion coefficient"]
+    known = [c for c in result.comparisons if c.what == "diffusion coefficient"]
     time, curve, axes = result.x["time"], np.asarray(result.expected), result.extra["components"]
-    if result.fit is None or len(time) < 2 or not (known and np.isfinite(known[0])):
+    if result.fit is None or len(time) < 2 or not (known and np.isfinite(known[0].expected)):
         return
-    slope = 2 * len(axes) * known[0]
+    slope = 2 * len(axes) * known[0].expected
     if abs((curve[-1] - curve[-2]) / (time[-1] - time[-2]) / slope - 1) < ALIKE:
         return
     late = np.isfinite(result.fit) & (time >= 0.1 * time[-1])
     style: Any = {"ls": "-.", "color": COLOURS[2], "lw": 1.5, "zorder": 3}
-    label = mathematics(f"theory: diffusion coefficient, {known[0]:.3g} a^2/tau")
+    label = f"theory: diffusion coefficient, {known[0].expected:.3g} {symbols(known[0].unit)}"
     ax.plot(time[late], slope * time[late], label=label, **style)
     if below is not None:
         below.plot(time[late], slope * time[late] / curve[late], **style)
@@ -83,11 +84,13 @@ def _better(result: Result, ax: Any, below: Any) -> None:
 
 def _straight(ax: Any, result: Result, t: Any, value: Any) -> None:
     """Where no curve is known: that of the diffusion coefficient of theory, or else slope 1."""
-    known = [c for c in result.comparisons if c.unit == "a^2/tau" and np.isfinite(c.expected)]
+    diffusion = "a^2/tau", Units().of("a^2/tau")
+    known = [c for c in result.comparisons if c.unit in diffusion and np.isfinite(c.expected)]
     if known and result.extra.get("components"):
         slope = 2 * len(result.extra["components"]) * known[0].expected
         late = t if result.fit is None else t[t >= 0.1 * result.x["time"][-1]]
-        label = mathematics(f"theory: {known[0].what}, {known[0].expected:.3g} a^2/tau")
+        expected = f"{known[0].expected:.3g} {symbols(known[0].unit)}"
+        label = f"{mathematics(f'theory: {known[0].what}')}, {expected}"
         ax.plot(late, slope * late, "-", color="black", label=label, zorder=3)
     else:
         ax.plot(t, value[-1] * t / t[-1], ":", color="0.5", label="slope 1", zorder=1)

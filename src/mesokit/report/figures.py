@@ -39,6 +39,7 @@ from mesokit.report.particles import (
 )
 from mesokit.report.rheology import stress_in_time
 from mesokit.report.style import STYLE, WIDTH, fonts, height_of
+from mesokit.seam.in_units import showing
 from mesokit.seam.result import Result
 
 if TYPE_CHECKING:
@@ -97,13 +98,13 @@ def plot(
 
     from mesokit.report.notebook import ShownFigure
 
-    with mpl.rc_context(STYLE):
+    with mpl.rc_context(STYLE), showing(case):
         if ax is not None:
             into = partial(_draw_into, result, ax, case)
             into() if result.drawing in MAPS else add(ax, into, label, colour)
             return ax
     wide = WIDTH if width is None else width
-    with mpl.rc_context(STYLE | fonts(wide)), page_width(width):
+    with mpl.rc_context(STYLE | fonts(wide)), page_width(width), showing(case):
         if result.drawing in MAPS:
             return field.draw(result, None, case)
         text = compared(result.comparisons, wide)

@@ -18,9 +18,10 @@ ROW = 1.25  # inches of a panel
 def draw(result: Result, figure: Any, ax: Any) -> None:
     """Momentum, energy and temperature in time; in given axes the temperature alone.
 
-    A number of particles that stays is a line above the panels. Where momentum is conserved its
-    change since the first sample is drawn, which is round-off. With a potential energy that and the
-    kinetic one share a panel, and their sum has its own.
+    A number of particles that stays is a line above the panels. Where momentum or energy is
+    conserved its change since the first sample is drawn, which is round-off. The kinetic energy is
+    else drawn relative to theory, or per particle without theory. With a potential energy that and
+    the kinetic one share a panel, and their sum has its own.
     """
     time, names = result.x["time"], [str(name) for name in result.x["component"]]
     if ax is not None:
@@ -38,17 +39,15 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         panels[0].set_ylabel("particles\n$N$")
         panels[0].ticklabel_format(axis="y", useOffset=False)
     elif len(number):
-        panels[0].set_title(f"$N = {number[0]:.0f}$ particles at all times", loc="left", fontsize=9)
+        words = [f"$N = {number[0]:.0f}$ particles at all times", result.extra.get("not_steady")]
+        panels[0].set_title("\n".join(filter(None, words)), loc="left", fontsize=9)
     momenta = [i for i, name in enumerate(names) if name.startswith("momentum")]
     _momentum(result, panels[counted], momenta)
     kinds = ("kinetic", "potential") if bound else ("kinetic",)
     energies = [result.value[:, names.index(f"{kind}_energy")] for kind in kinds]
     if bound:
         _energies(result, panels[counted + 1], energies)
-    total = np.sum(energies, axis=0)
-    first = total[0] if len(total) and total[0] else 1.0
-    words = f"{'total' if bound else 'kinetic'} energy\nrel. change"
-    _scaled(panels[-2], words, [(time, (total - first) / abs(first), {})], "")
+    _energy(result, panels[-2], np.sum(energies, axis=0), "total" if bound else "kinetic")
     _temperature(result, panels[-1], names.index("temperature"))
     panels[-1].set_xlabel(labelled("time $t$", result.units["time"]))
     if len(time) > 1:
@@ -57,6 +56,28 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         panel.yaxis.label.set_size(9)
         panel.locator_params(axis="y", nbins=4)
     figure.align_ylabels()
+
+
+def _energy(result: Result, ax: Any, energy: Any, kind: str) -> None:
+    """Relative to what it should be, with a line there; without theory that of a particle."""
+    names = [str(name) for name in result.x["component"]]
+    time, number = result.x["time"], result.value[:, names.index("number")]
+    wanted = np.full(len(energy), np.nan)
+    if result.expected is not None and kind == "kinetic":
+        wanted = result.expected[:, names.index("kinetic_energy")]
+    words = "change"
+    if result.extra.get("conserves_energy") and len(energy):
+        wanted = np.full(len(energy), energy[0])
+    elif np.isfinite(wanted).any():
+        words = "to theory"
+    if not len(energy) or not np.isfinite(wanted).all() or not wanted.all():
+        each = energy / np.where(number > 0, number, 1)
+        unit = result.units["kinetic_energy"]
+        return _scaled(ax, f"{kind} energy\nof a particle", [(time, each, {})], unit)
+    ax.axhline(0.0, color="black", lw=1.3, label="theory", zorder=1)
+    change = (energy - wanted) / abs(wanted)
+    _scaled(ax, f"{kind} energy\nrel. {words}", [(time, change, {"zorder": 2})], "")
+    _beside(ax)
 
 
 def _energies(result: Result, ax: Any, energies: list[Any]) -> None:

@@ -13,6 +13,7 @@ from mesokit.processes.signals import Stopped
 from mesokit.report.progress import Reporter
 from mesokit.run.compiling import swallowed, telling
 from mesokit.run.schedule import Leg, Schedule
+from mesokit.seam.engine import Interrupted
 
 if TYPE_CHECKING:
     from mesokit.case.run import Run
@@ -85,7 +86,11 @@ class Loop:
                 self.stop.by = signal.Signals(order.stop)
                 break
             coming = self._ahead(pace, order.target, last)
-            self._go(self.schedule.legs(step, order.target))
+            try:
+                self._go(self.schedule.legs(step, order.target))
+            except Interrupted:
+                self.stop.by = self.stop.heard
+                break
             pace.went(self.replicas.step - step, perf_counter() - began)
             self._call_back()
             self._keep_if_due(order, pace)

@@ -23,6 +23,7 @@ from mesokit.io.shared_work import work_words
 from mesokit.io.trajectory_reader import TrajectoryReader
 from mesokit.observe.shared.build_up import result_of
 from mesokit.run import pictures
+from mesokit.seam.in_units import in_units
 from mesokit.seam.method import method_of
 from mesokit.seam.named import keyed
 
@@ -80,7 +81,8 @@ class RunFiles(Shown, Mapping[str, "Result"]):
     @cached_property
     def _final(self) -> dict[str, Result]:
         with self._advising():
-            return h5md.read_results(self._data())
+            found = h5md.read_results(self._data())
+            return {name: in_units(result, self.case) for name, result in found.items()}
 
     @cached_property
     def si(self) -> Any:

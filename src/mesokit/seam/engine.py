@@ -54,6 +54,11 @@ class Sites(Clock, Protocol):
     def sites(self, ids: Integers | None = None) -> NDArray[np.integer[Any]]: ...
 
 
+class Interrupted(Exception):
+    """A signal has ended `advance` within a step: `state` has what is done of that step, and the
+    next `advance` goes on there."""
+
+
 class Engine(Clock, Protocol):
     """What a simulation asks of an engine, whatever it holds."""
 
@@ -61,7 +66,8 @@ class Engine(Clock, Protocol):
         """Run some steps, in compiled code; 0 only loads or compiles it.
 
         `measure` is what observables need of the last of them (`Observable.measures`), such as
-        "stress". Raises RunError where the physics has broken down.
+        "stress". Raises RunError where the physics has broken down. An engine whose steps may last
+        for minutes may raise Interrupted where `mesokit.processes.signals.heard` is true.
         """
 
     def check(self) -> None:

@@ -16,6 +16,7 @@ from mesokit.case import methods
 from mesokit.case.amounts import duration_text
 from mesokit.case.component import show
 from mesokit.processes.cores import usable_cores
+from mesokit.seam.units import Units
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -163,6 +164,8 @@ class Method:
         What its units are in SI; without it, a case must not have the section `[units]`.
     build_up : function of a case, optional
         How its flow comes from rest to its steady state (`BuildUp`), or None.
+    units : Units, optional
+        What lengths, times and masses are counted in; unless said, the unit of the case.
     check_ranks : function of a case and a number of ranks, optional
         Raises CaseError for a case that cannot be run on so many ranks of MPI; without it, none
         can. Its engine is then asked by all ranks at once.
@@ -186,6 +189,7 @@ class Method:
     log: Callable[[Case], Columns] = lambda case: NO_COLUMNS
     si: Callable[[Case], Any] | None = None
     build_up: Callable[[Case], BuildUp | None] | None = None
+    units: Units = Units()  # noqa: RUF009  a tuple of names
     check_ranks: Callable[[Case, int], None] | None = None
 
 

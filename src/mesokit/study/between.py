@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping, Sequence
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,8 @@ from mesokit.study.dependence import Theory
 from mesokit.study.plan import Base, Planned
 from mesokit.study.table import Pooled
 
-INSIDE = 7  # places between two points
+FEWEST, MOST = 7, 80  # places between two points; of a curve
+SECONDS = 0.8  # that a curve may take for more than the fewest
 ALIKE = 1e-9  # part by which two expectations may differ
 
 
@@ -41,8 +43,9 @@ def theory_between(
     x, expected = [float(rows[0].point[key])], [rows[0].number.expected]
     try:
         memories = [_memory(runs, row) for row in rows]
+        inside = _inside(base, rows, memories[0])
         for k, (low, high) in enumerate(itertools.pairwise(rows)):
-            for point in _points(low.point, high.point, keys, log):
+            for point in _points(low.point, high.point, keys, log, inside):
                 found = [_expected(base, point, low, memory) for memory in memories[k : k + 2]]
                 alike = math.isclose(found[0], found[1], rel_tol=ALIKE)
                 x.append(float(point[key]))
@@ -51,8 +54,18 @@ def theory_between(
             expected.append(high.number.expected)
     except (MesokitError, KeyError, ValueError, IndexError):  # memories of another shape, and so on
         return None
-    inside = np.isin(x, [float(row.point[key]) for row in rows], invert=True)
-    return Theory(np.array(x), np.array(expected)) if np.isfinite(expected)[inside].any() else None
+    new = np.isin(x, [float(row.point[key]) for row in rows], invert=True)
+    return Theory(np.array(x), np.array(expected)) if np.isfinite(expected)[new].any() else None
+
+
+def _inside(base: Base, rows: Sequence[Pooled], memory: Mapping[str, Any]) -> int:
+    """How many places between two points make a smooth curve, in the time that there is."""
+    gaps = max(len(rows) - 1, 1)
+    _expected(base, rows[0].point, rows[0], memory)  # the first may import what it needs
+    began = perf_counter()
+    _expected(base, rows[0].point, rows[0], memory)
+    affordable = int(SECONDS / (2 * (perf_counter() - began)))
+    return max(FEWEST, min(MOST, affordable) // gaps)
 
 
 def _memory(runs: Sequence[Planned], row: Pooled) -> Mapping[str, Any]:
@@ -64,12 +77,12 @@ def _memory(runs: Sequence[Planned], row: Pooled) -> Mapping[str, Any]:
 
 
 def _points(
-    low: Mapping[str, Any], high: Mapping[str, Any], keys: Sequence[str], log: bool
+    low: Mapping[str, Any], high: Mapping[str, Any], keys: Sequence[str], log: bool, inside: int
 ) -> list[dict[str, Any]]:
     """Points between two others. Raises ValueError for a value that is no number, and changes."""
     space = np.geomspace if log else np.linspace
     first, last = (float(point[keys[0]]) for point in (low, high))
-    places = space(first, last, INSIDE + 2)[1:-1]
+    places = space(first, last, inside + 2)[1:-1]
     points = []
     for share in (places - first) / (last - first):
         point = {**low, **{key: _mixed(low[key], high[key], share) for key in keys}}

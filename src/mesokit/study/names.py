@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from mesokit.seam.in_units import units_of
+
 LONGEST = 36  # letters of an explanation beside a name
 VECTOR = "one number for each axis"  # explains no meaning
 # what a number is, at the beginning of its name: no conditions, which follow in some names
@@ -43,7 +45,7 @@ def called(case: Any, key: str) -> tuple[str, str]:
     if field is None:
         return key, ""
     unit = str((field.json_schema_extra or {}).get("unit", "")).replace("time", "tau")
-    unit = unit.replace("1/a^d", f"1/a^{case.box.dimension}")
+    unit = units_of(case).of(unit.replace("^d", f"^{case.box.dimension}"))
     name, symbol = last.replace("_", " "), (field.json_schema_extra or {}).get("symbol")
     words = _words(name, field.description or "")
     if symbol:

@@ -33,14 +33,30 @@ def plot(
     """A figure with error bars, what is expected, and a fit; a curve for each other value.
 
     `rows` are the table of a study, `axes` what it varies, `key` what the number is drawn against,
-    which is `called` so, in a unit; `between` gives theory between the points; `look` is `fit`,
-    `log` and `width` of `dependence.draw`.
-    Raises CaseError for a number that is not there, or values that are no numbers.
+    which is `called` so, in a unit; `number` may be several of one unit, with commas between them.
+    `between` gives theory between the points; `look` is `fit`, `log` and `width` of
+    `dependence.draw`.
+    Raises CaseError for a number that is not there, values that are no numbers, and two units.
     """
-    drawn, first = curves_of(rows, axes, key, number, between), find_rows(rows, number)[0]
-    note = f"{first.runs} runs pooled" if first.runs > 1 else "one run each"
-    named = with_symbol(first.number.what), first.number.unit
+    drawn = curves_of(rows, axes, key, number, between)
+    firsts = [find_rows(rows, name)[0] for name in several(number)]
+    runs, unit = firsts[0].runs, firsts[0].number.unit
+    note = f"{runs} runs pooled" if runs > 1 else "one run each"
+    other = next((row for row in firsts if row.number.unit != unit), None)
+    if other is not None:
+        units = f"{firsts[0].name} is in {show(unit)} and {other.name} in {show(other.number.unit)}"
+        raise CaseError(f"{number}: {units}; expected numbers of one unit")
+    named = " and ".join(with_symbol(row.number.what) for row in firsts), unit
     return draw(drawn, x=called or (key, ""), y=named, note=note, **look)
+
+
+def several(number: str) -> list[str]:
+    """The names of numbers that are drawn together.
+
+    >>> several("moduli.storage, moduli.loss")
+    ['moduli.storage', 'moduli.loss']
+    """
+    return [name.strip() for name in number.split(",")]
 
 
 # of the rows of a curve, the keys of its axis, and whether that is logarithmic
@@ -54,11 +70,26 @@ def curves_of(
     number: str,
     between: Between | None = None,
 ) -> list[Curve]:
-    """One number of the table against a key that is varied: a curve for each other value.
+    """One number of the table, or several, against a key that is varied: a curve for each other
+    value.
 
     Raises CaseError as `plot` does.
     """
-    rows = find_rows(rows, number)
+    names = several(number)
+    if len(names) > 1:
+        found = {name: find_rows(rows, name)[0].number.what for name in names}
+        return [
+            curve._replace(label=", ".join(filter(None, [with_symbol(what), curve.label])))
+            for name, what in found.items()
+            for curve in curves_of(rows, axes, key, name, between)
+        ]
+    return _curves_of_one(find_rows(rows, number), axes, key, between)
+
+
+def _curves_of_one(
+    rows: Sequence[Pooled], axes: Sequence[Axis], key: str, between: Between | None
+) -> list[Curve]:
+    """The curves of one number, whose rows these are."""
     keys = [other for axis in axes for other in axis.keys]
     linked = next(axis.keys for axis in axes if key in axis.keys)
     names = dict(zip(keys, short_names(keys), strict=True))

@@ -29,7 +29,7 @@ from mesokit.study.merge import merge
 from mesokit.study.names import called
 from mesokit.study.numbers import numbers, words_of
 from mesokit.study.plan import Base, Planned, by_point, checked, make, planned, short_names
-from mesokit.study.plot import curves_of, drawable, find_rows, plot
+from mesokit.study.plot import curves_of, drawable, find_rows, plot, several
 
 if TYPE_CHECKING:
     from mesokit.run.opened import RunFiles
@@ -204,13 +204,15 @@ class Study(Shown):
         """Raise CaseError if a picture cannot be, as far as that is known before the runs."""
         self.key(x) if x else None
         labels = [o.label for o in self.base.case(self.runs[0].point, self.runs[0].seed).observe]
-        if not any(label.startswith(y) or y.startswith(label) for label in labels):
-            name = y.partition(".")[0]
-            raise CaseError(
-                f"{y}: no observable {show(name)}; expected {one_of(labels)}{nearest(name, labels)}"
-                if labels
-                else f"{y}: the case measures nothing"
-            )
+        for one in several(y):
+            if not any(label.startswith(one) or one.startswith(label) for label in labels):
+                name = one.partition(".")[0]
+                known = f"expected {one_of(labels)}{nearest(name, labels)}"
+                raise CaseError(
+                    f"{one}: no observable {show(name)}; {known}"
+                    if labels
+                    else f"{one}: the case measures nothing"
+                )
 
     @property
     def ended(self) -> bool:
@@ -294,7 +296,8 @@ class Study(Shown):
         x : str
             A key that is varied, or its last part.
         y : str
-            A number, such as "velocity-profile.viscosity".
+            A number, such as "velocity-profile.viscosity", or several of one unit, with commas
+            between them.
         fit : "line" or "power", optional
             Fit y = a + b x, or y = a x^b, to each curve.
         look : optional
@@ -373,7 +376,8 @@ class Study(Shown):
         figure, names = self.plot(x, y, fit, **look), short_names(self.keys)
         title = self.base.case(self.runs[0].point, self.runs[0].seed).title
         figure.origin = Origin(", ".join(filter(None, [title, f"study {self.path.name}"])))
-        number = next(row.name for row in find_rows(self.table(), y))
+        table = self.table()
+        number = "-and-".join(find_rows(table, name)[0].name for name in several(y))
         file = f"{number}-against-{names[self.keys.index(self.key(x))]}{ending}"
         return save_figure(figure, path or self.path / file)
 

@@ -105,8 +105,8 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     seconds = case.particles * steps / (RATE * threads)
     rows: list[Row] = [
         ("particles", f"{case.particles:,}".replace(",", " "), ""),
-        ("length of a step", number(step, "a"), "root mean square"),
-        ("displacement", number(step * steps**0.5, "a"), "root mean square, over the run"),
+        ("length of a step", number(step, "length"), "root mean square"),
+        ("displacement", number(step * steps**0.5, "length"), "root mean square, over the run"),
         ("run time", duration_text(seconds), f"estimate: {threads} thread{'s' * (threads > 1)}"),
         ("memory", size_text(memory), "estimate"),
     ]

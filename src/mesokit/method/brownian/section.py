@@ -12,11 +12,13 @@ from mesokit.case.component import FileName, component, param, show
 class Brownian:
     """Particles that diffuse freely in the periodic box: dx = sqrt(2 D dt) xi along each axis."""
 
-    density: float = param(1.0, doc="particles per cell", unit="1/a^d", gt=0)
-    diffusion: float = param(1.0, doc="diffusion coefficient D", unit="a^2/time", gt=0)
+    density: float = param(1.0, doc="particles per cell", unit="1/length^d", gt=0)
+    diffusion: float = param(1.0, doc="diffusion coefficient D", unit="length^2/time", gt=0)
     timestep: float = param(0.01, doc="time of a step", ge=1e-9, le=1e6)
     positions: FileName | None = param(
-        None, doc="start from these: file .npy with an (n, d) array (drawn unless said)", unit="a"
+        None,
+        doc="start from these: file .npy with an (n, d) array (drawn unless said)",
+        unit="length",
     )
     scale: float | None = param(
         None, doc="cells per length of these positions (1 unless said)", gt=0, le=1e12

@@ -23,9 +23,9 @@ class Cohesion:
     """
 
     strength: float = param(1.0, doc="weight relative to the headings", gt=0, le=1e3)
-    core: float = param(0.2, doc="birds nearer than this are fled from", unit="a", ge=0)
-    equilibrium: float = param(0.5, doc="distance that is sought", unit="a", gt=0)
-    attraction: float = param(0.8, doc="from here on attraction is full", unit="a", gt=0)
+    core: float = param(0.2, doc="birds nearer than this are fled from", unit="length", ge=0)
+    equilibrium: float = param(0.5, doc="distance that is sought", unit="length", gt=0)
+    attraction: float = param(0.8, doc="from here on attraction is full", unit="length", gt=0)
 
     @model_validator(mode="after")
     def _in_order(self) -> Cohesion:

@@ -26,9 +26,11 @@ class FlockStart:
     headings: Literal["random", "aligned"] = param(
         "random", doc="'random': in all directions; 'aligned': all along x"
     )
-    positions: FileName | None = param(None, doc="file .npy with an (n, d) array", unit="a")
+    positions: FileName | None = param(None, doc="file .npy with an (n, d) array", unit="length")
     velocities: FileName | None = param(
-        None, doc="file .npy with an (n, d) array, of which the directions count", unit="a/time"
+        None,
+        doc="file .npy with an (n, d) array, of which the directions count",
+        unit="length/time",
     )
     run: FileName | None = param(None, doc="folder of an earlier run: go on from its last state")
     file: FileName | None = param(None, doc="GSD file (its last frame) or LAMMPS data file")
@@ -51,13 +53,13 @@ class Flock:
         None,
         doc="birds per cell (2 unless a number is given)",
         symbol=r"\rho",
-        unit="1/a^d",
+        unit="1/length^d",
         gt=0,
         le=1e15,
     )
     number: int | None = param(None, doc="birds in all, in place of the density", symbol="N", ge=1)
-    radius: float = param(1.0, doc="reach of a bird's sight", unit="a", gt=0)
-    speed: float = param(0.5, doc="of all birds", symbol="v", unit="a/time", gt=0, le=1e6)
+    radius: float = param(1.0, doc="reach of a bird's sight", unit="length", gt=0)
+    speed: float = param(0.5, doc="of all birds", symbol="v", unit="length/time", gt=0, le=1e6)
     timestep: float = param(1.0, doc="time of a step", ge=1e-9, le=1e6)
     noise: Noise = param(AngularNoise(), doc="what keeps birds from flying as the others do")
     order: Literal["synchronous", "original"] = param(

@@ -41,11 +41,11 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     crowd = given.noise.crowd(d, case.particles)
     rows: list[Row] = [
         ("birds", f"{case.particles:,}".replace(",", " "), ""),
-        ("density", number(density, case.box.density_unit), ""),
+        ("density", number(density, f"1/length^{case.box.dimension}"), ""),
         ("birds in reach", number(in_reach), "others, where birds are spread at random"),
         (
             "length of a step",
-            number(step_length, "a"),
+            number(step_length, "length"),
             f"{step_length / given.radius:.3g} of the reach",
         ),
         ("order without order", number(theory.disordered_order(case.particles, d)), "chance alone"),

@@ -33,11 +33,14 @@ SAMPLE = 12e-9  # seconds for each particle in each sample of an observable
 BYTES = {
     "particle 2D": 68,
     "particle 3D": 88,
+    "checkpoint 2D": 108,  # of a particle, while one is written
+    "checkpoint 3D": 156,
     "cell 2D": 60,
     "cell 3D": 110,
-    "empty cell": 24,  # of a random solvent, far from beads
+    "empty cell": 13,  # of a random solvent, far from beads: of all threads together
+    "end of a cell": 4,  # of each thread, in an empty cell as well
     "program": 215e6,
-    "figures": 115e6,  # to draw them
+    "figures": 115e6,  # to draw them, at the end
     "bead": 500,
 }
 
@@ -86,7 +89,9 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         substeps = flights if fluid.molecule is None else substeps
         bead_seconds = beads * (BEAD + BEAD_SUBSTEP * flights) * steps
     memory = beads * BYTES["bead"] + case.particles * BYTES[f"particle {dimension}D"]
-    memory += _cells_bytes(case, beads) * threads
+    memory += _cells_bytes(case, beads, threads)
+    checkpoint = case.particles * BYTES[f"checkpoint {dimension}D"]
+    memory += max(checkpoint, bool(case.observe) * BYTES["figures"])
     heated = _heating(case, across)
     numbers = Derived(
         particles=case.particles,
@@ -107,7 +112,7 @@ def derive(case: Case, threads: int | None = None) -> Derived:
         heating=heated[0] if heated else None,
         heating_bound=heated is not None and heated[1],
         seconds=case.particles * steps / rate + bead_seconds + _observe_seconds(case),
-        memory=round(memory + BYTES["program"] + bool(case.observe) * BYTES["figures"]),
+        memory=round(memory + BYTES["program"]),
         trajectory=stored_bytes(case.trajectory, case.groups, dimension, case.run.steps),
         substeps=substeps,
         assumed=f"{threads} thread{'s' * (threads > 1)}, {rate / 1e6:.0f} million "
@@ -117,13 +122,14 @@ def derive(case: Case, threads: int | None = None) -> Derived:
     return Derived(**{**vars(numbers), "warnings": tuple(cautions(case, numbers, across))})
 
 
-def _cells_bytes(case: Case, beads: int) -> float:
-    """Memory of the cells for each thread; of a random solvent few are ever touched."""
+def _cells_bytes(case: Case, beads: int, threads: int) -> float:
+    """Memory of the cells; of a random solvent few are ever touched."""
     cells, each = case.box.volume, BYTES[f"cell {case.box.dimension}D"]
     if case.solutes is None or case.solutes.solvent != "random":
-        return cells * each
+        return cells * each * threads
     touched = min(cells, beads * CELLS_OF_BEAD)
-    return touched * each + cells * BYTES["empty cell"]
+    empty = BYTES["empty cell"] + BYTES["end of a cell"] * threads
+    return touched * each * threads + cells * empty
 
 
 def compiling_memory(case: Case) -> int:

@@ -25,6 +25,7 @@ from mesokit.method.mpcd.observe import Observable
 from mesokit.method.mpcd.sections import KEYS, Sections
 from mesokit.processes.world import world
 from mesokit.seam.method import Enclosure, InitialState, Method
+from mesokit.seam.units import CELLS
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -156,5 +157,6 @@ METHOD = Method(
     log=columns,
     si=_si,
     build_up=_build_up,
+    units=CELLS,
     check_ranks=_check_ranks,
 )

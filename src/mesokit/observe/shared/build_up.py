@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from mesokit.observe.shared.caveats import LOWER_BOUND
 from mesokit.observe.shared.short_run import bounded
+from mesokit.seam.in_units import in_units
 from mesokit.seam.method import BuildUp, method_of
 from mesokit.seam.observable import Accumulator
 from mesokit.seam.result import NOT_STEADY, Comparison, Result, with_error
@@ -31,7 +32,7 @@ class OfFlow(Protocol):
 def result_of(accumulator: Accumulator, case: Case) -> Result:
     """What an accumulator says, with comparisons marked where the flow had not built up, or where
     the run is too short for error bars."""
-    result = bounded(accumulator.result(), accumulator)
+    result = in_units(bounded(accumulator.result(), accumulator), case)
     observable = next((one for one in case.observe if one.label == result.name), None)
     if observable is None or not observable.of_built_up_flow:
         return result

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from mesokit.case.component import show
 from mesokit.errors import CaseError
 from mesokit.io.atomic import replacing
-from mesokit.report.caption import rounded, symbols
+from mesokit.report.caption import at
 from mesokit.report.finish.origin import origin_of
 from mesokit.report.finish.saving import foot_strip
 from mesokit.report.flow.beads import BeadFrames, frames_of
@@ -29,6 +29,7 @@ from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import AT_ONCE, Source, choose_one, sources
 from mesokit.report.flow.view import View
 from mesokit.report.progress import FilmReporter, Reporter
+from mesokit.seam.in_units import of_case
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -60,6 +61,7 @@ class Film:
         return f'<video controls loop src="data:video/mp4;base64,{data}"></video>'
 
 
+@of_case
 def animate(
     case: Case,
     results: Mapping[str, Result],
@@ -181,7 +183,7 @@ def _pictures(
         now = source.time[mean[-1]]
         beads = solutes.at(now) if solutes else None
         flow = replace(smooth(source.flow(mean), width), beads=beads)
-        stamp = f"$t = {rounded(now)}$ {symbols('tau')}"
+        stamp = at(now)
         if flow.spheres is not None and flow.spheres.tells:
             stamp += f", {flow.spheres.tells}"
         drawn.show([flow] * len(drawn.panels), stamp)

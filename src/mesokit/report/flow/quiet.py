@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from mesokit.report.caption import in_cells
 from mesokit.report.flow.data import Array, Flow, spacing
 from mesokit.report.flow.region import Region
 from mesokit.report.flow.smooth import smoothed
@@ -101,7 +102,7 @@ def note(panels: Sequence[Panel], flow: Flow, clear: bool) -> str:
     said = []
     if flow.smoothing:
         width = flow.smoothing * max(spacing(flow, flow.velocity))
-        said.append(f"velocity smoothed over {width:.3g} a")
+        said.append(f"velocity smoothed over ${width:.3g}{in_cells()}$")
     if not clear:
         fine = " and bins_per_cell = 1" * (min(spacing(flow, flow.velocity)) < 1)
         said.append(

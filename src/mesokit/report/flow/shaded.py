@@ -1,6 +1,7 @@
 """An image of spheres: each pixel shows the one that is nearest there, lit from the upper left.
 
-Parallel rays, so that lengths can be read off the axes; what lies farther back is paler.
+Parallel rays, so that lengths can be read off the axes; what lies farther back is darker. Light
+only darkens a colour, which keeps its hue: so it can be compared with a colour bar.
 """
 
 from __future__ import annotations
@@ -15,15 +16,13 @@ from mesokit.report.flow.shown import Array
 FINER = 2  # samples of a pixel along each axis
 MOST = 3000  # pixels along an axis
 LIGHT = np.array([-0.4, 0.5, 0.77]) / np.linalg.norm([-0.4, 0.5, 0.77])
-HALFWAY = (LIGHT + [0, 0, 1]) / np.linalg.norm(LIGHT + [0, 0, 1])  # between light and eye
-SHADE, SHINE = 0.5, 0.35  # least part of a colour, white of a highlight
-DOUBLINGS = 5  # of the power of the highlight, which is 32
-PALE = 0.6  # part of the colour that is lost at the back
+SHADE = 0.5  # least part of a colour, away from the light
+DARK = 0.4  # part of the colour that is lost at the back
 
 
 class Balls(NamedTuple):
     """Places (n, 2), depths (n,) towards the eye, radii (n,), colours (n, 3), and the least and the
-    largest depth, between which colours get paler."""
+    largest depth, between which colours get darker."""
 
     places: Array
     depth: Array
@@ -95,16 +94,12 @@ def light(balls, low, scale, owner, image):
                 v = ((i + 0.5) / scale[1] + low[1] - balls.places[k, 1]) / r
                 w = np.sqrt(max(1.0 - u * u - v * v, 0.0))
                 lit = max(u * LIGHT[0] + v * LIGHT[1] + w * LIGHT[2], 0.0)
-                glance = max(u * HALFWAY[0] + v * HALFWAY[1] + w * HALFWAY[2], 0.0)
-                for _ in range(DOUBLINGS):
-                    glance *= glance
                 away = 1.0 - min(max((balls.depth[k] - back) / span, 0.0), 1.0)
-                kept = (1.0 - SHINE * glance) * (1.0 - PALE * away)  # the rest is white
-                lit = kept * (SHADE + (1.0 - SHADE) * lit)
+                lit = (1.0 - DARK * away) * (SHADE + (1.0 - SHADE) * lit)
                 covered += 1
-                red += 1.0 - kept + lit * balls.colours[k, 0]
-                green += 1.0 - kept + lit * balls.colours[k, 1]
-                blue += 1.0 - kept + lit * balls.colours[k, 2]
+                red += lit * balls.colours[k, 0]
+                green += lit * balls.colours[k, 1]
+                blue += lit * balls.colours[k, 2]
             if covered > 0:
                 image[row, column, 0] = np.uint8(255.0 * red / covered + 0.5)
                 image[row, column, 1] = np.uint8(255.0 * green / covered + 0.5)

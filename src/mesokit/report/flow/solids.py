@@ -10,6 +10,7 @@ import numpy as np
 from mesokit.case.box import AXES
 from mesokit.case.component import show
 from mesokit.errors import CaseError
+from mesokit.report.caption import in_cells
 from mesokit.report.flow.data import Array
 from mesokit.report.flow.region import Region
 from mesokit.seam.method import method_of
@@ -61,7 +62,7 @@ class Section:
         if self.third is None:
             return ""
         axis = AXES[self.third]
-        at = rf"; solids at ${axis} = {self.at:g}\,a$"
+        at = f"; solids at ${axis} = {self.at:g}{in_cells()}$"
         return f"{how} along ${axis}$" + at * bool(self.solids)
 
     def distance(self, x: Array, y: Array, plates: tuple[Plate, ...] = ()) -> Array:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesokit.case.box import AXES
+from mesokit.report.caption import in_cells
 from mesokit.report.flow.colouring import Frame, chosen
 from mesokit.report.flow.data import Array, Flow
 from mesokit.report.flow.moving_plates import plates_at
@@ -82,6 +83,7 @@ class SphereSource:
             return replace(spheres, depth=depth, room=(ends[0], ends[1]))
         plane = self.towards * self.view.at
         kept, axis = depth <= plane, AXES[self.third]
+        side = "<" if self.towards > 0 else ">"
         return replace(
             spheres,
             places=spheres.places[kept],
@@ -89,7 +91,7 @@ class SphereSource:
             room=(ends[0], plane),
             diameters=spheres.diameters[kept],
             values=spheres.values[kept],
-            note=rf"spheres at ${axis} {'<' if self.towards > 0 else '>'} {self.view.at:g}\,a$",
+            note=f"spheres at ${axis} {side} {self.view.at:g}{in_cells()}$",
         )
 
     def _repeats(self, time: float) -> tuple[tuple[float, float], ...]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from mesokit.case.component import show
 from mesokit.errors import CaseError
-from mesokit.report.caption import rounded
+from mesokit.report.caption import at, rounded, symbols
 from mesokit.report.flow.beads import frames_of
 from mesokit.report.flow.data import Flow
 from mesokit.report.flow.kinds import Panel, legend_of, panels_of, usual
@@ -19,6 +19,7 @@ from mesokit.report.flow.region import frames_in, region_of
 from mesokit.report.flow.solids import Section
 from mesokit.report.flow.source import AT_ONCE, choose, sources
 from mesokit.report.flow.view import View
+from mesokit.seam.in_units import of_case
 
 if TYPE_CHECKING:
     from mesokit.case.case import Case
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from mesokit.seam.result import Result
 
 
+@of_case
 def picture(
     case: Case,
     results: Mapping[str, Result],
@@ -79,13 +81,13 @@ def picture(
     reaches = [panel.reach(flow, shown) for panel, flow in zip(panels, flows, strict=True)]
     averaged = [f for f, panel in zip(flows, panels, strict=True) if panel.NEEDS not in AT_ONCE]
     mean = _mean(averaged[0], window) if averaged else ""
-    when = rf"solutes at $t = {rounded(beads.time)}\,\tau$" if beads else ""
+    when = f"solutes at {at(beads.time, 4)}" if beads else ""
     how = "projection" if all(panel.NEEDS in AT_ONCE for panel in panels) else "mean"
     notes = [section.note(how), mean, note(panels, flows[0], clear), legend_of(panels)]
     notes += [_few(case, panels, flows), when]
     notes += [text for flow in flows for text in _spheres(flow)]
     if any(panel.NEEDS in ("headings", "sites") for panel in panels):
-        notes.append(rf"at $t = {rounded(flows[0].time, 6)}\,\tau$")
+        notes.append(f"at {at(flows[0].time, 6)}")
     drawn = Canvas(panels, flows, reaches, shown, section, notes=notes)
     drawn.show(flows)
     return drawn.figure
@@ -95,11 +97,11 @@ def _mean(flow: Flow, window: tuple[float, float] | None) -> str:
     """What velocities and densities are means of, and how sure they are."""
     text = "mean of the run"
     if window is not None:
-        text = rf"mean of $t = {rounded(window[0], 6)}$ to ${rounded(window[1], 6)}\,\tau$"
+        text = f"mean of $t = {rounded(window[0], 6)}$ to {at(window[1], 6, '')}"
     error = flow.error if flow.error is None or flow.sure is None else flow.error[flow.sure]
     if error is not None and (error > 0).any():
         size = float(np.nanmedian(error[error > 0]))
-        text += rf"; median standard error of the velocity {size:.2g} $a/\tau$"
+        text += f"; median standard error of the velocity {size:.2g} {symbols('a/tau')}"
     return text
 
 
@@ -107,7 +109,7 @@ def _spheres(flow: Flow) -> list[str]:
     """When spheres are where they are, and which of them are shown."""
     if flow.spheres is None:
         return []
-    return [rf"at $t = {rounded(flow.spheres.time)}\,\tau$", flow.spheres.tells, flow.spheres.note]
+    return [f"at {at(flow.spheres.time, 4)}", flow.spheres.tells, flow.spheres.note]
 
 
 def _few(case: Case, panels: Sequence[Panel], flows: Sequence[Flow]) -> str:

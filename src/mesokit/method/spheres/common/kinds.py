@@ -30,7 +30,7 @@ class SphereKind:
         None,
         doc="diameter, or the middle of them (that of the potential if one acts, else 1, unless "
         "said)",
-        unit="a",
+        unit="length",
         gt=0,
         le=1e9,
     )
@@ -39,10 +39,13 @@ class SphereKind:
         0.0, doc="diameters are uniform within this part of the middle on both sides", ge=0, lt=1
     )
     mass: float | None = param(
-        None, doc="mass of a sphere of that diameter (1 unless said)", unit="m", gt=0, le=1e9
+        None, doc="mass of a sphere of that diameter (1 unless said)", unit="mass", gt=0, le=1e9
     )
     density: float | None = param(
-        None, doc="mass per volume, or per area in 2D, in place of the mass", unit="m/a^d", gt=0
+        None,
+        doc="mass per volume, or per area in 2D, in place of the mass",
+        unit="mass/length^d",
+        gt=0,
     )
     name: str | None = param(None, doc="name in results and files", min_length=1)
 

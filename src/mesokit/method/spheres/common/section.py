@@ -42,7 +42,7 @@ class Spheres:
 
     number: int | None = param(None, doc="how many", symbol="N", ge=1, le=MOST_PARTICLES)
     density: float | None = param(
-        None, doc="number per area or volume", unit="1/a^d", gt=0, le=1e15
+        None, doc="number per area or volume", unit="1/length^d", gt=0, le=1e15
     )
     packing_fraction: float | None = param(
         None,
@@ -59,7 +59,7 @@ class Spheres:
         (),
         doc="acceleration of all, one number for each axis (none unless said)",
         symbol="g",
-        unit="a/time^2",
+        unit="length/time^2",
     )
     start: SphereStart = param(LatticeStart(), doc="where they are at first")
 

@@ -55,7 +55,7 @@ class SoftSpheres(Spheres):
         None,
         doc="how fast two may meet, from which the time of a step follows (unless said from the "
         "velocities of the start, kT, gravity and walls that move)",
-        unit="a/time",
+        unit="length/time",
         gt=0,
         le=1e9,
     )
@@ -63,7 +63,7 @@ class SoftSpheres(Spheres):
         None,
         doc="how far lists of neighbours go beyond the reach: changes the speed alone (0.1 of the "
         "reach of contacts, up to 1 where spheres are few; 0.16 of that of potentials unless said)",
-        unit="a",
+        unit="length",
         gt=0,
         le=1e6,
     )

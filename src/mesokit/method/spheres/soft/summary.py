@@ -38,7 +38,7 @@ def summary(case: Case, threads: int | None = None) -> Summary:
     rows: list[Row] = [
         ("spheres", f"{case.particles:,}".replace(",", " "), ""),
         ("packing fraction", number(phi), ""),
-        ("timestep", number(step, "tau"), "" if section.timestep else "unless said"),
+        ("timestep", number(step, "time"), "" if section.timestep else "unless said"),
     ]
     numbers: dict[str, Any] = {"packing_fraction": phi, "timestep": step}
     reach, density = section.reach(box), case.particles / box.volume
@@ -75,7 +75,7 @@ def _contacts(case: Case, numbers: dict[str, Any]) -> Iterator[Row]:
     time, mass = scales.shortest_contact(case), 0.5 * scales.lightest(case)
     if math.isfinite(time):
         numbers |= {"contact_time": time, "steps_per_contact": time / numbers["timestep"]}
-        yield "contact time", number(time, "tau"), "of the lightest two"
+        yield "contact time", number(time, "time"), "of the lightest two"
         yield "steps per contact", number(numbers["steps_per_contact"]), ""
     if speed == 0:
         yield "collision speed", "0", "nothing moves: kT, gravity and walls are without motion"
@@ -83,7 +83,7 @@ def _contacts(case: Case, numbers: dict[str, Any]) -> Iterator[Row]:
     numbers["overlap"] = overlap = section.pair.overlap_of(mass, speed) / section.reach(case.box)
     said = "thermal, or after a fall through the box, and of walls that move"
     note = said if section.speed is None else "spheres.speed"
-    yield "collision speed", number(speed, "a/tau"), note
+    yield "collision speed", number(speed, "length/time"), note
     yield "overlap", number(overlap, "diameters"), "expected at that speed"
 
 

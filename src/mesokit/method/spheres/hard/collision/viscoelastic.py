@@ -26,7 +26,7 @@ class Viscoelastic(SphereCollision):
     """
 
     rule: Literal["viscoelastic"] = tag("viscoelastic")
-    dissipation: float = param(0.1, doc="A", unit="(a/time)^(-1/5)", gt=0, le=1e3)
+    dissipation: float = param(0.1, doc="A", unit="(length/time)^(-1/5)", gt=0, le=1e3)
     least: float = param(
         0.0, doc="coefficient of restitution below which it does not fall", ge=0, le=1
     )

@@ -20,6 +20,7 @@ from mesokit.method.spheres.hard.engine.system import Given, System
 from mesokit.method.spheres.hard.heating.protocol import Motion
 from mesokit.method.spheres.hard.walls import wall_rows
 from mesokit.method.spheres.hard.window import flight_bins, instant, window
+from mesokit.seam.engine import Interrupted
 
 Array = NDArray[np.float64]
 
@@ -93,11 +94,15 @@ class EventDriven:
         self._seen = None
 
     def advance(self, steps: int, measure: Collection[str] = ()) -> None:
-        """Do the events of some steps. Raises RunError for inelastic collapse."""
-        began = perf_counter()
+        """Do the events of some steps. Raises RunError for inelastic collapse, and Interrupted."""
+        began, goal = perf_counter(), self.step + steps
         self._seen = None
-        self.system.run_to(*self._clock(self.step + steps))
-        self.step += steps
+        try:
+            self.system.run_to(*self._clock(goal))
+        except Interrupted:
+            self.step = self._steps_done(goal - 1)
+            raise
+        self.step = goal
         self.seconds["events"] += perf_counter() - began
 
     def _clock(self, step: int) -> tuple[int, float]:
@@ -105,6 +110,15 @@ class EventDriven:
         time, length = step * self.timestep, self.system.window
         windows = math.floor(time / length)
         return windows, time - windows * length
+
+    def _steps_done(self, most: int) -> int:
+        """The last step whose events are all done."""
+        system = self.system
+        here = system.windows, system.now
+        done = int((system.windows * system.window + system.now) / self.timestep) + 1
+        while self._clock(done) > here:
+            done -= 1
+        return max(self.step, min(done, most))
 
     def check(self) -> None:
         """Raise RunError if numbers are none any more."""

@@ -17,6 +17,8 @@ from mesokit.method.spheres.hard.engine.collide import Rules
 from mesokit.method.spheres.hard.engine.flights import no_flights
 from mesokit.method.spheres.hard.engine.groups import Lists, Queue, SphereMemory, Tally, World
 from mesokit.method.spheres.hard.engine.run import AT_ONCE, advance, read, rebuild, synchronise
+from mesokit.processes.signals import heard
+from mesokit.seam.engine import Interrupted
 
 if TYPE_CHECKING:
     from mesokit.seam.engine import State
@@ -212,8 +214,11 @@ class System:
     # --- running --------------------------------------------------------------------------------
 
     def run_to(self, windows: int, now: float) -> None:
-        """Do all events up to a time within a window. Raises RunError for inelastic collapse."""
+        """Do all events up to a time within a window. Raises RunError for inelastic collapse, and
+        Interrupted on a signal; `windows` and `now` then say how far it has come."""
         while self.windows < windows:
+            if heard():
+                raise Interrupted
             self._run(self.window)
             synchronise(self.world, self.spheres, self.window)
             self.now = 0.0
@@ -241,6 +246,9 @@ class System:
                 raise RunError(self._failure())
             if ended == groups.PAUSED:
                 began = self._paused(began)
+                if heard():
+                    self.now = max(self.now, began)
+                    raise Interrupted
                 continue
             self.room *= 2
             self.now = float(self.queue.time[self.queue.heap[0]])

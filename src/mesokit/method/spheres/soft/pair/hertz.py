@@ -34,7 +34,7 @@ class HertzLaw(ContactLaw):
 
     rule: Literal["hertz"] = tag("hertz")
     stiffness: float = param(
-        1e6, doc="k, force over overlap^(3/2)", unit="m/(a^1/2 time^2)", gt=0, le=1e15
+        1e6, doc="k, force over overlap^(3/2)", unit="mass/(length^1/2 time^2)", gt=0, le=1e15
     )
     damping: float = param(0.0, doc="A, a time of the material", unit="time", ge=0, le=1e9)
     pulls: bool = param(True, doc="whether the damping may pull at the end of a contact")

@@ -59,10 +59,10 @@ class SpringDashpot(ContactLaw):
         le=1e9,
     )
     stiffness: float | None = param(
-        None, doc="of the spring, in place of the contact time", unit="m/time^2", gt=0, le=1e15
+        None, doc="of the spring, in place of the contact time", unit="mass/time^2", gt=0, le=1e15
     )
     damping: float | None = param(
-        None, doc="of the dashpot, in place of the restitution", unit="m/time", ge=0, le=1e15
+        None, doc="of the dashpot, in place of the restitution", unit="mass/time", ge=0, le=1e15
     )
     pulls: bool = param(True, doc="whether the dashpot may pull at the end of a contact")
 
