@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Sequence
 
@@ -45,9 +44,6 @@ def _carried_out(arguments: list[str]) -> int:
         return _failed(str(error), 1)
     except MesokitError as error:
         return _failed(str(error), 2)
-    except BrokenPipeError:  # the reader of our output has left, such as `| head`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
     except OSError as error:
         return _failed(reason(error), 2)
     except UnicodeEncodeError as error:
