@@ -355,6 +355,7 @@ def test_overwrite_may_be_killed_and_repeated(
 
 
 def test_overwrite_spares_other_files(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "run" / "log-damaged.csv").write_text("of the run")
     (folder / "run" / "notes.txt").write_text("precious")
     before = contents(folder)
     message = refusal(capsys, "run", "case.toml", "--output", "run", "--overwrite")
