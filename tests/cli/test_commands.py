@@ -16,6 +16,7 @@ import pytest
 from mesokit.case.case import Case
 from mesokit.case.methods import studies, templates
 from mesokit.cli import main
+from mesokit.cli.commands import COMMANDS
 from mesokit.study.study import Study
 
 Captured = pytest.CaptureFixture[str]
@@ -278,6 +279,15 @@ def test_help_and_mistyped_commands(capsys: Captured) -> None:
     assert ends() == 2
     assert "Usage" in capsys.readouterr().out
     assert "chekc" in refusal(capsys, "chekc")
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_the_help_of_options_without_bounds_names_none(command: str, capsys: Captured) -> None:
+    assert ends(command, "--help") == 0
+    said = capsys.readouterr().out
+    assert "None" not in said
+    if command == "plot":
+        assert "--at FLOAT  " in said and "[2<=x<=20]" in said
 
 
 @pytest.mark.parametrize(

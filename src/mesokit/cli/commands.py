@@ -38,6 +38,10 @@ COMMANDS = {command: module for module, commands in MODULES.items() for command 
 class Finite(click.FloatRange):
     """A number within bounds, if there are any; nan lies within none."""
 
+    def __init__(self, least: float | None = None, most: float | None = None) -> None:
+        super().__init__(least, most)
+        self.name = "float range" if least is not None else "float"  # as the help calls it
+
     def _describe_range(self) -> str:
         """For the help: no bounds are not described."""
         return super()._describe_range() if self.min is not None else ""
