@@ -50,6 +50,10 @@ class Family:
         self._known = dict(sorted(self._known.items(), key=self._place))
         return self._known
 
+    def known(self) -> Iterable[type[Any]]:
+        """The parts that are imported so far."""
+        return self._known.values()
+
     def _place(self, item: tuple[str, type[Any]]) -> tuple[bool, str]:
         name, part = item
         own = part.__module__.rpartition(".")[0] in self.packages
