@@ -201,6 +201,9 @@ class Family:
         if part is None:
             context = {"discriminator": self.tag, "tag": name}
             raise PydanticCustomError("union_tag_invalid", "", context)
+        if missing := sorted(getattr(part, "__abstractmethods__", ())):
+            reason = f"{address(part)} lacks {', '.join(missing)}"
+            raise PydanticCustomError("part", "{reason}", {"reason": reason})
         try:
             return part.__pydantic_validator__.validate_python(value, context=info.context)  # type: ignore[attr-defined]
         except ValidationError as error:

@@ -16,6 +16,7 @@ import click
 from mesokit import __version__
 from mesokit.cli.completion import keys
 from mesokit.cli.together import take_part
+from mesokit.cli.words import frames_of_parts
 from mesokit.errors import CaseError, RunError
 
 if TYPE_CHECKING:
@@ -98,7 +99,9 @@ def cli(context: click.Context, modules: Sequence[str]) -> None:
         except ImportError as error:
             raise CaseError(f"--import {module}: {error}") from None
         except (Exception, SystemExit) as error:  # whatever the code of a user does
-            why = f"{type(error).__name__}: {error}"
+            last = frames_of_parts(error)[-1:]
+            where = "".join(f"line {frame.lineno} of {frame.filename}: " for frame in last)
+            why = f"{where}{type(error).__name__}: {error}"
             raise CaseError(f"--import {module}: {why}") from None
 
 
