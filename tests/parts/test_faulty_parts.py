@@ -192,7 +192,7 @@ TWO = '[run]\nsteps = 2\n[box]\nsize = [8, 8]\n[[wall]]\nshape = "two"\ncentre =
         ("def pivot", "def pivo", [], "case.toml: wall[#1] = "),
         ("def pivot", "def pivo", [], "mine:Two lacks pivot"),
         ("@component", "region.ball()\n@component", [],
-         "--import mine: line 8 of {}: TypeError: ball() missing"),
+         "'centre' and 'radius' (line 8 of {})"),
     ],
 )  # fmt: skip
 def test_an_error_in_a_part_shows_its_own_lines(old, new, frames, words, tmp_path) -> None:

@@ -100,8 +100,8 @@ def cli(context: click.Context, modules: Sequence[str]) -> None:
             raise CaseError(f"--import {module}: {error}") from None
         except (Exception, SystemExit) as error:  # whatever the code of a user does
             last = frames_of_parts(error)[-1:]
-            where = "".join(f"line {frame.lineno} of {frame.filename}: " for frame in last)
-            why = f"{where}{type(error).__name__}: {error}"
+            where = "".join(f" (line {frame.lineno} of {frame.filename})" for frame in last)
+            why = f"{type(error).__name__}: {error}{where}"
             raise CaseError(f"--import {module}: {why}") from None
 
 
