@@ -500,6 +500,15 @@ def test_a_lost_record_is_told_and_begun_anew(
     assert "not known" not in capsys.readouterr().out
 
 
+def test_info_tells_how_long_a_run_was(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main_ends(["info", "run"])
+    lines = capsys.readouterr().out.splitlines()
+    ended = json.loads((folder / "run" / "provenance.json").read_text())["ended"]
+    date = ended.replace("T", " ").replace("+00:00", " UTC")
+    assert lines[1] == f"  20 steps, to time 2; ended {date}"
+    assert "untitled" not in "".join(lines)
+
+
 def test_a_run_that_has_not_begun_lacks_no_record(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
