@@ -39,6 +39,18 @@ BAD: dict[str, tuple[str, list[str], tuple[str, ...]]] = {
     "negative radius": (PLANE, [DISK.replace("= 2", "= -2")], ("wall[#1].radius = -2", "above 0")),
     "no radius": (PLANE, [DISK.replace("radius = 2", "")], ("wall[#1].radius: missing",)),
     "unknown key": (PLANE, [DISK + "radus = 4"], ("wall[#1].radus: unknown key", "'radius'")),
+    "surface of plates": (
+        PLANE, ['shape = "plates"\naxis = "y"\nsurface = { rule = "slip" }'],
+        ("wall[#1].surface: unknown key of shape 'plates'; did you mean 'lower' or 'upper'?",),
+    ),
+    "plate of a disk": (
+        PLANE, [DISK + 'lower = { rule = "slip" }'],
+        ("wall[#1].lower: unknown key of shape 'disk'; did you mean 'surface'?",),
+    ),
+    "radius of plates": (
+        PLANE, ['shape = "plates"\naxis = "y"\nradius = 2'],
+        ("unknown key of shape 'plates'; valid here: ", ", axis, lower, upper"),
+    ),
     "long centre": (PLANE, [DISK.replace("6, 5", "6, 5, 4")], ("wall[#1].centre", "2 numbers")),
     "short centre": (SPACE, [BALL.replace(", 4]", "]")], ("wall[#1].centre", "3 numbers")),
     "negative side": (PLANE, [BOX.replace("4, 3", "4, -3")], ("wall[#1].size", "positive")),

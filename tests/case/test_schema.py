@@ -1,6 +1,9 @@
 """The JSON schema lets pass what cases say, and nothing misspelt; explanations come from it."""
 
 import json
+import os
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -9,8 +12,8 @@ import pytest
 
 import mesokit
 from mesokit import CaseError, component, param
-from mesokit.case.describe import keys
-from mesokit.case.methods import templates
+from mesokit.case.describe import kept, keys
+from mesokit.case.methods import METHODS, templates
 from mesokit.case.registry import FAMILIES
 from mesokit.cli import main
 
@@ -194,3 +197,57 @@ def test_a_key_of_a_section_is_found_by_its_name_alone() -> None:
     assert "bead" in {key.name for key in found.keys}
     assert mesokit.explain("open")[0].path == "box.open"
     assert mesokit.explain("wake")[0].path == "observe.wake"  # parts come first
+
+
+@pytest.fixture
+def cache(tmp_path, monkeypatch):
+    """A cache of its own, in a process whose parts are those of mesokit alone."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(kept, "_has_others", lambda: False)
+    return tmp_path / "mesokit"
+
+
+def test_the_schema_is_kept_until_a_source_changes(cache, monkeypatch):
+    made = kept.kept_schema()
+    assert made == mesokit.schema()
+    (file,) = cache.iterdir()
+    file.write_text('{"kept": true}')
+    assert kept.kept_schema() == {"kept": True}
+    file.write_text("{")
+    assert kept.kept_schema() == made
+    monkeypatch.setattr(kept, "_sources", lambda: ["changed.py 1 1"])
+    assert kept.kept_schema() == made
+    (other,) = cache.iterdir()
+    assert other.name != file.name
+
+
+def test_parts_from_elsewhere_are_in_the_schema(cache, monkeypatch, tmp_path):
+    """A module that --import names brings one: nothing is kept."""
+    monkeypatch.undo()
+    (tmp_path / "wheels.py").write_text(
+        "from typing import Literal\n"
+        "from mesokit import component\n"
+        "from mesokit.case.component import tag\n"
+        "from mesokit.method.mpcd.collision.srd import SRD\n"
+        "@component\n"
+        "class Wheel(SRD):\n"
+        '    """Turns."""\n'
+        '    rule: Literal["wheel"] = tag("wheel")\n'
+    )
+    code = "from mesokit.cli import main; main()"
+    ended = subprocess.run(
+        [sys.executable, "-c", code, "--import", "wheels", "explain", "fluid.collision.wheel"],
+        cwd=tmp_path, env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)},
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert ended.returncode == 0, ended.stderr
+    assert "Turns." in ended.stdout
+    assert not list(tmp_path.rglob("schema-*"))
+
+
+def test_the_methods_are_named(capsys):
+    with pytest.raises(SystemExit):
+        main(["explain", "run.method"])
+    said = " ".join(capsys.readouterr().out.split())
+    assert all(f'"{name}"' in said for name in METHODS)
+    assert 'default "mpcd"' in said

@@ -16,6 +16,7 @@ import pytest
 from mesokit.case.case import Case
 from mesokit.case.methods import studies, templates
 from mesokit.cli import main
+from mesokit.cli.commands import COMMANDS
 from mesokit.study.study import Study
 
 Captured = pytest.CaptureFixture[str]
@@ -278,6 +279,37 @@ def test_help_and_mistyped_commands(capsys: Captured) -> None:
     assert ends() == 2
     assert "Usage" in capsys.readouterr().out
     assert "chekc" in refusal(capsys, "chekc")
+
+
+@pytest.mark.parametrize(
+    ("observed", "words"),
+    [
+        ((1,), "; samples of density, up to every step, may add much to it"),
+        ((19, 2), "; samples of 2 observables, up to every 2 steps, may add much to it"),
+        ((20, 50), ""),
+        ((), ""),
+    ],
+)
+def test_frequent_samples_are_said_to_add_to_the_run_time(observed, words, capsys, tmp_path):
+    tables = [
+        f'[[observe]]\nquantity = "density-profile"\naxis = "y"\nevery = {every}\n'
+        f'name = "density{i or ""}"\n'
+        for i, every in enumerate(observed)
+    ]
+    case = tmp_path / "case.toml"
+    case.write_text("[run]\nsteps = 100\n[box]\nsize = [8, 8]\n[fluid]\n" + "".join(tables))
+    assert ends("check", str(case)) == 0
+    (line,) = [row for row in capsys.readouterr().out.splitlines() if row.startswith("run time")]
+    assert line.endswith(words) and ("may add" in line) == bool(words)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_the_help_of_options_without_bounds_names_none(command: str, capsys: Captured) -> None:
+    assert ends(command, "--help") == 0
+    said = capsys.readouterr().out
+    assert "None" not in said
+    if command == "plot":
+        assert "--at FLOAT  " in said and "[2<=x<=20]" in said
 
 
 @pytest.mark.parametrize(

@@ -355,6 +355,7 @@ def test_overwrite_may_be_killed_and_repeated(
 
 
 def test_overwrite_spares_other_files(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "run" / "log-damaged.csv").write_text("of the run")
     (folder / "run" / "notes.txt").write_text("precious")
     before = contents(folder)
     message = refusal(capsys, "run", "case.toml", "--output", "run", "--overwrite")
@@ -497,6 +498,15 @@ def test_a_lost_record_is_told_and_begun_anew(
     assert {"versions", "case", "seed"} <= set(json.loads(record.read_text()))
     main_ends(["info", "run"])
     assert "not known" not in capsys.readouterr().out
+
+
+def test_info_tells_how_long_a_run_was(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    main_ends(["info", "run"])
+    lines = capsys.readouterr().out.splitlines()
+    ended = json.loads((folder / "run" / "provenance.json").read_text())["ended"]
+    date = ended.replace("T", " ").replace("+00:00", " UTC")
+    assert lines[1] == f"  20 steps, to time 2; ended {date}"
+    assert "untitled" not in "".join(lines)
 
 
 def test_a_run_that_has_not_begun_lacks_no_record(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shlex
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -61,6 +62,56 @@ def test_nobody_listens(folder: Path, streams: str) -> None:
     ended = process(folder, f"mesokit run case.toml --output hot {hot} {streams}")
     assert ended.returncode == 1
     assert "heats up" in json.loads((folder / "hot" / "provenance.json").read_text())["failed"]
+
+
+def test_output_that_cannot_be_written(folder: Path) -> None:
+    ended = process(folder, "mesokit check case.toml >/dev/full")
+    assert ended.returncode == 2
+    assert ended.stderr.endswith(b"mesokit: error: no space left on the disk\n")
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a case and a run of it."""
+    place = tmp_path_factory.mktemp("done")
+    (place / "case.toml").write_text(SMALL)
+    assert process(place, "mesokit run case.toml --output old --quiet").returncode == 0
+    return place
+
+
+@pytest.mark.parametrize(
+    ("command", "status", "made"),
+    [
+        ("run case.toml", 0, "case/conservation.png"),
+        ("study case.toml --vary fluid.density=5,6 --output few", 0, "few/table.csv"),
+        ("check case.toml", 0, ""),
+        ("explain", 0, ""),
+        ("explain run.seed", 0, ""),
+        ("info old", 0, ""),
+        ("schema", 0, ""),
+        ("--help", 0, ""),
+        ("info none", 2, ""),
+    ],
+)
+@pytest.mark.parametrize("both", [False, True], ids=["output", "all"])
+def test_the_reader_has_left(command: str, status: int, made: str, both: bool, done: Path) -> None:
+    """The work goes on, with its own status."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    ended = subprocess.run(
+        [sys.executable, "-m", "mesokit", *command.split()], cwd=done, stdout=writing,
+        stderr=writing if both else subprocess.PIPE,
+        env=os.environ | {"PYTHONPATH": SOURCE, "PYTHONUNBUFFERED": "1" if both else ""},
+        check=False,
+    )  # fmt: skip
+    os.close(writing)
+    said = b"" if both else ended.stderr
+    assert ended.returncode == status, said
+    assert b"Broken pipe" not in said and b"Exception" not in said
+    if made:
+        place = done / made
+        assert place.exists()
+        shutil.rmtree(place.parent)
 
 
 def test_ranks_without_mpi4py(folder: Path) -> None:

@@ -154,3 +154,57 @@ def test_functions_are_no_forces_and_no_potentials():
         Fluid(force=lambda x, y: (0.0, 0.0))
     with pytest.raises(CaseError, match=r"pair = .*Table.from_function makes a potential"):
         Solutes((Polymer(2),), pair=lambda r: 1 / r)
+
+
+SHAPE = """
+from typing import Literal
+from mesokit import component, param
+from mesokit.case.component import tag
+from mesokit.geometry import region
+from mesokit.geometry.shape_protocol import Simple
+
+@component
+class Two(Simple):
+    shape: Literal["two"] = tag("two")
+    centre: tuple[float, ...] = param(doc="its centre")
+
+    def body(self, room):
+        return pair(self.centre)
+
+    def pivot(self, room):
+        return self.centre
+
+    def vectors(self):
+        return {"centre": self.centre}
+
+def pair(centre):
+    return region.ball(centre)  # line 23
+"""
+TWO = '[run]\nsteps = 2\n[box]\nsize = [8, 8]\n[[wall]]\nshape = "two"\ncentre = [4, 4]\n'
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "frames", "words"),
+    [
+        ("", "", ["in body", "in pair"], "line 23 of {}: TypeError: ball() missing"),
+        ("region.ball(centre)", "region.bal()", ["in body", "in pair"],
+         "line 23 of {}: AttributeError: module 'mesokit.geometry.region' has no"),
+        ("def pivot", "def pivo", [], "case.toml: wall[#1] = "),
+        ("def pivot", "def pivo", [], "mine:Two lacks pivot"),
+        ("@component", "region.ball()\n@component", [],
+         "'centre' and 'radius' (line 8 of {})"),
+    ],
+)  # fmt: skip
+def test_an_error_in_a_part_shows_its_own_lines(old, new, frames, words, tmp_path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text(SHAPE.replace(old, new) if old else SHAPE)
+    (tmp_path / "case.toml").write_text(TWO)
+    done = subprocess.run(
+        [sys.executable, "-m", "mesokit", "--import", "mine", "check", "case.toml"],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode
+    first, *rest = [line for line in done.stderr.splitlines() if not line.startswith(PATIENCE)]
+    assert first.startswith("mesokit: error: ") and words.format(file) in first
+    assert [line.rpartition(", ")[2] for line in rest if line.startswith("  File")] == frames
+    assert not any("Traceback" in line or "site-packages" in line for line in rest)

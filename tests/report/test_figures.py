@@ -126,9 +126,10 @@ def test_error_bars_of_a_tensor_are_named_once_in_a_legend_that_fits(make_case, 
     assert legend._ncols >= columns and legend.get_window_extent().width <= figure.bbox.width
 
 
-def test_species_of_snapshots_are_named_and_times_have_units():
+def snapshots_in(width, height):
+    """A result of two looks into a box of that size."""
     seen = np.zeros((2, 4, 4))
-    result = Result(
+    return Result(
         quantity="snapshots",
         drawing="snapshots",
         name="snapshots",
@@ -141,10 +142,25 @@ def test_species_of_snapshots_are_named_and_times_have_units():
         extra={
             "time": np.array([0.0, 0.1]),
             "species": np.array([0, 0, 1, 1]),
-            "size": np.array([4.0, 4.0]),
+            "size": np.array([width, height], float),
         },
     )
-    figure = plot(result)
+
+
+@pytest.mark.parametrize(("width", "height"), [(40, 20), (20, 20), (10, 15)])
+def test_snapshots_have_the_shape_of_the_box(width, height):
+    figure = plot(snapshots_in(width, height))
+    figure.draw_without_rendering()
+    places, velocities = figure.axes[0], figure.axes[2]
+    for ax, ratio in ((places, height / width), (velocities, 1.0)):
+        shown = ax.get_window_extent()
+        assert shown.height / shown.width == pytest.approx(ratio, abs=0.06)
+        whole = ax.get_position(original=True)  # the room of the panel is filled
+        assert shown.height > 0.8 * whole.height * figure.bbox.height
+
+
+def test_species_of_snapshots_are_named_and_times_have_units():
+    figure = plot(snapshots_in(4, 4))
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["species 1", "species 2"]
     assert [ax.get_title() for ax in figure.axes[:2]] == [
         r"0 steps, $t = 0\,\tau$",

@@ -14,7 +14,7 @@ import mesokit
 from mesokit import CaseError
 from mesokit.cli import main
 from mesokit.report.table import cells
-from mesokit.seam.result import Comparison
+from mesokit.seam.result import Comparison, Result
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +65,7 @@ def test_tables_of_a_result_hold_its_numbers(files, name, tmp_path):
     assert data["value"].attrs.get("units", "") == result.units["value"]
     assert frame.attrs["units"] == result.units and data.attrs["samples"] == result.samples
     lines = result.to_csv(tmp_path / "r.csv").read_text().splitlines()
-    assert lines[0].startswith(f"# {name}: {result.label}, {result.samples} samples")
+    assert lines[0].startswith(f"# {name}: {result.about}; ")
     rows = list(csv.DictReader(lines[1:]))
     np.testing.assert_array_equal([float(row["value"]) for row in rows], frame["value"])
 
@@ -133,3 +133,15 @@ def test_digits_of_what_is_known_far_better_than_its_value():
     assert str(sharp).endswith("+15.3 standard errors, +0.0049 %")
     assert cells(sharp)[4] == "+15.3 s.e. (+0.0049 %)"
     assert cells(Comparison("slip", 1.05, 0.01, 1.0))[4] == "+5.0 s.e. (+5.0 %)"
+
+
+def test_results_are_described_in_plain_words():
+    axes = {"time": np.arange(3.0), "of": np.array(["all"]), "row": np.array(list("xyz"))}
+    value = np.zeros((3, 1, 3))
+    result = Result("q", "q", axes, value, value, r"order $|\psi_6|$ of $k_B T$", {}, samples=1)
+    assert repr(result) == "q: order |psi_6| of k_B T, 1 sample; by time (3), row (3)"
+    number = Result("q", "q", {}, 1.0, 0.1, "speed", {}, samples=2)
+    assert repr(number) == "q: speed, 2 samples"
+    kinds = {"of": np.array(["small", "large"])}
+    two = Result("q", "q", kinds, np.zeros(2), np.zeros(2), "speed", {}, samples=2)
+    assert repr(two) == "q: speed, 2 samples; by group (2)"

@@ -67,6 +67,32 @@ def test_after_a_kill_the_file_is_that_of_an_unbroken_run(logging, whole, crash_
     assert (path / "log.csv").read_bytes() == (whole[0] / "log.csv").read_bytes()
 
 
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda log: log[:30] + b"\xff" + log[31:],
+        lambda log: log.replace(b"\n9,", b"\nx9,"),
+        lambda log: log.replace(b"\n9,", b"\n9,9,"),
+        lambda log: log.replace(b"\n9,", b"\nnan,"),
+        lambda log: log.replace(b"temperature", b"warmth"),
+    ],
+)
+def test_a_damaged_log_is_set_aside(damage, logging, crash_at, tmp_path):
+    """The run goes on, and its log begins anew; earlier damaged ones are kept as well."""
+    path = tmp_path / "run"
+    with pytest.raises(crash_at.error):
+        Simulation(logging, output=path, threads=1).run(progress=crash_at(50))
+    (path / "log-damaged.csv").write_bytes(b"before")
+    damaged = damage((path / "log.csv").read_bytes())
+    (path / "log.csv").write_bytes(damaged)
+    with pytest.warns(UserWarning, match=r"log.csv: damaged: .*kept as log-damaged2.csv, a new"):
+        Simulation.resume(path, threads=1).run()
+    assert (path / "log-damaged.csv").read_bytes() == b"before"
+    assert (path / "log-damaged2.csv").read_bytes() == damaged
+    steps = mesokit.open(path).log["step"].tolist()
+    assert steps == [step for step in range(0, 100, 9) if step >= steps[0]] and steps[0] > 0
+
+
 class Terminal(io.StringIO):
     def isatty(self):
         return True
@@ -127,7 +153,7 @@ def test_damaged_files_are_refused_in_one_line(tmp_path):
     file = tmp_path / "log.csv"
     with pytest.raises(RunError, match=r"log.csv: no such file"):
         log_file.read(file)
-    for text in ("", "step,time\n1,2,3\n", "step,time\n1,x\n"):
+    for text in ("", "step,time\n1,2,3\n", "step,time\n1,x\n", "step,time\nnan,1\n"):
         file.write_text(text)
         with pytest.raises(RunError, match=r"log.csv: damaged"):
             log_file.read(file)

@@ -258,9 +258,8 @@ def first_line(
     path, holder, here = _walk(cls, first["loc"], rename or {}, start)
     kind, context = first["type"], first.get("ctx", {})
     if _is_unknown(first):
-        known = known_keys(holder, rename if holder is cls else None)
-        hint = nearest(str(first["loc"][-1]), known) or f"; valid here: {', '.join(known)}"
-        return f"{path}: unknown key{hint}"
+        meant = _meant(holder, str(first["loc"][-1]), rename if holder is cls else None)
+        return f"{path}: unknown key{meant}"
     if kind in ("missing", "missing_argument"):
         return f"{path}: missing; it has no default"
     if kind in ("union_tag_not_found", "union_tag_invalid"):
@@ -281,15 +280,31 @@ def first_line(
     return f"{path} = {show(first['input'])}: {words}"
 
 
+def _meant(holder: Any, key: str, rename: dict[str, str] | None) -> str:
+    """The keys that may have been meant by an unknown one, and if another part has it, whose."""
+    known = known_keys(holder, rename)
+    listed = f"; valid here: {', '.join(known)}"
+    families = [found for base, found in FAMILIES.items() if issubclass(holder, base)]
+    others = [part.__pydantic_fields__ for found in families for part in found.parts.values()]
+    theirs = [_hint_of(fields[key]) for fields in others if key in fields]
+    named = tag_of(holder)
+    if not theirs or named is None:
+        return nearest(key, known) or listed
+    own = {name: _hint_of(field) for name, field in holder.__pydantic_fields__.items()}
+    alike = [name for name, hint in own.items() if hint in theirs and _members(hint)]
+    meant = f"; did you mean {one_of(alike)}?" if alike else nearest(key, known, 0.7) or listed
+    return f" of {named[0]} {show(named[1])}{meant}"
+
+
 def known_keys(cls: Any, rename: dict[str, str] | None = None) -> list[str]:
     """The keys that a component takes in a case file."""
     return [(rename or {}).get(f.name, f.name) for f in dataclasses.fields(cls)]
 
 
-def nearest(given: str, known: Iterable[str]) -> str:
+def nearest(given: str, known: Iterable[str], likeness: float = 0.5) -> str:
     """'; did you mean X?' for the closest valid name, or nothing."""
     plain = {name.lower().replace("_", "-"): name for name in known}
-    close = difflib.get_close_matches(given.lower().replace("_", "-"), plain, 1, 0.5)
+    close = difflib.get_close_matches(given.lower().replace("_", "-"), plain, 1, likeness)
     return f"; did you mean {show(plain[close[0]])}?" if close else ""
 
 

@@ -50,6 +50,10 @@ class Family:
         self._known = dict(sorted(self._known.items(), key=self._place))
         return self._known
 
+    def known(self) -> Iterable[type[Any]]:
+        """The parts that are imported so far."""
+        return self._known.values()
+
     def _place(self, item: tuple[str, type[Any]]) -> tuple[bool, str]:
         name, part = item
         own = part.__module__.rpartition(".")[0] in self.packages
@@ -197,6 +201,9 @@ class Family:
         if part is None:
             context = {"discriminator": self.tag, "tag": name}
             raise PydanticCustomError("union_tag_invalid", "", context)
+        if missing := sorted(getattr(part, "__abstractmethods__", ())):
+            reason = f"{address(part)} lacks {', '.join(missing)}"
+            raise PydanticCustomError("part", "{reason}", {"reason": reason})
         try:
             return part.__pydantic_validator__.validate_python(value, context=info.context)  # type: ignore[attr-defined]
         except ValidationError as error:

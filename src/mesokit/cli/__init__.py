@@ -10,6 +10,8 @@ import os
 import sys
 from collections.abc import Sequence
 
+from mesokit.processes.streams import outlive_readers
+
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line: one line on standard error and a status for whatever goes wrong.
@@ -39,6 +41,7 @@ def _settle() -> None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115  for ever
         elif hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")
+    outlive_readers()
     os.environ["MPLBACKEND"] = "agg"  # there are no windows
     for name in ("NUMBA_DISABLE_JIT", "NUMBA_NUM_THREADS"):  # kernels have threads of their own
         os.environ.pop(name, None)

@@ -16,6 +16,7 @@ import click
 from mesokit import __version__
 from mesokit.cli.completion import keys
 from mesokit.cli.together import take_part
+from mesokit.cli.words import frames_of_parts
 from mesokit.errors import CaseError, RunError
 
 if TYPE_CHECKING:
@@ -37,6 +38,10 @@ COMMANDS = {command: module for module, commands in MODULES.items() for command 
 
 class Finite(click.FloatRange):
     """A number within bounds, if there are any; nan lies within none."""
+
+    def __init__(self, least: float | None = None, most: float | None = None) -> None:
+        super().__init__(least, most)
+        self.name = "float range" if least is not None else "float"  # as the help calls it
 
     def _describe_range(self) -> str:
         """For the help: no bounds are not described."""
@@ -94,7 +99,9 @@ def cli(context: click.Context, modules: Sequence[str]) -> None:
         except ImportError as error:
             raise CaseError(f"--import {module}: {error}") from None
         except (Exception, SystemExit) as error:  # whatever the code of a user does
-            why = f"{type(error).__name__}: {error}"
+            last = frames_of_parts(error)[-1:]
+            where = "".join(f" (line {frame.lineno} of {frame.filename})" for frame in last)
+            why = f"{type(error).__name__}: {error}{where}"
             raise CaseError(f"--import {module}: {why}") from None
 
 

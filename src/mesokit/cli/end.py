@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import sys
+import traceback
 from collections.abc import Sequence
 
 import click
 
 from mesokit.cli.commands import cli
-from mesokit.cli.words import reason, say
+from mesokit.cli.words import frames_of_parts, reason, say
 from mesokit.errors import MesokitError, RunError
 from mesokit.processes.world import known, world
 
@@ -45,9 +45,6 @@ def _carried_out(arguments: list[str]) -> int:
         return _failed(str(error), 1)
     except MesokitError as error:
         return _failed(str(error), 2)
-    except BrokenPipeError:  # the reader of our output has left, such as `| head`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
     except OSError as error:
         return _failed(reason(error), 2)
     except UnicodeEncodeError as error:
@@ -55,6 +52,15 @@ def _carried_out(arguments: list[str]) -> int:
         return _failed(f"...{near!r}: a name that is not {error.encoding} text", 2)
     except MemoryError:
         return _failed("not enough memory for this case (mesokit check tells what it needs)", 1)
+    except Exception as error:
+        frames = frames_of_parts(error)
+        if not frames:  # a fault of mesokit's own: all of it is shown
+            raise
+        last = frames[-1]
+        why = f"{type(error).__name__}: {error}"
+        status = _failed(f"line {last.lineno} of {last.filename}: {why}", 1)
+        say("".join(traceback.format_list(frames)).rstrip())
+        return status
 
 
 def _failed(message: str, status: int) -> int:

@@ -64,7 +64,7 @@ def new(name: str, path: str | None, template: str | None) -> None:
     written = _write_study(template, file) if template in STUDIES else [file]
     if template not in STUDIES:
         _write_case(template, file)
-    from mesokit.case.describe.schema import schema_text
+    from mesokit.case.describe.kept import schema_text
     from mesokit.io.atomic import write_text
 
     write_text(file.with_name(SCHEMA), schema_text())  # for the parts that are installed now
@@ -129,7 +129,7 @@ def schema(output: Path | None) -> None:
 
     as the first line, and say: mesokit schema --output case.schema.json
     """
-    from mesokit.case.describe.schema import schema_text
+    from mesokit.case.describe.kept import schema_text
 
     if output is None:
         click.echo(schema_text(), nl=False)

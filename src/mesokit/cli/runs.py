@@ -193,6 +193,7 @@ def _claim(output: Path, overwrite: bool) -> None:
 def _files_of_run(output: Path) -> list[Path]:
     """What an earlier run has written into a folder; the case, which makes it a run, is last."""
     from mesokit.case.case import Case
+    from mesokit.io.log_file import ASIDE
     from mesokit.io.run_directory import RunDirectory
     from mesokit.report.flow import KINDS
 
@@ -209,6 +210,7 @@ def _files_of_run(output: Path) -> list[Path]:
     files += [run.provenance_file]
     files += [run.trajectory_folder, run.trajectory_remains, run.trajectory_coming]
     files += [run.progress_file, run.lock_file, run.case_file]
+    figures += output.glob(f"{ASIDE}*.csv")
     return [*figures, *output.glob(".*.tmp"), *run.files_of_parts(), *files]
 
 

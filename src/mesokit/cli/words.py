@@ -7,9 +7,14 @@ import errno
 import itertools
 import json
 import math
+import os
+import sysconfig
 import threading
+import traceback
 from collections.abc import Iterator, Sequence
 from typing import Any
+
+import mesokit
 
 SILENT = 2.0  # seconds
 READING = "reading the case"
@@ -71,3 +76,12 @@ def reason(error: OSError) -> str:
     text = words.get(error.errno or 0) or error.strerror or str(error)
     name = f"{error.filename}: " if error.filename else ""
     return f"{name}{text[0].lower()}{text[1:]}" if text else repr(error)
+
+
+def frames_of_parts(error: BaseException) -> list[traceback.FrameSummary]:
+    """The calls of an error in files of parts that mesokit has called, the innermost last."""
+    package = os.path.dirname(mesokit.__file__)
+    others = [package, *(sysconfig.get_path(name) for name in ("stdlib", "purelib", "platlib"))]
+    frames = traceback.extract_tb(error.__traceback__)
+    called = itertools.dropwhile(lambda frame: not frame.filename.startswith(package), frames)
+    return [frame for frame in called if not frame.filename.startswith((*others, "<"))]

@@ -3,6 +3,8 @@
 >>> region = ball((1.0, 1.0), 0.5)
 >>> [[part.sign for part in term] for term in complement(union([region, region]))]
 [[-1.0, -1.0]]
+>>> union(region, region) == union([region, region]), union(region) == region
+(True, True)
 """
 
 from __future__ import annotations
@@ -61,14 +63,21 @@ Term = tuple[Part, ...]
 Region = tuple[Term, ...]
 
 
-def union(regions: Iterable[Region]) -> Region:
-    """What is in any of the regions."""
-    return tuple(term for region in regions for term in region)
+def union(*regions: Region | Iterable[Region]) -> Region:
+    """What is in any of the regions, given as a list or one by one."""
+    return tuple(term for region in _listed(regions) for term in region)
 
 
-def intersection(regions: Iterable[Region]) -> Region:
-    """What is in all of the regions."""
-    return tuple(tuple(itertools.chain(*terms)) for terms in itertools.product(*regions))
+def intersection(*regions: Region | Iterable[Region]) -> Region:
+    """What is in all of the regions, given as a list or one by one."""
+    return tuple(tuple(itertools.chain(*terms)) for terms in itertools.product(*_listed(regions)))
+
+
+def _listed(given: tuple[Any, ...]) -> Iterable[Region]:
+    """The regions of a single list of regions, or the regions themselves."""
+    first = given[0] if len(given) == 1 else ()
+    alone = isinstance(first, tuple) and first and isinstance(first[0][0], Part)
+    return first if len(given) == 1 and not alone else given
 
 
 def complement(region: Region) -> Region:

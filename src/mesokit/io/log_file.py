@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -21,6 +22,11 @@ from mesokit.errors import RunError
 from mesokit.io.atomic import write_text
 
 DIGITS = 10  # of each number
+ASIDE = "log-damaged"  # start of the names of files that were set aside
+
+
+class DamagedLog(RunError):
+    """A log whose lines are not the numbers that they were."""
 
 
 class LogFile:
@@ -52,11 +58,19 @@ class LogFile:
 
     def cut(self, step: int) -> None:
         """Drop all lines after this step, at 0 also its own, which comes anew. Raises RunError."""
-        if not self.path.exists():
+        if not self.path.exists() or not (lines := _whole_lines(self.path)):
             return
-        header, *rows = _whole_lines(self.path) or [""]
-        kept = [row for row in rows if 0 < step >= int(row.split(",", 1)[0])]
-        write_text(self.path, "".join([header, *kept]))
+        table = read(self.path)
+        if table.dtype.names != self.names:
+            raise DamagedLog(f"{self.path}: damaged: expected columns {', '.join(self.names)}")
+        kept = [row for row, at in zip(lines[1:], table["step"], strict=True) if 0 < step >= at]
+        write_text(self.path, "".join([lines[0], *kept]))
+
+    def set_aside(self) -> Path:
+        """Give the file a name under which nothing writes it again: the path."""
+        names = (f"{ASIDE}{number}.csv" for number in itertools.chain([""], itertools.count(2)))
+        free = next(path for name in names if not (path := self.path.with_name(name)).exists())
+        return self.path.rename(free)
 
     @contextmanager
     def _appending(self) -> Iterator[Any]:
@@ -77,11 +91,11 @@ def read(path: Path) -> NDArray[Any]:
         numbers = [tuple(map(float, row.split(","))) for row in rows]
         if not names or any(len(row) != len(names) for row in numbers):
             raise ValueError
-    except ValueError:
-        raise RunError(
+        return np.array(numbers, types)
+    except (ValueError, OverflowError):
+        raise DamagedLog(
             f"{path}: damaged: expected the same number of numbers in each line"
         ) from None
-    return np.array(numbers, types)
 
 
 def _whole_lines(path: Path) -> list[str]:
@@ -91,7 +105,7 @@ def _whole_lines(path: Path) -> list[str]:
     except OSError as error:
         raise RunError(f"{path}: {(error.strerror or str(error)).lower()}") from None
     except UnicodeDecodeError as error:
-        raise RunError(
+        raise DamagedLog(
             f"{path}: damaged: byte {error.start} is not UTF-8; expected numbers"
         ) from None
     return [line for line in lines if line.endswith("\n")]

@@ -62,7 +62,7 @@ def write_result(result: Result, path: str | Path) -> Path:
 def result_text(result: Result) -> str:
     """A result as CSV, whose first line, after `#`, has its units."""
     units = ", ".join(f"{name} in {unit}" for name, unit in result.units.items() if unit)
-    about = f"# {result.name}: {result.label}, {result.samples} samples; {units}"
+    about = f"# {result.name}: {result.about}; {units}"
     found = columns(result)
     return f"{about}\n" + _text(list(found), zip(*found.values(), strict=True))
 

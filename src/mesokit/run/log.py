@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mesokit.io.log_file import LogFile
+from mesokit.io.log_file import DamagedLog, LogFile
 from mesokit.report.log_lines import ERROR, LogLines
 from mesokit.run.callbacks import Callback
 from mesokit.seam.method import method_of
@@ -43,9 +44,15 @@ class RunLog:
         self.file = LogFile(path, self.names) if self.every else None
 
     def resume(self, step: int) -> None:
-        """Go on from a checkpoint. Raises RunError."""
-        if self.file is not None:
+        """Go on from a checkpoint; a damaged file is set aside, with a warning. Raises RunError."""
+        if self.file is None:
+            return
+        try:
             self.file.cut(step)
+        except DamagedLog as error:
+            kept = self.file.set_aside()
+            told = f"{error}; kept as {kept.name}, a new log begins at step {step}"
+            warnings.warn(told, stacklevel=3)
 
     def sync(self) -> None:
         """Make the lines so far as safe as a checkpoint. Raises RunError."""

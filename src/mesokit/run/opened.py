@@ -324,14 +324,29 @@ class RunFiles(Shown, Mapping[str, "Result"]):
             "fold": "the case",
         }
 
+    def _length(self) -> str:
+        """How many steps the run took, the time at its end, and the date."""
+        run = self.case.run
+        end = (run.warmup + run.steps) * method_of(self.case).timestep(self.case)
+        words = f"{run.steps} step{'s' * (run.steps != 1)}"
+        words += f" after {run.warmup} of warm-up" * (run.warmup > 0)
+        words += f", to time {end:.6g}"
+        with contextlib.suppress(RunError):
+            if date := self.provenance.get("ended"):
+                words += f"; ended {str(date).replace('T', ' ').replace('+00:00', ' UTC')}"
+        return words
+
     def __repr__(self) -> str:
-        lines = [f"mesokit run {self.path}", f"  {self.case.title or 'untitled'}"]
+        lines = [f"mesokit run {self.path}"]
+        lines += [f"  {self.case.title}"] * bool(self.case.title)
         if self.case.units is not None:
             lines.append("  " + str(self.si).replace("\n", "\n  "))
         if not self.ended:
             lines.append(f"  {self.state}")
         elif self.pooled:
             lines.append(f"  {self.pooled}")
+        else:
+            lines.append(f"  {self._length()}")
         with contextlib.suppress(RunError):  # results can be read without the record
             if lost := self.directory.record_lost:
                 lines.append(f"  warning: {lost}")

@@ -57,6 +57,7 @@ class Columns(NamedTuple):
     read: Callable[[Any, Collection[str]], Mapping[str, float]]
 
 
+SELDOM = 20  # steps between samples, from which on they cost little beside the steps
 NO_COLUMNS = Columns((), (), lambda engine, wanted: {})
 
 
@@ -201,6 +202,26 @@ def method_of(case: Case) -> Method:
 
 def summary_of(case: Case, threads: int | None = None) -> Summary:
     """What follows from a case, by its method; of replicas how long all of them take."""
+    found = _of_all_replicas(case, threads)
+    rows = [
+        (name, value, note + _uncounted(case) if name == "run time" else note)
+        for name, value, note in found.rows
+    ]
+    return found._replace(rows=tuple(rows))
+
+
+def _uncounted(case: Case) -> str:
+    """What an estimate of the run time hardly counts: samples, where they are frequent."""
+    often = {one.label: one.every for one in case.observe if one.every < SELDOM}
+    if not often:
+        return ""
+    every = min(often.values())
+    what = next(iter(often)) if len(often) == 1 else f"{len(often)} observables"
+    steps = "every step" if every == 1 else f"every {every} steps"
+    return f"; samples of {what}, up to {steps}, may add much to it"
+
+
+def _of_all_replicas(case: Case, threads: int | None) -> Summary:
     number = case.run.replicas
     if number == 1:
         return method_of(case).summary(case, threads)

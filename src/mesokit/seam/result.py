@@ -326,9 +326,19 @@ class Result(Shown):
     def _card(self) -> dict[str, Any]:
         return {"title": self.name, "words": self._words(), "results": [self]}
 
+    @property
+    def about(self) -> str:
+        """Its label without formulas, and the number of its samples."""
+        label = self.label.replace("$", "").replace("\\", "")
+        return f"{label}, {self.samples} sample{'s' * (self.samples != 1)}"
+
     def _words(self) -> str:
-        shape = " x ".join(f"{len(axis)} {name}" for name, axis in self.x.items()) or "a number"
-        return f"{self.label}, {shape}, {self.samples} samples"
+        axes = [
+            f"{AXIS_WORDS.get(name, name)} ({len(axis)})"
+            for name, axis in self.x.items()
+            if len(axis) != 1
+        ]
+        return self.about + f"; by {', '.join(axes)}" * bool(axes)
 
     def __eq__(self, other: object) -> bool:
         """Every number, text and unit the same (nan equals nan)."""
@@ -340,6 +350,9 @@ class Result(Shown):
     def __repr__(self) -> str:
         lines = [f"{self.name}: {self._words()}"]
         return "\n  ".join(lines + [str(c) for c in self.comparisons])
+
+
+AXIS_WORDS = {"of": "group"}  # where the name of an axis is no noun
 
 
 def _same(a: Any, b: Any) -> bool:

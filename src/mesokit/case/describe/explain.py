@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from mesokit.case.component import nearest, one_of, show
+from mesokit.case.describe.kept import kept_schema
 from mesokit.case.describe.keys import Key, keys_of, parts_of
-from mesokit.case.describe.schema import schema
 from mesokit.errors import CaseError
 
 NEAR = 0.75  # likeness of two words, one of which may be a slip of the pen
@@ -51,7 +51,7 @@ def explain(path: str = "") -> list[Explanation]:
         >>> explain("pulls")[0].path
         'solutes.pulls'
     """
-    whole = schema()
+    whole = kept_schema()
     definitions = whole["definitions"]
     if not path:
         return [Explanation("", whole["description"], keys_of(whole, definitions))]

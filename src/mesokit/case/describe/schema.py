@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 from mesokit.case import methods
@@ -35,6 +34,7 @@ def schema() -> dict[str, Any]:
     """
     cases = {name: _case_class(name) for name in methods.modules()}
     found, definitions = plain_schemas(cases)
+    definitions["Run"]["properties"]["method"]["enum"] = list(cases)
     sections = {name: _by_key(cases[name], each["properties"]) for name, each in found.items()}
     together: dict[str, Any] = {}
     whose: dict[str, str] = {}
@@ -101,11 +101,6 @@ def _told(inner: dict[str, Any]) -> str:
     """What a key means."""
     told: str = inner.get("description", "")
     return told
-
-
-def schema_text() -> str:
-    """The schema as a file."""
-    return json.dumps(schema(), indent=1, ensure_ascii=False) + "\n"
 
 
 def _case_class(name: str) -> type[Case]:

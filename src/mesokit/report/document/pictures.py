@@ -76,7 +76,7 @@ def drawn(figure: Any) -> str:
 
 def caption(result: Result) -> str:
     """What a figure shows, how much is behind it, and what to mind."""
-    words = [f"{result.label}, {result.samples} samples"]
+    words = [result.about]
     if result.theory and result.expected is not None:
         words.append(f"theory: {result.theory}")
     notes = [c.note for c in result.comparisons if "lower bound" in c.note]

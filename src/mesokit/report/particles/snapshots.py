@@ -10,6 +10,7 @@ from mesokit.report.caption import rounded, symbols
 from mesokit.report.style import COLOURS, labelled
 from mesokit.seam.result import Result
 
+TALL = 2.0  # most of the height of a panel over its width
 MANY = 5000  # dots, beyond which a vector file holds an image of them
 
 
@@ -22,8 +23,10 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         return
     count = max(len(steps), 1)
     width = figure.get_figwidth()
-    figure.set_figheight(figure.get_figheight() - 4.8 + 0.9 + 2 * (width - 0.8) / max(count, 2))
-    panels = figure.subplots(2, count, squeeze=False)
+    ratios = [min(_height(result, first), TALL) for first in (0, 2)]
+    side = (width - 0.8) / max(count, 2)  # of a panel
+    figure.set_figheight(figure.get_figheight() - 4.8 + 0.9 + sum(ratios) * side)
+    panels = figure.subplots(2, count, squeeze=False, height_ratios=ratios)
     for k, step in enumerate(steps):
         for row in range(2):
             _scatter(panels[row, k], result, k, 2 * row, names)
@@ -37,13 +40,22 @@ def draw(result: Result, figure: Any, ax: Any) -> None:
         figure.legend(handles, labels, loc="outside upper center", ncols=len(handles))
 
 
-def _square(result: Result, first: int) -> tuple[Any, Any]:
-    """Lower and upper ends of both axes: a square that holds all steps."""
+def _height(result: Result, first: int) -> float:
+    """Height over width of a panel."""
+    low, high = _ends(result, first)
+    return float((high[1] - low[1]) / (high[0] - low[0]))
+
+
+def _ends(result: Result, first: int) -> tuple[Any, Any]:
+    """Lower and upper ends of both axes: around the box and all steps, a square of velocities."""
     values = result.value[:, :, first : first + 2].reshape(-1, 2)
     if first == 0:
         values = np.concatenate([values, [[0.0, 0.0]], [result.extra["size"]]])
     low, high = values.min(axis=0), values.max(axis=0)
-    half = 0.53 * float((high - low).max() or 1.0)
+    longest = float((high - low).max() or 1.0)
+    half = 0.53 * longest
+    if first == 0:
+        half = 0.5 * (high - low) + 0.03 * longest
     return (low + high) / 2 - half, (low + high) / 2 + half
 
 
@@ -62,7 +74,7 @@ def _scatter(ax: Any, result: Result, k: int, first: int, names: list[str]) -> N
     unit = result.units["velocity" if first else "position"]
     ax.set_xlabel(labelled(f"${names[first]}$", unit))
     ax.set_ylabel(labelled(f"${names[first + 1]}$", unit))
-    low, high = _square(result, first)
+    low, high = _ends(result, first)
     ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
     if first == 0:  # where the box is, or was
         width, height = result.extra["size"]
