@@ -31,7 +31,7 @@ class Beads(NamedTuple):
     and after the collision, and by forces; whole numbers.
     embedded: (Embedded,) for beads that do not collide but act by a potential, or ().
     external: (External,) for beads that are pulled, trapped or in a magnetic field, or ().
-    halo: which beads are whose where ranks share them (`domains.beads.halo.Halo`), or ().
+    halo: owners and copies of beads where ranks share them (`domains.beads.halo.Halo`), or ().
     """
 
     mass: Any
@@ -73,13 +73,14 @@ class KindsOfLinks(NamedTuple):
     number: int
 
 
-# Places in `Halo.count`: own beads, these and those heard of, those in own cells.
+# Places in `Halo.count`: own beads, own beads and copies, beads in own cells.
 OWN, AROUND, PRESENT = 0, 1, 2
 
 
 @by_type
 def number_of(halo, everybody, which):
-    """How many beads a rank has, knows of, or finds in its cells (`which`): all, without ranks."""
+    """Number of beads that a rank owns, or has with copies, or in its cells (`which`); all beads
+    without ranks."""
     if len(halo) == 0:
         return lambda halo, everybody, which: everybody
     return lambda halo, everybody, which: halo.count[which]
@@ -87,7 +88,7 @@ def number_of(halo, everybody, which):
 
 @by_type
 def bead_of(halo, which, n):
-    """Number of the nth of these."""
+    """Id of the nth of these."""
     if len(halo) == 0:
         return lambda halo, which, n: n
     return lambda halo, which, n: halo.numbers[which, n]

@@ -120,8 +120,8 @@ class InRow(NamedTuple):
     start: int
 
 
-class Asked(NamedTuple):
-    """Cells that rows of numbers name in their first column: so many `cells`, from a row on."""
+class OfRows(NamedTuple):
+    """Cells whose numbers are the first column of rows of a message: so many, from a row on."""
 
     rows: Any
     start: int

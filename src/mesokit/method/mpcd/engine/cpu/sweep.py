@@ -36,7 +36,7 @@ from mesokit.method.mpcd.engine.cpu.stress import flux
 from mesokit.method.mpcd.engine.cpu.strips.cell_energy import tally
 from mesokit.method.mpcd.engine.cpu.strips.rows import lane_mass, load_particle
 from mesokit.method.mpcd.engine.domains.messages.ghosts import note_ghosts
-from mesokit.method.mpcd.engine.domains.messages.migrate import note_strays
+from mesokit.method.mpcd.engine.domains.messages.migrate import note_migrants
 from mesokit.scalar.fixed_point import add_fixed, added_fixed, integers
 from mesokit.scalar.jit import by_type, seldom
 from mesokit.scalar.vector import added, products
@@ -95,7 +95,7 @@ def _stream_singles(worker, now, physics, fluid):
             tallied = tally(physics.energy, 0.0, zero)
             add_strip(cell, terms, sums, lanes, physics.terms, tallied)
             note_ghosts(worker, s, fluid, cell, terms, lanes, physics.terms, tallied)
-            note_strays(worker, now, physics, fluid, strip, s)
+            note_migrants(worker, now, physics, fluid, strip, s)
 
 
 @stage
@@ -148,7 +148,7 @@ def _stream_molecules(worker, now, physics, fluid):
             add_strip(cell, terms, sums, lanes, physics.terms, tallied)
             note_ghosts(worker, s, fluid, cell, terms, lanes, physics.terms, tallied)
             if k == 0:
-                note_strays(worker, now, physics, fluid, strip, s)
+                note_migrants(worker, now, physics, fluid, strip, s)
 
 
 @seldom

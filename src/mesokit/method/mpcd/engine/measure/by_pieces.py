@@ -91,7 +91,7 @@ class ByPieces:
             yield Some(ids, *readings.seen_at(places, False), readings.masses(ids))
         if last > self.n and readings.solutes is not None:
             beads = readings.solutes.folded()
-            ids = np.arange(max(first, self.n), last if readings.tells_solutes else 0)
+            ids = np.arange(max(first, self.n), last if readings.counts_solutes else 0)
             r, v, images = (row[ids - self.n] for row in beads)
             yield Some(ids, r, v, images, readings.masses(ids))
 
@@ -113,7 +113,7 @@ class ByPieces:
             yield (numbers[:, None] + np.arange(len(links))).ravel(), separations
         if kind.stop > own and solutes is not None:
             separations = solutes.bond_vectors()[kind.start - own : kind.stop - own]
-            number = len(separations) if self.readings.tells_solutes else 0
+            number = len(separations) if self.readings.counts_solutes else 0
             yield np.arange(number), separations[:number]
 
     def _seen(self, molecules: Integers) -> Observed:

@@ -52,7 +52,7 @@ class Readings:
         self._slots_of_asked = np.zeros(0, np.int32)
         self._seen: dict[tuple, Moments] = {}  # moments at this step, for several observables
         self.stress: dict[str, Floats] = {}
-        self.tells_solutes = True  # whether sums take the beads of solutes from here
+        self.counts_solutes = True  # whether sums take the beads of solutes from here
         self.solutes = SoluteReadings(memory) if memory.solutes else None
 
     @property
