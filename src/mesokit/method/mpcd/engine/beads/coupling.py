@@ -51,12 +51,17 @@ def cells_of_thread(worker, number):
 def _join(worker, now, physics, cells, beads):
     first, last = cells_of_thread(worker, cells.number)
     present = number_of(beads.halo, len(beads.cell), PRESENT)
+    # Link the beads of each cell. Every thread reads all beads, but links only cells of its own
+    # share of `collide`. Beads come by id, so each list has one order for any threads and ranks.
     for n in range(present):
         i = bead_of(beads.halo, PRESENT, n)
         cell = beads.cell[i]
         if first <= cell < last:
             beads.following[i] = beads.head[cell]
             beads.head[cell] = i
+    # The bead at the head of each list stands for its cell: coefficients for fluid and beads
+    # together are computed once for each. This must precede `collide`, which clears the sums of the
+    # fluid.
     for n in range(present):
         i = bead_of(beads.halo, PRESENT, n)
         cell = beads.cell[i]
@@ -78,6 +83,7 @@ def answer_for(beads, leader, physics, counter, cells, cell):
         beads.solvent, beads, physics, counter, key, total
     )
     i = leader
+    # Sums of beads are floats, so their order matters: it is that of the list.
     while i != NO_BEAD:
         given = load_values(beads.given, np.uint64(i * len(beads.terms)), beads.terms)
         more, its_energy, its_own = parts_of(given, physics.zero)

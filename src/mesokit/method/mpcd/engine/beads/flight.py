@@ -52,6 +52,8 @@ def _move(worker, now, physics, fluid, beads):
     before = now.counter.step - (1 if now.flags & STREAM else 0)
     box = at_time(now.box, before * physics.timestep)
     if now.flags & COLLIDE:  # v: the collision at t
+        # Beads take the coefficients of their cells, like particles of the fluid. Each bead belongs
+        # to one thread.
         for n in range(first, last):
             i = bead_of(halo, OWN, n)
             collide_bead(beads, i, physics, box, now.old, fluid.cells.coefficients)
@@ -59,9 +61,7 @@ def _move(worker, now, physics, fluid, beads):
             for n in range(first, last):
                 add_bead_flux(beads, n, physics, now.box, now.old.shift, 1)
     if now.flags & STREAM:  # r, v: t -> t + dt; cells at t + dt
-        assign_beads(
-            worker, now, physics, box, fluid, beads
-        )  # ranks: whose they are, and who is near
+        assign_beads(worker, now, physics, box, fluid, beads)  # ranks: owners and copies
         together = threads_for(worker, beads)
         first, last = beads_of_thread(worker, together, beads)
         if worker.thread >= together:

@@ -95,6 +95,8 @@ def slipped(lists, box, thread):
 def note_moves(lists, halo, box, thread, places, share_of, zero):
     """Find how far the beads of this thread have gone against what is next to them."""
     (first, last), slip, farthest = share_of, slipped(lists, box, thread), 0.0
+    # Displacements since the lists were made. Under shear images slide meanwhile: for a
+    # bead that was `boxes` images up along y, as many slips are taken off along x.
     for n in range(first, last):
         i = bead_of(halo, AROUND, n)
         at = np.uint64(i * len(zero))
@@ -161,6 +163,8 @@ def link(lists, halo, cells):
     """The beads of these cells, each thread's own, the last first."""
     first, last = cells
     lists.head[first:last] = -1
+    # Every thread reads all beads and links those of its own cells, so no two write to one cell.
+    # The order in a cell follows from the list of beads, not from threads.
     for n in range(number_of(halo, len(lists.following), AROUND)):
         i = bead_of(halo, AROUND, n)
         cell = lists.cell[i]
@@ -179,7 +183,9 @@ def make_list(lists, box, places, i, zero):
     rows, layers = lists.cells[0], lists.cells[0] * lists.cells[1]
     along_z, _ = next_along(lists, box, d - 1, r[d - 1])
     along_y, up = next_along(lists, box, 1, r[1])
-    for b in range(3):  # the image above or below may be displaced along x
+    # The 9 or 27 cells around bead i. y is the outer axis, because the image above or below is
+    # displaced along x under shear: x and its three cells are found anew for each.
+    for b in range(3):
         x = r[0] - up[b] * slide
         x -= math.floor(x * box.inverse[0]) * box.size[0]
         along_x, _ = next_along(lists, box, 0, x)
@@ -200,6 +206,9 @@ def list_cell(lists, box, places, i, mine, cell, found, zero):
     """Add those of a cell to the list of bead i; how many it has then."""
     square, most = lists.reach * lists.reach, lists.near.shape[1]
     j = lists.head[cell]
+    # Neighbours are inserted by id. A bead adds up forces in this order, so its sum of floats has
+    # the same bits whenever the list was made. `found` counts on beyond a full list, to mark it
+    # CROWDED.
     while j >= 0:
         separation = apart(box, mine, load_values(places, np.uint64(j * len(zero)), zero))
         if j != i and dot(separation, separation) <= square:

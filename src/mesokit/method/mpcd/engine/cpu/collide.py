@@ -39,6 +39,8 @@ def total_block(sums, start, count, totals, terms):
         store_scratch(totals, i, none)
     together = count - count % QUAD
     length = np.uint64(sums_length(len(terms)))
+    # Integer sums of all threads for one batch of cells. A cell belongs to the batch of one thread,
+    # which also clears it for the next step, so there is no race. Four empty cells cost one test.
     for t in range(sums.shape[0]):
         for i in range(0, together, QUAD):
             found = np.int64(0)
@@ -143,6 +145,9 @@ def settle_batch(worker, counter, physics, fluid, which, count):
     rows, totals = scratch.coefficients[worker.thread], scratch.terms[worker.thread]
     doubtful, none = scratch.marks[worker.thread], nothing_found(physics.terms)
     in_doubt = np.int64(0)
+    # Thermostat and rule for all lanes without branches, as vectors; lanes beyond the last cell are
+    # computed and not used. The thermostat's number is a guess, and lanes note whether it is
+    # certain.
     for i in range(LANES):
         found, cell = load_scratch(totals, i, none), cell_at(which, i)
         gradient, key = gradient_at(cells.field, cell), key_of(cells.shared, cell)
@@ -150,6 +155,8 @@ def settle_batch(worker, counter, physics, fluid, which, count):
         doubtful[i] = 1 - np.int64(sure)
         in_doubt |= doubtful[i]
         store_scratch(rows, i, answer)
+    # The few uncertain cells draw again, one by one. Random words follow from the step and from the
+    # number of the cell in the whole box, so neither batches nor ranks change them.
     for i in range(count if in_doubt != 0 else 0):
         if doubtful[i] != 0:
             found, cell = load_scratch(totals, i, none), cell_at(which, i)
@@ -181,6 +188,8 @@ def _collide(worker, counter, physics, fluid):
     if is_empty(fluid):  # a random solvent is only where beads are
         batches = 0
     first, last = share(batches, worker.thread, worker.threads)
+    # Batches of cells: integer sums become floats once, then coefficients for the collision at
+    # t + dt, which the next sweep does. Each cell is written by one thread.
     for b in range(first, last):
         if not any_own(cells.shared, b):
             continue

@@ -44,6 +44,9 @@ def _look_around(solid, strip, s, calm, clear, pattern):
     plates and of all else: each step takes off a stride, until it is found anew.
     """
     quiet = 0
+    # 64 neighbours in memory share a budget of clear distance, in cells, from plates and from other
+    # solids. Every flight takes at most a stride of it; `forget` clears it after a longer one.
+    # So tables are read only when the budget is used up.
     for part in range(LANES // FEW):
         n, start = s * (LANES // FEW) + part, part * FEW
         if calm[1, n] < solid.stride:
@@ -68,6 +71,8 @@ def look_up(solid, strip, n, calm, clear, pattern):
 
 def _look_up(solid, strip, n, calm, clear, pattern):
     stride = np.int32(np.float32(solid.stride * solid.stride).view(np.int32))
+    # Three loops instead of one: the first and the last become vectors, between them is the gather
+    # from the table. Clearances are squares in float32, rounded down.
     if calm[0, n] < solid.stride:
         for i in range(FEW):
             clear[i] = cube_of(solid, load_particle(strip, i, 0, pattern))
@@ -91,6 +96,7 @@ def room_between_plates(solid, strip, clear, pattern):
 
 def _room_between_plates(solid, strip, clear, pattern):
     least = np.int32(np.float32(MOST_ROOM).view(np.int32))
+    # Axis by axis, as plates lie across axes; a coordinate beyond a plate has no room at all.
     for k in range(len(pattern)):
         if solid.lowest[k] > -np.inf:
             for i in range(FEW):

@@ -106,6 +106,8 @@ def collide_and_stream_strip(physics, grid, strip, gathered, quiet, clear, hits)
 
     def looked_around(physics, grid, strip, gathered, quiet, clear, hits):
         behind = np.int64(0)
+        # Parts of 64 lanes, each with one bit in `behind`. In a quiet part every flight up to a
+        # stride is free, so the loop needs no distance for each lane.
         for part in range(LANES // FEW):
             start = part * FEW
             any_hit = move_few(
@@ -158,11 +160,16 @@ def bounce_strip(physics, counter, strip, count, behind, ident, hits, impulse):
 def _bounce_strip(physics, counter, strip, count, behind, ident, hits, impulse):
     zero, far, width = physics.zero, 0, lanes_together(physics.solid)
     d = len(zero)
+    # Only particles that stayed behind in `fly` are moved here, with reflections. They are few, so
+    # this loop is scalar. Random numbers of diffuse surfaces follow from ids: order does not
+    # matter.
     for start in range(0, count, width):
         part, marked = start // width, start
         if (behind >> part) & 1 == 0:
             continue
-        for i in range(start, min(start + width, count)):  # their numbers first, without branches
+        # Compact their lanes to the front of the part, without branches. No unread mark is lost,
+        # since `marked` never exceeds i.
+        for i in range(start, min(start + width, count)):
             hit = hits[i]
             hits[marked] = i
             marked += hit
@@ -201,6 +208,8 @@ def bin_strip(physics, now, strip, cell, ident, terms_rows):
     """
     zero = physics.zero
     d = len(zero)
+    # Positions at t + dt, velocities before the collision at t + dt. Terms are rounded to integers
+    # here, lane by lane, so that later sums have no order.
     for i in range(LANES):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         m = lane_mass(physics.masses, strip, i, 2 * d)
@@ -216,6 +225,8 @@ def add_strip(cell, terms_rows, sums, count, terms, tallied):
     """Add the terms of each particle to the sums of its cell, and count it (see `scatter_add`)."""
     width = sums_length(len(terms))
     together = count - count % QUAD
+    # Four lanes at a time as whole vectors, then the rest one by one. Spare lanes are left out:
+    # this is where nonsense in them ends.
     for i in range(0, together, QUAD):
         scatter_add(sums, cell, i, terms_rows, terms, tallied)
     for i in range(together, count):

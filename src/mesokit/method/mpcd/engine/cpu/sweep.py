@@ -66,6 +66,10 @@ def _stream_singles(worker, now, physics, fluid):
     impulse, tensor = fluid.taken.impulse[worker.thread], fluid.taken.tensor
     sums, measured = fluid.cells.sums[worker.thread], now.flags & MEASURE_STRESS
     first, last = share(strips_in(particles.filling), worker.thread, worker.threads)
+    # Strip by strip, each in the cache for all stages: the pending collision (v at t), the flight
+    # (r, v: t -> t + dt), then the terms for the cells at t + dt. A thread writes its own particles
+    # and its own sums, so there is no race. Sums are integers: their bits do not depend on the
+    # shares.
     for s in range(first, last):
         lanes, places = lanes_in(particles.filling, s), slice(s * LANES, (s + 1) * LANES)
         strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]
@@ -105,9 +109,12 @@ def _stream_molecules(worker, now, physics, fluid):
     clear, work = scratch.clear[worker.thread], scratch.beads[worker.thread]
     tensor, sums = fluid.taken.tensor, fluid.cells.sums[worker.thread]
     beads, measured = physics.molecule.beads, now.flags & MEASURE_STRESS
-    # the box in which images were counted
+    # The box in which images were counted.
     before = at_time(now.box, (now.counter.step - 1) * physics.timestep)
     first, last = share(groups_in(particles.filling), worker.thread, worker.threads)
+    # A group is one strip for each bead of 256 molecules. Strips collide on their own. For the
+    # flight with its sub-steps, WIDTH molecules at a time are copied to rows that stay in the
+    # first-level cache. Then strips find their cells, as for single particles.
     for g in range(first, last):
         lanes = lanes_in(particles.filling, g * beads)
         for k in range(beads):  # velocities of step n, after the collision
@@ -127,7 +134,9 @@ def _stream_molecules(worker, now, physics, fluid):
         for start in range(0, lanes, WIDTH):  # positions and velocities of step n + 1
             batch = Batch(g, g * beads, start, min(WIDTH, lanes - start))
             leader = particles.image[:, g * beads * LANES + start : (g * beads + 1) * LANES]
-            for k in range(beads - 1, -1, -1):  # the leader's counts of boxes stay to the end
+            # Under shear each bead returns to the image of the first bead, by the image counts of
+            # both. The first bead comes last, because the others still need its counts.
+            for k in range(beads - 1, -1, -1):
                 s = g * beads + k
                 image = particles.image[:, s * LANES + start : (s + 1) * LANES]
                 strip = particles.data[strip_at(s, particles.rows)][start:]
@@ -156,6 +165,8 @@ def add_strip_flux(physics, box, grid, strip, count, tensor):
     """What the particles of a strip carry of the stress."""
     zero = physics.zero
     d, sums = len(zero), integers(products(zero, zero) + products(zero, zero))
+    # Kinetic part: m c c with the velocity c relative to the shear flow. Collisional part: m v
+    # times the place in its cell, of which the caller takes the difference over a collision.
     for i in range(count):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         m = lane_mass(physics.masses, strip, i, 2 * d)

@@ -123,6 +123,9 @@ def _(moving, step, box, physics, time):
     solutes, embedded, zero = moving.solutes, moving.embedded, physics.zero
     worker, beads = solutes.worker, solutes.beads
     embedded.taken[worker.thread] = 0
+    # First the particles of this thread: each gets its impulse, and the opposite goes to the
+    # thread's own sums of the beads. After the barrier each bead adds up the sums of all threads.
+    # Impulses are whole units of momentum, so totals have no order and momentum is exact.
     for n in range(embedded.number[worker.thread, COUNT]):
         kick_particle(moving, n, step, box, physics, time)
     barrier(worker)
@@ -146,6 +149,8 @@ def kick_particle(moving, n, step, box, physics, time):
     beads, at, d = moving.solutes.beads, np.uint64(n * len(zero)), len(zero)
     r, v = load_values(embedded.r[thread], at, zero), load_values(embedded.v[thread], at, zero)
     count, given, scale = embedded.partners[thread, n], integers(zero), momentum_scale(physics)
+    # Beads on the particle's list, or all beads where a list does not hold. Beads beyond the reach
+    # of the potential add nothing, so both give the same bits.
     for k in range(count if count != EVERYBODY else len(beads.cell)):
         j = embedded.beads[thread, n * PARTNERS + k] if count != EVERYBODY else k
         separation = apart(box, load_place(beads, j, r), r)

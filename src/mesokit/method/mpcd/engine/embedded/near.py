@@ -57,6 +57,9 @@ def mark_around(embedded, r, stamp):
         high = with_item(high, k, floor(r[k] + reach))
     depth = int(high[2] - low[2]) + 1 if d == 3 else 1
     middle = r
+    # All cells of side a in a cube around the bead, but only those nearer than `reach`: the gap
+    # along each axis is that from r to the cell. Threads may mark the same cell, but all write the
+    # same stamp, the number of the step; so marks need no clearing.
     for c in range(depth):
         if d == 3:
             middle = with_item(middle, 2, low[2] + c + 0.5)
@@ -88,15 +91,20 @@ def choose_near(worker, now, physics, beads, strip, s, count, marks):
     """
     (embedded,), zero = beads.embedded, physics.zero
     d, step, candidates, chosen = len(zero), now.counter.step, 0, 0
+    # Coarse test of all lanes at t, before the flight: in a marked cell, or so fast that cells are
+    # no bound. It has no branches.
     for i in range(count):
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
         near = embedded.marked[cell_index(r, embedded.grid)] == step
         fast = not path_of(embedded, physics, r, v) <= embedded.travel
         marks[i] = np.int64(near) | np.int64(fast)
-    for i in range(count):  # their numbers first, without branches
+    # Compact the lanes of candidates to the front, again without branches.
+    for i in range(count):
         mark = marks[i]
         marks[candidates] = i
         candidates += mark
+    # Exact test of the few candidates, by distances from beads. The choice depends on places and
+    # velocities alone, so neither the order in memory nor threads change the result.
     for j in range(candidates):
         i = marks[j]
         r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
@@ -137,6 +145,9 @@ def find_partners(embedded, beads, box, r, path, where):
     along_z, _ = next_along(lists, box, d - 1, place[d - 1])
     along_y, _ = next_along(lists, box, 1, place[1])
     along_x, _ = next_along(lists, box, 0, place[0])
+    # Beads in the 9 or 27 cells around the particle; these cells are at least as long as the reach.
+    # The list holds beads within reach of a flight of length `travel`. It is kept only if one of
+    # them is within reach of the particle's own flight. Forces are integers, so its order is free.
     for b in range(3):
         for c in range(3 if d == 3 else 1):
             layer = along_z[c] if d == 3 else 0

@@ -59,6 +59,9 @@ def stream_around(worker, now, physics, fluid, beads):
         find_beads(worker, now.counter.step, now.box, beads, zero)
         embedded.number[worker.thread, COUNT] = 0
     first, last = share(strips_in(particles.filling), worker.thread, worker.threads)
+    # As `cpu.sweep`, but particles near a bead are copied to a list with r and v at t, after the
+    # collision. Their lanes fly with the others, for whole vectors, and do not count: their terms
+    # go to the spare cell. `put_back` restores them at t + dt.
     for s in range(first, last):
         lanes, places = lanes_in(particles.filling, s), slice(s * LANES, (s + 1) * LANES)
         strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]

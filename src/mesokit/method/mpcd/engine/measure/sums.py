@@ -41,9 +41,11 @@ def totals(worker, masses, particles, scales, out, fastest):
     data, rows = particles.data, particles.rows
     filling, d, zero = particles.filling, len(scales) - 1, scales[1:]
     first, last = share(strips_in(filling), worker.thread, worker.threads)
+    # Integer sums for each strip, so the share of a thread changes nothing. The largest velocity is
+    # compared by its bits: for positive floats these have the same order, with NaN at the top.
     for b in range(first, last):
         strip, momentum, energy = data[strip_at(b, rows)], integers(zero), np.int64(0)
-        top = np.int64(0)  # bits of numbers without a sign have their order, with nan above all
+        top = np.int64(0)
         for i in range(lanes_in(filling, b)):
             v = load_particle(strip, i, d, zero)
             m = lane_mass(masses, strip, i, 2 * d)
@@ -79,6 +81,8 @@ def bin_sums(worker, zero, masses, box, particles, bins, sums):
     place, quanta, out = bins.place[worker.thread], bins.terms[worker.thread], sums[worker.thread]
     terms = integers(scales)
     first, last = share(bins.last - bins.first, worker.thread, worker.threads)
+    # Bins are treated as the cells of a step: bin and rounded terms of each lane first, as vectors,
+    # then integer sums that each thread has for itself.
     for b in range(bins.first + first, bins.first + last):
         strip = data[strip_at(b, rows)]
         for i in range(LANES):
@@ -117,6 +121,9 @@ def modes(worker, zero, masses, box, particles, waves, out):
     data, rows = particles.data, particles.rows
     filling, d = particles.filling, len(zero)
     first, last = share(strips_in(filling), worker.thread, worker.threads)
+    # Wave by wave within a strip, which stays in the cache for all of them. Phases are reduced to
+    # one turn before sine and cosine. Lanes that do not count have mass 0, so the loop has no
+    # branch.
     for b in range(first, last):
         strip = data[strip_at(b, rows)]
         lanes = lanes_in(filling, b)

@@ -67,6 +67,7 @@ def _follow_all(worker, now, physics, sums, virtual):
     begin, end = share(
         (len(virtual.terms) + EVERY - 1 - turn) // EVERY, worker.thread, worker.threads
     )
+    # Every fourth piece at each step, in turn. A running mean belongs to one piece and one thread.
     for e in range(turn + EVERY * begin, turn + EVERY * end, EVERY):
         for p in range(PROBES):
             good, seen = look(virtual, e, p, physics, now.grid, sums)
@@ -79,6 +80,8 @@ def _follow_all(worker, now, physics, sums, virtual):
 def _see(worker, now, physics, sums, virtual):
     turn, pieces = np.int64(now.counter.step) % EVERY, virtual.seen.here
     begin, end = share(len(pieces), worker.thread, worker.threads)
+    # The same pieces as on one rank, but only probes in own cells: their sums are complete here.
+    # `receive_coefficients` updates the means when values of all ranks are there.
     for j in range(begin, end):
         e = pieces[j]
         for p in range(PROBES if e % EVERY == turn else 0):
@@ -138,6 +141,8 @@ def straighten(rates, e, zero):
     d = len(zero)
     near, far = rates[e, 3 * d], rates[e, 4 * d + 1]
     apart = far - near
+    # Through the two means u / h = s + q h, at heights h in cells, component by component. Where
+    # the probes are too close to each other, q is 0.
     for k in range(d):
         a, b = rates[e, 2 * d + k], rates[e, 3 * d + 1 + k]
         bent = apart > LEAST_APART * near

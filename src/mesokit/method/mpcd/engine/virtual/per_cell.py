@@ -64,6 +64,8 @@ def cut_batch(virtual, start, count, solid, grid, work, zero):
     """
     cells, d, moved = virtual.per_cell, len(zero), moved_by(solid, grid, zero)
     entries = len(cells.heights)
+    # Tables have a row for each axis and the batch any start in them, so rows are copied first. The
+    # last loop then is one over vectors.
     for k in range(d):
         for i in range(count):
             work[(PLACE + k) * SCRATCH_ROW + i] = cells.places[k * entries + start + i]
@@ -71,6 +73,8 @@ def cut_batch(virtual, start, count, solid, grid, work, zero):
             work[(THERMAL + k) * SCRATCH_ROW + i] = cells.normals[k * entries + start + i]
     for i in range(count):
         work[HEIGHT * SCRATCH_ROW + i] = cells.heights[start + i]
+    # Plane and cell are shifted against each other by the grid shift of the step, in cells: the
+    # height of the middle over the plane changes, the normal does not.
     for i in range(LANES):
         middle = load_scratch(work, PLACE * SCRATCH_ROW + i, zero)
         n = load_scratch(work, THERMAL * SCRATCH_ROW + i, zero)
@@ -92,6 +96,9 @@ def count_batch(numbers, counter, work):
         most = max(most, work[MEAN * SCRATCH_ROW + i])
         work[NUMBER * SCRATCH_ROW + i] = 0.0
     draw = 0
+    # Inversion, for all lanes in step: chances of 0, 1, 2, ... are taken off a uniform number until
+    # it is negative. Means above MOST_MEAN are drawn in parts, whose sum is Poisson again. Lanes
+    # that are done go on without effect, so a number depends on its cell only.
     while most > 0.0:
         for i in range(LANES):
             a, _, _, _ = words(counter, VIRTUAL_NUMBER, numbers[i], draw)
@@ -144,6 +151,9 @@ def _fill(worker, now, physics, sums, virtual):
     first = virtual.starts[offset]
     begin, end = share(virtual.starts[offset + 1] - first, worker.thread, worker.threads)
     filled = 0
+    # Batches of cut cells: depth of the cut, numbers and thermal velocities as vectors, then cells
+    # with particles one by one. Random words follow from the number of the cell in the whole box. A
+    # thread adds to its own sums, so shares change no bit.
     for start in range(begin, end, LANES):
         count = min(LANES, end - start)
         cut_batch(virtual, first + start, count, physics.solid, now.grid, work, zero)
@@ -229,6 +239,8 @@ def _recoil(worker, now, physics, fluid, virtual):
     solid, cells, zero = physics.solid, virtual.per_cell, physics.zero
     d, thread, scale = len(zero), worker.thread, momentum_scale(physics)
     coefficients, impulse = fluid.cells.coefficients, fluid.taken.impulse[thread]
+    # Momentum that virtual particles gain by the collision at t + dt, which walls take as an
+    # impulse. A thread has the cells that it filled; impulses are added as integers.
     for i in range(cells.filled[thread]):
         v, kept, r = zero, zero, zero
         for k in range(d):
