@@ -129,6 +129,9 @@ class MultipleTau:
         entry, number = self._sample, self._count  # the entry of the level, and how many before it
         self._count += 1
         depth = 0
+        # Up the levels, as long as an average of `averages` entries is complete. At each level the
+        # new entry is multiplied with the latest ones of its ring. Level l gets an entry every
+        # averages^l samples, so the mean cost of a sample is bounded, however long the run.
         while depth < len(self._levels):
             ring, sums = self._levels[depth]
             slot = number % self.points

@@ -63,6 +63,9 @@ def highest(solid, r, n, away, columns):
     d, side = len(r), 2.0 * away / columns
     half = 0.5 * side * math.sqrt(d - 1.0)
     top = -away
+    # Columns along n fill the ball. Each is followed down its axis by balls without solid: a ball
+    # of radius c clears the column over sqrt(c^2 - half^2). It ends where the ball is not wider
+    # than the column, or below the highest end so far.
     for number in range(columns ** (d - 1)):
         foot, rest = r, number
         for k in range(d - 1):

@@ -89,6 +89,9 @@ def add_seen(physics, near, top, here, sums, i):
 def _see_headings(physics, near, top, here, sums, i):
     unit, d = physics.axes.unit, len(here)
     headings, around = nothing(here), _NONE
+    # A loop over vectors of 32-bit integers. Differences of places wrap around like the periodic
+    # box, so each is the separation of nearest images. At most CHUNK birds add up, so no sum
+    # overflows.
     for j in range(top):
         reached = length_squared(separation_from(near, j, here, unit)) <= physics.reach
         headings = with_heading(near, j, reached, headings)
@@ -102,6 +105,8 @@ def _see_headings_and_separations(physics, near, top, here, sums, i):
     unit, d, cohesion = physics.axes.unit, len(here), physics.cohesion[0]
     core = cohesion.core * cohesion.core
     headings, pulls, out, around = nothing(here), nothing(here), nothing(here), _NONE
+    # The same with cohesion: float32 factors of each separation, cut off to integers before they
+    # are added. Lanes that only fill up the last vector hold no bird and count for nothing.
     for j in range(top):
         separation = separation_from(near, j, here, unit)
         square = length_squared(separation)
@@ -162,6 +167,9 @@ def list_runs(axes, starts, place, runs):
     beyond = wide - 1 if x == 0 else 0  # across the end of the box
     at_end = (wide > 1) & ((x == 0) | (x == wide - 1))
     number = 0
+    # Sorted birds of three cells along x are one run in memory. At an end of a periodic box the
+    # cell beyond it is a run of its own. At a wall such cells are looked at in vain, as they are
+    # out of reach there.
     for dz in range(-beside_z, beside_z + 1):
         for dy in range(-beside_y, beside_y + 1):
             row = (wrapped(z + dz, deep) * high + wrapped(y + dy, high)) * wide
@@ -182,6 +190,9 @@ def look(physics, seen, starts, near, runs, cell, place, pattern):
             seen.sums[k, i] = 0
     number = list_runs(physics.axes, starts, place, runs)
     run, held, first = 0, 0, runs[0, 0]
+    # Birds of all runs are copied into one chunk, across borders of runs, until it is full or the
+    # runs end. Then every bird of the cell adds up this chunk. Sums are integers, so chunks change
+    # no bit.
     while run < number:
         fit = min(runs[1, run] - first, CHUNK - held)
         for j in range(fit):

@@ -42,6 +42,10 @@ def advance(world, rules, spheres, lists, queue, tally, end):
     """Do all events before a time; how it ended: DONE, FULL lists, COLLAPSED, PAUSED, or
     FAILED where no time was found at which a sphere meets a wall."""
     number, bin_before = spheres.number, np.int64(-1)
+    # One event at a time, in the order of time, by one thread. Only spheres of the event move, from
+    # their own last time to now; all others wait. A predicted hit counts only if the partner has
+    # not collided since (`hits`); if it has, the sphere just gets a new prediction. After each
+    # event the spheres concerned leave the queue, predict, and enter again.
     for _ in range(AT_ONCE):
         i = next_event(queue, number, end)
         if i < 0:
@@ -92,6 +96,8 @@ def rebuild(world, rules, spheres, lists, queue, now):
     n, room = len(spheres.number), True
     lists.head[:] = -1
     lists.count[:] = 0
+    # A sphere is linked after its search, so each pair is found once, from its second sphere, and
+    # written on both lists.
     for i in range(n):
         r = boxed(world, spheres.state, i, now)
         put_entries(lists.centre, i, 0, r)

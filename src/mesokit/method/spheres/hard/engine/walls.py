@@ -63,6 +63,10 @@ def time_to_wall(world, state, i, w, until):
         distance, normal = outward(world, w, r)
         return since + fall(distance - radius, dot(v, normal), dot(g, normal))
     tau = 0.0
+    # March in steps that end before the contact. For the time `longest` the gap shrinks no faster
+    # than a parabola, with the closing speed now and a bound of its growth. A vibrating plate does
+    # not matter until the sphere is within its amplitude. A gap below rounding is a contact if it
+    # closes.
     for _ in range(STEPS):
         gap, closing, bend, longest = approach(world, state, i, w, tau)
         if gap <= CLOSE * radius + unsure(world, state, i, w, tau):

@@ -59,6 +59,9 @@ def forces_from_list(law, i, world):
     bodies, box, lists = world.bodies, world.box, world.lists
     r = row(bodies.place, i)
     a, b, c, low = np.int64(0), np.int64(0), np.int64(0), FAR
+    # Each sphere adds up all its neighbours itself, both ways of a pair: no thread writes to
+    # spheres of another. Terms are whole quanta, so neither the order nor the length of a list
+    # matters. The list is filled up with the sphere itself, at distance 0, which adds nothing.
     for s in range(lists.count[i]):
         dx, dy, dz = from_to(box, bodies.place, lists.near[i, s], r)
         square = dx * dx + dy * dy + dz * dz

@@ -60,6 +60,9 @@ def add_contact_forces(law, mine, step, world, room):
     """Forces and torques of all pairs that this thread finds; a bound of them."""
     lists, largest = world.lists, 0.0
     i, last, begin, next_contact = mine[0], mine[1], 0, lists.begin[mine[0]]
+    # Batches fill the first-level cache: parts of lists are searched until a batch is nearly full,
+    # then its forces are one loop over vectors. Springs of all contacts searched are cleared before
+    # those that still touch are written again.
     while i < last:
         n, first_contact = 0, next_contact
         while i < last and n <= BATCH - PART:
@@ -85,6 +88,8 @@ def find_near(law, i, begin, end, world, room, n):
     """Add those that sphere i touches, or soon will, in a part of its list; how many there are."""
     bodies, box, lists = world.bodies, world.box, world.lists
     r, far, kept_at = row(bodies.place, i), reach(bodies, i), lists.begin[i]
+    # Places at t + dt. Every candidate is written into the next row of the batch, which advances
+    # only if it is near: no branch depends on the distance.
     for s in range(begin, end):
         j = np.uint64(lists.near[i, s])
         separation = from_to(box, bodies.place, j, r)
@@ -113,6 +118,8 @@ def bring(world, room, n):
 def follow(law, step, room, n, rolls):
     """The forces and torques of a batch; `rolls`: whether rolling is resisted."""
     numbers = room.numbers
+    # Rows of the batch lie at constant offsets, so this loop becomes one over vectors of contacts.
+    # Forces are rounded to quanta here: the other sphere gets exactly the opposite.
     for c in range(np.uint64((n + GROUP - 1) & -GROUP)):
         met = load_meeting(numbers, c)
         touch = between(law, 0.5 * step, load(numbers, SEPARATION, c, VECTOR), met)
@@ -130,6 +137,8 @@ def follow(law, step, room, n, rolls):
 def add_up(law, mine, world, room, n):
     """Add a batch to the sums of its spheres; a bound of its forces and torques."""
     bodies, largest = world.bodies, 0.0
+    # The second sphere is written only if it belongs to this thread, so threads do not race. Else
+    # its own thread finds the same force with the opposite sign. Quanta add up without an order.
     for c in range(np.uint64(n)):
         i, j = room.pairs[FIRST + c], room.pairs[SECOND + c]
         force = load(room.counts, FORCE, c, COUNT)
