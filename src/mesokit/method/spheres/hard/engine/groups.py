@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 TIME, VELOCITY, RADIUS, WIDTH = 3, 4, 7, 8
 # columns of `Spheres.body`
 MASS, INERTIA, LAST, SPIN, BODY_WIDTH = 0, 1, 2, 3, 6
-# columns of `Queue.event`: with whom, how many collisions that one had had (the last 32 bits);
+# columns of `Queue.event`: the partner, and its collisions when predicted (the last 32 bits);
 # BIN is -1 for those in the heap, PLACE is where they are in it
 PARTNER, PARTNER_HITS, AFTER, PREVIOUS, BIN, PLACE, EVENT_WIDTH = 0, 1, 2, 3, 4, 5, 8
 # what a sphere's next event is with, where it is with no other sphere
@@ -49,7 +49,7 @@ class SphereMemory(NamedTuple):
 
 
 class Lists(NamedTuple):
-    """Who may meet whom before one of them is `shell` away from where its list was made.
+    """Neighbour lists: pairs that may collide before one of them is `shell` away from its centre.
 
     centre (n, 4): these places, and how far one may go; cells (d,), per_length (d,): of the grid;
     cell (n,), head (cells,), following (n,), before (n,): the centres of each cell, linked;
@@ -90,7 +90,7 @@ class Queue(NamedTuple):
 
 class Tally(NamedTuple):
     """What has happened: counts (4,), sums (1,), momentum that each wall has taken (walls, d), and
-    flights, see `flights`; () where nobody asks for them."""
+    flights, see `flights`; () where no observable reads them."""
 
     counts: Any
     sums: Any

@@ -1,4 +1,4 @@
-"""What happens to a sphere next."""
+"""The prediction of the next event of a sphere."""
 
 import math
 

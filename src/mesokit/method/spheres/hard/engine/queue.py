@@ -120,7 +120,7 @@ def remove(queue, number, i):
 
 @scalar
 def next_event(queue, number, end):
-    """Whose event is next, -1 if it is not before the end."""
+    """The sphere with the next event, -1 if there is none before the end."""
     bins = len(queue.first)
     # An empty heap takes all events of the next bin. The calendar is a ring: an event farther ahead
     # than all bins waited in the last one, and `insert` puts it off again. Bins before `end` only.

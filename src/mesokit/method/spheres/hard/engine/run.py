@@ -34,7 +34,7 @@ from mesokit.scalar.intrinsics import floor, with_item
 from mesokit.scalar.jit import scalar
 
 MANY = 100  # collisions in a row that take no time
-AT_ONCE = 1_000_000  # events, so that signals are heard
+AT_ONCE = 1_000_000  # events, after which Python can treat signals
 
 
 @kernel

@@ -141,9 +141,9 @@ class SoftEngine:
 
     def _told(self) -> Array:
         """Of every sphere, by number (n, 8), in units of the case but for the last: a number."""
-        told = self.system.told(self.time)
-        found = told * self.system.given.law.quantum
-        found[:, groups.TOUCHING] = told[:, groups.TOUCHING]
+        readings = self.system.readings(self.time)
+        found = readings * self.system.given.law.quantum
+        found[:, groups.TOUCHING] = readings[:, groups.TOUCHING]
         return found
 
     def moments(
@@ -164,7 +164,7 @@ class SoftEngine:
 
     def coordination(self) -> NDArray[np.int64]:
         """How many spheres and walls touch each one, (n,); 0 of a potential."""
-        return self.system.told(self.time)[:, groups.TOUCHING]
+        return self.system.readings(self.time)[:, groups.TOUCHING]
 
     @property
     def wall_impulse(self) -> Array:

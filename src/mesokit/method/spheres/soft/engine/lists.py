@@ -1,4 +1,4 @@
-"""Spheres sorted by cells in memory, and lists of who is near whom."""
+"""Spheres sorted by cells in memory, and neighbour lists."""
 
 import numpy as np
 
@@ -34,9 +34,11 @@ def sort(grid, place, cell, begins, order):
 
 @kernel
 def make_lists(worker, grid, begins, columns, bodies, box, lists, scratch):
-    """All within reach and skin of each sphere. A list that has too little room is cut off, and
-    tells its length. `columns` (4, n) are places once more, each coordinate together; `scratch`
-    (threads, n) is for the loops here alone."""
+    """List all spheres within reach and skin of each sphere.
+
+    A list without enough room is cut off, but `count` has its full length. `columns` (4, n): places
+    again, coordinate by coordinate; `scratch` (threads, n): memory of these loops.
+    """
     first, last = share(len(bodies.number), worker.thread, worker.threads)
     beside = scratch[worker.thread]
     # Cells around sphere i that its reach and the skin can touch. Cells along x lie one after
