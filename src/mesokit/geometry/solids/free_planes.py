@@ -27,6 +27,8 @@ from mesokit.scalar.vector import added_scaled, dot, outer, row, scaled
 def planes_above(solid, pattern, away, columns, points, planes):
     """Normal and height n r of a plane above which no solid is within `away` of each point."""
     d = len(pattern)
+    # The normal is that of the nearest surface. If nothing else is within `away` and the part is
+    # convex, its tangent plane is the highest; else columns are probed.
     for i in range(len(points)):
         r = row(points, i, pattern)
         c, part, term = nearest(solid.tables, r)

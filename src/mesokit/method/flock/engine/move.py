@@ -71,6 +71,8 @@ def move(physics, counter, birds, sums, strip, side, first, count):
     headings, places = birds.headings[side], birds.places[side]
     images, numbers = birds.images[side], birds.numbers[side]
     heading, place, away, number = rows, rows + d, rows + 2 * d, rows + 3 * d
+    # Copy in, turn, fly, copy out. Rows of one scratch array are known not to overlap, so `turn`
+    # and `fly` become loops over vectors; these copies are the price.
     for k in range(rows):
         for i in range(count):
             strip[k * STRIP + i] = float(sums[k, past(first, i)])

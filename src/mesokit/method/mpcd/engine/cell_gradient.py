@@ -1,6 +1,6 @@
 """The gradient, over neighbouring cells, of one of the sums that a collision rule adds up.
 
-Rules that do not ask for it have no field, and nothing of this is compiled for them.
+Without such a rule there is no field, and nothing of this is compiled.
 """
 
 from typing import Any, NamedTuple
@@ -31,7 +31,7 @@ class Field(NamedTuple):
 
 @by_type
 def fill_field(worker, physics, fluid):
-    """Write down the sum of every cell where a rule asks for its gradient; all threads meet."""
+    """Store the sum of every cell if a rule needs its gradient; ends with a barrier."""
     asked = len(field_of(field_of(fluid, "cells"), "field")) > 0
     return _fill_field if asked else lambda worker, physics, fluid: None
 
@@ -65,7 +65,7 @@ def next_along(i, step, cells, closed):
 
 @by_type
 def gradient_at(field, cell):
-    """The gradient at a cell, per cell of length; () where no rule asks for it.
+    """The gradient at a cell, per cell of length; () where no rule needs it.
 
     Differences of neighbours along an axis, weighted across it by 1/6, 4/6, 1/6: the error of
     leading order is then the same in every direction.
@@ -77,7 +77,7 @@ def gradient_at(field, cell):
 
 def _gradient_2d(field, cell):
     values, nx, ny = field.values, field.cells[0], field.cells[1]
-    cell = min(cell, nx * ny - 1)  # lanes beyond the last cell answer for nobody
+    cell = min(cell, nx * ny - 1)  # lanes beyond the last cell are not used
     x, y = cell % nx, cell // nx
     gx = gy = 0.0
     # Central differences along each axis in three parallel rows, weighted across by 1/6, 4/6, 1/6,

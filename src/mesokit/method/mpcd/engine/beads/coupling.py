@@ -1,4 +1,4 @@
-"""Cells that hold beads: what their particles and beads need together in order to collide.
+"""Cells that hold beads: coefficients of the collision for particles and beads together.
 
 Cells add up the fluid alone, which then pays nothing for beads. For the few cells with beads the
 sums are completed here, each by the thread whose share of `collide` it is in, and what follows from
@@ -32,7 +32,7 @@ NO_BEAD = -1
 
 @by_type
 def join_beads(worker, now, physics, fluid, beads):
-    """Answers for the cells with beads, from sums that `collide` is about to clear."""
+    """Coefficients for cells with beads, from sums that `collide` is about to clear."""
     if not collides(beads):
         return lambda worker, now, physics, fluid, beads: None
     return lambda worker, now, physics, fluid, beads: _join(
@@ -42,7 +42,7 @@ def join_beads(worker, now, physics, fluid, beads):
 
 @scalar
 def cells_of_thread(worker, number):
-    """First and last + 1 of the cells that `collide` leaves to a thread."""
+    """First and last + 1 of the cells of a thread in `collide`."""
     first, last = share((number + LANES - 1) // LANES, worker.thread, worker.threads)
     return first * LANES, min(last * LANES, number)
 
@@ -74,7 +74,7 @@ def _join(worker, now, physics, cells, beads):
 
 @scalar
 def answer_for(beads, leader, physics, counter, cells, cell):
-    """What all in the cell of that bead, the first of its list, need to collide."""
+    """The coefficients of the cell of a bead, the first of its list, with all beads in it."""
     found, key = sums_of_cell(cells.sums, cell, physics.terms), key_of(cells.shared, cell)
     n, mass, momentum, energy, own = read_sums(physics, found)
     mass = mass if n > 0.5 else 0.0
@@ -138,7 +138,7 @@ def _with_random_solvent(solvent, beads, physics, counter, cell, total):
 
 @by_type
 def answer_beads(worker, now, physics, fluid, beads):
-    """Put these answers in the place of those that `collide` found without beads."""
+    """Replace the coefficients that `collide` found without beads."""
     if not collides(beads):
         return lambda worker, now, physics, fluid, beads: None
     return _put_answers

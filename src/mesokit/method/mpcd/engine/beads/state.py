@@ -19,13 +19,13 @@ class Beads(NamedTuple):
     (Neighbours,) or ().
     kinds: which of several potentials act, see `KindsOfLinks`; () where there is one of each.
     r, v (beads * d,): places, whole molecules in one image, and velocities there.
-    bond_starts (beads + 1,), bonds: to whom each bead is linked.
+    bond_starts (beads + 1,), bonds: the beads to which each bead is linked.
     angle_starts (beads + 1,), angles (n, 4): the angles that each bead is in, and as which bead.
     near_wall: (solid, distance) for the potential of walls, or ().
     faults (threads, 8): step and beads of the first bond that tore.
     cell (beads,): of the grid; head (cells,), following (beads,): the beads of each cell.
     given: what each bead adds to the sums of its cell, as long as `terms`, side by side.
-    answers: what the cells of beads need to collide; leads (beads,): whose cell has one.
+    answers: coefficients of the cells of beads; leads (beads,): whether they are at this bead.
     solvent: (mean number, mass of a particle) for random solvent, or ().
     tensor (3, groups, 2 d d): what groups of beads add to the stress: before
     and after the collision, and by forces; whole numbers.
@@ -78,12 +78,12 @@ OWN, AROUND, PRESENT = 0, 1, 2
 
 
 @by_type
-def number_of(halo, everybody, which):
+def number_of(halo, every, which):
     """Number of beads that a rank owns, or has with copies, or in its cells (`which`); all beads
     without ranks."""
     if len(halo) == 0:
-        return lambda halo, everybody, which: everybody
-    return lambda halo, everybody, which: halo.count[which]
+        return lambda halo, every, which: every
+    return lambda halo, every, which: halo.count[which]
 
 
 @by_type

@@ -1,4 +1,4 @@
-"""One pass over all cells: from the sums over their particles to what these need to collide."""
+"""One pass over all cells: from the sums over their particles to coefficients of the collision."""
 
 from typing import Any, NamedTuple
 
@@ -30,9 +30,9 @@ MOST_DRAWS = 1000  # of a thermostat's random number, each accepted with more th
 
 @scalar
 def total_block(sums, start, count, totals, terms):
-    """Add up what the threads found for these cells, and clear it.
+    """Add up the sums of all threads for these cells, and clear them.
 
-    A thread that found nothing in four cells is passed over, so that no other writes to its memory.
+    Sums that are 0 in four cells are only read: so threads seldom write to memory of others.
     """
     none = nothing_found(terms)
     for i in range(LANES):
@@ -72,7 +72,7 @@ def put_block(coefficients, start, count, rows, c):
 
 @scalar
 def draw_with_care(physics, counter, cell, free):
-    """The thermostat's random number where a guess was not sure."""
+    """The thermostat's random number where the guess is not certain."""
     x, good = draw(physics.thermostat, counter, cell, free, 0)
     attempt = 1
     while not good and attempt < MOST_DRAWS:
@@ -83,7 +83,7 @@ def draw_with_care(physics, counter, cell, free):
 
 @by_type
 def as_many(answer, coefficients):
-    """The answer of a rule, for which there is room."""
+    """The coefficients of a rule; raises if their number is not the declared one."""
     if len(answer) != len(coefficients):
         raise TypeError(
             f"coefficients gives {len(answer)} numbers; coefficient_count says {len(coefficients)}"
@@ -93,11 +93,11 @@ def as_many(answer, coefficients):
 
 @scalar
 def needs_of_cell(physics, counter, cell, found, gradient, certain):
-    """What the particles of a cell need in order to collide, and whether that is sure.
+    """The coefficients of the collision in a cell, and whether they are certain.
 
-    `gradient` is that of the sum of which the rule asks for it, and follows its own sums.
+    `gradient` is that of the sum for which the rule declares it; it follows the rule's own sums.
 
-    A thermostat only guesses its random number, unless it must be `certain`: that takes longer.
+    The thermostat's random number is a guess, unless it must be `certain`: that takes longer.
     """
     n, mass, momentum, energy, own = read_sums(physics, found)
     sums = Cell(n, mass, momentum, energy, own + gradient)
@@ -111,7 +111,7 @@ def needs_of_cell(physics, counter, cell, found, gradient, certain):
 
 @seldom
 def sure_needs(physics, counter, cell, found, gradient):
-    """What the particles of a cell need where a guess was not sure; for few cells."""
+    """The coefficients of a cell where the guess was not certain; for few cells."""
     answer, _ = needs_of_cell(physics, counter, cell, found, gradient, True)
     return answer
 
@@ -140,7 +140,7 @@ def cell_at(which, i):
 
 @scalar
 def settle_batch(worker, counter, physics, fluid, which, count):
-    """What the cells of a batch need to collide: rows of coefficients from rows of sums."""
+    """Coefficients of the cells of a batch: rows of coefficients from rows of sums."""
     cells, scratch = fluid.cells, fluid.scratch
     rows, totals = scratch.coefficients[worker.thread], scratch.terms[worker.thread]
     doubtful, none = scratch.marks[worker.thread], nothing_found(physics.terms)

@@ -1,8 +1,8 @@
-"""How far particles may fly before they meet a solid, looked up for a few lanes together.
+"""The clear distance around particles, looked up for some lanes together.
 
-Particles of a strip lie next to one another, sorted by cell. Where all of a few are far from all
-solids, nobody looks again until one of these may have come near. What takes views of arrays is
-`by_type`, for then numba does not count the users of these arrays.
+Particles of a strip lie next to one another, sorted by cell. If all of some lanes are far from all
+solids, tables are not read again until one of them may be near. Functions that take views of arrays
+are `by_type`, for then numba does not count the users of these arrays.
 """
 
 import math
@@ -22,10 +22,11 @@ ROUNDED_DOWN = 1.0 - 1e-6  # of numbers that float32 may have rounded up
 
 @by_type
 def look_around_strip(solid, strip, s, calm, clear, pattern):
-    """How far each particle of strip s may fly, plates not counted, in as many lanes at a time as
-    `lanes_together` says.
+    """The clear distance of each particle of strip s, plates not counted.
 
-    The answer has a bit for each of these parts: whether all may fly a stride, plates or not.
+    It is found for as many lanes at once as `lanes_together` has.
+
+    The result has a bit for each of these parts: whether a stride is clear, plates or not.
     """
     return _look_around if solid.instance_class is Bodies else lambda *_: 0
 
@@ -110,7 +111,7 @@ def _room_between_plates(solid, strip, clear, pattern):
 
 @scalar
 def forget(calm, s, far):
-    """Let the parts of a strip be looked around anew that `far` has bits for."""
+    """Set the clear distance to 0 for the parts of a strip that have bits in `far`."""
     for part in range(LANES // FEW):
         if (far >> part) & 1 != 0:
             n = s * (LANES // FEW) + part

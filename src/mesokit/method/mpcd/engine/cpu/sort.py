@@ -40,7 +40,7 @@ class Order(NamedTuple):
 
 @kernel
 def sort(worker, zero, box, grid, particles, memory):
-    """Bring everybody back into the box, and those of one cell together."""
+    """Bring all particles back into the box, and those of one cell together."""
     lap(worker, START)
     wrap(worker, zero, box, grid, particles)
     barrier(worker)

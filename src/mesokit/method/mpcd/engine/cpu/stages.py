@@ -55,7 +55,7 @@ def clear_of(solid, clear, i):
 def fly(physics, strip, i, r, v, around, hits):
     """Store position and velocity a timestep later; a particle that may hit a surface stays behind.
 
-    The latter is marked in `hits`, and 1 is the answer. `around` is what `touches` asks for.
+    The latter is marked in `hits`, and the result is 1. `around` is an argument of `touches`.
     """
     a = halfway(physics.field, r, v, physics.timestep)
     end, after = fall(r, v, a, physics.timestep)
@@ -80,7 +80,7 @@ def collide_strip(physics, grid, strip, gathered):
 def stream_strip(physics, strip, clear, hits):
     """Positions and velocities a timestep later.
 
-    The answer has a bit for each part of the strip in which particles may have stayed behind.
+    The result has a bit for each part of the strip in which particles may have stayed behind.
     """
     zero = physics.zero
     d = len(zero)
@@ -93,7 +93,7 @@ def stream_strip(physics, strip, clear, hits):
 
 @by_type
 def collide_and_stream_strip(physics, grid, strip, gathered, quiet, clear, hits):
-    """The two above in one loop; `quiet` is what `look_around_strip` said."""
+    """The two above in one loop; `quiet` is the result of `look_around_strip`."""
 
     def among_solids(physics, grid, strip, gathered, quiet, clear, hits):
         zero, any_hit = physics.zero, np.int64(0)
@@ -127,7 +127,7 @@ def collide_and_stream_strip(physics, grid, strip, gathered, quiet, clear, hits)
 
 @by_type
 def move_few(physics, grid, strip, gathered, quiet, clear, hits):
-    """A part of a strip; where it is quiet, with a simpler question."""
+    """Collide and stream a part of a strip; a quiet part needs a simpler test."""
     return _move_few
 
 
@@ -151,7 +151,7 @@ def _move_few(physics, grid, strip, gathered, quiet, clear, hits):
 def bounce_strip(physics, counter, strip, count, behind, ident, hits, impulse):
     """Flight of the marked particles, with reflections; what surfaces take goes to impulse.
 
-    `behind` and the answer have a bit for each part of the strip: whether some stayed behind, and
+    `behind` and the result have a bit for each part of the strip: whether some stayed behind, and
     whether any of these then went farther than a stride.
     """
     return _bounce_strip if kind_of_solid(physics) is not Nothing else lambda *_: 0

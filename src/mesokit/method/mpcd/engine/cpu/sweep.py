@@ -44,7 +44,7 @@ from mesokit.scalar.vector import added, products
 
 @by_type
 def stream_fluid(worker, now, physics, fluid):
-    """Do what the flags ask, in this order, for each strip in turn.
+    """Do the stages that the flags have, in this order, for each strip in turn.
 
     Time levels: velocities of step n before COLLIDE, after it; positions and velocities of
     step n + 1 after STREAM, with their cells and cell sums.
@@ -162,7 +162,7 @@ def _stream_molecules(worker, now, physics, fluid):
 
 @seldom
 def add_strip_flux(physics, box, grid, strip, count, tensor):
-    """What the particles of a strip carry of the stress."""
+    """Add the part of the particles of a strip in the stress."""
     zero = physics.zero
     d, sums = len(zero), integers(products(zero, zero) + products(zero, zero))
     # Kinetic part: m c c with the velocity c relative to the shear flow. Collisional part: m v

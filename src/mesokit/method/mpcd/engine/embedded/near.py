@@ -2,8 +2,8 @@
 
 A particle that no bead can reach flies straight: its distance from all beads is larger than the
 reach of the potential, what it flies, and what beads may go (`skin`). The others are moved in the
-sub-steps of the beads. That follows from places and velocities alone, neither from the order in
-memory nor from threads: marked cells only say where it is worth looking.
+sub-steps of the beads. The choice depends on places and velocities alone, neither on the order in
+memory nor on threads: marked cells only save work.
 """
 
 import math
@@ -20,8 +20,8 @@ from mesokit.method.mpcd.engine.beads.state import load_place
 from mesokit.method.mpcd.engine.cpu.grid import cell_index
 from mesokit.method.mpcd.engine.cpu.strips.rows import load_particle, store_values
 from mesokit.method.mpcd.engine.embedded.state import (
+    ALL_BEADS,
     COUNT,
-    EVERYBODY,
     PARTNERS,
     STEP,
     TOO_MANY,
@@ -87,7 +87,7 @@ def path_of(embedded, physics, r, v):
 def choose_near(worker, now, physics, beads, strip, s, count, marks):
     """Put the particles of strip s that may come near a bead on the list of this thread.
 
-    Their lanes come to stand in the first places of `marks`; the answer is their number.
+    Their lanes become the first entries of `marks`; returns their number.
     """
     (embedded,), zero = beads.embedded, physics.zero
     d, step, candidates, chosen = len(zero), now.counter.step, 0, 0
@@ -137,7 +137,7 @@ def find_partners(embedded, beads, box, r, path, where):
     if not path <= embedded.travel:  # a fast one, or one that is lost
         for j in range(number):
             if comes_near(embedded, beads, box, r, path, j):
-                return EVERYBODY
+                return ALL_BEADS
         return 0
     still, d, found, met = scaled(0.0, r), len(r), 0, False
     place, _, _ = fold(box, r, still, still)
@@ -164,7 +164,7 @@ def find_partners(embedded, beads, box, r, path, where):
                         j = lists.following[j]
     if not met:
         return 0
-    return found if found <= PARTNERS else EVERYBODY
+    return found if found <= PARTNERS else ALL_BEADS
 
 
 @scalar
@@ -184,6 +184,6 @@ def note(faults, step, what, which):
 
 @scalar
 def has_left(start, r, bound):
-    """Whether a place is farther from where it was than it was said to be."""
+    """Whether a place is farther from an earlier one than a bound."""
     displacement = added_scaled(r, -1.0, start)
     return not dot(displacement, displacement) <= bound * bound

@@ -45,7 +45,7 @@ from mesokit.scalar.vector import added_scaled
 
 @stage
 def stream_around(worker, now, physics, fluid, beads):
-    """Do what the flags ask (see `cpu.sweep.stream`) for all that cannot come near a bead.
+    """Do the stages that the flags have (see `cpu.sweep`) for particles that no bead can reach.
 
     Of the others velocities are those after the collision; they are on the list of this thread.
     """

@@ -41,7 +41,7 @@ class Some(NamedTuple):
 
 
 class ByPieces:
-    """What readings find piece by piece; of ranks, all must ask."""
+    """Readings that are found piece by piece; all ranks must call them."""
 
     def __init__(self, readings: Readings) -> None:
         self.readings, self.memory = readings, readings.memory

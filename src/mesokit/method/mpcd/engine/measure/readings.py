@@ -1,4 +1,4 @@
-"""What observables ask of a fluid in memory."""
+"""Readings of a fluid in memory, for observables."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sums over all particles that observables ask for; the same bits for any number of threads.
+"""Sums over all particles for observables; the same bits for any number of threads.
 
 The sums are of whole numbers: their order does not matter.
 """
@@ -115,8 +115,8 @@ def modes(worker, zero, masses, box, particles, waves, out):
     """Fourier sums of mass and momentum as fixed-point sums: out (threads, waves, 2 (1 + d)).
 
     Each row holds mass times cosine and minus sine, then the same of each component of the
-    momentum; each sum has a multiple of LANES terms, zero in spare lanes and of those who do not
-    count.
+    momentum; each sum has a multiple of LANES terms, zero in spare lanes and for particles that do
+    not count.
     """
     data, rows = particles.data, particles.rows
     filling, d = particles.filling, len(zero)
@@ -145,7 +145,7 @@ def modes(worker, zero, masses, box, particles, waves, out):
 
 
 class Looked(NamedTuple):
-    """Who is looked at, and what is found of them."""
+    """The particles to read, and the memory for their readings."""
 
     slots: Any  # by particle number: that among those looked at, or -1; or places in memory
     position: Any
@@ -175,7 +175,7 @@ def gather_at(worker, zero, box, particles, unwrapped, looked):
 
 @scalar
 def look_at(b, i, zero, box, particles, unwrapped, looked, slot):
-    """Write down what lane i of strip b is and does."""
+    """Store position, velocity and images of lane i of strip b."""
     d, strip, j = len(zero), particles.data[strip_at(b, particles.rows)], b * LANES + i
     r, v = load_particle(strip, i, 0, zero), load_particle(strip, i, d, zero)
     crossed, image = scaled(0.0, zero), particles.image

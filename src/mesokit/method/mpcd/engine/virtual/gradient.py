@@ -5,7 +5,7 @@ cell that is solid the fluid's profile would go on, to velocities beyond the wal
 of the profile known they can move like that; the wall is then where it should be.
 
 Next to a surface the velocity relative to it is s h + q h^2 at the height h. Two cells of fluid in
-front of each piece, free of solid, tell u / h = s + q h at two heights; where the second is not
+front of each piece, free of solid, give u / h = s + q h at two heights; where the second is not
 free, q is taken for 0.
 """
 
@@ -25,7 +25,7 @@ EVERY = 4  # steps from one look at a piece to the next: sooner, the same partic
 MEMORY = EVERY / 256.0  # weight of one look
 PROBES = 2
 APART = 1.0  # cells between the places where fluid is looked for
-LEAST_APART = 0.5  # of the first mean height: nearer to one another, two tell no bend
+LEAST_APART = 0.5  # of the first mean height: closer probes give no reliable bend
 
 
 @scalar
@@ -46,14 +46,14 @@ def flow_at(rates, piece, above, zero):
 
 
 def follow_pieces(worker, now, physics, fluid, walls):
-    """Update what is known at every EVERYth piece of surface, from this step's cells."""
+    """Update the flow at every EVERYth piece of surface, from this step's cells."""
     _follow(worker, now, physics, fluid.cells.sums, walls.virtual)
     barrier(worker)
 
 
 @by_type
 def _follow(worker, now, physics, sums, virtual):
-    """All pieces; a rank of several only notes what it sees, which `ranks.flow` takes up."""
+    """All pieces on one rank; one of several ranks only stores values for `messages.flow`."""
     if len(field_of(virtual, "seen")) == 0:
         return lambda worker, now, physics, sums, virtual: _follow_all(
             worker, now, physics, sums, virtual
@@ -96,7 +96,7 @@ def _see(worker, now, physics, sums, virtual):
 
 @scalar
 def probe_at(virtual, e, p, zero):
-    """Where fluid is looked for."""
+    """The place of a probe."""
     for k in range(len(zero)):
         place = virtual.probes[e, k] + p * APART * virtual.outward[e, k]
         zero = with_item(zero, k, place)
@@ -105,7 +105,7 @@ def probe_at(virtual, e, p, zero):
 
 @scalar
 def look(virtual, e, p, physics, grid, sums):
-    """What is seen at a probe, u / h (d) and h: not good if its cell is empty or holds solid."""
+    """Whether the cell of a probe has fluid alone, and then u / h (d) and h there."""
     solid, zero = physics.solid, physics.zero
     probe, n = probe_at(virtual, e, p, zero), zero
     middle = probe
@@ -127,7 +127,7 @@ def look(virtual, e, p, physics, grid, sums):
 
 @scalar
 def average_probe(rates, e, p, seen, zero):
-    """Take what was seen at a probe into its means."""
+    """Update the running means of a probe."""
     d = len(zero)
     place = 2 * d + p * (d + 1)
     for k in range(d + 1):

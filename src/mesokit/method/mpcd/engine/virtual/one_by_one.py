@@ -1,4 +1,4 @@
-"""Virtual particles of walls one by one, for rules that can tell and for mixtures.
+"""Virtual particles of walls one by one, for mixtures and rules that need more than sums.
 
 Each cut cell draws as many places as the fluid would have particles there, a Poisson number, and
 keeps those that lie in a solid: their number is then that of an ideal gas in the solid part of the
@@ -60,7 +60,7 @@ def fill_one_by_one(worker, now, physics, fluid, walls):
 
 
 class Candidate(NamedTuple):
-    """A virtual particle that may be: whose, how many that thread has, its cut cell and number."""
+    """A possible virtual particle: thread, number of those held, cut cell and particle number."""
 
     thread: int
     held: int
@@ -140,7 +140,7 @@ def take_momentum(virtual, worker, physics, s, strip, impulse, sign):
 
 
 def recoil_one_by_one(worker, now, physics, fluid, walls):
-    """What walls take by the collision of the virtual particles in them."""
+    """Add the impulse that walls take by the collision of the virtual particles in them."""
     virtual, thread = walls.virtual, worker.thread
     gathered, impulse = fluid.scratch.coefficients[thread], fluid.taken.impulse[thread]
     if now.flags & MEASURE_WALLS:

@@ -1,7 +1,7 @@
 """Virtual particles of walls, all of a cell at once.
 
-A rule that asks only for the number, momentum and energy of a cell's particles cannot tell whether
-these were drawn one by one. The solid part of a cut cell holds a Poisson number N of them; their
+If a rule needs only number, momentum and energy of a cell's particles, these need not be drawn one
+by one. The solid part of a cut cell holds a Poisson number N of them; their
 momentum is that of one particle N times as heavy, and the energy of their motion about their mean
 is kT/2 times a chi-square number of d (N - 1) degrees of freedom. The part that is solid follows
 from a plane for each cut cell and offset of the grid: tables give its normal and its height,
@@ -171,7 +171,7 @@ def _fill(worker, now, physics, sums, virtual):
 
 
 class Place(NamedTuple):
-    """Of one cell: whose it is, its number with this thread, its entry, its number in the whole
+    """A cut cell: its thread, its number there, its entry in the tables, its number in the whole
     box, and its lane."""
 
     thread: int
@@ -229,7 +229,7 @@ def add_many(sums, start, number, tallied, terms):
 
 
 def recoil_per_cell(worker, now, physics, fluid, walls):
-    """What walls take by the collision of the cells that they cut."""
+    """Add the impulse that walls take by the collision in the cells that they cut."""
     if now.flags & MEASURE_WALLS:
         _recoil(worker, now, of_walls(physics), fluid, walls.virtual)
 

@@ -23,7 +23,7 @@ SPARE = 2.0**16  # how much larger than thermal the energy of a cell of the mean
 
 
 class NotAsked(NamedTuple):
-    """Nobody needs the energy."""
+    """No rule or thermostat needs the energy."""
 
 
 class Column(NamedTuple):
@@ -58,7 +58,7 @@ def untangled(energy, total):
 
 @generic
 def asks(energy):
-    """Whether anybody needs the energy (a literal)."""
+    """Whether a rule or thermostat needs the energy (a literal)."""
 
 
 @generic
