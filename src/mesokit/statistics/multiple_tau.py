@@ -156,7 +156,7 @@ class MultipleTau:
 
     @property
     def series(self) -> int:
-        """How many independent series are pooled in it."""
+        """The number of independent series that are pooled in it."""
         return 1 + len(self._others)
 
     def pool(self, other: "MultipleTau") -> None:
@@ -246,7 +246,7 @@ class MultipleTau:
         return Correlation(np.concatenate(lag), np.concatenate(value), np.concatenate(error))
 
     def products(self, within_blocks: bool = False) -> Iterator[Products]:
-        """What `correlation` is made of, level by level, shortest lags first.
+        """Sums and counts of products, level by level, shortest lags first.
 
         Parameters: `within_blocks` leaves out levels that average over more samples than a block
         of time holds. Yields the levels that have been sampled: lags (n,), sums of products

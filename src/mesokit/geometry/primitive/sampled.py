@@ -104,7 +104,7 @@ def twist(p, samples, base, v):
 
 @scalar
 def ahead(p, samples, r, v):
-    """What a flight sees: value, its slope along the flight, a bound of how that may change within
+    """The value at a place, its slope along the flight, a bound of the change of slope within
     the cell of the grid, and the time until it leaves this.
 
     Beyond the grid, as if it flew straight to the solid.

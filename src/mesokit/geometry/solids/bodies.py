@@ -192,7 +192,7 @@ def nearest_within(tables, away, r):
 
 @seldom
 def nearest(tables, r):
-    """The same for all that any list has: nearer than REACH."""
+    """Nearest term, part and clearance, as far as any list has terms: nearer than REACH."""
     return nearest_within(tables, REACH, r)
 
 

@@ -191,8 +191,8 @@ def open_volume(solid, pattern, points, side, out):
 
 
 class Planes(NamedTuple):
-    """What `planes` finds for each cube: of its plane the normal and the height over the middle,
-    the term of the surface (-1 for none), and the place on it that is next to the middle."""
+    """Results of `planes` for each cube: of its plane the normal and the height over the middle, the
+    term of the surface (-1 for none), and the place on it that is next to the middle."""
 
     normals: Any
     heights: Any

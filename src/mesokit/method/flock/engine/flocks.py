@@ -101,7 +101,7 @@ class Flocks:
         return places if ids is None else places[ids]
 
     def images(self, ids: Integers | None = None) -> NDArray[np.int32]:
-        """How many boxes away the birds are, (n, d)."""
+        """Image counts (n, d) of the birds."""
         images = self._by_number(self.flock.birds.images)
         return images if ids is None else images[ids]
 

@@ -1,4 +1,4 @@
-"""What each bird sees: sums over all birds in reach, in whole numbers.
+"""Sums over all birds within reach of each bird, in whole numbers.
 
 The birds of a cell see those of the cells around. These are brought together in one small stretch
 of memory, for all birds of the cell; the loop over them has no branch and adds up whole numbers, so
@@ -74,7 +74,7 @@ def bring(near, j, seen, i, pattern):
 
 @by_type
 def asks_number(physics):
-    """Whether the number of birds in reach is needed, or who is a bird and who fills a lane."""
+    """Whether birds in reach are counted, or lanes with birds distinguished from empty ones."""
     if has_cohesion(physics):
         return lambda physics: True
     return lambda physics: counted(physics.noise)
@@ -135,14 +135,14 @@ def cells_of_axis(axes, k):
 
 @scalar
 def place_of_cell(axes, cell):
-    """Where a cell is among the cells: x, y, z."""
+    """The place of a cell among the cells: x, y, z."""
     wide, high = cells_of_axis(axes, 0), cells_of_axis(axes, 1)
     return cell % wide, cell // wide % high, cell // (wide * high)
 
 
 @scalar
 def next_place(axes, place):
-    """Where the next cell is."""
+    """The place of the next cell."""
     x, y, z = place
     if x + 1 < cells_of_axis(axes, 0):
         return x + 1, y, z
@@ -208,7 +208,7 @@ def look(physics, seen, starts, near, runs, cell, place, pattern):
 
 @scalar
 def see(physics, seen, near, held, begin, end, pattern):
-    """Let the birds of a cell see those near; what only fills the lanes counts for nothing."""
+    """Add the birds near to the sums of the birds of a cell; lanes without a bird add nothing."""
     d, top = len(pattern), (held + LANES - 1) // LANES * LANES
     if asks_number(physics):
         for j in range(held):

@@ -31,13 +31,13 @@ def store(strip, first, i, values):
 
 @elementwise
 def boxes_away(inverse, r):
-    """How many boxes away a place is, along each axis."""
+    """The image count of a place along each axis."""
     return "floor(r[{k}] * inverse[{k}])"
 
 
 @elementwise
 def inside(size, away, r):
-    """A place brought back so many boxes; what is rounded to the length is at 0."""
+    """A place brought back by so many boxes; one that is rounded to the length becomes 0."""
     return "_inside(size[{k}], r[{k}] - away[{k}] * size[{k}], away[{k}])"
 
 

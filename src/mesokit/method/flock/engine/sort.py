@@ -93,7 +93,7 @@ def add_up(worker, cells, number):
 
 @inner
 def share_out(worker, cells, number):
-    """Where the birds of each cell and thread go."""
+    """Find the first place of the birds of each cell and thread."""
     first, last = part(number, worker)
     place = work = 0
     # Where this share of cells begins: after the birds in the shares of threads before. Then each

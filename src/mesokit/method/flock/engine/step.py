@@ -30,7 +30,7 @@ def step(worker, counter, steps, side, physics, flock):
 
 @inner
 def look_and_move(worker, now, physics, flock, side):
-    """What the birds of this thread see, and where they turn and go to: a strip at a time."""
+    """Add up the sums of the birds of this thread, turn and move them: a strip at a time."""
     birds, seen, cells, scratch = flock.birds, flock.seen, flock.cells, flock.scratch
     near, runs = scratch.near[worker.thread], scratch.runs[worker.thread]
     strip, pattern = scratch.strip[worker.thread], physics.axes.size

@@ -78,7 +78,7 @@ def _move(worker, now, physics, fluid, beads):
 
 @scalar
 def threads_for(worker, beads):
-    """How many threads move the beads together: all, or one where they are few."""
+    """The number of threads that move the beads: all, or one if there are few beads."""
     number = number_of(beads.halo, len(beads.cell), OWN)
     groups = (number + GROUP - 1) // GROUP
     return worker.threads if groups >= LEAST * worker.threads else 1
@@ -119,7 +119,7 @@ def bin_bead(beads, i, physics, now):
 
 @scalar
 def add_bead_flux(beads, n, physics, box, shift, when):
-    """What the nth bead carries of the stress; its velocity in its cell is that of the image there.
+    """Add the part of the nth bead in the stress, with its velocity in the image of its cell.
 
     `when` is 0 before a collision, 1 after it.
     """

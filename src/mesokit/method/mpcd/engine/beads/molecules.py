@@ -33,7 +33,7 @@ from mesokit.scalar.vector import added, added_scaled, chosen, dot, scaled
 
 
 class Batch(NamedTuple):
-    """Which molecules move: lanes from `start` on of the group whose first strip is `strip`."""
+    """The molecules that move: lanes from `start` on of the group whose first strip is `strip`."""
 
     group: int
     strip: int

@@ -1,4 +1,4 @@
-"""How the beads of solutes move in a sub-step: straight, with reflections, and by their forces."""
+"""A sub-step of the beads of solutes: straight flight with reflections, and kicks by forces."""
 
 from typing import Any, NamedTuple
 

@@ -65,7 +65,7 @@ def _apart(box, r, other):
 
 @scalar
 def nearest_image(box, r, other):
-    """That of a box whose images stand still."""
+    """The vector to the nearest image in a box whose images are at rest."""
     separation = added_scaled(other, -1.0, r)
     for k in range(len(r)):
         boxes = rint(separation[k] * box.inverse[k])
@@ -80,13 +80,13 @@ def _apart_sliding(box, r, other):
 
 @by_type
 def offset_of_images(box):
-    """How far the image above is displaced now."""
+    """The present displacement of the image above, along x."""
     return (lambda box: box.offset) if box.instance_class in SLIDING else (lambda box: 0.0)
 
 
 @scalar
 def slipped(lists, box, thread):
-    """How far the images have slid since the lists were made."""
+    """The displacement of the images since the lists were made, along x."""
     moved = offset_of_images(box) - lists.noted[thread, OFFSET]
     return moved - rint(moved * box.inverse[0]) * box.size[0]
 

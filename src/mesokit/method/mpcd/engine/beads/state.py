@@ -61,7 +61,7 @@ class Beads(NamedTuple):
 
 
 class KindsOfLinks(NamedTuple):
-    """Which of several potentials act on what: kinds of solutes, from 0.
+    """The kinds of solutes, from 0, by which several potentials are chosen.
 
     bonds, angles: kind of each entry of `Beads.bonds` and `Beads.angles`; beads (beads,): of each
     bead; number: how many kinds there are.
@@ -112,7 +112,7 @@ def inverse_mass_of(beads, i):
 
 @scalar
 def load_place(beads, i, zero):
-    """Where bead i is, in the image that it started in."""
+    """The place of bead i, in the image in which it started."""
     return load_values(beads.r, np.uint64(i * len(zero)), zero)
 
 

@@ -41,7 +41,7 @@ def moved_grid(grid, shift, closed):
 
 @by_type
 def placed(grid, shift, origin):
-    """The same cells elsewhere."""
+    """The same cells with another shift."""
     if grid.instance_class is Grid:
         return lambda grid, shift, origin: Grid(shift, origin, grid.cells, grid.inverse)
     return lambda grid, shift, origin: Part(

@@ -11,7 +11,7 @@ COLLIDE, STREAM, MEASURE_STRESS, MEASURE_WALLS = 1, 2, 4, 8
 
 
 class Course(NamedTuple):
-    """Which steps are to be run, and where the last ones ended."""
+    """The steps to run, and the state in which the last ones ended."""
 
     steps: int
     done: int

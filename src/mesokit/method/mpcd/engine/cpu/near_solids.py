@@ -33,7 +33,7 @@ def look_around_strip(solid, strip, s, calm, clear, pattern):
 
 @by_type
 def lanes_together(solid):
-    """How many lanes are looked at together: those of a strip, fewer among solids in tables."""
+    """The number of lanes with one clear distance: a strip, or fewer for solids in tables."""
     number = FEW if solid.instance_class is Bodies else LANES
     return lambda solid: number
 

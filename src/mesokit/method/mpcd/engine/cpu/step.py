@@ -96,5 +96,5 @@ def next_step(course, now, physics, n):
 
 @scalar
 def last_collision(course, now):
-    """What is left to do after the last step."""
+    """The flags of the collision that is left after the last step."""
     return Now(now.counter, now.box, now.grid, now.grid, course.flags | COLLIDE)

@@ -1,4 +1,4 @@
-"""Which particles of the fluid may come near a bead in a timestep, and which beads.
+"""The particles of the fluid that may come near a bead in a timestep, and these beads.
 
 A particle that no bead can reach flies straight: its distance from all beads is larger than the
 reach of the potential, what it flies, and what beads may go (`skin`). The others are moved in the

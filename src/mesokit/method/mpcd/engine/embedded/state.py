@@ -1,4 +1,4 @@
-"""What solutes in memory have besides if they act on the fluid by a potential."""
+"""The further memory of solutes that act on the fluid by a potential."""
 
 from typing import Any, NamedTuple
 

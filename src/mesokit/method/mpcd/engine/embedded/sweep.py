@@ -108,7 +108,7 @@ def forget_leap(physics, room, lane, displacement):
 
 @scalar
 def put_one_back(worker, now, physics, fluid, embedded, n):
-    """What `bin_strip` and `add_strip` do, for one particle."""
+    """Do the work of `bin_strip` and `add_strip` for one particle."""
     particles, zero, lane = fluid.particles, physics.zero, embedded.lane[worker.thread, n]
     s, i, d, at = lane // LANES, lane % LANES, len(zero), np.uint64(n * len(zero))
     r = load_values(embedded.r[worker.thread], at, zero)

@@ -1,4 +1,4 @@
-"""What is added up over particles that are looked at piece by piece, never all at once.
+"""Sums over particles that are read piece by piece, never all at once.
 
 Each rank has pieces of its own, and so has each order of particles in memory. What is found of a
 particle must be the same in any piece, by operations on its own row alone (no matrix products, no

@@ -1,4 +1,4 @@
-"""How fast the fluid's velocity rises with the distance from each piece of surface.
+"""The rise of the fluid's velocity with the distance from each piece of surface.
 
 Virtual particles at rest with a wall drag the fluid as if the wall lay deeper: in the part of a
 cell that is solid the fluid's profile would go on, to velocities beyond the wall's. With the rate

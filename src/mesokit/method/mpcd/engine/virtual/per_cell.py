@@ -48,7 +48,7 @@ PLACE, THERMAL, MEAN, DEPTH, NUMBER, CHANCE, LEFT, INNER, HEIGHT = 0, 3, 6, 7, 8
 
 @scalar
 def moved_by(solid, grid, zero):
-    """How far the grid is from the middle of its interval of offsets."""
+    """The displacement of the grid from the middle of its interval of offsets."""
     for k in range(len(zero)):
         many = offsets_along(solid, zero)
         within = grid.origin[k] * many

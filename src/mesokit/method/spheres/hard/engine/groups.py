@@ -1,4 +1,4 @@
-"""What the compiled functions work on, by name.
+"""The memory of the compiled functions, by name.
 
 Spheres lie in memory in an order of their own (places); `number` is the particle number of each.
 All times are since the start of the window in which the run is.
@@ -24,7 +24,7 @@ DONE, FULL, COLLAPSED, PAUSED, FAILED = 0, 1, 2, 3, 4
 
 
 class World(NamedTuple):
-    """What does not change: lengths (d,) of the box, their inverses (d,; 0 along closed axes),
+    """The constants of a run: lengths (d,) of the box, their inverses (d,; 0 along closed axes),
     acceleration (d,), relative rate at which diameters grow, walls (walls, 16), and `lasting`:
     collisions less than this after another are elastic; `instant`: a time that is none."""
 
@@ -89,8 +89,11 @@ class Queue(NamedTuple):
 
 
 class Tally(NamedTuple):
-    """What has happened: counts (4,), sums (1,), momentum that each wall has taken (walls, d), and
-    flights, see `flights`; () where no observable reads them."""
+    """Counts and sums over events.
+
+    counts (4,), sums (1,); impulse (walls, d): momentum that each wall has taken; flights: see
+    `flights`, () where no observable reads them.
+    """
 
     counts: Any
     sums: Any

@@ -72,7 +72,7 @@ def renew(world, lists, state, i, r):
 
 @scalar
 def find(world, lists, state, i, r):
-    """All that may meet i, on its list and i on theirs; whether there was room."""
+    """Put all spheres that may meet i on its list, and i on theirs; true if there was room."""
     d, room = len(r), True
     # Cells around the centre, each at least as long as two centres may be apart and still matter.
     # With fewer than three cells along an axis `wrapped` has each of them once.
@@ -106,7 +106,7 @@ def wrapped(world, lists, k, cell):
 
 @scalar
 def take(world, lists, state, i, r, cell):
-    """Those of a cell that may meet i."""
+    """Put the spheres of a cell that may meet i on the lists; true if there was room."""
     most, j, room = lists.near.shape[1], lists.head[cell], True
     mine = state[i, RADIUS] * lists.widest + 2.0 * lists.shell
     # Two spheres can meet before either is renewed if their centres are nearer than both radii and

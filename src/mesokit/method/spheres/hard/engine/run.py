@@ -83,7 +83,7 @@ def advance(world, rules, spheres, lists, queue, tally, end):
 
 @scalar
 def boxed(world, state, i, now):
-    """Where sphere i is, in the box."""
+    """The place of sphere i, in the box."""
     r = place_at(world, state, i, now)
     for k in range(len(r)):
         r = with_item(r, k, r[k] - floor(r[k] * world.inverse[k]) * world.size[k])
@@ -126,7 +126,7 @@ def synchronise(world, spheres, time):
 
 @kernel
 def read(world, spheres, now, places, velocities):
-    """Where all are now, not brought into the box, and how fast, by particle number; their states
+    """Store places, not brought into the box, and velocities now, by particle number; the states
     stay as they are."""
     for i in range(len(spheres.number)):
         put_entries(places, spheres.number[i], 0, place_at(world, spheres.state, i, now))

@@ -96,7 +96,7 @@ class SoftEngine:
         return places + self.images(ids) * self.box if unwrapped else places
 
     def images(self, ids: Integers | None = None) -> NDArray[np.int32]:
-        """How many boxes away the spheres are, (n, d)."""
+        """Image counts (n, d) of the spheres."""
         return self._rows("images", ids, self.dimension)
 
     def velocities(self, ids: Integers | None = None) -> Array:

@@ -1,4 +1,4 @@
-"""What the loops of soft spheres work on, by name.
+"""The memory of the loops of soft spheres, by name.
 
 A row of four numbers is one half of a cache line: what a neighbour needs comes at once.
 """

@@ -68,7 +68,7 @@ def make_lists(worker, grid, begins, columns, bodies, box, lists, scratch):
 
 @scalar
 def off(grid, k, x, here, offset):
-    """How far the nearest place of a cell, so many after that of x, is from x along an axis."""
+    """Distance along an axis from x to the cell that is `offset` cells after that of x."""
     if offset == 0:
         return 0.0
     edge = float(here + offset + (0 if offset > 0 else 1)) / grid.inverse[k]
@@ -77,7 +77,7 @@ def off(grid, k, x, here, offset):
 
 @scalar
 def spans(grid, box, begins, line, here):
-    """Where the spheres of the cells around one along x lie in memory: together, but for those
+    """Spans of memory with the spheres of the cells around one along x: one, and another for those
     beyond an end of the box."""
     low, high, cells = here - grid.wide[0], here + grid.wide[0], grid.cells[0]
     middle = begins[line + max(low, 0)], begins[line + min(high, cells - 1) + 1]

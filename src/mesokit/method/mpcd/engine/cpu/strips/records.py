@@ -132,7 +132,7 @@ def _start(context: Any, builder: Any, signature: Any, arguments: Any, k: int) -
 
 
 def _starts(builder: Any, cells: Any, lane: Any, length: int) -> list[Any]:
-    """Where the records of the cells of four lanes start."""
+    """The first elements of the records of the cells of four lanes."""
     places = (gep(builder, cells, _plus(builder, lane, j), inbounds=True) for j in range(QUAD))
     numbers = (builder.zext(builder.load(place), _I64) for place in places)
     return [builder.mul(number, ir.Constant(_I64, length)) for number in numbers]
