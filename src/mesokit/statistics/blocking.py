@@ -82,8 +82,8 @@ def plateau(
         error = np.where(number > FEWEST_BLOCKS - _SLACK, error, np.nan)
         climbing = np.isfinite(error)
         reached = np.zeros_like(climbing)
-        # All elements merge together, but each stops at its own plateau: the first level where
-        # merging raises its error by less than one standard deviation of such a rise.
+        # All elements merge together, but each stops at its own plateau. That is the first level
+        # where merging raises its error by less than one standard deviation of such a rise.
         while len(residuals) > FEWEST_MERGED and climbing.any():
             residuals, weights = merge_pairs(residuals), merge_pairs(weights)
             slack = 1 / np.sqrt(2 * (number - 1))

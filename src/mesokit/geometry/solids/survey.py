@@ -191,8 +191,8 @@ def open_volume(solid, pattern, points, side, out):
 
 
 class Planes(NamedTuple):
-    """Results of `planes` for each cube: of its plane the normal and the height over the middle, the
-    term of the surface (-1 for none), and the place on it that is next to the middle."""
+    """Results of `planes` for each cube: normal of its plane, height of its middle over the plane,
+    term of the surface (-1 for none), and place on the surface nearest to the middle."""
 
     normals: Any
     heights: Any

@@ -59,8 +59,8 @@ def count(axes, places, cells, thread, side, first, last):
     """The cells of birds, and how many are in each."""
     counts = cells.counts[thread]
     counts[:] = 0
-    # Cells follow from places as 32-bit integers, as the sums do: a bird cannot lie in one cell by
-    # its place and in another by its copy.
+    # Cells follow from places as 32-bit integers, as the sums do. So a bird cannot lie in one cell
+    # by its place and in another by its copy.
     for i in range(first, last):
         cell = 0
         for j in range(len(axes.size)):

@@ -36,7 +36,7 @@ def look_and_move(worker, now, physics, flock, side):
     strip, pattern = scratch.strip[worker.thread], physics.axes.size
     begin, end = cells_of(worker, cells)
     done, place = cells.starts[begin], place_of_cell(physics.axes, begin)
-    # Sums at t for the birds of a cell; when a strip of birds has its sums, it turns and moves, t
+    # Sums at t for the birds of a cell. When a strip of birds has its sums, it turns and moves, t
     # -> t + dt. Other threads may still look at these birds: they read the copies in `seen`, which
     # remain those at t. Cells have about equal work for each thread.
     for cell in range(begin, end):

@@ -25,8 +25,8 @@ def each_link(asked, molecule, work, lanes, zero):
     """Apply `asked` to all links, in the lanes that hold molecules; true if a bond is broken."""
     bonds, angles, pairs = molecule.number
     broken, at = False, 0
-    # Bonds, angles, pairs, in the order of one table. Each link is done for all lanes at once, and
-    # a lane has its own molecule: the order of its sums of floats never depends on threads.
+    # Bonds, angles, pairs, in the order of one table. Each link is done for all lanes at once. A
+    # lane has its own molecule, so the order of its sums of floats never depends on threads.
     for _ in range(bonds):
         a, b = work[linked(molecule, at, zero)], work[linked(molecule, at + 1, zero)]
         broken |= of_linked(asked, molecule.bond, a, b, lanes, zero)

@@ -113,8 +113,8 @@ def _fly_dimers(worker, now, physics, fluid, batch):
     a, b = work[bead_at(0, zero)], work[bead_at(1, zero)]
     if now.flags & MEASURE_STRESS:
         _exact_virial(physics, a, b, batch.lanes, fluid.taken.tensor[2, batch.group])
-    # Closed form of a timestep, t -> t + dt: the centre of mass falls freely, and the separation of
-    # the beads is a harmonic oscillator.
+    # Closed form of a timestep, t -> t + dt. The centre of mass falls freely; the separation of the
+    # beads is a harmonic oscillator.
     for i in range(WIDTH):
         r, v = load_bead(a, i, 0, zero), load_bead(a, i, d, zero)
         r2, v2 = load_bead(b, i, 0, zero), load_bead(b, i, d, zero)

@@ -184,7 +184,7 @@ def make_list(lists, box, places, i, zero):
     along_z, _ = next_along(lists, box, d - 1, r[d - 1])
     along_y, up = next_along(lists, box, 1, r[1])
     # The 9 or 27 cells around bead i. y is the outer axis, because the image above or below is
-    # displaced along x under shear: x and its three cells are found anew for each.
+    # displaced along x under shear. So x and its three cells are found anew for each.
     for b in range(3):
         x = r[0] - up[b] * slide
         x -= math.floor(x * box.inverse[0]) * box.size[0]

@@ -66,10 +66,10 @@ def _stream_singles(worker, now, physics, fluid):
     impulse, tensor = fluid.taken.impulse[worker.thread], fluid.taken.tensor
     sums, measured = fluid.cells.sums[worker.thread], now.flags & MEASURE_STRESS
     first, last = share(strips_in(particles.filling), worker.thread, worker.threads)
-    # Strip by strip, each in the cache for all stages: the pending collision (v at t), the flight
-    # (r, v: t -> t + dt), then the terms for the cells at t + dt. A thread writes its own particles
-    # and its own sums, so there is no race. Sums are integers: their bits do not depend on the
-    # shares.
+    # Strip by strip, each in the cache for all stages. The pending collision (v at t) comes first,
+    # then the flight (r, v: t -> t + dt) and the terms for the new cells. A thread writes its own
+    # particles and its own sums, so there is no race. Sums are integers: their bits do not depend
+    # on the shares.
     for s in range(first, last):
         lanes, places = lanes_in(particles.filling, s), slice(s * LANES, (s + 1) * LANES)
         strip, cell = particles.data[strip_at(s, particles.rows)], particles.cell[places]

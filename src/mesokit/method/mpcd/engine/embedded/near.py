@@ -57,9 +57,9 @@ def mark_around(embedded, r, stamp):
         high = with_item(high, k, floor(r[k] + reach))
     depth = int(high[2] - low[2]) + 1 if d == 3 else 1
     middle = r
-    # All cells of side a in a cube around the bead, but only those nearer than `reach`: the gap
-    # along each axis is that from r to the cell. Threads may mark the same cell, but all write the
-    # same stamp, the number of the step; so marks need no clearing.
+    # All cells of side a in a cube around the bead, but only those nearer than `reach`. Threads may
+    # mark the same cell, but all write the same stamp, the number of the step. So marks need no
+    # clearing.
     for c in range(depth):
         if d == 3:
             middle = with_item(middle, 2, low[2] + c + 0.5)

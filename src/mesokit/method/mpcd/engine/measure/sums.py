@@ -81,8 +81,8 @@ def bin_sums(worker, zero, masses, box, particles, bins, sums):
     place, quanta, out = bins.place[worker.thread], bins.terms[worker.thread], sums[worker.thread]
     terms = integers(scales)
     first, last = share(bins.last - bins.first, worker.thread, worker.threads)
-    # Bins are treated as the cells of a step: bin and rounded terms of each lane first, as vectors,
-    # then integer sums that each thread has for itself.
+    # Bins are treated as the cells of a step. First, bin and rounded terms of each lane, as
+    # vectors; then integer sums, of which each thread has its own.
     for b in range(bins.first + first, bins.first + last):
         strip = data[strip_at(b, rows)]
         for i in range(LANES):

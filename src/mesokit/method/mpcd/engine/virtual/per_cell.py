@@ -73,7 +73,7 @@ def cut_batch(virtual, start, count, solid, grid, work, zero):
             work[(THERMAL + k) * SCRATCH_ROW + i] = cells.normals[k * entries + start + i]
     for i in range(count):
         work[HEIGHT * SCRATCH_ROW + i] = cells.heights[start + i]
-    # Plane and cell are shifted against each other by the grid shift of the step, in cells: the
+    # Plane and cell are shifted against each other by the grid shift of the step, in cells. The
     # height of the middle over the plane changes, the normal does not.
     for i in range(LANES):
         middle = load_scratch(work, PLACE * SCRATCH_ROW + i, zero)

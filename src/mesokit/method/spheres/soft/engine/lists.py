@@ -42,8 +42,8 @@ def make_lists(worker, grid, begins, columns, bodies, box, lists, scratch):
     first, last = share(len(bodies.number), worker.thread, worker.threads)
     beside = scratch[worker.thread]
     # Cells around sphere i that its reach and the skin can touch. Cells along x lie one after
-    # another in memory, so a row of cells is one span of spheres, or two across an end of the box.
-    # Sums of forces are integers: the order of a list changes no bit.
+    # another in memory: a row of cells is one span, or two across an end of the box. Sums of forces
+    # are integers, so the order of a list changes no bit.
     for i in range(first, last):
         found = 0
         y, z = bodies.place[i, 1], bodies.place[i, 2]

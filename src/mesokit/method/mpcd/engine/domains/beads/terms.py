@@ -107,8 +107,8 @@ def _send_terms(beads, shared, n):
     for p in range(len(halo.ranks)):
         at = np.uint64(halo.terms_in.ctypes.data) + np.uint64(p) * size
         n = receive(shared.post, n, at, most, halo.ranks[p], TERMS)
-    # Floats as they are, with the id and the owner's number of the cell: the owner adds them by id,
-    # so the sums of a cell have the same bits as on one rank.
+    # Floats as they are, with the id and the number of the cell at its owner. The owner adds them
+    # by id, so the sums of a cell have the same bits as on one rank.
     for p in range(len(halo.ranks)):
         halo.terms_out[p, 0, 0] = float(halo.remote[p])
         for j in range(halo.remote[p]):

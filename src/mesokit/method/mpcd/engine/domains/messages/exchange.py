@@ -67,9 +67,9 @@ def _exchange_sums(worker, now, physics, fluid, beads):
     partners = len(shared.ranks)
     find_owners(worker, now, physics, fluid)
     find_bead_owners(worker, now, physics, fluid, beads)
-    # Threads count their rows before any writes: the counts say where the rows of each thread
-    # begin, so all write to one message without a race. The order of rows depends on the number
-    # of threads; the integer sums do not.
+    # Threads count their rows before any writes. The counts say where the rows of each thread
+    # begin, so all write to one message without a race. The order of rows depends on the number of
+    # threads; the integer sums do not.
     for p in range(partners):
         rows = count_rows(worker, fluid.cells, p, physics) + remote_beads(worker, beads, p)
         shared.counting[worker.thread, p] = rows

@@ -73,7 +73,7 @@ def _take(walls, now, physics, shared):
             seen.step[e, p] = np.int64(now.counter.step)
             for k in range(d + 1):
                 seen.values[e, p, k] = rows[row, 2 + k]
-    # The means are updated only when all probes are here, piece by piece: every rank with a piece
+    # The means are updated only when all probes are here, piece by piece. Every rank with a piece
     # does the same operations on the same numbers.
     for j in range(len(seen.here)):
         e, new = seen.here[j], False

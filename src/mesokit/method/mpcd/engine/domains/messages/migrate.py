@@ -178,8 +178,9 @@ def pack_molecule(fluid, physics, molecule, p, n):
     out, at = shared.moved_out[first + HEADER + 1 + rows], 0
     numbers, d = len(physics.coefficients), len(physics.zero)
     length = np.uint64(record_length(numbers))
-    # Of each bead: id, bits of position (t + dt) and velocity (before the collision), images, and
-    # the coefficients of its cell, with which the new owner does the pending collision.
+    # Each bead has its id, the bits of position (t + dt) and velocity (before the collision), and
+    # images. The coefficients of its cell follow: with them the new owner does the pending
+    # collision.
     for bead in range(beads_of(particles.filling)):
         i = place_of_bead(particles.filling, molecule, bead)
         last = place_of_bead(particles.filling, n - 1, bead)
