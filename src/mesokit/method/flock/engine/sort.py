@@ -81,7 +81,8 @@ def add_up(worker, cells, number):
     """Birds and work in the cells of this thread."""
     first, last = part(number, worker)
     birds = work = 0
-    # Now threads share cells, no more birds: totals for each share, from which all offsets follow.
+    # From here on threads share cells instead of birds: totals of each share, from which all
+    # offsets follow.
     for cell in range(first, last):
         here = 0
         for thread in range(worker.threads):

@@ -112,8 +112,9 @@ def finish(post, n):
     """Wait until all n open messages are sent and received."""
     requests, statuses = post.requests.ctypes.data, post.statuses.ctypes.data
     post.flag[0], spins, began = 0, 0, read_work_clock(post.waited)
-    # MPI's own wait would hold the core all the time. Polling lets another rank or thread on this
-    # core go on: after SPINS polls the core is yielded, and crowded ranks sleep after each poll.
+    # The wait of most MPI libraries holds the core all the time. Polling lets another rank or
+    # thread on this core go on: after SPINS polls the core is yielded, and crowded ranks sleep
+    # after each poll.
     while post.flag[0] == 0:
         failed = _test(
             np.int32(n), np.int64(requests), np.int64(post.flag.ctypes.data), np.int64(statuses)
